@@ -1,0 +1,34 @@
+#include "report.hpp"
+
+#include "json_reader.hpp"
+#include "state_json.hpp"
+
+namespace vrut::protocol {
+
+std::string encode(const RenderReport& report) {
+    return dump({{"device", report.device},
+                 {"width", report.width},
+                 {"height", report.height},
+                 {"samples", report.samples},
+                 {"passes", report.passes},
+                 {"draws", report.draws},
+                 {"triangles", report.triangles},
+                 {"renderMs", report.render_ms},
+                 {"readbackMs", report.readback_ms}});
+}
+
+std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& nodes) {
+    Json list = Json::array();
+    for (const NodeReport& node : nodes)
+        list.push_back({{"id", node.id},
+                        {"name", node.name},
+                        {"type", node.type},
+                        {"triangles", node.triangles},
+                        {"active", node.active},
+                        {"depth", node.depth}});
+    Json info = section_json(scene);
+    info["tree"] = std::move(list);
+    return dump(info);
+}
+
+}  // namespace vrut::protocol

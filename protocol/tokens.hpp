@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "messages.hpp"
+
+namespace vrut::protocol {
+
+struct Tokens {
+    std::string control, view;  ///< empty: none
+};
+
+/// A token file's text: {"control": …, "view": …}, at least one of them, each of 16 to 1000 bytes.
+tl::expected<Tokens, Error> parse_tokens(std::string_view text);
+
+}  // namespace vrut::protocol

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "scene.hpp"
+
+namespace vrut {
+
+/// A scene, or one sentence that names the file, where it can the line, and what was expected.
+using ReadResult = tl::expected<Scene, std::string>;
+
+/// Reads a scene file in any known format, chosen by the file's ending.
+ReadResult read_scene(const std::filesystem::path& path);
+
+}  // namespace vrut

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string_view>
+
+#include "read_scene.hpp"
+
+namespace vrut {
+
+/// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
+ReadResult read_vrut_text(std::string_view text, const std::string& file);
+
+}  // namespace vrut

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace vrut {
+
+struct GlOptions {
+    std::optional<int> device;  ///< index in EGL's enumeration; none: the first that works
+    bool debug = false;         ///< collect the driver's messages of severity medium and above
+};
+
+/// An OpenGL 4.5 core context without any window, current on the thread that made it until it is destroyed there.
+/// Devices are tried in EGL's order, those that draw in software after the others, Mesa's surfaceless platform last;
+/// each must draw a picture and read it back right.
+class GlContext {
+public:
+    /// Throws std::runtime_error with one sentence where no device passes.
+    explicit GlContext(const GlOptions& options = {});
+    ~GlContext();
+    GlContext(const GlContext&) = delete;
+    GlContext& operator=(const GlContext&) = delete;
+
+    /// Which device was chosen and what draws, for a log: "EGL device 0: llvmpipe (…), OpenGL 4.5 …".
+    const std::string& description() const { return description_; }
+    /// Why those before it were not, a sentence each.
+    const std::vector<std::string>& rejected() const { return rejected_; }
+    /// True where the processor draws.
+    bool software() const { return software_; }
+    /// Largest width and height of a framebuffer.
+    int max_size() const { return max_size_; }
+    /// The driver's messages since the last call (GlOptions::debug).
+    std::vector<std::string> take_messages();
+
+private:
+    struct Candidate;
+    struct Display;
+    void make_current(const Candidate& candidate, bool debug);
+    void describe(const Candidate& candidate);
+
+    std::unique_ptr<Display> display_;
+    std::string description_;
+    std::vector<std::string> rejected_;
+    std::vector<std::string> messages_;
+    bool software_ = false;
+    int max_size_ = 0;
+};
+
+}  // namespace vrut

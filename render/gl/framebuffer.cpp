@@ -1,0 +1,42 @@
+#include "framebuffer.hpp"
+
+#include <cassert>
+#include <stdexcept>
+#include <string>
+
+namespace vrut {
+
+Framebuffer::Framebuffer(int width, int height)
+    : width_(width),
+      height_(height),
+      color_(make_renderbuffer(GL_RGBA8, width, height)),
+      depth_(make_renderbuffer(GL_DEPTH_COMPONENT32F, width, height)),
+      framebuffer_(make_framebuffer()) {
+    glNamedFramebufferRenderbuffer(framebuffer_.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.get());
+    glNamedFramebufferRenderbuffer(framebuffer_.get(), GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_.get());
+    if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                 " pixels can be drawn: the driver refuses the framebuffer");
+}
+
+void Framebuffer::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_.get());
+    glViewport(0, 0, width_, height_);
+}
+
+void Framebuffer::read(std::span<std::uint8_t> pixels) const {
+    assert(pixels.size() == static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+}
+
+void wait_for_gl() {
+    const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    // One wait may end early; the flush is needed with the first only.
+    while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000) == GL_TIMEOUT_EXPIRED) {
+    }
+    glDeleteSync(fence);
+}
+
+}  // namespace vrut

@@ -1,0 +1,51 @@
+#include "handles.hpp"
+
+#include <atomic>
+
+namespace vrut {
+
+namespace {
+std::atomic<long> live_objects{0};
+}
+
+long live_gl_objects() { return live_objects; }
+
+namespace detail {
+void count_gl_object(long change) { live_objects += change; }
+void destroy_buffer(GLuint name) { glDeleteBuffers(1, &name); }
+void destroy_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
+void destroy_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
+void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+void destroy_shader(GLuint name) { glDeleteShader(name); }
+void destroy_program(GLuint name) { glDeleteProgram(name); }
+}  // namespace detail
+
+GlBuffer make_buffer(const void* data, std::size_t bytes) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    GlBuffer buffer(name);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, 0);
+    return buffer;
+}
+
+GlVertexArray make_vertex_array() {
+    GLuint name = 0;
+    glCreateVertexArrays(1, &name);
+    return GlVertexArray(name);
+}
+
+GlRenderbuffer make_renderbuffer(GLenum format, int width, int height) {
+    GLuint name = 0;
+    glCreateRenderbuffers(1, &name);
+    GlRenderbuffer renderbuffer(name);
+    glNamedRenderbufferStorage(name, format, width, height);
+    return renderbuffer;
+}
+
+GlFramebuffer make_framebuffer() {
+    GLuint name = 0;
+    glCreateFramebuffers(1, &name);
+    return GlFramebuffer(name);
+}
+
+}  // namespace vrut

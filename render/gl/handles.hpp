@@ -1,0 +1,61 @@
+#pragma once
+
+#include <utility>
+
+#include "gl.hpp"
+
+namespace vrut {
+
+/// GL objects that live now, of all kinds: 0 when everything is given back.
+long live_gl_objects();
+
+namespace detail {
+void count_gl_object(long change);
+}
+
+/// Owns one GL object: moved, never copied.
+template <void (*Destroy)(GLuint)>
+class GlHandle {
+public:
+    GlHandle() = default;
+    explicit GlHandle(GLuint name) : name_(name) { detail::count_gl_object(name_ != 0 ? 1 : 0); }
+    GlHandle(GlHandle&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+    GlHandle& operator=(GlHandle&& other) noexcept {
+        std::swap(name_, other.name_);
+        return *this;
+    }
+    ~GlHandle() {
+        if (name_ == 0) return;
+        Destroy(name_);
+        detail::count_gl_object(-1);
+    }
+
+    GLuint get() const { return name_; }
+    explicit operator bool() const { return name_ != 0; }
+
+private:
+    GLuint name_ = 0;
+};
+
+namespace detail {
+void destroy_buffer(GLuint name);
+void destroy_vertex_array(GLuint name);
+void destroy_renderbuffer(GLuint name);
+void destroy_framebuffer(GLuint name);
+void destroy_shader(GLuint name);
+void destroy_program(GLuint name);
+}  // namespace detail
+
+using GlBuffer = GlHandle<detail::destroy_buffer>;
+using GlVertexArray = GlHandle<detail::destroy_vertex_array>;
+using GlRenderbuffer = GlHandle<detail::destroy_renderbuffer>;
+using GlFramebuffer = GlHandle<detail::destroy_framebuffer>;
+using GlShader = GlHandle<detail::destroy_shader>;
+using GlProgram = GlHandle<detail::destroy_program>;
+
+GlBuffer make_buffer(const void* data, std::size_t bytes);
+GlVertexArray make_vertex_array();
+GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
+GlFramebuffer make_framebuffer();
+
+}  // namespace vrut

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "handles.hpp"
+#include "scene.hpp"
+
+namespace vrut {
+
+/// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a scene
+/// far from the world's origin keeps its precision.
+struct GpuGeometry {
+    GlBuffer vertices, indices;
+    GlVertexArray vertex_array;
+    GLsizei index_count = 0;
+    glm::dvec3 origin{0};
+};
+
+/// The geometries of a scene, each uploaded when it is first drawn.
+class GpuScene {
+public:
+    explicit GpuScene(std::shared_ptr<const PlacedScene> placed);
+    const PlacedScene& placed() const { return *placed_; }
+    const GpuGeometry& geometry(Index index);
+
+private:
+    std::shared_ptr<const PlacedScene> placed_;
+    std::vector<GpuGeometry> geometries_;
+};
+
+}  // namespace vrut

@@ -1,0 +1,178 @@
+#include "camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vrut {
+
+namespace {
+
+constexpr double kSmallestNearToFar = 1e-6;
+constexpr double kMargin = 1e-3;  // keeps what touches the planes from being clipped by rounding
+
+/// Rodrigues' formula; `axis` is unit.
+glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians) {
+    const double c = std::cos(radians), s = std::sin(radians);
+    return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1 - c));
+}
+
+bool all_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// The part of `radians` (a turn about the right axis) that keeps up · vertical from changing its
+/// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its peak.
+double stop_at_poles(const Camera& camera, double radians) {
+    const double up = camera.up.y, back = -view_direction(camera).y;
+    if (std::hypot(up, back) < 1e-12) return radians;  // the right axis is vertical: nothing can tip over
+    const double sign = up < -1e-12 ? -1 : 1;
+    // up(a) · vertical = up cos a + back sin a, greatest at a = atan2(back, up).
+    const double peak = std::atan2(sign * back, sign * up);
+    const double quarter = std::numbers::pi / 2;
+    return std::clamp(radians, std::min(peak - quarter, 0.0), std::max(peak + quarter, 0.0));
+}
+
+}  // namespace
+
+double focus_distance(const Camera& camera) { return glm::distance(camera.eye, camera.focus); }
+glm::dvec3 view_direction(const Camera& camera) { return glm::normalize(camera.focus - camera.eye); }
+glm::dvec3 right_direction(const Camera& camera) {
+    return glm::normalize(glm::cross(view_direction(camera), camera.up));
+}
+
+bool is_valid_pose(const Camera& camera, double scene_radius) {
+    if (!all_finite(camera.eye) || !all_finite(camera.focus) || !all_finite(camera.up) || !all_finite(camera.center))
+        return false;
+    const double distance = focus_distance(camera);
+    if (!std::isfinite(distance) || distance == 0 || distance < 1e-9 * scene_radius) return false;
+    const double length = glm::length(camera.up);
+    if (!std::isfinite(length) || length == 0) return false;
+    return glm::length(glm::cross(view_direction(camera), camera.up / length)) > 1e-9;
+}
+
+Camera with_orthogonal_up(Camera camera) {
+    const glm::dvec3 view = view_direction(camera);
+    const glm::dvec3 up = glm::normalize(camera.up);
+    // Left as it is where it is right already, so that reading a pose and writing it back changes nothing.
+    if (std::abs(glm::dot(view, up)) < 1e-15 && std::abs(glm::length(camera.up) - 1) < 1e-15) return camera;
+    camera.up = glm::normalize(up - view * glm::dot(view, up));
+    return camera;
+}
+
+ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds) {
+    const double distance = focus_distance(camera);
+    ClipRange range{distance * 0.01, distance * 10};
+    if (bounds.empty()) return range;
+    const glm::dvec3 view = view_direction(camera);
+    double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
+    for (const glm::dvec3& corner : corners(bounds)) {
+        const double depth = glm::dot(corner - camera.eye, view);
+        nearest = std::min(nearest, depth);
+        farthest = std::max(farthest, depth);
+    }
+    if (farthest <= 0) return range;  // everything is behind the eye
+    range.far = farthest * (1 + kMargin);
+    range.near = std::max(nearest * (1 - kMargin), range.far * kSmallestNearToFar);
+    return range;
+}
+
+glm::dmat4 view_from_world(const Camera& camera) {
+    const glm::dvec3 back = -view_direction(camera);
+    const glm::dvec3 right = right_direction(camera);
+    const glm::dvec3 up = glm::cross(back, right);
+    glm::dmat4 matrix(1);
+    for (int i = 0; i < 3; ++i) {
+        matrix[i][0] = right[i];
+        matrix[i][1] = up[i];
+        matrix[i][2] = back[i];
+    }
+    matrix[3] = {-glm::dot(right, camera.eye), -glm::dot(up, camera.eye), -glm::dot(back, camera.eye), 1};
+    return matrix;
+}
+
+glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& range) {
+    const double cotangent = 1 / std::tan(camera.fov * kRadiansPerDegree / 2);
+    const double depth = range.far - range.near;
+    glm::dmat4 matrix(0);
+    matrix[0][0] = cotangent / aspect;
+    matrix[1][1] = cotangent;
+    matrix[2][2] = -(range.far + range.near) / depth;
+    matrix[2][3] = -1;
+    matrix[3][2] = -2 * range.far * range.near / depth;
+    return matrix;
+}
+
+Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
+    const double radius = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
+    const double half_fov = camera.fov * kRadiansPerDegree / 2;
+    const double half_width = std::atan(std::tan(half_fov) * aspect);
+    Camera result = camera;
+    const glm::dvec3 view = view_direction(camera);
+    result.focus = result.center = bounds.center();
+    result.eye = result.focus - view * (radius / std::sin(std::min(half_fov, half_width)));
+    return result;
+}
+
+std::optional<Camera> first_camera_node(const PlacedScene& placed) {
+    const auto& nodes = placed.scene.nodes();
+    std::size_t first = nodes.size();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id)) first = i;
+    if (first == nodes.size()) return std::nullopt;
+
+    const auto& data = std::get<CameraData>(nodes[first].data);
+    const glm::dmat4& world = placed.world[first];
+    Camera camera;
+    camera.eye = glm::dvec3(world * glm::dvec4(data.eye, 1));
+    camera.focus = camera.center = glm::dvec3(world * glm::dvec4(data.focus, 1));
+    camera.up = glm::dvec3(world * glm::dvec4(data.up, 0));
+    camera.fov = data.fov;
+    if (!is_valid_pose(camera, placed.bounds.radius())) return std::nullopt;
+    return with_orthogonal_up(camera);
+}
+
+Camera home_camera(const Bounds& bounds, double aspect) {
+    Camera camera;
+    camera.focus = {0, 0, 0};
+    camera.eye = {1, 0.45, 1.25};
+    return fitted(with_orthogonal_up(camera), bounds, aspect);
+}
+
+Camera rotated(const Camera& camera, double right, double down, bool keep_upright) {
+    // The scene turns one way, the camera the other.
+    const double yaw = -right * kRadiansPerDegree;
+    double pitch = -down * kRadiansPerDegree;
+    if (keep_upright) pitch = stop_at_poles(camera, pitch);
+    if (yaw == 0 && pitch == 0) return camera;
+
+    const glm::dvec3 across = right_direction(camera);
+    const glm::dvec3 axis = keep_upright ? kVertical : camera.up;
+    const auto turn = [&](const glm::dvec3& v) { return turned(turned(v, across, pitch), axis, yaw); };
+    Camera result = camera;
+    result.eye = camera.center + turn(camera.eye - camera.center);
+    result.focus = camera.center + turn(camera.focus - camera.center);
+    result.up = turn(camera.up);
+    return with_orthogonal_up(result);
+}
+
+Camera panned(const Camera& camera, double right, double down) {
+    if (right == 0 && down == 0) return camera;
+    const double height = 2 * focus_distance(camera) * std::tan(camera.fov * kRadiansPerDegree / 2);
+    const glm::dvec3 shift = (camera.up * down - right_direction(camera) * right) * height;
+    Camera result = camera;
+    result.eye += shift;
+    result.focus += shift;
+    return result;
+}
+
+Camera zoomed(const Camera& camera, double factor, double scene_radius) {
+    if (factor == 1) return camera;
+    const double distance = focus_distance(camera);
+    const double radius = scene_radius > 0 ? scene_radius : 1;
+    // A pose given from outside may lie beyond the limits; then they are where it stands.
+    const double wanted = std::clamp(distance / factor, std::min(distance, radius * 1e-6),
+                                     std::max(distance, radius * 1e6));
+    Camera result = camera;
+    result.eye = camera.focus - view_direction(camera) * wanted;
+    return result;
+}
+
+}  // namespace vrut

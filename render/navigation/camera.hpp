@@ -1,0 +1,67 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <numbers>
+
+#include "bounds.hpp"
+#include "scene.hpp"
+
+namespace vrut {
+
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
+/// The scene's vertical.
+inline constexpr glm::dvec3 kVertical{0, 1, 0};
+
+/// A pose in world space, in double. `up` is unit and at right angles to the view; `center` is what rotations
+/// turn around. Near and far are not part of it: they follow from the scene (fit_clip_range).
+struct Camera {
+    glm::dvec3 eye{0, 0, 5}, focus{0, 0, 0}, up{0, 1, 0}, center{0, 0, 0};
+    double fov = 40;  ///< vertical, degrees, 1 to 170
+
+    bool operator==(const Camera&) const = default;
+};
+
+double focus_distance(const Camera& camera);
+/// Unit vectors of the camera's axes: along the view, and to its right (view × up).
+glm::dvec3 view_direction(const Camera& camera);
+glm::dvec3 right_direction(const Camera& camera);
+
+/// False where eye and focus are closer than 10⁻⁹ of `scene_radius`, `up` is zero or lies along the view, or
+/// anything is not finite.
+bool is_valid_pose(const Camera& camera, double scene_radius);
+/// The same camera with `up` at right angles to the view and unit; the pose must be valid.
+Camera with_orthogonal_up(Camera camera);
+
+struct ClipRange {
+    double near = 0.1, far = 100;
+    bool operator==(const ClipRange&) const = default;
+};
+
+/// The tightest near and far around `bounds`, with near never below 10⁻⁶ of far.
+ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds);
+
+/// Right-handed, view along −z.
+glm::dmat4 view_from_world(const Camera& camera);
+/// OpenGL's: clip z from −w to w. `aspect` is width / height.
+glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& range);
+
+/// The camera, looking along the same direction, from where the sphere around `bounds` just fits into a view of
+/// `aspect`: distance r / sin(half of the smaller fov). Empty bounds count as a unit sphere at the origin.
+Camera fitted(const Camera& camera, const Bounds& bounds, double aspect);
+/// The camera that the scene starts with: its first camera node by id, if there is one and its pose is valid.
+std::optional<Camera> first_camera_node(const PlacedScene& placed);
+/// The view of a scene without a camera node: three quarters from the front and above, fitted.
+Camera home_camera(const Bounds& bounds, double aspect);
+
+// Moves. Each leaves the camera as it is, to the bit, where it is asked for nothing.
+
+/// The scene turns by `right` and `down` degrees, as if dragged there, around `camera.center`. With
+/// `keep_upright` about the scene's vertical, and `down` stops at the poles, so that the scene never stands on its
+/// head; else about the camera's own up.
+Camera rotated(const Camera& camera, double right, double down, bool keep_upright);
+/// The picture moves right and down by fractions of the view's height in the plane through `focus`.
+Camera panned(const Camera& camera, double right, double down);
+/// The distance from eye to focus is divided by `factor` (above 0); it stays within 10⁻⁶ and 10⁶ of `scene_radius`.
+Camera zoomed(const Camera& camera, double factor, double scene_radius);
+
+}  // namespace vrut

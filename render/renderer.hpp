@@ -1,0 +1,42 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "image.hpp"
+#include "scene.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread.
+class Renderer {
+public:
+    /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's enumeration;
+    /// with `debug` the driver's messages are collected.
+    explicit Renderer(std::optional<int> device = std::nullopt, bool debug = false);
+    ~Renderer();
+
+    /// What draws, for a log; why other devices were passed over; whether the processor draws.
+    const std::string& description() const;
+    const std::vector<std::string>& rejected() const;
+    bool software() const;
+    /// Largest width and height of a picture.
+    int max_size() const;
+    std::vector<std::string> take_messages();
+
+    /// What render() draws from now on.
+    void set_scene(std::shared_ptr<const PlacedScene> scene);
+    /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks
+    /// `interrupted`; if that says yes the picture is given up and false comes back.
+    bool render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted = {});
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vrut

@@ -1,0 +1,202 @@
+#include "scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace vrut {
+
+std::string_view name_of(NodeType type) {
+    switch (type) {
+        case NodeType::assembly: return "assembly";
+        case NodeType::root: return "root";
+        case NodeType::camera: return "camera";
+        case NodeType::geometry: return "geometry";
+        case NodeType::light: return "light";
+        case NodeType::lod: return "lod";
+        case NodeType::switch_: return "switch";
+        case NodeType::background: return "background";
+        case NodeType::sound: return "sound";
+    }
+    return "";
+}
+
+Scene::Scene() { *this = *build({}); }
+
+namespace {
+
+Node make_root() {
+    Node root;
+    root.type = NodeType::root;
+    return root;
+}
+
+/// Parents before children, children by id; fewer than all nodes come back where there is a cycle.
+std::vector<Index> top_down_order(const std::vector<std::vector<Index>>& children, Index root) {
+    std::vector<Index> order{root};
+    order.reserve(children.size());
+    for (std::size_t next = 0; next < order.size(); ++next)
+        for (Index child : children[static_cast<std::size_t>(order[next])]) order.push_back(child);
+    return order;
+}
+
+}  // namespace
+
+tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
+    auto& in = parts.nodes;
+    const auto fail = [](std::string message, std::size_t node) {
+        return tl::unexpected(BuildError{std::move(message), node});
+    };
+
+    const auto is_root = [](const SceneParts::PartNode& part) { return part.node.id == 0; };
+    if (std::none_of(in.begin(), in.end(), is_root)) in.push_back({make_root(), 0});
+
+    // --- who is whose child, in the order of the file
+    std::unordered_map<Id, Index> place;
+    place.reserve(in.size());
+    for (std::size_t i = 0; i < in.size(); ++i) {
+        const Node& node = in[i].node;
+        if (!place.emplace(node.id, static_cast<Index>(i)).second)
+            return fail("node " + std::to_string(node.id) + " stands twice", i);
+        if ((node.id == 0) != (node.type == NodeType::root))
+            return fail("node " + std::to_string(node.id) + ": the root, and only the root, has id 0", i);
+    }
+    std::vector<Index> by_id(in.size());
+    std::iota(by_id.begin(), by_id.end(), 0);
+    std::sort(by_id.begin(), by_id.end(), [&](Index a, Index b) {
+        return in[static_cast<std::size_t>(a)].node.id < in[static_cast<std::size_t>(b)].node.id;
+    });
+    std::vector<std::vector<Index>> children(in.size());
+    for (Index i : by_id) {
+        const auto& part = in[static_cast<std::size_t>(i)];
+        if (part.node.id == 0) continue;
+        const auto parent = place.find(part.parent_id);
+        if (parent == place.end())
+            return fail("node " + std::to_string(part.node.id) + ": its parent " + std::to_string(part.parent_id) +
+                            " is not in the file",
+                        static_cast<std::size_t>(i));
+        children[static_cast<std::size_t>(parent->second)].push_back(i);
+    }
+
+    // --- what the root does not reach hangs in a cycle
+    const std::vector<Index> order = top_down_order(children, place.at(0));
+    if (order.size() != in.size()) {
+        std::vector<bool> reached(in.size());
+        for (Index i : order) reached[static_cast<std::size_t>(i)] = true;
+        const auto culprit =
+            static_cast<std::size_t>(std::find(reached.begin(), reached.end(), false) - reached.begin());
+        return fail("node " + std::to_string(in[culprit].node.id) + " is among its own ancestors", culprit);
+    }
+
+    // --- the same, in that order
+    Scene scene(Unlinked{});
+    scene.name_ = std::move(parts.name);
+    scene.unit_ = parts.unit;
+    scene.materials_ = std::move(parts.materials);
+    scene.geometries_ = std::move(parts.geometries);
+    scene.notices_ = std::move(parts.notices);
+    std::vector<Index> new_place(in.size());
+    for (std::size_t i = 0; i < order.size(); ++i)
+        new_place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+    scene.nodes_.reserve(in.size());
+    for (Index old : order) {
+        Node& node = scene.nodes_.emplace_back(std::move(in[static_cast<std::size_t>(old)].node));
+        node.children = std::move(children[static_cast<std::size_t>(old)]);
+        for (Index& child : node.children) child = new_place[static_cast<std::size_t>(child)];
+        scene.index_of_.emplace(node.id, static_cast<Index>(scene.nodes_.size() - 1));
+    }
+    for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
+        for (Index child : scene.nodes_[i].children)
+            scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
+    return scene;
+}
+
+const Material& Scene::material(Index index) const {
+    static const Material default_material;
+    return index == kNone ? default_material : materials_[static_cast<std::size_t>(index)];
+}
+
+Index Scene::find_node(Id id) const {
+    const auto found = index_of_.find(id);
+    return found == index_of_.end() ? kNone : found->second;
+}
+
+std::uint64_t Scene::triangle_count() const {
+    std::uint64_t count = 0;
+    for (const Node& node : nodes_)
+        if (const auto* data = std::get_if<GeometryData>(&node.data); data && data->geometry != kNone)
+            count += geometries_[static_cast<std::size_t>(data->geometry)].triangles.size();
+    return count;
+}
+
+std::vector<glm::dmat4> world_matrices(const Scene& scene) {
+    std::vector<glm::dmat4> world(scene.nodes().size());
+    for (std::size_t i = 0; i < world.size(); ++i) {
+        const Node& node = scene.nodes()[i];
+        world[i] = node.parent == kNone ? node.matrix : world[static_cast<std::size_t>(node.parent)] * node.matrix;
+    }
+    return world;
+}
+
+namespace {
+
+/// Whether a LOD or switch at `index` lets its child number `place` show.
+bool chooses(const Node& node, std::size_t place, const glm::dvec3& origin, const std::optional<glm::dvec3>& eye) {
+    if (const auto* data = std::get_if<SwitchData>(&node.data))
+        return data->active_child == SwitchData::kAllChildren || data->active_child == static_cast<int>(place);
+    if (const auto* data = std::get_if<LodData>(&node.data); data && eye) {
+        const double distance = glm::distance(*eye, origin);
+        std::size_t level = 0;
+        while (level < data->ranges.size() && distance >= data->ranges[level]) ++level;
+        return place == level;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>& world,
+                              const std::optional<glm::dvec3>& eye) {
+    const auto& nodes = scene.nodes();
+    std::vector<bool> shown(nodes.size());
+    shown[0] = nodes[0].active;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (!shown[i]) continue;
+        for (std::size_t place = 0; place < nodes[i].children.size(); ++place) {
+            const auto child = static_cast<std::size_t>(nodes[i].children[place]);
+            shown[child] = nodes[child].active && chooses(nodes[i], place, glm::dvec3(world[i][3]), eye);
+        }
+    }
+    return shown;
+}
+
+Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world) {
+    // Squares and sums of what is used below stay finite.
+    constexpr double kFarthest = 1e150;
+    Bounds bounds;
+    const std::vector<bool> shown = shown_nodes(scene, world, std::nullopt);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
+        if (!shown[i] || !data || data->geometry == kNone || !is_finite(world[i])) continue;
+        const Bounds box =
+            transformed(world[i], scene.geometries()[static_cast<std::size_t>(data->geometry)].bounds);
+        if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest) bounds.add(box);
+    }
+    return bounds;
+}
+
+PlacedScene place(Scene scene) {
+    PlacedScene placed{std::move(scene), {}, {}};
+    placed.world = world_matrices(placed.scene);
+    placed.bounds = scene_bounds(placed.scene, placed.world);
+    return placed;
+}
+
+bool is_finite(const glm::dmat4& matrix) {
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row)
+            if (!std::isfinite(matrix[column][row])) return false;
+    return true;
+}
+
+}  // namespace vrut

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <unordered_map>
+#include <variant>
+#include <vector>
+
+#include "bounds.hpp"
+
+namespace vrut {
+
+/// Identifiers of nodes, materials and geometries as a file gives them: 0 to 2^53 - 1, exact in JSON.
+using Id = std::int64_t;
+inline constexpr Id kMaxId = (Id{1} << 53) - 1;
+
+/// Position in one of the scene's arrays; kNone where nothing is meant.
+using Index = std::int32_t;
+inline constexpr Index kNone = -1;
+
+/// RGBA 0 to 1 as displayed: no gamma anywhere.
+struct Material {
+    Id id = 0;
+    std::string name;
+    glm::dvec4 ambient{0, 0, 0, 1};
+    glm::dvec4 diffuse{0.8, 0.8, 0.8, 1};
+    glm::dvec4 specular{0, 0, 0, 1};
+    glm::dvec4 emission{0, 0, 0, 1};
+    double shininess = 0;
+    double reflectivity = 0;
+    bool two_sided = false;
+    std::string image;  ///< relative to the scene's file; empty for none
+};
+
+struct Geometry {
+    Id id = 0;
+    std::vector<glm::dvec3> positions;
+    std::vector<glm::vec3> normals;    ///< one for each position, or none: then triangles are flat
+    std::vector<glm::vec2> texcoords;  ///< one for each position, or none
+    std::vector<glm::uvec3> triangles; ///< counter-clockwise from the front
+    Bounds bounds;
+};
+
+enum class NodeType { assembly, root, camera, geometry, light, lod, switch_, background, sound };
+
+/// The keyword of the scene text format.
+std::string_view name_of(NodeType type);
+
+struct GroupData {};
+
+struct GeometryData {
+    Index geometry = kNone;
+    Index material = kNone;  ///< kNone: the default material
+};
+
+/// In the node's own space; `fov` is vertical, in degrees.
+struct CameraData {
+    glm::dvec3 eye{0, 0, 0}, focus{0, 0, -1}, up{0, 1, 0};
+    double fov = 40;
+};
+
+struct LightData {
+    enum class Type { point, directional, spot };
+    Type type = Type::point;
+    glm::dvec4 color{1, 1, 1, 1};
+    glm::dvec3 attenuation{1, 0, 0};  ///< constant, linear, quadratic; all zero means none
+    double angle = 90;                ///< a spot's full cone in degrees
+};
+
+struct SwitchData {
+    static constexpr int kNoChild = -1, kAllChildren = -2;
+    int active_child = 0;
+};
+
+struct LodData {
+    std::vector<double> ranges;  ///< child k shows while the distance is below ranges[k]
+};
+
+struct BackgroundData {
+    Index material = kNone;
+    std::optional<std::array<std::string, 6>> cube_map;  ///< px nx py ny pz nz
+};
+
+struct Node {
+    Id id = 0;
+    std::string name;
+    NodeType type = NodeType::assembly;
+    Index parent = kNone;         ///< kNone for the root only
+    std::vector<Index> children;  ///< by rising id
+    bool active = true;
+    glm::dmat4 matrix{1};  ///< parent from node
+    std::variant<GroupData, GeometryData, CameraData, LightData, SwitchData, LodData, BackgroundData> data;
+};
+
+/// What a reader hands over: nodes still name their parents by id.
+struct SceneParts {
+    struct PartNode {
+        Node node;
+        Id parent_id = 0;
+    };
+    std::string name;
+    double unit = 1;  ///< metres per unit: information for hosts
+    std::vector<Material> materials;
+    std::vector<Geometry> geometries;
+    std::vector<PartNode> nodes;
+    std::vector<std::string> notices;
+};
+
+/// A scene graph: plain data. Nodes stand in the array so that each parent comes before its children; a walk is
+/// a loop, and a chain of a million nodes needs no stack.
+class Scene {
+public:
+    /// The sentence and the place in SceneParts::nodes of the node at fault.
+    struct BuildError {
+        std::string message;
+        std::size_t node = 0;
+    };
+
+    /// An empty scene: the root alone.
+    Scene();
+    /// Links nodes to their parents, adds the root where it is left out, orders everything by id.
+    static tl::expected<Scene, BuildError> build(SceneParts parts);
+
+    const std::string& name() const { return name_; }
+    double unit() const { return unit_; }
+    const std::vector<Material>& materials() const { return materials_; }
+    const std::vector<Geometry>& geometries() const { return geometries_; }
+    const std::vector<Node>& nodes() const { return nodes_; }
+    const std::vector<std::string>& notices() const { return notices_; }
+    const Material& material(Index index) const;
+    Index find_node(Id id) const;
+    /// Triangles of all geometry nodes, instances counted each.
+    std::uint64_t triangle_count() const;
+
+private:
+    struct Unlinked {};
+    explicit Scene(Unlinked) {}
+
+    std::string name_;
+    double unit_ = 1;
+    std::vector<Material> materials_;
+    std::vector<Geometry> geometries_;
+    std::vector<Node> nodes_;
+    std::vector<std::string> notices_;
+    std::unordered_map<Id, Index> index_of_;
+};
+
+/// World from node for each node.
+std::vector<glm::dmat4> world_matrices(const Scene& scene);
+
+/// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs choose
+/// by the distance of `eye` (world space); without one all their children count.
+std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>& world,
+                              const std::optional<glm::dvec3>& eye);
+
+/// Box around the geometry that could show from anywhere: active and chosen by its switches. Nodes that lie
+/// beyond the range of double are left out.
+Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world);
+
+/// A scene with what follows from its nodes' places.
+struct PlacedScene {
+    Scene scene;
+    std::vector<glm::dmat4> world;
+    Bounds bounds;
+};
+
+PlacedScene place(Scene scene);
+
+/// True when every number of the matrix is finite.
+bool is_finite(const glm::dmat4& matrix);
+
+}  // namespace vrut

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "camera.hpp"
+
+namespace vrut {
+
+/// A point light at the eye. `attenuation`: constant, linear, quadratic; all zero means none.
+struct Headlight {
+    glm::dvec4 color{1, 1, 1, 1};
+    glm::dvec3 attenuation{1, 0, 0};
+    bool operator==(const Headlight&) const = default;
+};
+
+/// The plain background: 230/255, 235/255, 242/255.
+inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+
+/// What a picture shows, in pixels of the picture.
+struct View {
+    Camera camera;
+    int width = 1280, height = 720;
+    int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
+    Headlight headlight;
+    glm::dvec3 background = kDefaultBackground;
+
+    bool operator==(const View&) const = default;
+};
+
+/// What a picture took.
+struct FrameStats {
+    int passes = 0;
+    int draws = 0;
+    std::uint64_t triangles = 0;
+    double render_ms = 0;    ///< from the first command to the fence behind the last
+    double readback_ms = 0;  ///< from the GPU into memory
+};
+
+}  // namespace vrut

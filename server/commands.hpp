@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the program's subcommands do. Each throws std::exception with one sentence; main prints it.
+namespace vrut {
+
+struct ServeArguments {
+    std::filesystem::path scene;  ///< empty: the car
+    std::string listen = "127.0.0.1:8080";
+    std::vector<std::string> allowed_origins;
+    std::optional<int> device;
+    std::size_t max_clients = 64;
+    std::filesystem::path token_file;
+};
+void serve_command(const ServeArguments& arguments);
+
+struct RenderArguments {
+    std::filesystem::path scene, output;
+    int width = 1280, height = 720;
+    int samples = 4;
+    int jpeg_quality = 90;
+    std::filesystem::path camera_file;
+    std::optional<glm::dvec3> eye, focus, up;
+    std::optional<double> fov;
+    std::string set;  ///< a merge patch on the state
+    std::optional<int> device;
+    bool stats = false;
+};
+void render_command(const RenderArguments& arguments);
+
+struct InfoArguments {
+    std::filesystem::path scene;
+    bool json = false;
+};
+void info_command(const InfoArguments& arguments);
+
+/// The car: where the program is installed, or beside its sources. Throws where it is in neither place.
+std::filesystem::path default_scene();
+
+}  // namespace vrut

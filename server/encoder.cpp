@@ -1,0 +1,95 @@
+#include "encoder.hpp"
+
+#include <cassert>
+
+#include "images.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// A picture that is counted as long as anybody holds it.
+std::shared_ptr<EncodedPicture> counted_picture(Metrics& metrics) {
+    const std::uint64_t held = ++metrics.pictures_held;
+    std::uint64_t most = metrics.pictures_held_most;
+    while (held > most && !metrics.pictures_held_most.compare_exchange_weak(most, held)) {
+    }
+    return {new EncodedPicture, [&metrics](EncodedPicture* picture) {
+                delete picture;
+                --metrics.pictures_held;
+            }};
+}
+
+}  // namespace
+
+Encoder::Encoder(Metrics& metrics, std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
+                 std::function<void()> on_free, std::function<void(const std::string&)> on_failure)
+    : metrics_(metrics),
+      on_encoded_(std::move(on_encoded)),
+      on_free_(std::move(on_free)),
+      on_failure_(std::move(on_failure)),
+      thread_([this] {
+          try {
+              run();
+          } catch (const std::exception& error) {
+              on_failure_(error.what());
+          }
+      }) {}
+
+Encoder::~Encoder() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    condition_.notify_one();
+    thread_.join();
+}
+
+bool Encoder::is_free() const {
+    const std::lock_guard lock(mutex_);
+    return !slot_;
+}
+
+void Encoder::offer(Picture picture, Image image) {
+    {
+        const std::lock_guard lock(mutex_);
+        assert(!slot_);
+        slot_.emplace(std::move(picture), std::move(image));
+    }
+    condition_.notify_one();
+}
+
+Image Encoder::take_spare() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(spare_, {});
+}
+
+void Encoder::run() {
+    JpegEncoder jpeg;
+    for (;;) {
+        std::optional<std::pair<Picture, Image>> job;
+        {
+            std::unique_lock lock(mutex_);
+            condition_.wait(lock, [&] { return slot_ || closed_; });
+            if (closed_) return;
+            job.swap(slot_);
+        }
+        on_free_();
+        auto& [picture, image] = *job;
+        const Clock::time_point start = Clock::now();
+        const std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
+        const protocol::Quality& quality = picture.header.quality;
+        encoded->jpeg = jpeg.encode(image, quality.jpeg_quality, quality.subsampled);
+        encoded->comment_offset = protocol::comment_offset(encoded->jpeg);
+        static_cast<Picture&>(*encoded) = std::move(picture);
+        encoded->header.encode_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        ++metrics_.frames_encoded;
+        {
+            const std::lock_guard lock(mutex_);
+            spare_ = std::move(image);
+        }
+        on_encoded_(encoded);
+    }
+}
+
+}  // namespace vrut

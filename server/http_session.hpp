@@ -1,0 +1,12 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "hub.hpp"
+
+namespace vrut {
+
+/// Serves HTTP on a fresh connection: the page, what tells of the server's health, and the door to /ws.
+void serve_http(boost::asio::ip::tcp::socket socket, Hub& hub);
+
+}  // namespace vrut

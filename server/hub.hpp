@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "access.hpp"
+#include "engine.hpp"
+#include "metrics.hpp"
+#include "state.hpp"
+
+namespace vrut {
+
+class Session;
+
+/// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
+struct Hub {
+    Access access;
+    std::size_t max_clients = 64;
+    Metrics* metrics = nullptr;
+    Engine* engine = nullptr;
+    std::shared_ptr<const protocol::StateDocument> document;
+    std::string document_by;
+    std::shared_ptr<const EncodedPicture> newest;
+    std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
+    std::size_t connections = 0;                               ///< WebSockets, with or without hello
+    std::int64_t next_client = 1;
+    bool stopping = false;
+};
+
+}  // namespace vrut

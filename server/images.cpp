@@ -1,0 +1,59 @@
+#include "images.hpp"
+
+#include <png.h>
+#include <turbojpeg.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+
+namespace vrut {
+
+JpegEncoder::JpegEncoder() : handle_(tjInitCompress()) {
+    if (!handle_) throw std::runtime_error("the JPEG encoder does not start");
+}
+
+JpegEncoder::~JpegEncoder() { tjDestroy(handle_); }
+
+std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, bool subsampled) {
+    const int sampling = subsampled ? TJSAMP_420 : TJSAMP_444;
+    std::vector<std::uint8_t> jpeg(tjBufSize(image.width, image.height, sampling));
+    unsigned char* out = jpeg.data();
+    unsigned long size = jpeg.size();
+    if (tjCompress2(handle_, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &out, &size, sampling, quality,
+                    TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
+        throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") + tjGetErrorStr2(handle_));
+    jpeg.resize(size);
+    return jpeg;
+}
+
+std::vector<std::uint8_t> encode_png(const Image& image) {
+    png_image header{};
+    header.version = PNG_IMAGE_VERSION;
+    header.width = static_cast<png_uint_32>(image.width);
+    header.height = static_cast<png_uint_32>(image.height);
+    header.format = PNG_FORMAT_RGB;
+    std::vector<std::uint8_t> rgb;
+    rgb.reserve(image.rgba.size() / 4 * 3);
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        rgb.insert(rgb.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(i),
+                   image.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+    const int bottom_up = -image.width * 3;
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
+    std::vector<std::uint8_t> png(size);
+    if (!png_image_write_to_memory(&header, png.data(), &size, 0, rgb.data(), bottom_up, nullptr))
+        throw std::runtime_error(std::string("a picture cannot be encoded as PNG: ") + header.message);
+    png.resize(size);
+    return png;
+}
+
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
+    std::ofstream file(path, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) throw std::runtime_error(path.string() + " cannot be written: " + std::strerror(errno));
+}
+
+}  // namespace vrut

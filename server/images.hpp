@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "image.hpp"
+
+namespace vrut {
+
+/// Encodes pictures as JFIF files. One for each thread.
+class JpegEncoder {
+public:
+    JpegEncoder();
+    ~JpegEncoder();
+    JpegEncoder(const JpegEncoder&) = delete;
+    JpegEncoder& operator=(const JpegEncoder&) = delete;
+
+    /// `quality` 1 to 100; 4:2:0 when `subsampled`, else 4:4:4. Throws std::runtime_error.
+    std::vector<std::uint8_t> encode(const Image& image, int quality, bool subsampled);
+
+private:
+    void* handle_;
+};
+
+/// An opaque RGB PNG. Throws std::runtime_error.
+std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Writes a whole file. Throws std::runtime_error with a sentence that names it.
+void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
+
+}  // namespace vrut

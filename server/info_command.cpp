@@ -1,0 +1,67 @@
+#include <iostream>
+#include <stdexcept>
+
+#include "commands.hpp"
+#include "read_scene.hpp"
+#include "report.hpp"
+#include "scene_state.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// Depth first, as a tree is read; without recursion, since a scene may be a chain of a million nodes.
+std::vector<protocol::NodeReport> list_nodes(const Scene& scene) {
+    struct Place {
+        Index node;
+        int depth;
+    };
+    std::vector<protocol::NodeReport> list;
+    std::vector<Place> open{{0, 0}};
+    while (!open.empty()) {
+        const Place place = open.back();
+        open.pop_back();
+        const Node& node = scene.nodes()[static_cast<std::size_t>(place.node)];
+        const auto* data = std::get_if<GeometryData>(&node.data);
+        const std::uint64_t triangles =
+            data && data->geometry != kNone
+                ? scene.geometries()[static_cast<std::size_t>(data->geometry)].triangles.size()
+                : 0;
+        list.push_back({node.id, node.name, std::string(name_of(node.type)), triangles, node.active, place.depth});
+        for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
+            open.push_back({*child, place.depth + 1});
+    }
+    return list;
+}
+
+void print(const protocol::SceneState& scene, const std::vector<protocol::NodeReport>& nodes) {
+    std::cout << scene.name << ": " << scene.nodes << " nodes, " << scene.materials << " materials, "
+              << scene.geometries << " geometries, " << scene.triangles << " triangles\n"
+              << "bounds " << scene.min.x << " " << scene.min.y << " " << scene.min.z << " to " << scene.max.x << " "
+              << scene.max.y << " " << scene.max.z << "\n";
+    for (const std::string& notice : scene.notices) std::cout << "notice: " << notice << "\n";
+    for (const protocol::NodeReport& node : nodes) {
+        // Deep trees keep to the width of a terminal.
+        std::cout << std::string(static_cast<std::size_t>(std::min(node.depth, 30)) * 2, ' ') << node.id << " "
+                  << node.name << " (" << node.type;
+        if (node.triangles > 0) std::cout << ", " << node.triangles << " triangles";
+        std::cout << (node.active ? ")\n" : ", inactive)\n");
+    }
+    std::cout.flush();
+}
+
+}  // namespace
+
+void info_command(const InfoArguments& arguments) {
+    auto scene = read_scene(arguments.scene);
+    if (!scene) throw std::runtime_error(scene.error());
+    const PlacedScene placed = place(*std::move(scene));
+    const protocol::SceneState state = starting_state(placed, 1, all_notices(placed.scene)).scene;
+    const auto nodes = list_nodes(placed.scene);
+    if (arguments.json)
+        std::cout << protocol::encode_info(state, nodes) << std::endl;
+    else
+        print(state, nodes);
+}
+
+}  // namespace vrut

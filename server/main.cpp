@@ -1,0 +1,131 @@
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <iostream>
+
+#include "commands.hpp"
+
+namespace {
+
+constexpr int kFailed = 1, kWrongUsage = 2;
+
+/// Numbers between separators, all of them, or CLI::ValidationError.
+template <class Number, std::size_t N>
+std::array<Number, N> parse_numbers(const std::string& option, const std::string& text, char separator,
+                                    const char* expected) {
+    std::array<Number, N> numbers{};
+    const char* next = text.data();
+    const char* const last = text.data() + text.size();
+    for (std::size_t i = 0; i < N; ++i) {
+        const auto [end, error] = std::from_chars(next, last, numbers[i]);
+        const bool ends_right = i + 1 == N ? end == last : end != last && *end == separator;
+        if (error != std::errc() || !ends_right)
+            throw CLI::ValidationError(option, "expected " + std::string(expected) + ", found '" + text + "'");
+        next = end + 1;
+    }
+    return numbers;
+}
+
+void add_vector(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target, const char* help) {
+    command.add_option_function<std::string>(
+        name,
+        [name, &target](const std::string& text) {
+            const auto numbers = parse_numbers<double, 3>(name, text, ',', "x,y,z");
+            target = glm::dvec3(numbers[0], numbers[1], numbers[2]);
+        },
+        help);
+}
+
+void add_device(CLI::App& command, std::optional<int>& device) {
+    command.add_option("--device", device, "EGL device to draw on (default: the first that works)")
+        ->check(CLI::NonNegativeNumber);
+}
+
+void add_serve(CLI::App& app, vrut::ServeArguments& arguments) {
+    CLI::App* command = app.add_subcommand("serve", "Serve a scene to tablets, hosts and scripts");
+    command->add_option("scene", arguments.scene, "Scene file (default: the car)");
+    command->add_option("--listen", arguments.listen, "Address and port; port 0 picks one")->capture_default_str();
+    command->add_option("--allow-origin", arguments.allowed_origins,
+                        "Origin whose pages may connect, besides the server's own");
+    command->add_option("--max-clients", arguments.max_clients, "Clients at one time")
+        ->check(CLI::Range(1, 10000))
+        ->capture_default_str();
+    command->add_option("--token-file", arguments.token_file, R"(JSON file {"control": …, "view": …})");
+    add_device(*command, arguments.device);
+    auto* level = command->add_option_function<std::string>(
+        "--log-level", [](const std::string& text) { spdlog::set_level(spdlog::level::from_str(text)); },
+        "debug, info, warning, error or off (default: info)");
+    level->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
+    command->callback([&arguments] { vrut::serve_command(arguments); });
+}
+
+void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
+    CLI::App* command = app.add_subcommand("render", "Draw one picture of a scene");
+    command->add_option("scene", arguments.scene, "Scene file")->required();
+    command->add_option("-o,--output", arguments.output, "Picture, ending in .png or .jpg")->required();
+    command->add_option_function<std::string>(
+        "--size",
+        [&arguments](const std::string& text) {
+            const auto size = parse_numbers<int, 2>("--size", text, 'x', "WIDTHxHEIGHT");
+            if (size[0] < 1 || size[1] < 1) throw CLI::ValidationError("--size", "a picture has a pixel at least");
+            arguments.width = size[0];
+            arguments.height = size[1];
+        },
+        "Pixels (default: 1280x720)");
+    command->add_option("--samples", arguments.samples, "Samples a pixel; 1: its centre")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    command->add_option("--camera", arguments.camera_file, "JSON file with the state document's camera");
+    add_vector(*command, "--eye", arguments.eye, "Where the eye is: x,y,z");
+    add_vector(*command, "--focus", arguments.focus, "What it looks at: x,y,z");
+    add_vector(*command, "--up", arguments.up, "What is up: x,y,z");
+    command->add_option("--fov", arguments.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
+    command->add_option("--set", arguments.set, "JSON merge patch on the state document");
+    command->add_option("--jpeg-quality", arguments.jpeg_quality, "1 to 100")
+        ->check(CLI::Range(1, 100))
+        ->capture_default_str();
+    command->add_flag("--stats", arguments.stats, "Print what the picture took, as JSON");
+    add_device(*command, arguments.device);
+    command->callback([&arguments] { vrut::render_command(arguments); });
+}
+
+void add_info(CLI::App& app, vrut::InfoArguments& arguments) {
+    CLI::App* command = app.add_subcommand("info", "Tell what a scene holds");
+    command->add_option("scene", arguments.scene, "Scene file")->required();
+    command->add_flag("--json", arguments.json, "As JSON");
+    command->callback([&arguments] { vrut::info_command(arguments); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    // Results go to standard output, what is told on the way to standard error.
+    spdlog::set_default_logger(spdlog::stderr_color_mt("vrut-preview"));
+    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+
+    CLI::App app("Remote preview of a car for a CAVE: serves a scene to tablets, draws pictures of it", "vrut-preview");
+    app.set_version_flag("--version", "vrut-preview " VRUT_VERSION);
+    app.require_subcommand(1);
+    vrut::ServeArguments serve;
+    vrut::RenderArguments render;
+    vrut::InfoArguments info;
+    add_serve(app, serve);
+    add_render(app, render);
+    add_info(app, info);
+    try {
+        app.parse(argc, argv);
+        return 0;
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        std::cerr << "vrut-preview: " << error.what() << "; --help tells more\n";
+        return kWrongUsage;
+    } catch (const std::invalid_argument& error) {
+        std::cerr << "vrut-preview: " << error.what() << "\n";
+        return kWrongUsage;
+    } catch (const std::exception& error) {
+        std::cerr << "vrut-preview: " << error.what() << "\n";
+        return kFailed;
+    }
+}

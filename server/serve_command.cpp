@@ -1,0 +1,60 @@
+#include <spdlog/spdlog.h>
+
+#include <iostream>
+#include <stdexcept>
+
+#include "commands.hpp"
+#include "read_scene.hpp"
+#include "server.hpp"
+
+namespace vrut {
+
+namespace {
+
+std::string url(const std::string& host, std::uint16_t port, const std::string& token) {
+    const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
+    return "http://" + name + ":" + std::to_string(port) + "/" + (token.empty() ? "" : "#token=" + token);
+}
+
+void announce(const ListenAddress& listen, std::uint16_t port, const Access& access) {
+    const std::string& token = access.control_token.empty() ? access.view_token : access.control_token;
+    std::vector<std::string> hosts{listen.host};
+    if (is_any(listen.host)) {
+        hosts = network_addresses();
+        if (hosts.empty()) hosts = {"127.0.0.1"};
+    }
+    if (!is_loopback(hosts[0])) {
+        std::cout << qr_code(url(hosts[0], port, token)) << "Scan it with the tablet, or open the address.\n";
+        if (!access.control_token.empty() && !access.view_token.empty())
+            std::cout << "To watch without steering: " << url(hosts[0], port, access.view_token) << "\n";
+    }
+    for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
+}
+
+}  // namespace
+
+void serve_command(const ServeArguments& arguments) {
+    ServerOptions options;
+    options.listen = parse_listen_address(arguments.listen);
+    options.max_clients = arguments.max_clients;
+    options.access = read_access(arguments.token_file);
+    options.access.allowed_origins = arguments.allowed_origins;
+    if (!is_loopback(options.listen.host) && !options.access.needs_token()) {
+        options.access.control_token = make_token();
+        options.access.view_token = make_token();
+    }
+
+    const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
+    auto scene = read_scene(path);
+    if (!scene) throw std::runtime_error(scene.error());
+    spdlog::info("{}: {} nodes, {} triangles", path.string(), scene->nodes().size(), scene->triangle_count());
+
+    Server server(options, std::make_shared<const PlacedScene>(place(*std::move(scene))),
+                  gl_painter(arguments.device));
+    spdlog::info("drawing on {}", server.description());
+    announce(options.listen, server.port(), options.access);
+    server.run(true);
+    spdlog::info("shut down");
+}
+
+}  // namespace vrut

@@ -1,0 +1,173 @@
+#include "server.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <csignal>
+#include <stdexcept>
+
+#include "http_session.hpp"
+#include "session.hpp"
+
+namespace vrut {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using namespace std::chrono_literals;
+
+struct Server::Impl {
+    Impl(ServerOptions server_options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter)
+        : options(std::move(server_options)), acceptor(context), accept_pause(context), signals(context), deadline(context) {
+        listen();
+        hub.access = options.access;
+        hub.max_clients = options.max_clients;
+        hub.metrics = &metrics;
+        EngineCallbacks callbacks;
+        callbacks.on_output = [this](EngineOutput output) {
+            asio::post(context, [this, moved = std::move(output)]() mutable { take(std::move(moved)); });
+        };
+        callbacks.on_encoded = [this](std::shared_ptr<const EncodedPicture> picture) {
+            asio::post(context, [this, moved = std::move(picture)]() mutable { take(std::move(moved)); });
+        };
+        callbacks.on_failure = [this](const std::string& why) {
+            asio::post(context, [this, why] {
+                failure = why;
+                stop();
+            });
+        };
+        engine = std::make_unique<Engine>(std::move(scene), painter, metrics, std::move(callbacks));
+        hub.engine = engine.get();
+    }
+
+    ~Impl() {
+        hub.newest.reset();
+        hub.sessions.clear();
+    }
+
+    void listen() {
+        const tcp::endpoint endpoint(asio::ip::make_address(options.listen.host), options.listen.port);
+        boost::system::error_code error;
+        acceptor.open(endpoint.protocol(), error);
+        if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+        if (!error) acceptor.bind(endpoint, error);
+        if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+        if (error)
+            throw std::runtime_error("cannot listen at " + options.listen.host + ":" +
+                                     std::to_string(options.listen.port) + ": " + error.message() +
+                                     "; choose another with --listen ADDR:PORT");
+    }
+
+    void accept() {
+        acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+            if (hub.stopping) return;
+            if (!error) {
+                serve_http(std::move(socket), hub);
+                return accept();
+            }
+            // Out of descriptors, say: trying again at once would spin.
+            spdlog::warn("a connection could not be accepted: {}", error.message());
+            accept_pause.expires_after(100ms);
+            accept_pause.async_wait([this](boost::system::error_code stopped) {
+                if (!stopped) accept();
+            });
+        });
+    }
+
+    // --- what the engine says, on the net thread
+
+    Session* find(const std::string& client) {
+        const auto session = hub.sessions.find(client);
+        return session == hub.sessions.end() ? nullptr : session->second.get();
+    }
+
+    void take(EngineOutput output) {
+        if (output.document) {
+            hub.document = std::move(output.document);
+            hub.document_by = std::move(output.by);
+        }
+        for (auto& answer : output.answers)
+            if (Session* session = find(answer.client)) session->answer(std::move(answer));
+        for (const auto& owed : output.owed)
+            if (Session* session = find(owed.client)) session->owe(owed.frame);
+        for (const auto& [client, bytes] : output.handled_bytes)
+            if (Session* session = find(client)) session->handled(bytes);
+        for_each_session([](Session& session) { session.pump(); });
+    }
+
+    void take(std::shared_ptr<const EncodedPicture> picture) {
+        const std::int64_t before = hub.newest ? hub.newest->header.frame : 0;
+        hub.newest = std::move(picture);
+        for_each_session([&](Session& session) { session.newest_changed(before); });
+    }
+
+    /// Over a copy: a session may end, and leave the list, meanwhile.
+    template <class Function>
+    void for_each_session(Function function) {
+        const auto sessions = hub.sessions;
+        for (const auto& [name, session] : sessions) function(*session);
+    }
+
+    // --- the end
+
+    void stop() {
+        if (std::exchange(hub.stopping, true)) return;
+        acceptor.close();
+        accept_pause.cancel();
+        signals.cancel();
+        for_each_session([](Session& session) {
+            session.close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
+        });
+        // Whoever has not said goodbye by then is left standing.
+        deadline.expires_after(hub.connections > 0 ? 2000ms : 0ms);
+        deadline.async_wait([this](boost::system::error_code) { context.stop(); });
+        wait_for_goodbyes();
+    }
+
+    void wait_for_goodbyes() {
+        if (hub.sessions.empty()) return context.stop();
+        goodbye.expires_after(10ms);
+        goodbye.async_wait([this](boost::system::error_code) { wait_for_goodbyes(); });
+    }
+
+    ServerOptions options;
+    Metrics metrics;
+    Hub hub;  // before the context: what waits there still knows it at the end
+    asio::io_context context{1};
+    tcp::acceptor acceptor;
+    asio::steady_timer accept_pause;
+    asio::signal_set signals;
+    asio::steady_timer deadline, goodbye{context};
+    std::optional<std::string> failure;
+    std::unique_ptr<Engine> engine;
+};
+
+Server::Server(ServerOptions options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), painter)) {}
+Server::~Server() = default;
+
+std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().port(); }
+const std::string& Server::description() const { return impl_->engine->description(); }
+const Metrics& Server::metrics() const { return impl_->metrics; }
+
+void Server::run(bool handle_signals) {
+    if (handle_signals) {
+        impl_->signals.add(SIGINT);
+        impl_->signals.add(SIGTERM);
+        impl_->signals.async_wait([this](boost::system::error_code error, int) {
+            if (!error) impl_->stop();
+        });
+    }
+    impl_->accept();
+    impl_->context.run();
+    if (impl_->failure) throw std::runtime_error("drawing has failed: " + *impl_->failure);
+}
+
+void Server::stop() {
+    asio::post(impl_->context, [this] { impl_->stop(); });
+}
+
+}  // namespace vrut

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "access.hpp"
+#include "addresses.hpp"
+#include "engine.hpp"
+#include "metrics.hpp"
+
+namespace vrut {
+
+struct ServerOptions {
+    ListenAddress listen{"127.0.0.1", 8080};
+    Access access;
+    std::size_t max_clients = 64;
+};
+
+/// The preview server: an engine, and clients that reach it over HTTP and WebSocket.
+class Server {
+public:
+    /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port is taken
+    /// or nothing can draw.
+    Server(ServerOptions options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter);
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    std::uint16_t port() const;
+    /// What draws.
+    const std::string& description() const;
+    const Metrics& metrics() const;
+
+    /// Serves until stop(), or SIGTERM or SIGINT where `handle_signals`; clients are told, and within 3 s it is over.
+    /// Throws std::runtime_error where drawing fails for good.
+    void run(bool handle_signals);
+    /// From any thread.
+    void stop();
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vrut

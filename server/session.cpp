@@ -1,0 +1,303 @@
+#include "session.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <spdlog/spdlog.h>
+#include <sys/socket.h>
+
+#include "codec.hpp"
+
+namespace vrut {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using websocket::close_code;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kHelloDeadline = 5s;
+constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
+constexpr auto kIdle = 30s;   // a peer that does not even answer pings is gone
+constexpr std::size_t kMaxUnhandled = 1 << 20;
+constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
+
+/// Bytes that the peer has acknowledged since the connection began.
+std::uint64_t bytes_acknowledged(int socket) {
+    // tcpi_bytes_acked: the C library's struct tcp_info ends before this member, the kernel's goes on.
+    constexpr std::size_t kBytesAckedAt = 120;
+    std::array<std::uint8_t, 256> raw{};
+    socklen_t size = raw.size();
+    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) != 0 || size < kBytesAckedAt + 8) return 0;
+    std::uint64_t bytes = 0;
+    std::memcpy(&bytes, raw.data() + kBytesAckedAt, sizeof bytes);
+    return bytes;
+}
+
+}  // namespace
+
+Session::Session(beast::tcp_stream stream, Hub& hub)
+    : socket_(std::move(stream)),
+      hub_(hub),
+      hello_deadline_(socket_.get_executor()),
+      write_watch_(socket_.get_executor()) {
+    ++hub_.connections;
+}
+
+Session::~Session() { --hub_.connections; }
+
+void Session::accept(const beast::http::request<beast::http::string_body>& request) {
+    beast::tcp_stream& stream = beast::get_lowest_layer(socket_);
+    stream.expires_never();  // from here on the WebSocket's own deadlines hold
+    beast::error_code ignored;
+    stream.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
+    stream.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    const auto endpoint = stream.socket().remote_endpoint(ignored);
+    peer_ = endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+
+    websocket::stream_base::timeout deadlines{};
+    deadlines.handshake_timeout = 5s;
+    deadlines.idle_timeout = kIdle;
+    deadlines.keep_alive_pings = true;
+    socket_.set_option(deadlines);
+    socket_.read_message_max(protocol::kMaxMessageBytes);
+    socket_.auto_fragment(false);  // one frame, one write
+    if (request.find(beast::http::field::sec_websocket_protocol) != request.end())
+        socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+            response.set(beast::http::field::sec_websocket_protocol, protocol::kSubprotocol);
+        }));
+
+    socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+        if (error) return self->drop();
+        self->hello_deadline_.expires_after(kHelloDeadline);
+        self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
+            const auto session = weak.lock();
+            if (!stopped && session)
+                session->refuse_and_close({{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
+                                          close_code::policy_error);
+        });
+        self->read();
+    });
+}
+
+// --- reading
+
+void Session::read() {
+    if (reading_ || dropped_ || closing_ || unhandled_bytes_ >= kMaxUnhandled) return;
+    reading_ = true;
+    socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+        self->reading_ = false;
+        if (error) return self->drop();
+        if (!self->closing_) {
+            ++self->hub_.metrics->messages_received;
+            if (self->socket_.got_text()) {
+                const auto data = self->incoming_.data();
+                self->on_text({static_cast<const char*>(data.data()), data.size()});
+            } else {
+                self->refuse_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
+                                       close_code::unknown_data);
+            }
+            self->incoming_.consume(self->incoming_.size());
+        }
+        self->read();
+    });
+}
+
+void Session::on_text(std::string_view text) {
+    auto message = protocol::decode(text);
+    const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
+    if (client_.empty() && !hello) {
+        if (message) message = tl::unexpected(protocol::Error{message->id, protocol::error_code::bad_message,
+                                                             "the first message must be 'hello'"});
+        return refuse_and_close(message.error(), close_code::policy_error);
+    }
+    if (hello && !client_.empty())
+        return refuse_and_close({message->id, protocol::error_code::bad_message, "'hello' came a second time"},
+                                close_code::policy_error);
+    if (hello) return on_hello(*hello);
+    if (!message) {
+        ++hub_.metrics->messages_refused;
+        return answer({client_, protocol::encode(message.error()), 0});
+    }
+    unhandled_bytes_ += text.size();
+    hub_.engine->mailbox().push(ClientSaid{client_, *std::move(message), Clock::now(), text.size()});
+}
+
+void Session::on_hello(const protocol::Hello& hello) {
+    const std::optional<protocol::Role> role = hub_.access.role_for(hello.role, hello.token);
+    if (!role)
+        return refuse_and_close({{}, protocol::error_code::not_allowed,
+                                 hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
+                                close_code::policy_error);
+    if (hub_.sessions.size() >= hub_.max_clients)
+        return refuse_and_close({{}, protocol::error_code::too_many,
+                                 "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
+                                close_code::try_again_later);
+    hello_deadline_.cancel();
+    client_ = "c" + std::to_string(hub_.next_client++);
+    hub_.sessions[client_] = shared_from_this();
+    ++hub_.metrics->clients_joined;
+    spdlog::info("client {} joined as {} from {}", client_, name_of(*role), peer_);
+    hub_.engine->mailbox().push(ClientJoined{client_, *role});
+
+    protocol::Welcome welcome;
+    welcome.server = VRUT_VERSION;
+    welcome.client = client_;
+    welcome.role = *role;
+    welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
+    welcome.limits.messages_per_second = 10'000;
+    welcome.limits.max_server_message = std::size_t{64} << 20;
+    answer({client_, protocol::encode(welcome), -1});
+}
+
+void Session::refuse_and_close(const protocol::Error& error, close_code code) {
+    ++hub_.metrics->messages_refused;
+    answers_.push_back({client_, protocol::encode(error), -1});
+    close(code, error.message);
+}
+
+// --- what there is to send
+
+void Session::answer(EngineOutput::Answer answer) {
+    answers_.push_back(std::move(answer));
+    pump();
+}
+
+void Session::owe(std::int64_t frame) {
+    owed_.push_back(frame);
+    pump();
+}
+
+void Session::handled(std::size_t bytes) {
+    unhandled_bytes_ -= std::min(bytes, unhandled_bytes_);
+    read();
+}
+
+void Session::newest_changed(std::int64_t before) {
+    const bool waited = !owed_.empty() && writing_ && before >= owed_.front() && before > last_frame_;
+    if (waited) ++hub_.metrics->frames_replaced;
+    pump();
+}
+
+bool Session::frame_is_due() const {
+    return !owed_.empty() && hub_.newest && hub_.newest->header.frame >= owed_.front();
+}
+
+void Session::pump() {
+    if (writing_ || dropped_) return;
+    const std::int64_t known = document_ ? document_->revision() : 0;
+    if (closing_) {
+        if (!answers_.empty()) {
+            std::string text = std::move(answers_.front().text);
+            answers_.pop_front();
+            return send_text(std::move(text));
+        }
+        writing_ = true;  // nothing goes out behind the close
+        return socket_.async_close(*closing_, [self = shared_from_this()](beast::error_code) { self->drop(); });
+    }
+    // A frame or answer goes when the client knows the revision that it speaks of.
+    if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
+    if (!answers_.empty() && known >= answers_.front().revision) {
+        std::string text = std::move(answers_.front().text);
+        answers_.pop_front();
+        return send_text(std::move(text));
+    }
+    if (client_.empty() || !hub_.document || document_ == hub_.document) return;
+    const auto before = std::exchange(document_, hub_.document);
+    send_text(before ? document_->encode_patch_from(*before, hub_.document_by) : document_->encode());
+}
+
+void Session::send_frame() {
+    picture_ = hub_.newest;
+    last_frame_ = picture_->header.frame;
+    int grants = 0;
+    while (!owed_.empty() && owed_.front() <= last_frame_) {
+        owed_.pop_front();
+        ++grants;
+    }
+    // One frame answers one grant; the others are asked for again.
+    if (grants > 1) hub_.engine->mailbox().push(GrantsReturned{client_, grants - 1});
+
+    protocol::FrameHeader header = picture_->header;
+    const auto handled = picture_->handled.find(client_);
+    header.handled = handled == picture_->handled.end() ? 0 : handled->second;
+    if (picture_->newest_input)
+        header.since_input_ms =
+            std::chrono::duration<double, std::milli>(Clock::now() - *picture_->newest_input).count();
+    comment_ = protocol::comment_segment(protocol::encode(header));
+    ++hub_.metrics->frames_sent;
+
+    const auto& jpeg = picture_->jpeg;
+    const std::size_t cut = picture_->comment_offset;
+    socket_.binary(true);
+    write(std::array<boost::asio::const_buffer, 3>{boost::asio::buffer(jpeg.data(), cut),
+                                                   boost::asio::buffer(comment_),
+                                                   boost::asio::buffer(jpeg.data() + cut, jpeg.size() - cut)});
+}
+
+void Session::send_text(std::string text) {
+    text_ = std::move(text);
+    socket_.text(true);
+    write(boost::asio::buffer(text_));
+}
+
+template <class Buffers>
+void Session::write(const Buffers& buffers) {
+    writing_ = true;
+    hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
+    acknowledged_ = bytes_acknowledged(beast::get_lowest_layer(socket_).socket().native_handle());
+    watch_progress();
+    socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
+        self->on_written(error);
+    });
+}
+
+void Session::on_written(beast::error_code error) {
+    writing_ = false;
+    write_watch_.cancel();
+    picture_.reset();
+    if (error) return drop();
+    pump();
+}
+
+/// Cuts the connection when a write stands for as long as kStuck and the peer has acknowledged nothing meanwhile.
+void Session::watch_progress() {
+    write_watch_.expires_after(kStuck);
+    write_watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self || !self->writing_) return;
+        const std::uint64_t now =
+            bytes_acknowledged(beast::get_lowest_layer(self->socket_).socket().native_handle());
+        if (now == self->acknowledged_) {
+            spdlog::warn("client {} takes nothing and is cut off", self->client_);
+            beast::get_lowest_layer(self->socket_).close();
+            return;
+        }
+        self->acknowledged_ = now;
+        self->watch_progress();
+    });
+}
+
+// --- the end
+
+void Session::close(close_code code, const std::string& reason) {
+    if (closing_ || dropped_) return;
+    // A close frame holds 123 bytes of reason at most.
+    closing_.emplace(code, reason.substr(0, 123));
+    hello_deadline_.cancel();
+    pump();
+}
+
+void Session::drop() {
+    if (std::exchange(dropped_, true)) return;
+    hello_deadline_.cancel();
+    write_watch_.cancel();
+    beast::get_lowest_layer(socket_).close();
+    if (client_.empty()) return;
+    spdlog::info("client {} left", client_);
+    ++hub_.metrics->clients_left;
+    hub_.engine->mailbox().push(ClientLeft{client_});
+    hub_.sessions.erase(client_);
+}
+
+}  // namespace vrut

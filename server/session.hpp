@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "hub.hpp"
+
+namespace vrut {
+
+/// One WebSocket client, on the net thread. What waits for a slow one is replaced, never queued: it keeps the document
+/// that it last got and is sent the difference; it is owed a number of frames and is sent the newest.
+class Session : public std::enable_shared_from_this<Session> {
+public:
+    Session(boost::beast::tcp_stream stream, Hub& hub);
+    ~Session();
+    Session(const Session&) = delete;
+    Session& operator=(const Session&) = delete;
+
+    /// Completes the handshake that `request` asks for.
+    void accept(const boost::beast::http::request<boost::beast::http::string_body>& request);
+
+    // What the engine says.
+    void answer(EngineOutput::Answer answer);
+    void owe(std::int64_t frame);
+    void handled(std::size_t bytes);
+    /// The hub has a newer picture than `before`.
+    void newest_changed(std::int64_t before);
+    /// Sends what there is to send, if nothing is being sent.
+    void pump();
+    /// Ends the connection after what is being sent.
+    void close(boost::beast::websocket::close_code code, const std::string& reason);
+
+private:
+    void read();
+    void on_text(std::string_view text);
+    void on_hello(const protocol::Hello& hello);
+    void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
+
+    bool frame_is_due() const;
+    void send_frame();
+    void send_text(std::string text);
+    template <class Buffers>
+    void write(const Buffers& buffers);
+    void on_written(boost::beast::error_code error);
+    void watch_progress();
+    void drop();
+
+    boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+    Hub& hub_;
+    boost::beast::flat_buffer incoming_;
+    boost::asio::steady_timer hello_deadline_, write_watch_;
+    std::string client_;  // empty before hello
+    std::string peer_;
+    bool dropped_ = false;
+
+    // --- what the client knows and is owed
+    std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
+    std::deque<EngineOutput::Answer> answers_;
+    std::deque<std::int64_t> owed_;
+    std::int64_t last_frame_ = 0;
+
+    // --- what is being sent
+    bool writing_ = false;
+    std::string text_;
+    std::vector<std::uint8_t> comment_;
+    std::shared_ptr<const EncodedPicture> picture_;
+    std::uint64_t acknowledged_ = 0;  // bytes, at the last look of the watch
+    std::optional<boost::beast::websocket::close_reason> closing_;
+
+    // --- what has come and is not handled yet
+    std::size_t unhandled_bytes_ = 0;
+    bool reading_ = false;
+};
+
+}  // namespace vrut

@@ -1,0 +1,177 @@
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import { assertPanned, assertTurned, assertZoomed, pose } from './camera.js';
+import { Server, render } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
+const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+/** A drag over this turns by 180°. */
+const SHORTER_SIDE = 820;
+const LEAST_PSNR_DB = 35;
+const IDLE_MS = 2000;
+
+describe('a car on a tablet', { skip: browserIsMissing }, () => {
+  let server;
+  let browser;
+  let tablet;
+  let phone;
+
+  before(async () => {
+    server = await Server.start();
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, server.address, TABLET);
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+  });
+
+  test('the page opens and shows a picture of its own size', async () => {
+    const header = await tablet.wire.until('a still frame of the size of the page', () =>
+      tablet.wire.frames.find(({ view, quality }) => view.width === TABLET.width && quality.level === 'still'));
+    await tablet.shows(header.frame);
+    assert.deepEqual(header.view, TABLET);
+    assert.equal(header.width, Math.round(TABLET.width * TABLET.pixelRatio * header.quality.scale));
+    assert.equal(header.height, Math.round(TABLET.height * TABLET.pixelRatio * header.quality.scale));
+    assert.equal((await tablet.look()).stale, false);
+  });
+
+  test('which is the picture that render makes from the same camera', async () => {
+    await tablet.wire.quiet(1000);
+    const compare = async () => {
+      const { frame } = await tablet.look();
+      const { camera, width, height, quality } = tablet.wire.frames.find((header) => header.frame === frame);
+      assert.equal(quality.level, 'still');
+      const png = await render({ camera, width, height, samples: quality.samples });
+      const comparison = await tablet.compare(png);
+      return comparison.frame === frame && comparison;
+    };
+    // Once more where a finer still frame came in the meantime.
+    const comparison = (await compare()) || (await compare()) || (await compare());
+    assert.ok(comparison, 'the still picture never came to rest');
+    const { psnr, drawn } = comparison;
+    assert.ok(psnr >= LEAST_PSNR_DB, `peak signal to noise ratio ${psnr} dB`);
+    assert.ok(drawn > 0.03, `the car covers ${drawn} of the picture`);
+    await tablet.screenshot('tablet');
+  });
+
+  test('one finger turns it', async () => {
+    const drag = await tablet.touch([{ from: [500, 400], to: [664, 441] }]);
+    assertTurned(drag, { right: (164 / SHORTER_SIDE) * 180, down: (41 / SHORTER_SIDE) * 180 });
+    assert.deepEqual(pose(tablet.wire.state.camera), pose(drag.after));
+    await tablet.screenshot('tablet-turned');
+  });
+
+  test('two fingers pan', async () => {
+    const drag = await tablet.touch([
+      { from: [500, 400], to: [560, 360] },
+      { from: [700, 400], to: [760, 360] },
+    ]);
+    assertPanned(drag, [60, -40], TABLET.height);
+  });
+
+  test('two fingers pinch', async () => {
+    const spread = await tablet.touch([
+      { from: [490, 410], to: [440, 410] },
+      { from: [690, 410], to: [740, 410] },
+    ]);
+    assertZoomed(spread, 300 / 200);
+    const pinch = await tablet.touch([
+      { from: [440, 410], to: [490, 410] },
+      { from: [740, 410], to: [690, 410] },
+    ]);
+    assertZoomed(pinch, 200 / 300);
+  });
+
+  test('the mouse turns, pans and zooms', async () => {
+    assertTurned(await tablet.mouse('left', { from: [600, 400], to: [518, 359] }), {
+      right: (-82 / SHORTER_SIDE) * 180,
+      down: (-41 / SHORTER_SIDE) * 180,
+    });
+    assertPanned(await tablet.mouse('right', { from: [600, 400], to: [540, 440] }), [-60, 40], TABLET.height);
+    assertZoomed(await tablet.mouse('middle', { from: [600, 400], to: [600, 318] }), 4 ** (82 / TABLET.height));
+  });
+
+  test('so does the wheel', async () => {
+    for (const turned of [-100, 200]) {
+      const wheel = await tablet.wheel(turned);
+      // An emulated pixel ratio makes the browser's own numbers smaller than what was turned.
+      const { deltaY } = wheel.last;
+      assert.equal(Math.sign(deltaY), Math.sign(turned));
+      assertZoomed(wheel, 1.1 ** (-deltaY / 100));
+    }
+  });
+
+  test('while nothing changes, no frame comes', async () => {
+    await tablet.wire.quiet(IDLE_MS);
+    const frames = tablet.wire.frames.length;
+    await tablet.wire.quiet(IDLE_MS);
+    assert.equal(tablet.wire.frames.length, frames);
+  });
+
+  test('a phone beside it sees what the tablet shows', async () => {
+    phone = await Tablet.open(browser, server.address, PHONE);
+    const seen = await phone.wire.still();
+    const shown = tablet.wire.frames.at(-1);
+    assert.deepEqual(seen.camera, shown.camera);
+    assert.deepEqual(seen.view, TABLET);
+    await phone.shows(seen.frame);
+    await phone.screenshot('phone-watching');
+
+    const drag = await tablet.touch([{ from: [500, 400], to: [582, 400] }]);
+    const followed = await phone.wire.until('the turned camera', () => {
+      const last = phone.wire.frames.at(-1);
+      return last.revision >= tablet.wire.frames.at(-1).revision && last;
+    });
+    assert.deepEqual(pose(followed.camera), pose(drag.after));
+    assert.deepEqual(pose(phone.wire.state.camera), pose(tablet.wire.state.camera));
+    await phone.page.close();
+  });
+
+  test('the tablet is turned upright, and the picture with it', async () => {
+    const upright = { width: TABLET.height, height: TABLET.width, pixelRatio: TABLET.pixelRatio };
+    await tablet.page.setViewportSize(upright);
+    const header = await tablet.wire.until('a still frame that is upright', () =>
+      tablet.wire.frames.find(({ view, quality }) => view.width === upright.width && quality.level === 'still'));
+    await tablet.shows(header.frame);
+    assert.deepEqual(header.view, upright);
+    const { width, height } = await tablet.look();
+    assert.deepEqual([width, height], [header.width, header.height]);
+    assert.equal(width, Math.round(upright.width * upright.pixelRatio * header.quality.scale));
+    await tablet.screenshot('tablet-upright');
+    assertTurned(await tablet.touch([{ from: [400, 600], to: [318, 600] }]), { right: (-82 / SHORTER_SIDE) * 180, down: 0 });
+  });
+
+  test('the server dies and comes back, and so does the page', async () => {
+    const { connections } = tablet.wire;
+    tablet.serverAway = true;
+    await server.stop('SIGKILL');
+    await tablet.page.waitForFunction(() =>
+      document.querySelector('#view').classList.contains('stale') &&
+      document.querySelector('#status').textContent.includes('does not answer'));
+    await tablet.page.locator('#status').evaluate((line) =>
+      Promise.all(line.getAnimations().map((animation) => animation.finished)));
+    await tablet.screenshot('tablet-server-away');
+
+    server = await Server.start(server.port);
+    await tablet.page.waitForFunction(() => !document.querySelector('#view').classList.contains('stale'));
+    tablet.serverAway = false;
+    assert.ok(tablet.wire.connections > connections);
+    const drawn = await tablet.wire.still();
+    await tablet.shows(drawn.frame);
+    const upright = { width: TABLET.height, height: TABLET.width, pixelRatio: TABLET.pixelRatio };
+    await tablet.wire.until('the size of the page', () => {
+      const last = tablet.wire.frames.at(-1);
+      return last.view.width === upright.width && last.quality.level === 'still';
+    });
+    assertTurned(await tablet.touch([{ from: [400, 600], to: [482, 600] }]), { right: (82 / SHORTER_SIDE) * 180, down: 0 });
+    await tablet.page.waitForFunction(() => document.querySelector('#status').textContent === '');
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(tablet.complaints, []);
+    assert.deepEqual(phone?.complaints, []);
+  });
+});

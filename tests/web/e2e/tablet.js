@@ -1,0 +1,176 @@
+import { existsSync } from 'node:fs';
+import path from 'node:path';
+import { chromium } from 'playwright-core';
+import { Wire } from './wire.js';
+
+const BROWSER = '/usr/bin/chromium';
+const ARGUMENTS = [
+  '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
+  '--disable-sync',
+];
+
+export const browserIsMissing = existsSync(BROWSER) ? false : `there is no ${BROWSER}`;
+
+export function launchBrowser() {
+  return chromium.launch({ executablePath: BROWSER, headless: true, chromiumSandbox: false, args: ARGUMENTS });
+}
+
+/** A page in the browser, with what a test needs to use it like a hand and to listen in. */
+export class Tablet {
+  /** What the browser complained of. */
+  complaints = [];
+  /** While the server is known to be away, the browser may say that it cannot be reached. */
+  serverAway = false;
+
+  /**
+   * @param {import('playwright-core').Browser} browser
+   * @param {string} address
+   * @param {{width: number, height: number, pixelRatio: number}} size
+   */
+  static async open(browser, address, { width, height, pixelRatio }) {
+    const tablet = new Tablet();
+    const context = await browser.newContext({
+      viewport: { width, height },
+      deviceScaleFactor: pixelRatio,
+      hasTouch: true,
+      isMobile: true,
+    });
+    tablet.page = await context.newPage();
+    tablet.wire = new Wire(tablet.page);
+    tablet.page.on('pageerror', (error) => tablet.complaints.push(String(error)));
+    tablet.page.on('console', (message) => {
+      const expected = tablet.serverAway && message.text().includes('WebSocket connection');
+      if (message.type() === 'error' && !expected) tablet.complaints.push(message.text());
+    });
+    tablet.devtools = await context.newCDPSession(tablet.page);
+    await tablet.page.goto(address);
+    return tablet;
+  }
+
+  /**
+   * Does something with the hand, and waits until the page shows what came of it.
+   *
+   * @param {() => Promise<void>} act
+   * @param {{type: string, count?: number}} end the messages that are the gesture's last
+   * @returns {Promise<{before: object, after: object, last: object}>} the cameras, and the last message that moved them
+   */
+  async gesture(act, { type, count = 1 }) {
+    const { wire } = this;
+    const { camera: before } = await wire.still();
+    const mark = wire.sent.length;
+    await act();
+    const last = await wire.until(`${count} ${type}`, () => {
+      const sent = wire.sent.slice(mark);
+      const ended = sent.filter((message) => message.type === type).length >= count;
+      return ended && sent.filter((message) => message.type === 'pointermove' || message.type === 'wheel').at(-1);
+    });
+    const { frame, camera: after } = await wire.still(last.id);
+    await this.shows(frame);
+    return { before, after, last };
+  }
+
+  /**
+   * Moves fingers that come down one after the other and leave together.
+   *
+   * @param {{from: number[], to: number[]}[]} fingers
+   */
+  touch(fingers) {
+    const points = (part) =>
+      fingers.map(({ from, to }, id) => ({ id, x: from[0] + part * (to[0] - from[0]), y: from[1] + part * (to[1] - from[1]) }));
+    const send = (type, touchPoints) => this.devtools.send('Input.dispatchTouchEvent', { type, touchPoints });
+    const act = async () => {
+      for (let down = 1; down <= fingers.length; down += 1) await send('touchStart', points(0).slice(0, down));
+      for (const part of [0.25, 0.5, 0.75, 1]) await send('touchMove', points(part));
+      await send('touchEnd', []);
+    };
+    return this.gesture(act, { type: 'pointerup', count: fingers.length });
+  }
+
+  /**
+   * Drags with the mouse.
+   *
+   * @param {'left'|'right'|'middle'} button
+   */
+  mouse(button, { from, to }) {
+    const { mouse } = this.page;
+    return this.gesture(async () => {
+      await mouse.move(...from);
+      await mouse.down({ button });
+      await mouse.move(...to, { steps: 4 });
+      await mouse.up({ button });
+    }, { type: 'pointerup' });
+  }
+
+  /** Turns the wheel over the middle of the page. */
+  wheel(deltaY) {
+    const { mouse } = this.page;
+    const { width, height } = this.page.viewportSize();
+    return this.gesture(async () => {
+      await mouse.move(width / 2, height / 2);
+      await mouse.wheel(0, deltaY);
+    }, { type: 'wheel' });
+  }
+
+  /** Waits until the canvas shows a frame, or a later one. */
+  shows(frame) {
+    return this.page.waitForFunction((number) => Number(document.querySelector('#view').dataset.frame) >= number, frame);
+  }
+
+  /** What a script sees of the page. */
+  look() {
+    return this.page.evaluate(() => {
+      const canvas = document.querySelector('#view');
+      return {
+        frame: Number(canvas.dataset.frame),
+        level: canvas.dataset.level,
+        revision: Number(canvas.dataset.revision),
+        width: canvas.width,
+        height: canvas.height,
+        stale: canvas.classList.contains('stale'),
+        status: document.querySelector('#status').textContent,
+      };
+    });
+  }
+
+  /**
+   * Compares what the canvas shows with a PNG file of the same size.
+   *
+   * @param {Buffer} png
+   * @returns {Promise<{frame: number, psnr: number, drawn: number}>} which frame it was, the peak signal to noise
+   *   ratio in dB, and the share of pixels that differ from the first
+   */
+  compare(png) {
+    return this.page.evaluate(async (base64) => {
+      const canvas = document.querySelector('#view');
+      const { width, height } = canvas;
+      const frame = Number(canvas.dataset.frame);
+      const shown = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+
+      const file = Uint8Array.from(atob(base64), (character) => character.charCodeAt(0));
+      const bitmap = await createImageBitmap(new Blob([file], { type: 'image/png' }));
+      if (bitmap.width !== width || bitmap.height !== height) return { frame, psnr: 0, drawn: 0 };
+      const context = new OffscreenCanvas(width, height).getContext('2d');
+      context.drawImage(bitmap, 0, 0);
+      const made = context.getImageData(0, 0, width, height).data;
+
+      let squares = 0;
+      let drawn = 0;
+      for (let i = 0; i < made.length; i += 4) {
+        let differs = false;
+        for (let channel = 0; channel < 3; channel += 1) {
+          squares += (shown[i + channel] - made[i + channel]) ** 2;
+          differs ||= Math.abs(shown[i + channel] - shown[channel]) > 8;
+        }
+        if (differs) drawn += 1;
+      }
+      const mean = squares / (width * height * 3);
+      return { frame, psnr: 10 * Math.log10(255 ** 2 / mean), drawn: drawn / (width * height) };
+    }, png.toString('base64'));
+  }
+
+  /** Keeps a picture of the page where the environment names a folder for them. */
+  async screenshot(name) {
+    const folder = process.env.VRUT_SCREENSHOTS;
+    if (folder) await this.page.screenshot({ path: path.join(folder, `${name}.png`) });
+  }
+}

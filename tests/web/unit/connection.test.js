@@ -1,0 +1,339 @@
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { Connection, socketAddress, tokenFrom } from '../../../web-client/connection.js';
+import { FakeClock, FakeSocket, jpegWith } from './fakes.js';
+
+const SIZE = { width: 1180, height: 820, pixelRatio: 2 };
+const WELCOME = { type: 'welcome', version: 1, client: 'a', role: 'control', limits: { maxGrants: 2 } };
+const STATE = { type: 'state', revision: 5, state: { camera: { fov: 40 }, control: { holder: 'b' } } };
+
+/** A connection, all that it is surrounded by, and a log of what it tells. */
+function setUp({ role = 'control', token, random = () => 1 } = {}) {
+  const page = { sockets: [], phases: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
+  page.connection = new Connection({
+    url: 'ws://server/ws',
+    hello: { role, token },
+    on: {
+      phase: (phase) => page.phases.push(phase),
+      frame: (frame) => new Promise((drawn) => page.frames.push({ ...frame, drawn })),
+      state: (state) => page.states.push(state),
+      error: (error) => page.errors.push(error),
+      message: (message) => page.messages.push(message),
+    },
+    environment: {
+      openSocket(url, protocol) {
+        const socket = new FakeSocket(url, protocol);
+        page.sockets.push(socket);
+        return socket;
+      },
+      setTimeout: page.clock.setTimeout,
+      clearTimeout: page.clock.clearTimeout,
+      random,
+    },
+  });
+  Object.defineProperties(page, {
+    socket: { get: () => page.sockets.at(-1) },
+    phase: { get: () => page.phases.at(-1) },
+  });
+  return page;
+}
+
+/** The same with a hello that has been answered; what was sent until then is forgotten. */
+function setUpOpen(options) {
+  const page = setUp(options);
+  page.connection.start();
+  answerHello(page);
+  page.socket.take();
+  return page;
+}
+
+function answerHello(page, welcome = WELCOME, state = STATE) {
+  page.socket.opens();
+  page.socket.says(welcome);
+  page.socket.says(state);
+}
+
+/** Lets what was promised happen. */
+const settle = () => new Promise((done) => setImmediate(done));
+
+describe('hello', () => {
+  test('is the first message, with the token', () => {
+    const page = setUp({ token: 'abc' });
+    page.connection.start();
+    assert.equal(page.socket.url, 'ws://server/ws');
+    assert.equal(page.socket.protocol, 'vrut-preview.v1');
+    assert.deepEqual(page.socket.take(), []);
+    page.socket.opens();
+    assert.deepEqual(page.socket.take(), [{ type: 'hello', role: 'control', token: 'abc' }]);
+    assert.equal(page.phase.name, 'connecting');
+  });
+
+  test('when answered, the size goes out, then two grants', () => {
+    const page = setUp();
+    page.connection.resize(SIZE);
+    page.connection.start();
+    page.socket.opens();
+    page.socket.take();
+    page.socket.says(WELCOME);
+    assert.deepEqual(page.socket.take(), []);
+    page.socket.says(STATE);
+    assert.deepEqual(page.socket.take(), [
+      { type: 'resize', ...SIZE, id: 1 },
+      { type: 'frame' },
+      { type: 'frame' },
+    ]);
+    assert.equal(page.phase.name, 'open');
+    assert.equal(page.connection.role, 'control');
+  });
+
+  test('a server that keeps one grant gets one', () => {
+    const page = setUp();
+    page.connection.start();
+    answerHello(page, { ...WELCOME, limits: { maxGrants: 1 } });
+    assert.deepEqual(page.socket.take().filter(({ type }) => type === 'frame'), [{ type: 'frame' }]);
+  });
+
+  test('control that nobody holds is taken, by a patch of nothing', () => {
+    const page = setUp();
+    page.connection.resize(SIZE);
+    page.connection.start();
+    answerHello(page, WELCOME, { ...STATE, state: { control: { kept: false } } });
+    const types = page.socket.take().map(({ type }) => type);
+    assert.deepEqual(types, ['hello', 'resize', 'patch', 'frame', 'frame']);
+    // Somebody else may have been faster, which is nobody's concern.
+    page.socket.says({ type: 'error', id: 2, code: 'not-in-control', message: 'Another steers.' });
+    assert.deepEqual(page.errors, []);
+  });
+
+  test('a watcher takes no control', () => {
+    const page = setUp();
+    page.connection.start();
+    answerHello(page, { ...WELCOME, role: 'view' }, { ...STATE, state: { control: {} } });
+    assert.deepEqual(page.socket.take().map(({ type }) => type), ['hello', 'frame', 'frame']);
+  });
+});
+
+describe('messages', () => {
+  test('carry rising ids', () => {
+    const page = setUpOpen();
+    assert.equal(page.connection.send({ type: 'fit' }), 1);
+    assert.equal(page.connection.send({ type: 'fit' }), 2);
+    page.connection.resize(SIZE);
+    assert.deepEqual(page.socket.take(), [
+      { type: 'fit', id: 1 },
+      { type: 'fit', id: 2 },
+      { type: 'resize', ...SIZE, id: 3 },
+    ]);
+  });
+
+  test('are dropped while there is nobody to hear them', () => {
+    const page = setUp();
+    assert.equal(page.connection.send({ type: 'fit' }), 0);
+    page.connection.start();
+    page.socket.opens();
+    page.socket.take();
+    assert.equal(page.connection.send({ type: 'fit' }), 0);
+    assert.deepEqual(page.socket.take(), []);
+  });
+
+  test('the state document follows its patches', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { camera: { fov: 50 }, control: { holder: null } } });
+    assert.deepEqual(page.connection.state, { camera: { fov: 50 }, control: {} });
+    assert.equal(page.connection.revision, 6);
+    assert.equal(page.states.length, 2);
+    page.socket.says({ type: 'state', revision: 7, state: { camera: { fov: 30 } } });
+    assert.deepEqual(page.connection.state, { camera: { fov: 30 } });
+  });
+
+  test('errors and other messages are passed on; what is no message is not', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'error', code: 'not-in-control', message: 'Another steers.' });
+    page.socket.says({ type: 'loading', scene: 'car', fraction: 0.5 });
+    page.socket.says('{"type":');
+    page.socket.says('null');
+    page.socket.says('{}');
+    assert.deepEqual(page.errors.map(({ message }) => message), ['Another steers.']);
+    assert.deepEqual(page.messages, [{ type: 'loading', scene: 'car', fraction: 0.5 }]);
+  });
+});
+
+describe('frames', () => {
+  test('each grant is given back when its frame is drawn', async () => {
+    const page = setUpOpen();
+    page.socket.sendsFrame(jpegWith({ frame: 1 }));
+    page.socket.sendsFrame(jpegWith({ frame: 2 }));
+    await settle();
+    assert.deepEqual(page.frames.map(({ header }) => header.frame), [1, 2]);
+    assert.deepEqual(page.socket.take(), []);
+    page.frames[1].drawn();
+    await settle();
+    assert.deepEqual(page.socket.take(), [{ type: 'frame' }]);
+    page.frames[0].drawn();
+    await settle();
+    assert.deepEqual(page.socket.take(), [{ type: 'frame' }]);
+  });
+
+  test('a frame of an unreadable header is passed on without one', () => {
+    const page = setUpOpen();
+    page.socket.sendsFrame(new ArrayBuffer(3));
+    assert.equal(page.frames[0].header, null);
+    assert.equal(page.frames[0].data.byteLength, 3);
+  });
+
+  test('a frame of the lost connection gives the new one no grant', async () => {
+    const page = setUpOpen();
+    page.socket.sendsFrame(jpegWith({ frame: 1 }));
+    page.socket.ends(1006);
+    page.clock.advance(250);
+    answerHello(page);
+    page.socket.take();
+    page.frames[0].drawn();
+    await settle();
+    assert.deepEqual(page.socket.take(), []);
+  });
+});
+
+describe('a lost connection', () => {
+  test('is tried again after ever longer pauses, up to 4 s', () => {
+    const page = setUpOpen();
+    page.socket.ends(1006);
+    const pauses = [];
+    for (let i = 0; i < 7; i += 1) {
+      pauses.push(page.clock.next);
+      assert.equal(page.phase.name, 'waiting');
+      assert.equal(page.phase.retryMs, page.clock.next);
+      assert.equal(page.phase.hadOpened, i === 0);
+      page.clock.advance(page.clock.next);
+      assert.equal(page.phase.name, 'connecting');
+      page.socket.ends(1006);
+    }
+    assert.deepEqual(pauses, [250, 500, 1000, 2000, 4000, 4000, 4000]);
+  });
+
+  test('the pauses are spread over their second half', () => {
+    const page = setUpOpen({ random: () => 0 });
+    page.socket.ends(1006);
+    assert.equal(page.clock.next, 125);
+  });
+
+  test('everything is restored: hello, size, grants, state, ids that still rise', () => {
+    const page = setUpOpen();
+    page.connection.resize(SIZE);
+    page.socket.ends(1001);
+    assert.equal(page.connection.role, undefined);
+    assert.deepEqual(page.connection.state, STATE.state);
+    page.clock.advance(250);
+    answerHello(page, WELCOME, { ...STATE, revision: 1 });
+    assert.deepEqual(page.socket.take(), [
+      { type: 'hello', role: 'control' },
+      { type: 'resize', ...SIZE, id: 2 },
+      { type: 'frame' },
+      { type: 'frame' },
+    ]);
+    assert.equal(page.connection.revision, 1);
+    assert.equal(page.clock.next, undefined);
+  });
+
+  test('a picture makes the pauses short again, a welcome alone does not', () => {
+    const page = setUpOpen();
+    const loseAndReopen = () => {
+      page.socket.ends(1006);
+      const pause = page.clock.next;
+      page.clock.advance(pause);
+      answerHello(page);
+      return pause;
+    };
+    assert.deepEqual([loseAndReopen(), loseAndReopen()], [250, 500]);
+    page.socket.sendsFrame(jpegWith({ frame: 1 }));
+    assert.equal(loseAndReopen(), 250);
+  });
+
+  test('a page that is seen again does not wait', () => {
+    const page = setUpOpen();
+    page.socket.ends(1006);
+    page.connection.wake();
+    assert.equal(page.sockets.length, 2);
+    assert.equal(page.phase.name, 'connecting');
+    page.connection.wake();
+    page.clock.advance(250);
+    assert.equal(page.sockets.length, 2);
+  });
+
+  test('a server that never answers the hello is given up', () => {
+    const page = setUp();
+    page.connection.start();
+    const [silent] = page.sockets;
+    page.clock.advance(8000);
+    assert.equal(page.phase.name, 'waiting');
+    assert.ok(silent.closed);
+    page.clock.advance(250);
+    answerHello(page);
+    assert.equal(page.phase.name, 'open');
+  });
+
+  test('a page that is seen again finds out that its connection is dead', () => {
+    const page = setUpOpen();
+    page.connection.resize(SIZE);
+    page.socket.take();
+    page.connection.wake();
+    assert.deepEqual(page.socket.take().map(({ type }) => type), ['resize']);
+    page.clock.advance(4000);
+    assert.equal(page.phase.name, 'waiting');
+    assert.ok(page.phase.hadOpened);
+  });
+
+  test('or alive', () => {
+    const page = setUpOpen();
+    page.connection.resize(SIZE);
+    page.connection.wake();
+    page.socket.says({ type: 'ok', id: 2, revision: 5 });
+    assert.equal(page.clock.next, undefined);
+    assert.equal(page.phase.name, 'open');
+  });
+});
+
+describe('a refusal', () => {
+  test('of the token is final, and told in the words of the server', () => {
+    const page = setUp();
+    page.connection.start();
+    page.socket.opens();
+    page.socket.says({ type: 'error', code: 'not-allowed', message: 'The token is wrong.' });
+    page.socket.ends(1008, 'policy');
+    assert.deepEqual(page.phase, { name: 'refused', reason: 'The token is wrong.' });
+    assert.equal(page.clock.next, undefined);
+    assert.deepEqual(page.errors, []);
+  });
+
+  test('is tried again only when the page is seen again', () => {
+    const page = setUp();
+    page.connection.start();
+    page.socket.ends(1008);
+    page.connection.wake();
+    assert.equal(page.sockets.length, 2);
+  });
+
+  test('for want of room is tried again', () => {
+    const page = setUp();
+    page.connection.start();
+    page.socket.opens();
+    page.socket.says({ type: 'error', code: 'too-many', message: 'The server has no room.' });
+    page.socket.ends(1013);
+    assert.equal(page.phase.name, 'waiting');
+    assert.equal(page.phase.reason, 'The server has no room.');
+    assert.equal(page.clock.next, 250);
+  });
+});
+
+test('the socket lies beside the page', () => {
+  assert.equal(socketAddress('http://host:8080/#token=a'), 'ws://host:8080/ws');
+  assert.equal(socketAddress('https://host/preview/index.html'), 'wss://host/preview/ws');
+});
+
+test('the token comes from the fragment, untouched but for its escapes', () => {
+  assert.equal(tokenFrom(''), undefined);
+  assert.equal(tokenFrom('#token='), undefined);
+  assert.equal(tokenFrom('#token=a-b_c'), 'a-b_c');
+  assert.equal(tokenFrom('#x=1&token=a+b%2Fc&y=2'), 'a+b/c');
+  assert.equal(tokenFrom('#token=100%'), '100%');
+});

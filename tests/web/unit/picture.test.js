@@ -1,0 +1,97 @@
+import assert from 'node:assert/strict';
+import { test } from 'node:test';
+import { Picture, viewMapping } from '../../../web-client/picture.js';
+
+function setUp() {
+  const page = { drawn: [], closed: [], decoding: [], classes: new Set(), box: { left: 0, top: 0, width: 100, height: 50 } };
+  page.canvas = {
+    width: 1,
+    height: 1,
+    dataset: {},
+    classList: { toggle: (name, on) => (on ? page.classes.add(name) : page.classes.delete(name)) },
+    getContext: () => ({ drawImage: (bitmap) => page.drawn.push(bitmap.name) }),
+    getBoundingClientRect: () => page.box,
+  };
+  page.picture = new Picture(page.canvas, () => new Promise((resolve, reject) => page.decoding.push({ resolve, reject })));
+  page.decoded = (index, name) =>
+    page.decoding[index].resolve({ name, width: 200, height: 100, close: () => page.closed.push(name) });
+  return page;
+}
+
+const frame = (number, view = { width: 100, height: 50, pixelRatio: 2 }) => ({
+  header: { frame: number, revision: number + 100, view, quality: { level: 'still' } },
+  data: new ArrayBuffer(1),
+});
+
+test('a frame is drawn pixel by pixel, and the canvas says which', async () => {
+  const page = setUp();
+  const shown = page.picture.show(frame(1));
+  page.decoded(0, 'one');
+  assert.equal(await shown, 'drawn');
+  assert.deepEqual([page.canvas.width, page.canvas.height], [200, 100]);
+  assert.deepEqual(page.canvas.dataset, { frame: 1, level: 'still', revision: 101 });
+  assert.deepEqual(page.drawn, ['one']);
+  assert.deepEqual(page.closed, ['one']);
+  assert.equal(page.picture.header.frame, 1);
+});
+
+test('a frame that is decoded behind a newer one is dropped', async () => {
+  const page = setUp();
+  const first = page.picture.show(frame(1));
+  const second = page.picture.show(frame(2));
+  page.decoded(1, 'two');
+  assert.equal(await second, 'drawn');
+  page.decoded(0, 'one');
+  assert.equal(await first, 'late');
+  assert.deepEqual(page.drawn, ['two']);
+  assert.deepEqual(page.closed, ['two', 'one']);
+});
+
+test('frames of a restarted server count as newer, whatever their number', async () => {
+  const page = setUp();
+  const old = page.picture.show(frame(900));
+  page.decoded(0, 'old');
+  await old;
+  const young = page.picture.show(frame(1));
+  page.decoded(1, 'young');
+  assert.equal(await young, 'drawn');
+  assert.equal(page.canvas.dataset.frame, 1);
+});
+
+test('what cannot be read leaves the picture as it is', async () => {
+  const page = setUp();
+  assert.equal(await page.picture.show({ header: null, data: new ArrayBuffer(1) }), 'failed');
+  const shown = page.picture.show(frame(1));
+  page.decoding[0].reject(new Error('no JPEG'));
+  assert.equal(await shown, 'failed');
+  assert.deepEqual(page.drawn, []);
+  assert.equal(page.picture.header, null);
+});
+
+test('the picture fills a page of its own size, and is fitted into any other', async () => {
+  const page = setUp();
+  const shown = page.picture.show(frame(1));
+  page.decoded(0, 'one');
+  await shown;
+  assert.ok(page.classes.has('fills'));
+  page.box = { left: 0, top: 0, width: 50, height: 100 };
+  page.picture.layout();
+  assert.ok(!page.classes.has('fills'));
+  assert.deepEqual(page.picture.mapping()(25, 50), { x: 50, y: 25 });
+});
+
+test('before the first picture the view is the page', () => {
+  const page = setUp();
+  page.box = { left: 10, top: 20, width: 100, height: 50 };
+  assert.deepEqual(page.picture.mapping()(15, 30), { x: 5, y: 10 });
+});
+
+test('coordinates go through the bars beside a fitted picture', () => {
+  const wide = viewMapping({ left: 0, top: 0, width: 400, height: 800 }, { width: 800, height: 400 });
+  assert.deepEqual(wide(200, 400), { x: 400, y: 200 });
+  assert.deepEqual(wide(0, 400), { x: 0, y: 200 });
+  assert.ok(wide(200, 0).y < 0);
+  const tall = viewMapping({ left: 100, top: 50, width: 800, height: 400 }, { width: 400, height: 800 });
+  assert.deepEqual(tall(500, 250), { x: 200, y: 400 });
+  assert.deepEqual(tall(600, 450), { x: 400, y: 800 });
+});
