@@ -28,7 +28,9 @@ public:
         if (!value) throw BadJson{error_code::bad_message, "member '" + std::string(name) + "' is missing"};
         return *value;
     }
-    double number(const char* name, double min, double max) const { return read_number(at(name), name, min, max); }
+    double number(const char* name, double min, double max) const {
+        return read_number(at(name), name, min, max);
+    }
     std::int64_t integer(const char* name, std::int64_t min, std::int64_t max) const {
         return read_integer(at(name), name, min, max);
     }
@@ -48,7 +50,9 @@ public:
         const Json* value = find("timeStamp");
         return value ? std::optional(read_number(*value, "timeStamp", -kMaxTime, kMaxTime)) : std::nullopt;
     }
-    Modifiers modifiers() const { return {flag("ctrlKey"), flag("shiftKey"), flag("altKey"), flag("metaKey")}; }
+    Modifiers modifiers() const {
+        return {flag("ctrlKey"), flag("shiftKey"), flag("altKey"), flag("metaKey")};
+    }
 
 private:
     const Json& object_;
@@ -63,19 +67,21 @@ Hello decode_hello(const Members& members) {
 }
 
 Resize decode_resize(const Members& members) {
-    return {members.number("width", 1, 8192), members.number("height", 1, 8192), members.number("pixelRatio", 0.25, 4)};
+    return {members.number("width", 1, 8192), members.number("height", 1, 8192),
+            members.number("pixelRatio", 0.25, 4)};
 }
 
 Pointer decode_pointer(const Members& members, Pointer::Event event) {
     Pointer pointer;
     pointer.event = event;
     pointer.pointer_id = members.integer("pointerId", -kMaxInteger, kMaxInteger);
-    pointer.pointer_type =
-        static_cast<Pointer::Type>(read_word(members.at("pointerType"), "pointerType", {"mouse", "touch", "pen"}));
+    pointer.pointer_type = static_cast<Pointer::Type>(
+        read_word(members.at("pointerType"), "pointerType", {"mouse", "touch", "pen"}));
     pointer.x = members.number("x", -kMaxCoordinate, kMaxCoordinate);
     pointer.y = members.number("y", -kMaxCoordinate, kMaxCoordinate);
     pointer.button = static_cast<int>(members.integer("button", -1, 31));
-    pointer.buttons = static_cast<unsigned>(members.integer("buttons", 0, std::numeric_limits<std::uint32_t>::max()));
+    pointer.buttons =
+        static_cast<unsigned>(members.integer("buttons", 0, std::numeric_limits<std::uint32_t>::max()));
     pointer.modifiers = members.modifiers();
     pointer.time_stamp = members.time_stamp();
     pointer.frame = members.optional_integer("frame", 0);
@@ -158,9 +164,12 @@ tl::expected<ClientMessage, Error> decode(std::string_view text) {
 
 const char* name_of(Role role) {
     switch (role) {
-        case Role::control: return "control";
-        case Role::view: return "view";
-        case Role::host: return "host";
+        case Role::control:
+            return "control";
+        case Role::view:
+            return "view";
+        case Role::host:
+            return "host";
     }
     return "";
 }

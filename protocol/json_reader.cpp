@@ -22,14 +22,16 @@ Json parse_strictly(std::string_view text, int max_depth) {
         } else if (event == Event::key) {
             const auto& name = parsed.get_ref<const std::string&>();
             if (!members.back().insert(name).second)
-                throw BadJson{error_code::bad_message, "member '" + excerpt(name) + "' stands twice in one object"};
+                throw BadJson{error_code::bad_message,
+                              "member '" + excerpt(name) + "' stands twice in one object"};
         }
         return true;
     };
     try {
         return Json::parse(text, look);
     } catch (const Json::parse_error& error) {
-        throw BadJson{error_code::bad_message, "the message is not JSON: error at byte " + std::to_string(error.byte)};
+        throw BadJson{error_code::bad_message,
+                      "the message is not JSON: error at byte " + std::to_string(error.byte)};
     } catch (const Json::out_of_range&) {
         throw BadJson{error_code::out_of_range, "the message holds a number beyond the range of double"};
     }
@@ -52,7 +54,7 @@ Vector read_vector(const Json& value, std::string_view what, double min, double 
     constexpr auto kLength = static_cast<std::size_t>(Vector::length());
     if (!value.is_array()) wrong_type(what, "an array of numbers");
     if (value.size() != kLength) out_of_range(what, "an array of " + std::to_string(kLength) + " numbers");
-    Vector result;
+    Vector result{};
     for (std::size_t i = 0; i < kLength; ++i)
         result[static_cast<glm::length_t>(i)] = read_number(value[i], what, min, max);
     return result;
@@ -71,7 +73,8 @@ double read_number(const Json& value, std::string_view what, double min, double 
 std::int64_t read_integer(const Json& value, std::string_view what, std::int64_t min, std::int64_t max) {
     if (!value.is_number()) wrong_type(what, "a number");
     const double number = value.get<double>();
-    if (number != std::floor(number) || number < static_cast<double>(min) || number > static_cast<double>(max))
+    if (number != std::floor(number) || number < static_cast<double>(min) ||
+        number > static_cast<double>(max))
         out_of_range(what, "an integer from " + std::to_string(min) + " to " + std::to_string(max));
     return static_cast<std::int64_t>(number);
 }
@@ -84,11 +87,13 @@ bool read_bool(const Json& value, std::string_view what) {
 std::string read_string(const Json& value, std::string_view what, std::size_t max_length) {
     if (!value.is_string()) wrong_type(what, "a string");
     const auto& text = value.get_ref<const std::string&>();
-    if (text.size() > max_length) out_of_range(what, "a string of at most " + std::to_string(max_length) + " bytes");
+    if (text.size() > max_length)
+        out_of_range(what, "a string of at most " + std::to_string(max_length) + " bytes");
     return text;
 }
 
-std::size_t read_word(const Json& value, std::string_view what, std::initializer_list<std::string_view> words) {
+std::size_t read_word(const Json& value, std::string_view what,
+                      std::initializer_list<std::string_view> words) {
     if (!value.is_string()) wrong_type(what, "a string");
     const auto& text = value.get_ref<const std::string&>();
     std::string list;
@@ -127,7 +132,8 @@ std::string excerpt(std::string_view text) {
     constexpr std::size_t kLongest = 40;
     if (text.size() <= kLongest) return std::string(text);
     std::size_t end = kLongest;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not inside a character
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
+        --end;  // not inside a character
     return std::string(text.substr(0, end)) + "…";
 }
 

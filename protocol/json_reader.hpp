@@ -20,8 +20,8 @@ struct BadJson {
     std::string message;
 };
 
-/// Text to JSON: valid UTF-8, at most `max_depth` levels (checked while parsing, so that depth costs no stack), no
-/// duplicate members, numbers within double. Throws BadJson.
+/// Text to JSON: valid UTF-8, at most `max_depth` levels (checked while parsing, so that depth costs no
+/// stack), no duplicate members, numbers within double. Throws BadJson.
 Json parse_strictly(std::string_view text, int max_depth = kMaxDepth);
 
 /// JSON to text; never throws for what a name may hold.
@@ -33,7 +33,8 @@ std::int64_t read_integer(const Json& value, std::string_view what, std::int64_t
 bool read_bool(const Json& value, std::string_view what);
 std::string read_string(const Json& value, std::string_view what, std::size_t max_length);
 /// Position in `words` of the value.
-std::size_t read_word(const Json& value, std::string_view what, std::initializer_list<std::string_view> words);
+std::size_t read_word(const Json& value, std::string_view what,
+                      std::initializer_list<std::string_view> words);
 glm::dvec3 read_vec3(const Json& value, std::string_view what, double min, double max);
 glm::dvec4 read_vec4(const Json& value, std::string_view what, double min, double max);
 const Json& read_object(const Json& value, std::string_view what);

@@ -7,8 +7,8 @@
 #include <string>
 #include <variant>
 
-/// What travels between clients and the server. PROTOCOL.md tells what each message means; the structs here have
-/// its members under its names.
+/// What travels between clients and the server. PROTOCOL.md tells what each message means; the structs here
+/// have its members under its names.
 namespace vrut::protocol {
 
 inline constexpr int kVersion = 1;

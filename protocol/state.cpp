@@ -20,8 +20,9 @@ Json section_json(const SceneState& scene) {
 }
 
 Json section_json(const CameraState& camera) {
-    return {{"eye", to_json(camera.eye)},       {"focus", to_json(camera.focus)}, {"up", to_json(camera.up)},
-            {"center", to_json(camera.center)}, {"fov", camera.fov},              {"near", camera.near},
+    return {{"eye", to_json(camera.eye)}, {"focus", to_json(camera.focus)},
+            {"up", to_json(camera.up)},   {"center", to_json(camera.center)},
+            {"fov", camera.fov},          {"near", camera.near},
             {"far", camera.far}};
 }
 
@@ -48,7 +49,8 @@ Json section_json(const BackgroundsState& backgrounds) {
     Json items = Json::object();
     for (const auto& [id, background] : backgrounds.items)
         items[id] = {{"name", background.name}, {"color", to_json(background.color)}};
-    return {{"active", backgrounds.active}, {"color", to_json(backgrounds.color)}, {"items", std::move(items)}};
+    return {
+        {"active", backgrounds.active}, {"color", to_json(backgrounds.color)}, {"items", std::move(items)}};
 }
 
 Json section_json(const ControlState& control) {
@@ -72,7 +74,8 @@ void patch_members(const Json& patch, const std::string& path, std::initializer_
         for (const Member& member : members)
             if (name == member.name) found = &member;
         if (!found)
-            throw BadJson{error_code::unknown_member, "the state has no member '" + excerpt(member_path) + "'"};
+            throw BadJson{error_code::unknown_member,
+                          "the state has no member '" + excerpt(member_path) + "'"};
         if (!found->set) throw BadJson{error_code::read_only, "'" + member_path + "' is read-only"};
         found->set(value, member_path);
     }
@@ -88,16 +91,21 @@ std::function<void(const Json&, const std::string&)> leaf(Value& target, const V
 
 constexpr double kHuge = 1e30;  // products of two coordinates stay finite
 
-glm::dvec3 read_position(const Json& value, const std::string& path) { return read_vec3(value, path, -kHuge, kHuge); }
+glm::dvec3 read_position(const Json& value, const std::string& path) {
+    return read_vec3(value, path, -kHuge, kHuge);
+}
 glm::dvec4 read_color(const Json& value, const std::string& path) { return read_vec4(value, path, 0, 1); }
-glm::dvec3 read_attenuation(const Json& value, const std::string& path) { return read_vec3(value, path, 0, kHuge); }
+glm::dvec3 read_attenuation(const Json& value, const std::string& path) {
+    return read_vec3(value, path, 0, kHuge);
+}
 double read_fov(const Json& value, const std::string& path) { return read_number(value, path, 1, 170); }
 double read_speed(const Json& value, const std::string& path) { return read_number(value, path, 0.01, 100); }
 bool read_flag(const Json& value, const std::string& path) { return read_bool(value, path); }
 
 /// A section that holds members: null resets all of it.
 template <class Section, class Patch>
-std::function<void(const Json&, const std::string&)> section(Section& target, const Section& start, Patch patch) {
+std::function<void(const Json&, const std::string&)> section(Section& target, const Section& start,
+                                                             Patch patch) {
     return [&target, &start, patch](const Json& value, const std::string& path) {
         if (value.is_null())
             target = start;
@@ -141,8 +149,8 @@ void patch_background(BackgroundState& background, const BackgroundState& start,
 
 /// Items are those of the scene: they are neither added nor removed, and null resets one.
 template <class Item, class PatchItem>
-void patch_items(std::map<std::string, Item>& items, const std::map<std::string, Item>& start, const Json& patch,
-                 const std::string& path, PatchItem patch_item) {
+void patch_items(std::map<std::string, Item>& items, const std::map<std::string, Item>& start,
+                 const Json& patch, const std::string& path, PatchItem patch_item) {
     for (const auto& [id, value] : read_object(patch, path).items()) {
         const auto item = items.find(id);
         if (item == items.end())
@@ -161,15 +169,15 @@ std::string read_key(const Json& value, const std::string& path, const std::map<
 }
 
 void patch_lights(LightsState& lights, const LightsState& start, const Json& patch, const std::string& path) {
-    patch_members(
-        patch, path,
-        {{"active", leaf(lights.active, start.active,
-                         [&](const Json& value, const std::string& at) {
-                             return read_key(value, at, lights.items, "headlight");
-                         })},
-         {"items", section(lights.items, start.items, [](auto& items, const auto& from, const Json& value, const auto& at) {
-              patch_items(items, from, value, at, patch_light);
-          })}});
+    patch_members(patch, path,
+                  {{"active", leaf(lights.active, start.active,
+                                   [&](const Json& value, const std::string& at) {
+                                       return read_key(value, at, lights.items, "headlight");
+                                   })},
+                   {"items", section(lights.items, start.items,
+                                     [](auto& items, const auto& from, const Json& value, const auto& at) {
+                                         patch_items(items, from, value, at, patch_light);
+                                     })}});
 }
 
 void patch_backgrounds(BackgroundsState& backgrounds, const BackgroundsState& start, const Json& patch,
@@ -238,7 +246,8 @@ tl::expected<CameraState, Error> parse_camera(std::string_view text, const Camer
         Json json = parse_strictly(text);
         Json writable = Json::object();
         for (const char* name : {"eye", "focus", "up", "center", "fov"})
-            if (const auto found = read_object(json, "camera").find(name); found != json.end()) writable[name] = *found;
+            if (const auto found = read_object(json, "camera").find(name); found != json.end())
+                writable[name] = *found;
         CameraState camera = base;
         patch_camera(camera, base, writable, "camera");
         return camera;

@@ -82,18 +82,19 @@ struct State {
     bool operator==(const State&) const = default;
 };
 
-/// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null gives a member
-/// back the value it has in `starting`. Checks types, ranges and names, not whether a camera's pose makes sense.
+/// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
+/// gives a member back the value it has in `starting`. Checks types, ranges and names, not whether a camera's
+/// pose makes sense.
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
 
-/// A camera from the text of a JSON object with members of the state's `camera`; what is left out is as in `base`,
-/// read-only and unknown members are ignored.
+/// A camera from the text of a JSON object with members of the state's `camera`; what is left out is as in
+/// `base`, read-only and unknown members are ignored.
 tl::expected<CameraState, Error> parse_camera(std::string_view text, const CameraState& base);
 /// patched() from text.
 tl::expected<State, Error> patched_by_text(const State& state, const State& starting, std::string_view text);
 
-/// One revision of the state as JSON, to be shared between threads. Sections that did not change are the same objects
-/// in both documents, which makes making and comparing documents cheap.
+/// One revision of the state as JSON, to be shared between threads. Sections that did not change are the same
+/// objects in both documents, which makes making and comparing documents cheap.
 class StateDocument {
 public:
     StateDocument() = default;

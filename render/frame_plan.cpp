@@ -10,7 +10,8 @@ namespace {
 // Positions are float on the GPU, and their squares are taken there.
 constexpr double kFarthest = 1e18;
 
-/// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid one.
+/// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid
+/// one.
 double relative_determinant(const glm::dmat3& m) {
     const double edges = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
     return edges > 0 ? glm::determinant(m) / edges : 0;
@@ -28,7 +29,8 @@ FramePlan plan_frame(const PlacedScene& placed, const Camera& camera) {
         if (!shown[i] || !data || data->geometry == kNone) continue;
         const Geometry& geometry = placed.scene.geometries()[static_cast<std::size_t>(data->geometry)];
         if (geometry.triangles.empty()) continue;
-        DrawItem item{static_cast<Index>(i), data->geometry, data->material, view * placed.world[i], {}, false};
+        DrawItem item{
+            static_cast<Index>(i), data->geometry, data->material, view * placed.world[i], {}, false};
         const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
         if (!(glm::length(in_view.min) < kFarthest && glm::length(in_view.max) < kFarthest)) continue;
         const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
@@ -56,7 +58,8 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
         " transparent materials are drawn opaque");
     say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return !m.image.empty(); }),
         " textures are not drawn");
-    say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return m.reflectivity > 0; }),
+    say(std::count_if(materials.begin(), materials.end(),
+                      [](const Material& m) { return m.reflectivity > 0; }),
         " reflective materials are drawn without reflections");
     say(std::count_if(nodes.begin(), nodes.end(), [](const Node& n) { return n.type == NodeType::light; }),
         " lights cannot be chosen: the headlight shines");

@@ -15,17 +15,20 @@ struct Arrays {
     std::vector<glm::uvec3> triangles;
 };
 
-/// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take its
-/// face's, so that the shader need not know the difference.
+/// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
+/// its face's, so that the shader need not know the difference.
 Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
-    const auto normal = [&](unsigned i) { return geometry.normals.empty() ? glm::vec3(0) : geometry.normals[i]; };
+    const auto normal = [&](unsigned i) {
+        return geometry.normals.empty() ? glm::vec3(0) : geometry.normals[i];
+    };
 
     Arrays arrays;
     arrays.triangles = geometry.triangles;
     if (!geometry.normals.empty()) {
         arrays.vertices.reserve(geometry.positions.size());
-        for (unsigned i = 0; i < geometry.positions.size(); ++i) arrays.vertices.push_back({position(i), normal(i)});
+        for (unsigned i = 0; i < geometry.positions.size(); ++i)
+            arrays.vertices.push_back({position(i), normal(i)});
     }
     for (glm::uvec3& triangle : arrays.triangles) {
         const glm::uvec3 corners = triangle;
@@ -36,7 +39,8 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
                 glm::cross(geometry.positions[corners[1]] - a, geometry.positions[corners[2]] - a);
             const double length = glm::length(cross);
             triangle[k] = static_cast<unsigned>(arrays.vertices.size());
-            arrays.vertices.push_back({position(corners[k]), length > 0 ? glm::vec3(cross / length) : glm::vec3(0)});
+            arrays.vertices.push_back(
+                {position(corners[k]), length > 0 ? glm::vec3(cross / length) : glm::vec3(0)});
         }
     }
     return arrays;
@@ -71,7 +75,8 @@ GpuScene::GpuScene(std::shared_ptr<const PlacedScene> placed)
 
 const GpuGeometry& GpuScene::geometry(Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
-    if (!geometry.vertex_array) geometry = upload(placed_->scene.geometries()[static_cast<std::size_t>(index)]);
+    if (!geometry.vertex_array)
+        geometry = upload(placed_->scene.geometries()[static_cast<std::size_t>(index)]);
     return geometry;
 }
 

@@ -8,8 +8,8 @@
 
 namespace vrut {
 
-/// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a scene
-/// far from the world's origin keeps its precision.
+/// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a
+/// scene far from the world's origin keeps its precision.
 struct GpuGeometry {
     GlBuffer vertices, indices;
     GlVertexArray vertex_array;

@@ -25,14 +25,17 @@ glm::dvec2 sample_offset(int index, int samples) {
     const auto count = std::bit_ceil(static_cast<unsigned>(samples));
     double y = 0.5 / count;
     double digit = 0.5;
-    for (unsigned rest = static_cast<unsigned>(index); rest != 0; rest >>= 1, digit /= 2) y += (rest & 1) * digit;
+    for (unsigned rest = static_cast<unsigned>(index); rest != 0; rest >>= 1, digit /= 2)
+        y += (rest & 1) * digit;
     return {(index + 0.5) / samples - 0.5, y - 0.5};
 }
 
-/// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity, which gives
-/// float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y down.
+/// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
+/// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
+/// down.
 glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset) {
-    glm::dmat4 matrix = clip_from_view(view.camera, static_cast<double>(view.width) / view.height, {near, 2 * near});
+    glm::dmat4 matrix =
+        clip_from_view(view.camera, static_cast<double>(view.width) / view.height, {near, 2 * near});
     matrix[2][0] = 2 * offset.x / view.width;
     matrix[2][1] = -2 * offset.y / view.height;
     matrix[2][2] = 0;
@@ -50,13 +53,15 @@ struct Renderer::Impl {
         glDisable(GL_DITHER);
     }
 
-    void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset, FrameStats& stats) {
+    void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
+              FrameStats& stats) {
         target->bind();
         glClearColor(static_cast<float>(view.background.r), static_cast<float>(view.background.g),
                      static_cast<float>(view.background.b), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         if (!plan.opaque.empty())
-            opaque.draw(plan.opaque, *scene, reversed_clip_from_view(view, near, offset), view.headlight, stats);
+            opaque.draw(plan.opaque, *scene, reversed_clip_from_view(view, near, offset), view.headlight,
+                        stats);
     }
 
     GlContext context;  // first: destroyed after everything below
@@ -80,7 +85,8 @@ std::vector<std::string> Renderer::take_messages() { return impl_->context.take_
 
 void Renderer::set_scene(std::shared_ptr<const PlacedScene> scene) { impl_->scene.emplace(std::move(scene)); }
 
-bool Renderer::render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted) {
+bool Renderer::render(const View& view, Image& image, FrameStats& stats,
+                      const std::function<bool()>& interrupted) {
     stats = {};
     if (!impl_->target || impl_->target->width() != view.width || impl_->target->height() != view.height) {
         impl_->target.reset();  // the old one's memory is free before the new one takes its own

@@ -15,8 +15,8 @@ namespace vrut {
 /// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread.
 class Renderer {
 public:
-    /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's enumeration;
-    /// with `debug` the driver's messages are collected.
+    /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's
+    /// enumeration; with `debug` the driver's messages are collected.
     explicit Renderer(std::optional<int> device = std::nullopt, bool debug = false);
     ~Renderer();
 
@@ -32,7 +32,8 @@ public:
     void set_scene(std::shared_ptr<const PlacedScene> scene);
     /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks
     /// `interrupted`; if that says yes the picture is given up and false comes back.
-    bool render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted = {});
+    bool render(const View& view, Image& image, FrameStats& stats,
+                const std::function<bool()>& interrupted = {});
 
 private:
     struct Impl;

@@ -41,7 +41,8 @@ bool Access::accepts_host(std::string_view host) const {
 
 bool Access::accepts_origin(std::string_view origin, std::string_view host) const {
     if (origin.empty()) return true;
-    if (std::find(allowed_origins.begin(), allowed_origins.end(), origin) != allowed_origins.end()) return true;
+    if (std::find(allowed_origins.begin(), allowed_origins.end(), origin) != allowed_origins.end())
+        return true;
     for (const std::string_view scheme : {"http://", "https://"})
         if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
     return false;
@@ -57,11 +58,13 @@ Access read_access(const std::filesystem::path& token_file) {
     if (::stat(token_file.c_str(), &status) != 0)
         throw std::runtime_error("token file " + token_file.string() + " cannot be opened");
     if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
-        throw std::runtime_error("token file " + token_file.string() + " can be read by others: chmod 600 it");
+        throw std::runtime_error("token file " + token_file.string() +
+                                 " can be read by others: chmod 600 it");
     std::ifstream stream(token_file, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     const auto tokens = protocol::parse_tokens(text);
-    if (!tokens) throw std::runtime_error("token file " + token_file.string() + ": " + tokens.error().message);
+    if (!tokens)
+        throw std::runtime_error("token file " + token_file.string() + ": " + tokens.error().message);
     if (!tokens->control.empty()) access.control_token = tokens->control;
     if (!tokens->view.empty()) access.view_token = tokens->view;
     return access;

@@ -16,11 +16,11 @@ struct Access {
     std::vector<std::string> allowed_origins;  ///< besides the server's own, "https://preview.example"
 
     bool needs_token() const { return !control_token.empty() || !view_token.empty(); }
-    /// The role that a client gets who asks for `wanted` with this token; none where it may not come in. The control
-    /// token gives every role, the view token `view`.
+    /// The role that a client gets who asks for `wanted` with this token; none where it may not come in. The
+    /// control token gives every role, the view token `view`.
     std::optional<protocol::Role> role_for(protocol::Role wanted, std::string_view token) const;
-    /// Where no token is asked for, a page of another site could otherwise reach the server by a name of its own that
-    /// leads to this machine: the request must name the loopback interface.
+    /// Where no token is asked for, a page of another site could otherwise reach the server by a name of its
+    /// own that leads to this machine: the request must name the loopback interface.
     bool accepts_host(std::string_view host) const;
     /// `origin` as a browser sends it; empty where there is none.
     bool accepts_origin(std::string_view origin, std::string_view host) const;

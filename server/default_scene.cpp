@@ -11,8 +11,8 @@ std::filesystem::path default_scene() {
         std::filesystem::path car = folder / "car/car.vrut";
         if (std::filesystem::exists(car)) return car;
     }
-    throw std::runtime_error("the car is neither in " + installed.string() + " nor in " VRUT_SOURCE_SCENES
-                             "; name a scene to serve");
+    throw std::runtime_error("the car is neither in " + installed.string() +
+                             " nor in " VRUT_SOURCE_SCENES "; name a scene to serve");
 }
 
 }  // namespace vrut

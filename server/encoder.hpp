@@ -19,7 +19,8 @@ namespace vrut {
 /// A picture with what is to be said of it, the same for all clients but for `handled`.
 struct Picture {
     protocol::FrameHeader header;
-    std::map<std::string, std::int64_t> handled;    ///< for each client, its highest message id that the picture shows
+    std::map<std::string, std::int64_t>
+        handled;  ///< for each client, its highest message id that the picture shows
     std::optional<Clock::time_point> newest_input;  ///< arrival of the newest input that it shows
 };
 
@@ -31,8 +32,8 @@ struct EncodedPicture : Picture {
 /// The encode thread: one picture waits at most.
 class Encoder {
 public:
-    /// All are called on the encode thread: `on_encoded` with each picture, `on_free` when the next may be offered,
-    /// `on_failure` when there will be no more. Pictures may not outlive `metrics`.
+    /// All are called on the encode thread: `on_encoded` with each picture, `on_free` when the next may be
+    /// offered, `on_failure` when there will be no more. Pictures may not outlive `metrics`.
     Encoder(Metrics& metrics, std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
             std::function<void()> on_free, std::function<void(const std::string&)> on_failure);
     ~Encoder();

@@ -30,7 +30,8 @@ Engine::Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& f
     : scene_(std::move(scene)),
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
-      encoder_(metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure) {
+      encoder_(
+          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure) {
     std::promise<void> started;
     std::future<void> start = started.get_future();
     thread_ = std::thread([this, &factory, &started] {
@@ -66,7 +67,8 @@ Engine::~Engine() {
 void Engine::run(Painter painter) {
     painter_ = std::move(painter);
     std::vector<std::string> notices = all_notices(scene_->scene);
-    if (painter_.software) notices.push_back("This machine draws in software: " + painter_.description);
+    if (painter_.software)
+        notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
     starting_ = state_ = starting_state(*scene_, aspect(), std::move(notices));
     at_home_ = !first_camera_node(*scene_);
     visible_ = view_of(state_, *scene_);
@@ -79,7 +81,6 @@ void Engine::run(Painter painter) {
     View small = visible_;
     small.width = small.height = 64;
     painter_.paint(small, image, stats, {});
-    last_change_ = Clock::now();
 
     while (!mailbox_.closed()) {
         commit({});
@@ -138,10 +139,12 @@ void Engine::apply(const std::string& client, const ClientMessage&, const protoc
     grants = std::min(grants + 1, protocol::kMaxGrants);
 }
 
-void Engine::apply(const std::string& client, const ClientMessage& message, const protocol::Pointer& payload) {
+void Engine::apply(const std::string& client, const ClientMessage& message,
+                   const protocol::Pointer& payload) {
     // Only a press asks for control; what follows belongs to it, and hovering does nothing.
     const bool press = payload.event == protocol::Pointer::Event::down;
-    if (!press && !gestures_.is_pressed(client, payload.pointer_id) && clients_[client].role == Role::control) return;
+    if (!press && !gestures_.is_pressed(client, payload.pointer_id) && clients_[client].role == Role::control)
+        return;
     if (!may_steer(client, message)) return;
     PointerInput input;
     input.action = static_cast<PointerInput::Action>(payload.event);
@@ -175,9 +178,11 @@ void Engine::apply(const std::string& client, const ClientMessage& message, cons
     if (!may_steer(client, message)) return;
     commit({});  // what went before has revisions of its own
     if (payload.if_revision && document_->last_change(*payload.patch) > *payload.if_revision)
-        return refuse(client, message,
-                      {{}, code::stale_revision, "what the patch touches has changed since revision " +
-                                                     std::to_string(*payload.if_revision)});
+        return refuse(
+            client, message,
+            {{},
+             code::stale_revision,
+             "what the patch touches has changed since revision " + std::to_string(*payload.if_revision)});
     auto next = protocol::patched(state_, starting_, *payload.patch);
     if (!next) return refuse(client, message, next.error());
     if (clients_[client].role == Role::host) {
@@ -189,9 +194,11 @@ void Engine::apply(const std::string& client, const ClientMessage& message, cons
     if (next->camera != state_.camera) {
         const Camera camera = camera_of(next->camera);
         if (!is_valid_pose(camera, scene_->bounds.radius()))
-            return refuse(client, message,
-                          {{}, code::out_of_range,
-                           "'camera': 'eye' and 'focus' must be apart, and 'up' neither zero nor along the view"});
+            return refuse(
+                client, message,
+                {{},
+                 code::out_of_range,
+                 "'camera': 'eye' and 'focus' must be apart, and 'up' neither zero nor along the view"});
         next->camera = state_of(with_orthogonal_up(camera), scene_->bounds);
         at_home_ = false;
     }
@@ -208,7 +215,8 @@ bool Engine::may_steer(const std::string& client, const ClientMessage& message) 
     const Role role = clients_[client].role;
     const bool is_patch = std::holds_alternative<protocol::Patch>(message.payload);
     if (role == Role::view || (role == Role::host && !is_patch)) {
-        refuse(client, message, {{}, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this"});
+        refuse(client, message,
+               {{}, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this"});
         return false;
     }
     const std::optional<std::string> before = steering_.holder();
@@ -250,7 +258,7 @@ void Engine::move_camera(const Camera& camera) {
 
 NavigationContext Engine::navigation_context() const {
     const protocol::NavigationState& navigation = state_.navigation;
-    return {view_size_.width,       view_size_.height,       scene_->bounds,       navigation.keep_upright,
+    return {view_size_.width,        view_size_.height,    scene_->bounds,       navigation.keep_upright,
             navigation.rotate_speed, navigation.pan_speed, navigation.zoom_speed};
 }
 
@@ -297,7 +305,8 @@ bool Engine::waits_for_newer(const Client& client) const {
     return !shows_present() || client.last_frame != drawn_.frame || !drawn_.still;
 }
 
-/// Clients that have not got the newest picture, which shows what is to be seen, get that; no drawing is needed.
+/// Clients that have not got the newest picture, which shows what is to be seen, get that; no drawing is
+/// needed.
 void Engine::serve_newest() {
     if (!shows_present()) return;
     for (auto& [name, client] : clients_) {
@@ -310,7 +319,8 @@ void Engine::serve_newest() {
 
 PacingDecision Engine::pace() {
     PacingInput input;
-    for (const auto& [name, client] : clients_) input.somebody_waits = input.somebody_waits || waits_for_newer(client);
+    for (const auto& [name, client] : clients_)
+        input.somebody_waits = input.somebody_waits || waits_for_newer(client);
     input.changed = !shows_present();
     input.newest_is_still = drawn_.still;
     input.encoder_free = encoder_.is_free();

@@ -19,7 +19,8 @@
 
 namespace vrut {
 
-/// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render thread.
+/// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
+/// thread.
 struct Painter {
     std::string description;
     bool software = false;
@@ -54,11 +55,11 @@ struct EngineOutput {
 struct EngineCallbacks {
     std::function<void(EngineOutput)> on_output;                            ///< on the render thread
     std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded;  ///< on the encode thread
-    std::function<void(const std::string& why)> on_failure;                 ///< on either: nothing more will be drawn
+    std::function<void(const std::string& why)> on_failure;  ///< on either: nothing more will be drawn
 };
 
-/// The render thread: owns the scene, the state and the camera, applies what clients say in the order in which it came,
-/// and draws a picture when something changed and somebody waits for it.
+/// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
+/// which it came, and draws a picture when something changed and somebody waits for it.
 class Engine {
 public:
     /// Starts the thread; throws what `factory` throws. The first output holds the first document.
@@ -86,13 +87,20 @@ private:
     void handle(const ClientLeft& left);
     void handle(const ClientSaid& said);
     void handle(const GrantsReturned& returned);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Hello& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Resize& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::FrameGrant& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Pointer& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Wheel& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Key& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message, const protocol::Patch& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Hello& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Resize& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::FrameGrant& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Pointer& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Wheel& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Key& payload);
+    void apply(const std::string& client, const protocol::ClientMessage& message,
+               const protocol::Patch& payload);
 
     // --- state
     bool may_steer(const std::string& client, const protocol::ClientMessage& message);
@@ -128,15 +136,16 @@ private:
     protocol::State starting_, state_;
     std::shared_ptr<const protocol::StateDocument> document_;
     protocol::Resize view_size_;
-    bool at_home_ = false;  ///< nobody has moved the camera since it was fitted at loading: it follows the view's size
+    bool at_home_ =
+        false;  ///< nobody has moved the camera since it was fitted at loading: it follows the view's size
     Gestures gestures_;
     Steering steering_;
     std::map<std::string, Client> clients_;
     EngineOutput output_;
 
-    View visible_;                 ///< what is to be seen now
-    Clock::time_point last_change_; ///< of visible_ or the view's size
-    Clock::time_point arrival_;    ///< of the message in hand
+    View visible_;                   ///< what is to be seen now
+    Clock::time_point last_change_;  ///< of visible_ or the view's size; long ago at the start
+    Clock::time_point arrival_;      ///< of the message in hand
     std::optional<Clock::time_point> newest_input_;
     struct Drawn {
         std::int64_t frame = 0;

@@ -30,15 +30,17 @@ std::string_view path_of(const Request& request) {
     return target.substr(0, target.find('?'));
 }
 
-Response make_response(const Request& request, http::status status, std::string_view content_type, std::string body) {
+Response make_response(const Request& request, http::status status, std::string_view content_type,
+                       std::string body) {
     Response response(status, request.version());
     response.set(http::field::content_type, beast::string_view(content_type.data(), content_type.size()));
     response.set(http::field::cache_control, "no-cache");
     response.set("X-Content-Type-Options", "nosniff");
     response.set("Referrer-Policy", "no-referrer");
-    response.set("Content-Security-Policy",
-                 "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-                 "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+    response.set(
+        "Content-Security-Policy",
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
+        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
     response.keep_alive(request.keep_alive());
     response.body() = std::move(body);
     response.prepare_payload();
@@ -77,7 +79,8 @@ Response respond(const Request& request, const Hub& hub) {
     if (!hub.access.accepts_host(view(request[http::field::host])))
         return refuse(request, http::status::forbidden, "this server is to be reached as localhost");
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
-        Response response = refuse(request, http::status::method_not_allowed, "only GET and HEAD are answered");
+        Response response =
+            refuse(request, http::status::method_not_allowed, "only GET and HEAD are answered");
         response.set(http::field::allow, "GET, HEAD");
         return response;
     }
@@ -121,14 +124,16 @@ public:
 private:
     void on_request() {
         Request request = parser_->release();
-        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request)) return open_websocket(request);
+        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request))
+            return open_websocket(request);
         send(respond(request, hub_));
     }
 
     void open_websocket(const Request& request) {
         const std::string_view host = view(request[http::field::host]);
         if (!hub_.access.accepts_host(host))
-            return send(refuse(request, http::status::forbidden, "this server is to be reached as localhost"));
+            return send(
+                refuse(request, http::status::forbidden, "this server is to be reached as localhost"));
         if (!hub_.access.accepts_origin(view(request[http::field::origin]), host))
             return send(refuse(request, http::status::forbidden, "pages of this origin may not connect"));
         if (!speaks_our_subprotocol(request))
@@ -141,12 +146,13 @@ private:
     void send(Response response) {
         response_ = std::move(response);
         stream_.expires_after(kDeadline);
-        http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-            if (error) return;
-            if (self->response_.keep_alive() && !self->hub_.stopping) return self->read();
-            beast::error_code ignored;
-            self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
-        });
+        http::async_write(
+            stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+                if (error) return;
+                if (self->response_.keep_alive() && !self->hub_.stopping) return self->read();
+                beast::error_code ignored;
+                self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+            });
     }
 
     beast::tcp_stream stream_;

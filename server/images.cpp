@@ -22,9 +22,10 @@ std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, b
     std::vector<std::uint8_t> jpeg(tjBufSize(image.width, image.height, sampling));
     unsigned char* out = jpeg.data();
     unsigned long size = jpeg.size();
-    if (tjCompress2(handle_, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &out, &size, sampling, quality,
-                    TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
-        throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") + tjGetErrorStr2(handle_));
+    if (tjCompress2(handle_, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &out, &size,
+                    sampling, quality, TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
+        throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
+                                 tjGetErrorStr2(handle_));
     jpeg.resize(size);
     return jpeg;
 }

@@ -27,7 +27,8 @@ std::vector<protocol::NodeReport> list_nodes(const Scene& scene) {
             data && data->geometry != kNone
                 ? scene.geometries()[static_cast<std::size_t>(data->geometry)].triangles.size()
                 : 0;
-        list.push_back({node.id, node.name, std::string(name_of(node.type)), triangles, node.active, place.depth});
+        list.push_back(
+            {node.id, node.name, std::string(name_of(node.type)), triangles, node.active, place.depth});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
             open.push_back({*child, place.depth + 1});
     }
@@ -37,13 +38,13 @@ std::vector<protocol::NodeReport> list_nodes(const Scene& scene) {
 void print(const protocol::SceneState& scene, const std::vector<protocol::NodeReport>& nodes) {
     std::cout << scene.name << ": " << scene.nodes << " nodes, " << scene.materials << " materials, "
               << scene.geometries << " geometries, " << scene.triangles << " triangles\n"
-              << "bounds " << scene.min.x << " " << scene.min.y << " " << scene.min.z << " to " << scene.max.x << " "
-              << scene.max.y << " " << scene.max.z << "\n";
+              << "bounds " << scene.min.x << " " << scene.min.y << " " << scene.min.z << " to " << scene.max.x
+              << " " << scene.max.y << " " << scene.max.z << "\n";
     for (const std::string& notice : scene.notices) std::cout << "notice: " << notice << "\n";
     for (const protocol::NodeReport& node : nodes) {
         // Deep trees keep to the width of a terminal.
-        std::cout << std::string(static_cast<std::size_t>(std::min(node.depth, 30)) * 2, ' ') << node.id << " "
-                  << node.name << " (" << node.type;
+        std::cout << std::string(static_cast<std::size_t>(std::min(node.depth, 30)) * 2, ' ') << node.id
+                  << " " << node.name << " (" << node.type;
         if (node.triangles > 0) std::cout << ", " << node.triangles << " triangles";
         std::cout << (node.active ? ")\n" : ", inactive)\n");
     }

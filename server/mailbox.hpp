@@ -36,7 +36,8 @@ struct GrantsReturned {
 
 using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, GrantsReturned>;
 
-/// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or dropped.
+/// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or
+/// dropped.
 class Mailbox {
 public:
     void push(EngineEvent event);

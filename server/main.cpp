@@ -22,13 +22,15 @@ std::array<Number, N> parse_numbers(const std::string& option, const std::string
         const auto [end, error] = std::from_chars(next, last, numbers[i]);
         const bool ends_right = i + 1 == N ? end == last : end != last && *end == separator;
         if (error != std::errc() || !ends_right)
-            throw CLI::ValidationError(option, "expected " + std::string(expected) + ", found '" + text + "'");
+            throw CLI::ValidationError(option,
+                                       "expected " + std::string(expected) + ", found '" + text + "'");
         next = end + 1;
     }
     return numbers;
 }
 
-void add_vector(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target, const char* help) {
+void add_vector(CLI::App& command, const std::string& name, std::optional<glm::dvec3>& target,
+                const char* help) {
     command.add_option_function<std::string>(
         name,
         [name, &target](const std::string& text) {
@@ -46,7 +48,8 @@ void add_device(CLI::App& command, std::optional<int>& device) {
 void add_serve(CLI::App& app, vrut::ServeArguments& arguments) {
     CLI::App* command = app.add_subcommand("serve", "Serve a scene to tablets, hosts and scripts");
     command->add_option("scene", arguments.scene, "Scene file (default: the car)");
-    command->add_option("--listen", arguments.listen, "Address and port; port 0 picks one")->capture_default_str();
+    command->add_option("--listen", arguments.listen, "Address and port; port 0 picks one")
+        ->capture_default_str();
     command->add_option("--allow-origin", arguments.allowed_origins,
                         "Origin whose pages may connect, besides the server's own");
     command->add_option("--max-clients", arguments.max_clients, "Clients at one time")
@@ -69,7 +72,8 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
         "--size",
         [&arguments](const std::string& text) {
             const auto size = parse_numbers<int, 2>("--size", text, 'x', "WIDTHxHEIGHT");
-            if (size[0] < 1 || size[1] < 1) throw CLI::ValidationError("--size", "a picture has a pixel at least");
+            if (size[0] < 1 || size[1] < 1)
+                throw CLI::ValidationError("--size", "a picture has a pixel at least");
             arguments.width = size[0];
             arguments.height = size[1];
         },
@@ -81,7 +85,8 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
     add_vector(*command, "--eye", arguments.eye, "Where the eye is: x,y,z");
     add_vector(*command, "--focus", arguments.focus, "What it looks at: x,y,z");
     add_vector(*command, "--up", arguments.up, "What is up: x,y,z");
-    command->add_option("--fov", arguments.fov, "Vertical field of view in degrees")->check(CLI::Range(1.0, 170.0));
+    command->add_option("--fov", arguments.fov, "Vertical field of view in degrees")
+        ->check(CLI::Range(1.0, 170.0));
     command->add_option("--set", arguments.set, "JSON merge patch on the state document");
     command->add_option("--jpeg-quality", arguments.jpeg_quality, "1 to 100")
         ->check(CLI::Range(1, 100))
@@ -100,12 +105,13 @@ void add_info(CLI::App& app, vrut::InfoArguments& arguments) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     // Results go to standard output, what is told on the way to standard error.
     spdlog::set_default_logger(spdlog::stderr_color_mt("vrut-preview"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
 
-    CLI::App app("Remote preview of a car for a CAVE: serves a scene to tablets, draws pictures of it", "vrut-preview");
+    CLI::App app("Remote preview of a car for a CAVE: serves a scene to tablets, draws pictures of it",
+                 "vrut-preview");
     app.set_version_flag("--version", "vrut-preview " VRUT_VERSION);
     app.require_subcommand(1);
     vrut::ServeArguments serve;
@@ -121,11 +127,11 @@ int main(int argc, char** argv) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         std::cerr << "vrut-preview: " << error.what() << "; --help tells more\n";
         return kWrongUsage;
-    } catch (const std::invalid_argument& error) {
-        std::cerr << "vrut-preview: " << error.what() << "\n";
-        return kWrongUsage;
-    } catch (const std::exception& error) {
-        std::cerr << "vrut-preview: " << error.what() << "\n";
-        return kFailed;
     }
+} catch (const std::invalid_argument& error) {
+    std::cerr << "vrut-preview: " << error.what() << "\n";
+    return kWrongUsage;
+} catch (const std::exception& error) {
+    std::cerr << "vrut-preview: " << error.what() << "\n";
+    return kFailed;
 }

@@ -4,9 +4,10 @@ namespace vrut {
 
 std::string Metrics::text() const {
     std::string out;
-    const auto add = [&](const char* name, const char* help, std::uint64_t value, const char* type = "counter") {
-        out += std::string("# HELP vrut_preview_") + name + " " + help + "\n# TYPE vrut_preview_" + name + " " + type +
-               "\nvrut_preview_" + name + " " + std::to_string(value) + "\n";
+    const auto add = [&](const char* name, const char* help, std::uint64_t value,
+                         const char* type = "counter") {
+        out += std::string("# HELP vrut_preview_") + name + " " + help + "\n# TYPE vrut_preview_" + name +
+               " " + type + "\nvrut_preview_" + name + " " + std::to_string(value) + "\n";
     };
     add("clients", "Clients connected now.", clients_joined - clients_left, "gauge");
     add("messages_received_total", "Messages that clients sent.", messages_received);
@@ -17,9 +18,11 @@ std::string Metrics::text() const {
     add("frames_interrupted_total", "Pictures at rest given up because something moved.", frames_interrupted);
     add("frames_encoded_total", "Pictures encoded.", frames_encoded);
     add("frames_sent_total", "Frames handed to sockets.", frames_sent);
-    add("frames_replaced_total", "Frames that gave way to newer ones before they were sent.", frames_replaced);
+    add("frames_replaced_total", "Frames that gave way to newer ones before they were sent.",
+        frames_replaced);
     add("pictures_held", "Encoded pictures in memory.", pictures_held, "gauge");
-    add("pictures_held_most", "The most encoded pictures that were ever in memory.", pictures_held_most, "gauge");
+    add("pictures_held_most", "The most encoded pictures that were ever in memory.", pictures_held_most,
+        "gauge");
     add("bytes_sent_total", "Bytes of messages handed to sockets.", bytes_sent);
     return out;
 }

@@ -16,7 +16,8 @@ double scale_for(const protocol::Resize& view, std::int64_t max_pixels, int max_
 }  // namespace
 
 protocol::Quality moving_quality(const protocol::Resize& view, const PictureLimits& limits) {
-    const double scale = scale_for(view, std::min(limits.max_pixels, limits.max_moving_pixels), limits.max_side);
+    const double scale =
+        scale_for(view, std::min(limits.max_pixels, limits.max_moving_pixels), limits.max_side);
     return {.moving = true, .scale = scale, .samples = 1, .jpeg_quality = 75, .subsampled = true};
 }
 

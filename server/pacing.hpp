@@ -14,8 +14,8 @@ using Clock = std::chrono::steady_clock;
 inline constexpr std::chrono::milliseconds kQuiet{150};
 
 struct PictureLimits {
-    std::int64_t max_pixels = 1 << 23;        ///< of any picture
-    std::int64_t max_moving_pixels = 1 << 20; ///< of one drawn while things move
+    std::int64_t max_pixels = 1 << 23;         ///< of any picture
+    std::int64_t max_moving_pixels = 1 << 20;  ///< of one drawn while things move
     int max_side = 16384;
 };
 
@@ -32,11 +32,11 @@ PictureSize picture_size(const protocol::Resize& view, double scale);
 
 /// What the decision whether to draw now depends on.
 struct PacingInput {
-    bool somebody_waits = false;      ///< for a picture newer than the newest drawn
-    bool changed = false;             ///< the newest picture drawn does not show what is to be seen now
-    bool newest_is_still = false;     ///< it is at full accuracy
-    bool encoder_free = true;         ///< what is drawn now would not have to wait behind another picture
-    Clock::time_point last_change;    ///< of what is to be seen
+    bool somebody_waits = false;    ///< for a picture newer than the newest drawn
+    bool changed = false;           ///< the newest picture drawn does not show what is to be seen now
+    bool newest_is_still = false;   ///< it is at full accuracy
+    bool encoder_free = true;       ///< what is drawn now would not have to wait behind another picture
+    Clock::time_point last_change;  ///< of what is to be seen
     Clock::time_point now;
 };
 

@@ -21,9 +21,11 @@ std::string read_text(const std::filesystem::path& path) {
     return text;
 }
 
-/// The state that the scene starts with, changed by --set, --camera and the camera's own options, in this order.
+/// The state that the scene starts with, changed by --set, --camera and the camera's own options, in this
+/// order.
 protocol::State wanted_state(const RenderArguments& arguments, const PlacedScene& placed) {
-    const protocol::State starting = starting_state(placed, static_cast<double>(arguments.width) / arguments.height, {});
+    const protocol::State starting =
+        starting_state(placed, static_cast<double>(arguments.width) / arguments.height, {});
     protocol::State state = starting;
     if (!arguments.set.empty()) {
         auto patched = protocol::patched_by_text(state, starting, arguments.set);
@@ -41,7 +43,8 @@ protocol::State wanted_state(const RenderArguments& arguments, const PlacedScene
     if (arguments.fov) state.camera.fov = *arguments.fov;
     const Camera camera = camera_of(state.camera);
     if (!is_valid_pose(camera, placed.bounds.radius()))
-        throw std::runtime_error("the camera sees nothing: eye and focus must be apart, up neither zero nor along the view");
+        throw std::runtime_error(
+            "the camera sees nothing: eye and focus must be apart, up neither zero nor along the view");
     state.camera = state_of(with_orthogonal_up(camera), placed.bounds);
     return state;
 }
@@ -70,11 +73,12 @@ void render_command(const RenderArguments& arguments) {
     Image image;
     FrameStats stats;
     renderer.render(view, image, stats);
-    write_file(arguments.output, jpeg ? JpegEncoder().encode(image, arguments.jpeg_quality, false) : encode_png(image));
+    write_file(arguments.output,
+               jpeg ? JpegEncoder().encode(image, arguments.jpeg_quality, false) : encode_png(image));
     if (arguments.stats)
-        std::cout << protocol::encode(protocol::RenderReport{renderer.description(), view.width, view.height,
-                                                             view.samples, stats.passes, stats.draws, stats.triangles,
-                                                             stats.render_ms, stats.readback_ms})
+        std::cout << protocol::encode(protocol::RenderReport{
+                         renderer.description(), view.width, view.height, view.samples, stats.passes,
+                         stats.draws, stats.triangles, stats.render_ms, stats.readback_ms})
                   << std::endl;
 }
 

@@ -46,7 +46,8 @@ protocol::State starting_state(const PlacedScene& placed, double aspect, std::ve
                    .notices = std::move(notices)};
     const std::optional<Camera> node = first_camera_node(placed);
     state.camera = state_of(node ? *node : home_camera(placed.bounds, aspect), placed.bounds);
-    state.lights.items["headlight"] = {.name = "Headlight", .type = "point", .color = {1, 1, 1, 1}, .attenuation = {1, 0, 0}};
+    state.lights.items["headlight"] = {
+        .name = "Headlight", .type = "point", .color = {1, 1, 1, 1}, .attenuation = {1, 0, 0}};
     add_backgrounds(placed, state.backgrounds);
     return state;
 }

@@ -16,8 +16,8 @@ Camera camera_of(const protocol::CameraState& state);
 /// Near and far are refitted to the scene.
 protocol::CameraState state_of(const Camera& camera, const Bounds& bounds);
 
-/// What of the state and the scene is to be seen, but for size and samples. The background is the active one, if its
-/// subtree is active, else the plain colour.
+/// What of the state and the scene is to be seen, but for size and samples. The background is the active one,
+/// if its subtree is active, else the plain colour.
 View view_of(const protocol::State& state, const PlacedScene& placed);
 
 }  // namespace vrut

@@ -20,8 +20,13 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 struct Server::Impl {
-    Impl(ServerOptions server_options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter)
-        : options(std::move(server_options)), acceptor(context), accept_pause(context), signals(context), deadline(context) {
+    Impl(ServerOptions server_options, std::shared_ptr<const PlacedScene> scene,
+         const PainterFactory& painter)
+        : options(std::move(server_options)),
+          acceptor(context),
+          accept_pause(context),
+          signals(context),
+          deadline(context) {
         listen();
         hub.access = options.access;
         hub.max_clients = options.max_clients;

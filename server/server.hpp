@@ -20,8 +20,8 @@ struct ServerOptions {
 /// The preview server: an engine, and clients that reach it over HTTP and WebSocket.
 class Server {
 public:
-    /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port is taken
-    /// or nothing can draw.
+    /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port
+    /// is taken or nothing can draw.
     Server(ServerOptions options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter);
     ~Server();
     Server(const Server&) = delete;
@@ -32,8 +32,8 @@ public:
     const std::string& description() const;
     const Metrics& metrics() const;
 
-    /// Serves until stop(), or SIGTERM or SIGINT where `handle_signals`; clients are told, and within 3 s it is over.
-    /// Throws std::runtime_error where drawing fails for good.
+    /// Serves until stop(), or SIGTERM or SIGINT where `handle_signals`; clients are told, and within 3 s it
+    /// is over. Throws std::runtime_error where drawing fails for good.
     void run(bool handle_signals);
     /// From any thread.
     void stop();

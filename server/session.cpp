@@ -28,7 +28,8 @@ std::uint64_t bytes_acknowledged(int socket) {
     constexpr std::size_t kBytesAckedAt = 120;
     std::array<std::uint8_t, 256> raw{};
     socklen_t size = raw.size();
-    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) != 0 || size < kBytesAckedAt + 8) return 0;
+    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) != 0 || size < kBytesAckedAt + 8)
+        return 0;
     std::uint64_t bytes = 0;
     std::memcpy(&bytes, raw.data() + kBytesAckedAt, sizeof bytes);
     return bytes;
@@ -73,8 +74,9 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
             const auto session = weak.lock();
             if (!stopped && session)
-                session->refuse_and_close({{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
-                                          close_code::policy_error);
+                session->refuse_and_close(
+                    {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
+                    close_code::policy_error);
         });
         self->read();
     });
@@ -94,8 +96,9 @@ void Session::read() {
                 const auto data = self->incoming_.data();
                 self->on_text({static_cast<const char*>(data.data()), data.size()});
             } else {
-                self->refuse_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
-                                       close_code::unknown_data);
+                self->refuse_and_close(
+                    {{}, protocol::error_code::bad_message, "clients send no binary messages"},
+                    close_code::unknown_data);
             }
             self->incoming_.consume(self->incoming_.size());
         }
@@ -107,13 +110,15 @@ void Session::on_text(std::string_view text) {
     auto message = protocol::decode(text);
     const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
     if (client_.empty() && !hello) {
-        if (message) message = tl::unexpected(protocol::Error{message->id, protocol::error_code::bad_message,
-                                                             "the first message must be 'hello'"});
+        if (message)
+            message = tl::unexpected(protocol::Error{message->id, protocol::error_code::bad_message,
+                                                     "the first message must be 'hello'"});
         return refuse_and_close(message.error(), close_code::policy_error);
     }
     if (hello && !client_.empty())
-        return refuse_and_close({message->id, protocol::error_code::bad_message, "'hello' came a second time"},
-                                close_code::policy_error);
+        return refuse_and_close(
+            {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
+            close_code::policy_error);
     if (hello) return on_hello(*hello);
     if (!message) {
         ++hub_.metrics->messages_refused;
@@ -126,13 +131,16 @@ void Session::on_text(std::string_view text) {
 void Session::on_hello(const protocol::Hello& hello) {
     const std::optional<protocol::Role> role = hub_.access.role_for(hello.role, hello.token);
     if (!role)
-        return refuse_and_close({{}, protocol::error_code::not_allowed,
+        return refuse_and_close({{},
+                                 protocol::error_code::not_allowed,
                                  hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
                                 close_code::policy_error);
     if (hub_.sessions.size() >= hub_.max_clients)
-        return refuse_and_close({{}, protocol::error_code::too_many,
-                                 "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
-                                close_code::try_again_later);
+        return refuse_and_close(
+            {{},
+             protocol::error_code::too_many,
+             "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
+            close_code::try_again_later);
     hello_deadline_.cancel();
     client_ = "c" + std::to_string(hub_.next_client++);
     hub_.sessions[client_] = shared_from_this();
@@ -193,7 +201,8 @@ void Session::pump() {
             return send_text(std::move(text));
         }
         writing_ = true;  // nothing goes out behind the close
-        return socket_.async_close(*closing_, [self = shared_from_this()](beast::error_code) { self->drop(); });
+        return socket_.async_close(*closing_,
+                                   [self = shared_from_this()](beast::error_code) { self->drop(); });
     }
     // A frame or answer goes when the client knows the revision that it speaks of.
     if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
@@ -230,9 +239,9 @@ void Session::send_frame() {
     const auto& jpeg = picture_->jpeg;
     const std::size_t cut = picture_->comment_offset;
     socket_.binary(true);
-    write(std::array<boost::asio::const_buffer, 3>{boost::asio::buffer(jpeg.data(), cut),
-                                                   boost::asio::buffer(comment_),
-                                                   boost::asio::buffer(jpeg.data() + cut, jpeg.size() - cut)});
+    write(std::array<boost::asio::const_buffer, 3>{
+        boost::asio::buffer(jpeg.data(), cut), boost::asio::buffer(comment_),
+        boost::asio::buffer(jpeg.data() + cut, jpeg.size() - cut)});
 }
 
 void Session::send_text(std::string text) {
@@ -245,7 +254,7 @@ template <class Buffers>
 void Session::write(const Buffers& buffers) {
     writing_ = true;
     hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
-    acknowledged_ = bytes_acknowledged(beast::get_lowest_layer(socket_).socket().native_handle());
+    progress_at_ = Clock::now();
     watch_progress();
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->on_written(error);
@@ -260,20 +269,22 @@ void Session::on_written(beast::error_code error) {
     pump();
 }
 
-/// Cuts the connection when a write stands for as long as kStuck and the peer has acknowledged nothing meanwhile.
+/// Cuts the connection when a write stands and the peer has acknowledged nothing for kStuck. Runs only during
+/// writes.
 void Session::watch_progress() {
-    write_watch_.expires_after(kStuck);
+    write_watch_.expires_after(1s);
     write_watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
         const auto self = weak.lock();
         if (stopped || !self || !self->writing_) return;
-        const std::uint64_t now =
+        const std::uint64_t acknowledged =
             bytes_acknowledged(beast::get_lowest_layer(self->socket_).socket().native_handle());
-        if (now == self->acknowledged_) {
+        if (acknowledged != std::exchange(self->acknowledged_, acknowledged)) {
+            self->progress_at_ = Clock::now();
+        } else if (Clock::now() - self->progress_at_ >= kStuck) {
             spdlog::warn("client {} takes nothing and is cut off", self->client_);
             beast::get_lowest_layer(self->socket_).close();
             return;
         }
-        self->acknowledged_ = now;
         self->watch_progress();
     });
 }

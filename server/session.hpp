@@ -15,8 +15,9 @@
 
 namespace vrut {
 
-/// One WebSocket client, on the net thread. What waits for a slow one is replaced, never queued: it keeps the document
-/// that it last got and is sent the difference; it is owed a number of frames and is sent the newest.
+/// One WebSocket client, on the net thread. What waits for a slow one is replaced, never queued: it keeps the
+/// document that it last got and is sent the difference; it is owed a number of frames and is sent the
+/// newest.
 class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(boost::beast::tcp_stream stream, Hub& hub);
@@ -72,7 +73,8 @@ private:
     std::string text_;
     std::vector<std::uint8_t> comment_;
     std::shared_ptr<const EncodedPicture> picture_;
-    std::uint64_t acknowledged_ = 0;  // bytes, at the last look of the watch
+    std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
+    Clock::time_point progress_at_;   // when it last saw more of them
     std::optional<boost::beast::websocket::close_reason> closing_;
 
     // --- what has come and is not handled yet

@@ -8,7 +8,8 @@
 
 namespace vrut {
 
-/// Who steers. A holder who has been quiet for a second, with no pointer pressed, gives way to the next who steers.
+/// Who steers. A holder who has been quiet for a second, with no pointer pressed, gives way to the next who
+/// steers.
 class Steering {
 public:
     static constexpr std::chrono::milliseconds kQuietHolder{1000};

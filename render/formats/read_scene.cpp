@@ -31,10 +31,12 @@ std::string known_extensions() {
 ReadResult read_scene(const std::filesystem::path& path) {
     const std::string file = path.string();
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c); });
-    const auto format = std::find_if(std::begin(kFormats), std::end(kFormats),
-                                     [&](const Format& candidate) { return extension == candidate.extension; });
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
+    });
+    const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& candidate) {
+        return extension == candidate.extension;
+    });
     std::error_code error;
     if (const auto status = std::filesystem::status(path, error); !std::filesystem::exists(status))
         return tl::unexpected(file + ": there is no such file");

@@ -11,22 +11,24 @@ bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' |
 bool ends_bare(char c) { return is_space(c) || c == '"' || c == '#'; }
 bool starts_number(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.'; }
 
-/// What an error message repeats of the file: short and printable.
-std::string excerpt(std::string_view text) {
-    std::string result;
-    for (char c : text.substr(0, 40)) result += (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) ? '?' : c;
-    // Never ends inside a UTF-8 sequence.
-    while (text.size() > 40 && !result.empty() && (static_cast<unsigned char>(result.back()) & 0x80)) result.pop_back();
-    return text.size() > 40 ? result + "…" : result;
-}
-
 std::string compact(double value) {
     char buffer[32];
     const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
     return std::string(buffer, end);
 }
 
+bool continues_utf8(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+
 }  // namespace
+
+std::string excerpt(std::string_view text) {
+    std::size_t length = std::min<std::size_t>(text.size(), 40);
+    while (length > 0 && length < text.size() && continues_utf8(text[length])) --length;
+    std::string result(text.substr(0, length));
+    for (char& c : result)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    return length < text.size() ? result + "…" : result;
+}
 
 Tokenizer::Tokenizer(std::string_view text) : text_(text) { advance(); }
 
@@ -70,11 +72,13 @@ void Tokenizer::advance() {
     next_.kind = Token::Kind::word;
     if (!starts_number(next_.text[0])) return;
 
-    const char* first = next_.text.data() + (next_.text[0] == '+' ? 1 : 0);
-    const char* last = next_.text.data() + next_.text.size();
+    const char* first = next_.text.data();
+    const char* last = first + next_.text.size();
+    if (next_.text[0] == '+' && !next_.text.starts_with("+-")) ++first;  // from_chars takes no plus
     const auto [end, error] = std::from_chars(first, last, next_.number);
     if (error == std::errc::result_out_of_range)
-        throw ParseError(line_, "expected a number in the range of double, found '" + excerpt(next_.text) + "'");
+        throw ParseError(line_,
+                         "expected a number in the range of double, found '" + excerpt(next_.text) + "'");
     if (error != std::errc() || end != last || !std::isfinite(next_.number))
         throw ParseError(line_, "expected a number, found '" + excerpt(next_.text) + "'");
     next_.kind = Token::Kind::number;
@@ -120,16 +124,14 @@ double Tokenizer::take_number(std::string_view what, double min, double max) {
 
 std::int64_t Tokenizer::take_integer(std::string_view what, std::int64_t min, std::int64_t max) {
     const double number = next_.number;
-    if (next_.kind != Token::Kind::number || number != std::floor(number) || number < static_cast<double>(min) ||
-        number > static_cast<double>(max))
-        fail_expected(std::string(what) + " (an integer from " + std::to_string(min) + " to " + std::to_string(max) +
-                      ")");
+    if (next_.kind != Token::Kind::number || number != std::floor(number) ||
+        number < static_cast<double>(min) || number > static_cast<double>(max))
+        fail_expected(std::string(what) + " (an integer from " + std::to_string(min) + " to " +
+                      std::to_string(max) + ")");
     return static_cast<std::int64_t>(take().number);
 }
 
-bool Tokenizer::take_flag(std::string_view what) {
-    return take_integer(what, 0, 1) != 0;
-}
+bool Tokenizer::take_flag(std::string_view what) { return take_integer(what, 0, 1) != 0; }
 
 std::size_t Tokenizer::take_count(std::string_view what, std::size_t bytes_each) {
     // A count is checked against the file before anything is allocated for it.

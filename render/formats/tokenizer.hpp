@@ -14,6 +14,9 @@ struct ParseError : std::runtime_error {
     std::size_t line;
 };
 
+/// What a sentence repeats of the file: printable, at most 40 bytes, and whole characters.
+std::string excerpt(std::string_view text);
+
 struct Token {
     enum class Kind { word, number, string, end_of_file };
     Kind kind = Kind::end_of_file;
@@ -22,8 +25,8 @@ struct Token {
     std::size_t line = 1;
 };
 
-/// Splits scene text into bare words, finite numbers and quoted strings; `#` starts a comment. Views into `text`,
-/// which must outlive it. Throws ParseError.
+/// Splits scene text into bare words, finite numbers and quoted strings; `#` starts a comment. Views into
+/// `text`, which must outlive it. Throws ParseError.
 class Tokenizer {
 public:
     explicit Tokenizer(std::string_view text);

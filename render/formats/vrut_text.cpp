@@ -24,9 +24,11 @@ struct NodeKind {
 };
 
 constexpr NodeKind kNodeKinds[] = {
-    {"assembly", 0, NodeType::assembly}, {"root", 1, NodeType::root},        {"camera", 2, NodeType::camera},
-    {"geometry", 3, NodeType::geometry}, {"light", 4, NodeType::light},      {"lod", 5, NodeType::lod},
-    {"switch", 6, NodeType::switch_},    {"background", 7, NodeType::background}, {"sound", 8, NodeType::sound},
+    {"assembly", 0, NodeType::assembly}, {"root", 1, NodeType::root},
+    {"camera", 2, NodeType::camera},     {"geometry", 3, NodeType::geometry},
+    {"light", 4, NodeType::light},       {"lod", 5, NodeType::lod},
+    {"switch", 6, NodeType::switch_},    {"background", 7, NodeType::background},
+    {"sound", 8, NodeType::sound},
 };
 
 struct Member {
@@ -46,14 +48,17 @@ public:
     VrutTextReader(std::string_view text, const std::string& file) : tokens_(text), file_(file) {}
 
     Scene read() {
-        if (tokens_.take_word("'vrut-text 1'") != "vrut-text") throw ParseError(1, "expected 'vrut-text 1'");
+        if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text != "vrut-text")
+            tokens_.fail_expected("'vrut-text 1'");
+        tokens_.take();
         if (tokens_.peek().kind != Token::Kind::number || tokens_.peek().number != 1)
             tokens_.fail_expected("version 1 of vrut-text");
         tokens_.take();
         while (tokens_.peek().kind != Token::Kind::end_of_file) read_block();
         resolve_references();
         if (skipped_notices_ > 0)
-            parts_.notices.push_back("… and " + std::to_string(skipped_notices_) + " more notices of this kind");
+            parts_.notices.push_back("… and " + std::to_string(skipped_notices_) +
+                                     " more notices of this kind");
 
         parts_.name = std::filesystem::path(file_).stem().string();
         auto scene = Scene::build(std::move(parts_));
@@ -78,8 +83,8 @@ private:
         else if (keyword == "node")
             read_node(line);
         else
-            throw ParseError(line, "expected 'unit', 'material', 'geometry' or 'node', found '" +
-                                       std::string(keyword.substr(0, 40)) + "'");
+            throw ParseError(
+                line, "expected 'unit', 'material', 'geometry' or 'node', found '" + excerpt(keyword) + "'");
     }
 
     // --- members
@@ -96,7 +101,8 @@ private:
                 continue;
             }
             if (std::find(seen.begin(), seen.end(), name) != seen.end())
-                throw ParseError(line, "expected '" + std::string(name) + "' once in " + block + ", found it twice");
+                throw ParseError(
+                    line, "expected '" + std::string(name) + "' once in " + block + ", found it twice");
             seen.push_back(name);
             member->read();
         }
@@ -108,11 +114,12 @@ private:
 
     void skip_unknown(const std::string& block, std::size_t line, std::string_view name,
                       std::span<const Member> members) {
-        notice(line, "member '" + std::string(name.substr(0, 40)) + "' of " + block + " is unknown and was skipped");
+        notice(line, "member '" + excerpt(name) + "' of " + block + " is unknown and was skipped");
         for (;;) {
             const Token& token = tokens_.peek();
             if (token.kind == Token::Kind::end_of_file) tokens_.fail_expected("'end' of " + block);
-            if (token.kind == Token::Kind::word && (token.text == "end" || find(members, token.text) != members.end()))
+            if (token.kind == Token::Kind::word &&
+                (token.text == "end" || find(members, token.text) != members.end()))
                 return;
             tokens_.take();
         }
@@ -143,7 +150,8 @@ private:
     template <class Ids>
     void remember(Ids& ids, Id id, std::size_t index, std::size_t line, const char* kind) {
         if (!ids.emplace(id, static_cast<Index>(index)).second)
-            throw ParseError(line, std::string("expected each ") + kind + " once, found " + std::to_string(id) + " twice");
+            throw ParseError(
+                line, std::string("expected each ") + kind + " once, found " + std::to_string(id) + " twice");
     }
 
     // --- blocks
@@ -181,7 +189,8 @@ private:
              [&] {
                  normals_line = tokens_.peek().line;
                  geometry.normals.resize(tokens_.take_count("a count of normals", 6));
-                 for (glm::vec3& normal : geometry.normals) normal = glm::vec3(take_point("a normal's coordinate"));
+                 for (glm::vec3& normal : geometry.normals)
+                     normal = glm::vec3(take_point("a normal's coordinate"));
              }},
             {"texcoords",
              [&] {
@@ -207,16 +216,16 @@ private:
         const std::size_t count = geometry.positions.size();
         const auto check_count = [&](std::size_t found, std::size_t at, const char* what) {
             if (found != 0 && found != count)
-                throw ParseError(at, "expected as many " + std::string(what) + " as vertices (" + std::to_string(count) +
-                                         "), found " + std::to_string(found));
+                throw ParseError(at, "expected as many " + std::string(what) + " as vertices (" +
+                                         std::to_string(count) + "), found " + std::to_string(found));
         };
         check_count(geometry.normals.size(), normals_line, "normals");
         check_count(geometry.texcoords.size(), texcoords_line, "texture coordinates");
         for (const glm::uvec3& triangle : geometry.triangles)
             if (const unsigned highest = std::max({triangle.x, triangle.y, triangle.z}); highest >= count)
                 throw ParseError(triangles_line, "expected vertex indices below " + std::to_string(count) +
-                                                     " in geometry " + std::to_string(geometry.id) + ", found " +
-                                                     std::to_string(highest));
+                                                     " in geometry " + std::to_string(geometry.id) +
+                                                     ", found " + std::to_string(highest));
         for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
         remember(geometry_ids_, geometry.id, parts_.geometries.size(), line, "geometry");
         parts_.geometries.push_back(std::move(geometry));
@@ -258,11 +267,15 @@ private:
     }
 
     void read_matrix(glm::dmat4& matrix) {
+        std::size_t line = 0;
         for (int row = 0; row < 4; ++row)
-            for (int column = 0; column < 4; ++column)
-                matrix[column][row] = tokens_.take_number("a matrix element", -kMaxCoordinate, kMaxCoordinate);
+            for (int column = 0; column < 4; ++column) {
+                line = tokens_.peek().line;
+                matrix[column][row] =
+                    tokens_.take_number("a matrix element", -kMaxCoordinate, kMaxCoordinate);
+            }
         if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1)
-            throw ParseError(tokens_.peek().line, "expected 0 0 0 1 as the matrix's last row, found another");
+            throw ParseError(line, "expected 0 0 0 1 as the matrix's last row, found another");
     }
 
     void add_members_of_type(Node& node, References& references, std::vector<Member>& members) {
@@ -287,7 +300,8 @@ private:
                 members.push_back({"color", [&] { light.color = take_color("color"); }});
                 members.push_back({"attenuation", [&] {
                                        for (int i = 0; i < 3; ++i)
-                                           light.attenuation[i] = tokens_.take_number("attenuation", 0, kMaxCoordinate);
+                                           light.attenuation[i] =
+                                               tokens_.take_number("attenuation", 0, kMaxCoordinate);
                                    }});
                 members.push_back({"angle", [&] { light.angle = tokens_.take_number("angle", 0, 180); }});
                 break;
@@ -295,8 +309,8 @@ private:
             case NodeType::switch_: {
                 auto& data = node.data.emplace<SwitchData>();
                 members.push_back({"active-child", [&] {
-                                       data.active_child =
-                                           static_cast<int>(tokens_.take_integer("active-child", -2, 1 << 30));
+                                       data.active_child = static_cast<int>(
+                                           tokens_.take_integer("active-child", -2, 1 << 30));
                                    }});
                 break;
             }
@@ -304,7 +318,8 @@ private:
                 auto& data = node.data.emplace<LodData>();
                 members.push_back({"ranges", [&] {
                                        while (tokens_.peek().kind == Token::Kind::number)
-                                           data.ranges.push_back(tokens_.take_number("a range", 0, kMaxCoordinate));
+                                           data.ranges.push_back(
+                                               tokens_.take_number("a range", 0, kMaxCoordinate));
                                    }});
                 break;
             }
@@ -313,13 +328,15 @@ private:
                 members.push_back({"material", material});
                 members.push_back({"cube-map", [&] {
                                        auto& faces = data.cube_map.emplace();
-                                       for (std::string& face : faces) face = tokens_.take_string("a cube map's picture");
+                                       for (std::string& face : faces)
+                                           face = tokens_.take_string("a cube map's picture");
                                    }});
                 break;
             }
             case NodeType::assembly:
             case NodeType::root:
-            case NodeType::sound: break;
+            case NodeType::sound:
+                break;
         }
     }
 
@@ -329,7 +346,7 @@ private:
         if (word == "point") return LightData::Type::point;
         if (word == "directional") return LightData::Type::directional;
         if (word == "spot") return LightData::Type::spot;
-        throw ParseError(line, "expected point, directional or spot, found '" + std::string(word.substr(0, 40)) + "'");
+        throw ParseError(line, "expected point, directional or spot, found '" + excerpt(word) + "'");
     }
 
     // --- after the last block
@@ -373,7 +390,8 @@ ReadResult read_vrut_text(std::string_view text, const std::string& file) {
         return tl::unexpected(file + ":" + std::to_string(line) + ": " + what);
     };
     if (const std::size_t invalid = find_invalid_utf8(text); invalid != std::string_view::npos)
-        return at_line(1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(invalid), '\n')),
+        return at_line(1 + static_cast<std::size_t>(std::count(
+                               text.begin(), text.begin() + static_cast<std::ptrdiff_t>(invalid), '\n')),
                        "expected UTF-8, found another byte");
     try {
         return VrutTextReader(text, file).read();

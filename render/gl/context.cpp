@@ -87,7 +87,8 @@ void check_drawing() {
     constexpr int kSize = 16;
     constexpr std::string_view kVertex =
         "#version 450 core\n"
-        "void main() { gl_Position = vec4(gl_VertexID == 1 ? -4 : 0, gl_VertexID == 0 ? -8 : gl_VertexID == 1 ? 0 : 8,"
+        "void main() { gl_Position = vec4(gl_VertexID == 1 ? -4 : 0, gl_VertexID == 0 ? -8 : gl_VertexID == "
+        "1 ? 0 : 8,"
         " 0, 1); }";
     constexpr std::string_view kFragment =
         "#version 450 core\nout vec4 color; void main() { color = vec4(0.2, 0.4, 0.6, 1); }";
@@ -106,7 +107,7 @@ void check_drawing() {
     framebuffer.read(pixels);
     glUseProgram(0);
     const std::array<std::uint8_t, 4> left{51, 102, 153, 255}, right{255, 255, 255, 255};
-    const auto pixel = [&](std::size_t x) { return pixels.data() + (kSize / 2 * kSize + x) * 4; };
+    const auto pixel = [&](std::size_t x) { return pixels.data() + (std::size_t{kSize} / 2 * kSize + x) * 4; };
     if (glGetError() != GL_NO_ERROR || !std::equal(left.begin(), left.end(), pixel(3)) ||
         !std::equal(right.begin(), right.end(), pixel(12)))
         throw std::runtime_error("what it draws does not read back right");
@@ -121,11 +122,12 @@ GlContext::GlContext(const GlOptions& options) {
         candidates.push_back({devices[i], static_cast<int>(i), is_software(devices[i])});
     if (options.device) {
         if (*options.device < 0 || static_cast<std::size_t>(*options.device) >= candidates.size())
-            throw std::runtime_error("there is no EGL device " + std::to_string(*options.device) + "; EGL lists " +
-                                     std::to_string(candidates.size()) + ", counted from 0");
+            throw std::runtime_error("there is no EGL device " + std::to_string(*options.device) +
+                                     "; EGL lists " + std::to_string(candidates.size()) + ", counted from 0");
         candidates = {candidates[static_cast<std::size_t>(*options.device)]};
     } else {
-        std::stable_partition(candidates.begin(), candidates.end(), [](const Candidate& c) { return !c.software; });
+        std::stable_partition(candidates.begin(), candidates.end(),
+                              [](const Candidate& c) { return !c.software; });
         candidates.push_back({});
     }
 
@@ -159,7 +161,8 @@ void GlContext::make_current(const Candidate& candidate, bool debug) {
     if (display->display == EGL_NO_DISPLAY) throw std::runtime_error("has no display");
     if (!eglInitialize(display->display, nullptr, nullptr)) throw std::runtime_error("does not initialise");
     const char* extensions = eglQueryString(display->display, EGL_EXTENSIONS);
-    if (!has_word(extensions, "EGL_KHR_surfaceless_context") || !has_word(extensions, "EGL_KHR_no_config_context"))
+    if (!has_word(extensions, "EGL_KHR_surfaceless_context") ||
+        !has_word(extensions, "EGL_KHR_no_config_context"))
         throw std::runtime_error("has no contexts without a surface");
     if (!eglBindAPI(EGL_OPENGL_API)) throw std::runtime_error("has no OpenGL");
     const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,

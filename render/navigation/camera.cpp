@@ -9,6 +9,8 @@ namespace {
 
 constexpr double kSmallestNearToFar = 1e-6;
 constexpr double kMargin = 1e-3;  // keeps what touches the planes from being clipped by rounding
+// Eye and focus closer than this part of their coordinates would no longer say a direction.
+constexpr double kResolution = 1e-12;
 
 /// Rodrigues' formula; `axis` is unit.
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians) {
@@ -16,14 +18,29 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double radians) {
     return v * c + glm::cross(axis, v) * s + axis * (glm::dot(axis, v) * (1 - c));
 }
 
-bool all_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool all_finite(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+double closest_at(const glm::dvec3& point) {
+    return kResolution * std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+}
+
+/// A camera that looks straight up or down does not: either side of it may be up.
+bool hangs_upside_down(const Camera& camera) { return camera.up.y < -1e-12; }
+
+/// `moved`, or `camera` where the move left the range of double.
+Camera if_valid(const Camera& moved, const Camera& camera) {
+    return is_valid_pose(moved, 0) ? moved : camera;
+}
 
 /// The part of `radians` (a turn about the right axis) that keeps up · vertical from changing its
-/// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its peak.
+/// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its
+/// peak.
 double stop_at_poles(const Camera& camera, double radians) {
     const double up = camera.up.y, back = -view_direction(camera).y;
     if (std::hypot(up, back) < 1e-12) return radians;  // the right axis is vertical: nothing can tip over
-    const double sign = up < -1e-12 ? -1 : 1;
+    const double sign = hangs_upside_down(camera) ? -1 : 1;
     // up(a) · vertical = up cos a + back sin a, greatest at a = atan2(back, up).
     const double peak = std::atan2(sign * back, sign * up);
     const double quarter = std::numbers::pi / 2;
@@ -39,7 +56,8 @@ glm::dvec3 right_direction(const Camera& camera) {
 }
 
 bool is_valid_pose(const Camera& camera, double scene_radius) {
-    if (!all_finite(camera.eye) || !all_finite(camera.focus) || !all_finite(camera.up) || !all_finite(camera.center))
+    if (!all_finite(camera.eye) || !all_finite(camera.focus) || !all_finite(camera.up) ||
+        !all_finite(camera.center))
         return false;
     const double distance = focus_distance(camera);
     if (!std::isfinite(distance) || distance == 0 || distance < 1e-9 * scene_radius) return false;
@@ -53,7 +71,8 @@ Camera with_orthogonal_up(Camera camera) {
     const glm::dvec3 up = glm::normalize(camera.up);
     // Left as it is where it is right already, so that reading a pose and writing it back changes nothing.
     if (std::abs(glm::dot(view, up)) < 1e-15 && std::abs(glm::length(camera.up) - 1) < 1e-15) return camera;
-    camera.up = glm::normalize(up - view * glm::dot(view, up));
+    // Two products stay orthogonal where up lies close to the view and a difference would not.
+    camera.up = glm::normalize(glm::cross(glm::cross(view, up), view));
     return camera;
 }
 
@@ -101,7 +120,9 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& 
 }
 
 Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
-    const double radius = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
+    const double radius = bounds.empty() || bounds.radius() == 0
+                              ? std::max(1.0, closest_at(bounds.center()))
+                              : std::max(bounds.radius(), closest_at(bounds.center()));
     const double half_fov = camera.fov * kRadiansPerDegree / 2;
     const double half_width = std::atan(std::tan(half_fov) * aspect);
     Camera result = camera;
@@ -115,7 +136,8 @@ std::optional<Camera> first_camera_node(const PlacedScene& placed) {
     const auto& nodes = placed.scene.nodes();
     std::size_t first = nodes.size();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id)) first = i;
+        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id))
+            first = i;
     if (first == nodes.size()) return std::nullopt;
 
     const auto& data = std::get<CameraData>(nodes[first].data);
@@ -144,13 +166,13 @@ Camera rotated(const Camera& camera, double right, double down, bool keep_uprigh
     if (yaw == 0 && pitch == 0) return camera;
 
     const glm::dvec3 across = right_direction(camera);
-    const glm::dvec3 axis = keep_upright ? kVertical : camera.up;
+    const glm::dvec3 axis = !keep_upright ? camera.up : hangs_upside_down(camera) ? -kVertical : kVertical;
     const auto turn = [&](const glm::dvec3& v) { return turned(turned(v, across, pitch), axis, yaw); };
     Camera result = camera;
     result.eye = camera.center + turn(camera.eye - camera.center);
     result.focus = camera.center + turn(camera.focus - camera.center);
     result.up = turn(camera.up);
-    return with_orthogonal_up(result);
+    return if_valid(with_orthogonal_up(result), camera);
 }
 
 Camera panned(const Camera& camera, double right, double down) {
@@ -160,19 +182,21 @@ Camera panned(const Camera& camera, double right, double down) {
     Camera result = camera;
     result.eye += shift;
     result.focus += shift;
-    return result;
+    return if_valid(result, camera);
 }
 
 Camera zoomed(const Camera& camera, double factor, double scene_radius) {
     if (factor == 1) return camera;
     const double distance = focus_distance(camera);
     const double radius = scene_radius > 0 ? scene_radius : 1;
+    const double closest = std::max(radius * 1e-6, closest_at(camera.focus));
     // A pose given from outside may lie beyond the limits; then they are where it stands.
-    const double wanted = std::clamp(distance / factor, std::min(distance, radius * 1e-6),
-                                     std::max(distance, radius * 1e6));
+    const double wanted =
+        std::clamp(distance / factor, std::min(distance, closest), std::max(distance, radius * 1e6));
+    if (std::abs(wanted - distance) < 1e-14 * distance) return camera;  // at a limit
     Camera result = camera;
     result.eye = camera.focus - view_direction(camera) * wanted;
-    return result;
+    return if_valid(result, camera);
 }
 
 }  // namespace vrut

@@ -13,7 +13,9 @@ using Action = PointerInput::Action;
 enum Button { left = 0, middle = 1, right = 2 };
 
 /// W3C numbers a button one way and its bit among the held ones another.
-unsigned bit_of(int button) { return button == right ? 2u : button == middle ? 4u : button == left ? 1u : 0u; }
+unsigned bit_of(int button) {
+    return button == right ? 2u : button == middle ? 4u : button == left ? 1u : 0u;
+}
 
 int first_held(unsigned buttons) {
     for (int button : {left, right, middle})
@@ -53,7 +55,8 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
         if (pressed != pressed_.end()) pressed_.erase(pressed);
         const glm::dvec2 at{input.x, input.y};
         const unsigned buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);
-        pressed_.push_back({input.client, input.pointer, input.device, at, at, buttons, std::max(input.button, 0)});
+        pressed_.push_back(
+            {input.client, input.pointer, input.device, at, at, buttons, std::max(input.button, 0)});
         restart(camera);
         return camera;
     }
@@ -103,10 +106,14 @@ Camera Gestures::dragged(const NavigationContext& context) const {
     const Pressed& pressed = pressed_.back();
     const glm::dvec2 moved = pressed.now - pressed.start;
     switch (pressed.button) {
-        case left: return rotate_by(start_, moved, context);
-        case right: return pan_by(start_, moved, context);
-        case middle: return zoom_by(start_, std::pow(4, -moved.y / context.height), context);
-        default: return start_;
+        case left:
+            return rotate_by(start_, moved, context);
+        case right:
+            return pan_by(start_, moved, context);
+        case middle:
+            return zoom_by(start_, std::pow(4, -moved.y / context.height), context);
+        default:
+            return start_;
     }
 }
 
@@ -117,7 +124,8 @@ Camera wheel(const WheelInput& input, const Camera& camera, const NavigationCont
     return zoom_by(camera, std::pow(1.1, -input.delta_y / step), context);
 }
 
-Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home, const NavigationContext& context) {
+Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home,
+                const NavigationContext& context) {
     const auto arrow = [&](double x, double y) {
         return input.shift ? panned(camera, x * 0.05, y * 0.05)
                            : rotated(camera, x * 5, y * 5, context.keep_upright);

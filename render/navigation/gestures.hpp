@@ -40,8 +40,9 @@ struct NavigationContext {
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
 };
 
-/// Drags by mouse, pen and touch. Pure: no clock, no input but its arguments. A drag is computed from the camera at
-/// its start and the pointers' places since, so that dropped or merged moves give the same camera to the last bit.
+/// Drags by mouse, pen and touch. Pure: no clock, no input but its arguments. A drag is computed from the
+/// camera at its start and the pointers' places since, so that dropped or merged moves give the same camera
+/// to the last bit.
 class Gestures {
 public:
     /// The camera after `input`, from `camera` before it.
@@ -69,10 +70,13 @@ private:
     Camera start_;
 };
 
-/// The camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides the distance by 1.1.
+/// The camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides the
+/// distance by 1.1.
 Camera wheel(const WheelInput& input, const Camera& camera, const NavigationContext& context);
 
-/// The camera after a key is pressed; the same camera for keys that do not move it. `home` is where Home goes.
-Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home, const NavigationContext& context);
+/// The camera after a key is pressed; the same camera for keys that do not move it. `home` is where Home
+/// goes.
+Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home,
+                const NavigationContext& context);
 
 }  // namespace vrut

@@ -70,8 +70,8 @@ void main() {
 }
 )";
 
-/// Normals go by the cofactor matrix · sign(det) (eq. 6.3 without its inverse); its scale is taken out, so that it
-/// fits into float for parts of any size.
+/// Normals go by the cofactor matrix · sign(det) (eq. 6.3 without its inverse); its scale is taken out, so
+/// that it fits into float for parts of any size.
 glm::mat3 normal_matrix(const glm::dmat3& m, bool mirrored) {
     glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
     double largest = 0;
@@ -107,7 +107,8 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, const gl
     const glm::mat4 clip(clip_from_view);
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
     set(light_color_at, glm::vec3(headlight.color));
-    set(attenuation_at, headlight.attenuation == glm::dvec3(0) ? glm::vec3(1, 0, 0) : glm::vec3(headlight.attenuation));
+    set(attenuation_at,
+        headlight.attenuation == glm::dvec3(0) ? glm::vec3(1, 0, 0) : glm::vec3(headlight.attenuation));
 
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);

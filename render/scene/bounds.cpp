@@ -32,7 +32,7 @@ Bounds transformed(const glm::dmat4& matrix, const Bounds& box) {
 }
 
 std::array<glm::dvec3, 8> corners(const Bounds& box) {
-    std::array<glm::dvec3, 8> result;
+    std::array<glm::dvec3, 8> result{};
     for (std::size_t i = 0; i < result.size(); ++i)
         result[i] = {(i & 1) ? box.max.x : box.min.x, (i & 2) ? box.max.y : box.min.y,
                      (i & 4) ? box.max.z : box.min.z};

@@ -8,15 +8,24 @@ namespace vrut {
 
 std::string_view name_of(NodeType type) {
     switch (type) {
-        case NodeType::assembly: return "assembly";
-        case NodeType::root: return "root";
-        case NodeType::camera: return "camera";
-        case NodeType::geometry: return "geometry";
-        case NodeType::light: return "light";
-        case NodeType::lod: return "lod";
-        case NodeType::switch_: return "switch";
-        case NodeType::background: return "background";
-        case NodeType::sound: return "sound";
+        case NodeType::assembly:
+            return "assembly";
+        case NodeType::root:
+            return "root";
+        case NodeType::camera:
+            return "camera";
+        case NodeType::geometry:
+            return "geometry";
+        case NodeType::light:
+            return "light";
+        case NodeType::lod:
+            return "lod";
+        case NodeType::switch_:
+            return "switch";
+        case NodeType::background:
+            return "background";
+        case NodeType::sound:
+            return "sound";
     }
     return "";
 }
@@ -40,55 +49,81 @@ std::vector<Index> top_down_order(const std::vector<std::vector<Index>>& childre
     return order;
 }
 
+using Places = std::unordered_map<Id, Index>;
+using PartNodes = std::vector<SceneParts::PartNode>;
+
+tl::expected<Places, Scene::BuildError> places_by_id(const PartNodes& nodes) {
+    Places places;
+    places.reserve(nodes.size());
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const Node& node = nodes[i].node;
+        if (!places.emplace(node.id, static_cast<Index>(i)).second)
+            return tl::unexpected(
+                Scene::BuildError{"expected each node once, found " + std::to_string(node.id) + " twice", i});
+        if ((node.id == 0) != (node.type == NodeType::root))
+            return tl::unexpected(Scene::BuildError{"expected id 0 for the root and no other node, found " +
+                                                        std::string(name_of(node.type)) + " " +
+                                                        std::to_string(node.id),
+                                                    i});
+    }
+    return places;
+}
+
+/// For each node the places of its children, by rising id.
+tl::expected<std::vector<std::vector<Index>>, Scene::BuildError> children_by_id(const PartNodes& nodes,
+                                                                                const Places& places) {
+    const auto at = [&](Index i) -> const SceneParts::PartNode& {
+        return nodes[static_cast<std::size_t>(i)];
+    };
+    std::vector<Index> by_id(nodes.size());
+    std::iota(by_id.begin(), by_id.end(), 0);
+    std::sort(by_id.begin(), by_id.end(), [&](Index a, Index b) { return at(a).node.id < at(b).node.id; });
+    std::vector<std::vector<Index>> children(nodes.size());
+    for (Index i : by_id) {
+        if (at(i).node.id == 0) continue;
+        const auto parent = places.find(at(i).parent_id);
+        if (parent == places.end())
+            return tl::unexpected(Scene::BuildError{"expected parent " + std::to_string(at(i).parent_id) +
+                                                        " of node " + std::to_string(at(i).node.id) +
+                                                        " in the file, found none",
+                                                    static_cast<std::size_t>(i)});
+        children[static_cast<std::size_t>(parent->second)].push_back(i);
+    }
+    return children;
+}
+
+/// What the root does not reach hangs in a cycle, or below one.
+Scene::BuildError find_cycle(const PartNodes& nodes, const Places& places,
+                             const std::vector<Index>& reached) {
+    std::vector<bool> seen(nodes.size());
+    for (Index i : reached) seen[static_cast<std::size_t>(i)] = true;
+    // Upwards from any of the rest: the first node met twice is in the cycle, and not just below it.
+    auto culprit = static_cast<std::size_t>(std::find(seen.begin(), seen.end(), false) - seen.begin());
+    while (!seen[culprit]) {
+        seen[culprit] = true;
+        culprit = static_cast<std::size_t>(places.at(nodes[culprit].parent_id));
+    }
+    return {"expected node " + std::to_string(nodes[culprit].node.id) +
+                " below the root, found it among its own ancestors",
+            culprit};
+}
+
 }  // namespace
 
 tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     auto& in = parts.nodes;
-    const auto fail = [](std::string message, std::size_t node) {
-        return tl::unexpected(BuildError{std::move(message), node});
-    };
-
     const auto is_root = [](const SceneParts::PartNode& part) { return part.node.id == 0; };
     if (std::none_of(in.begin(), in.end(), is_root)) in.push_back({make_root(), 0});
 
-    // --- who is whose child, in the order of the file
-    std::unordered_map<Id, Index> place;
-    place.reserve(in.size());
-    for (std::size_t i = 0; i < in.size(); ++i) {
-        const Node& node = in[i].node;
-        if (!place.emplace(node.id, static_cast<Index>(i)).second)
-            return fail("node " + std::to_string(node.id) + " stands twice", i);
-        if ((node.id == 0) != (node.type == NodeType::root))
-            return fail("node " + std::to_string(node.id) + ": the root, and only the root, has id 0", i);
-    }
-    std::vector<Index> by_id(in.size());
-    std::iota(by_id.begin(), by_id.end(), 0);
-    std::sort(by_id.begin(), by_id.end(), [&](Index a, Index b) {
-        return in[static_cast<std::size_t>(a)].node.id < in[static_cast<std::size_t>(b)].node.id;
-    });
-    std::vector<std::vector<Index>> children(in.size());
-    for (Index i : by_id) {
-        const auto& part = in[static_cast<std::size_t>(i)];
-        if (part.node.id == 0) continue;
-        const auto parent = place.find(part.parent_id);
-        if (parent == place.end())
-            return fail("node " + std::to_string(part.node.id) + ": its parent " + std::to_string(part.parent_id) +
-                            " is not in the file",
-                        static_cast<std::size_t>(i));
-        children[static_cast<std::size_t>(parent->second)].push_back(i);
-    }
+    const auto place = places_by_id(in);
+    if (!place) return tl::unexpected(place.error());
+    auto linked = children_by_id(in, *place);
+    if (!linked) return tl::unexpected(linked.error());
+    auto& children = *linked;
+    const std::vector<Index> order = top_down_order(children, place->at(0));
+    if (order.size() != in.size()) return tl::unexpected(find_cycle(in, *place, order));
 
-    // --- what the root does not reach hangs in a cycle
-    const std::vector<Index> order = top_down_order(children, place.at(0));
-    if (order.size() != in.size()) {
-        std::vector<bool> reached(in.size());
-        for (Index i : order) reached[static_cast<std::size_t>(i)] = true;
-        const auto culprit =
-            static_cast<std::size_t>(std::find(reached.begin(), reached.end(), false) - reached.begin());
-        return fail("node " + std::to_string(in[culprit].node.id) + " is among its own ancestors", culprit);
-    }
-
-    // --- the same, in that order
+    // The same nodes, in that order.
     Scene scene(Unlinked{});
     scene.name_ = std::move(parts.name);
     scene.unit_ = parts.unit;
@@ -133,7 +168,8 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene) {
     std::vector<glm::dmat4> world(scene.nodes().size());
     for (std::size_t i = 0; i < world.size(); ++i) {
         const Node& node = scene.nodes()[i];
-        world[i] = node.parent == kNone ? node.matrix : world[static_cast<std::size_t>(node.parent)] * node.matrix;
+        world[i] =
+            node.parent == kNone ? node.matrix : world[static_cast<std::size_t>(node.parent)] * node.matrix;
     }
     return world;
 }
@@ -141,9 +177,11 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene) {
 namespace {
 
 /// Whether a LOD or switch at `index` lets its child number `place` show.
-bool chooses(const Node& node, std::size_t place, const glm::dvec3& origin, const std::optional<glm::dvec3>& eye) {
+bool chooses(const Node& node, std::size_t place, const glm::dvec3& origin,
+             const std::optional<glm::dvec3>& eye) {
     if (const auto* data = std::get_if<SwitchData>(&node.data))
-        return data->active_child == SwitchData::kAllChildren || data->active_child == static_cast<int>(place);
+        return data->active_child == SwitchData::kAllChildren ||
+               data->active_child == static_cast<int>(place);
     if (const auto* data = std::get_if<LodData>(&node.data); data && eye) {
         const double distance = glm::distance(*eye, origin);
         std::size_t level = 0;
@@ -180,7 +218,8 @@ Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world) {
         if (!shown[i] || !data || data->geometry == kNone || !is_finite(world[i])) continue;
         const Bounds box =
             transformed(world[i], scene.geometries()[static_cast<std::size_t>(data->geometry)].bounds);
-        if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest) bounds.add(box);
+        if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest)
+            bounds.add(box);
     }
     return bounds;
 }

@@ -40,9 +40,9 @@ struct Material {
 struct Geometry {
     Id id = 0;
     std::vector<glm::dvec3> positions;
-    std::vector<glm::vec3> normals;    ///< one for each position, or none: then triangles are flat
-    std::vector<glm::vec2> texcoords;  ///< one for each position, or none
-    std::vector<glm::uvec3> triangles; ///< counter-clockwise from the front
+    std::vector<glm::vec3> normals;     ///< one for each position, or none: then triangles are flat
+    std::vector<glm::vec2> texcoords;   ///< one for each position, or none
+    std::vector<glm::uvec3> triangles;  ///< counter-clockwise from the front
     Bounds bounds;
 };
 
@@ -111,8 +111,8 @@ struct SceneParts {
     std::vector<std::string> notices;
 };
 
-/// A scene graph: plain data. Nodes stand in the array so that each parent comes before its children; a walk is
-/// a loop, and a chain of a million nodes needs no stack.
+/// A scene graph: plain data. Nodes stand in the array so that each parent comes before its children; a walk
+/// is a loop, and a chain of a million nodes needs no stack.
 class Scene {
 public:
     /// The sentence and the place in SceneParts::nodes of the node at fault.
@@ -153,8 +153,8 @@ private:
 /// World from node for each node.
 std::vector<glm::dmat4> world_matrices(const Scene& scene);
 
-/// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs choose
-/// by the distance of `eye` (world space); without one all their children count.
+/// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs
+/// choose by the distance of `eye` (world space); without one all their children count.
 std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>& world,
                               const std::optional<glm::dvec3>& eye);
 

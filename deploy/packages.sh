@@ -1,0 +1,94 @@
+# shellcheck shell=bash
+# The Debian packages of the project, and what it takes to install the missing ones. For bash scripts to source;
+# they say $0's name and run under `set -euo pipefail`.
+#
+# A package written as name:command is also there when the command is, wherever it came from.
+
+# To build the program. The headers of libegl-dev bring those of OpenGL.
+# shellcheck disable=SC2034
+BUILD_PACKAGES=(
+    g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
+    libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
+    libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libqrencode-dev
+)
+# To draw: EGL, and Mesa's drivers, with one that draws in software where there is no GPU.
+# shellcheck disable=SC2034
+RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri)
+# To test: doctest, a browser and what steers it, and what checks the source.
+# shellcheck disable=SC2034
+TEST_PACKAGES=(
+    doctest-dev nodejs:node npm:npm chromium:chromium
+    clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
+)
+# To fuzz: clang, libFuzzer and the sanitizers' runtime.
+# shellcheck disable=SC2034
+FUZZ_PACKAGES=(clang-14:clang++-14 libclang-rt-14-dev)
+
+say() { printf '%s\n' "$*" >&2; }
+
+die() {
+    printf '%s: %s\n' "${0##*/}" "$*" >&2
+    exit 1
+}
+
+# Stops unless a folder's disk has so many megabytes free.
+require_space() { # FOLDER MEGABYTES PURPOSE
+    local free
+    free=$(df -Pk "$1" | awk 'NR == 2 { print int($4 / 1024) }')
+    [ "$free" -ge "$2" ] || die "$3 needs about $2 MB, but the disk of $1 has $free MB free: make room and start again."
+}
+
+# How many compilers at once: one a core, but no more than the memory holds (the largest take over a gigabyte).
+parallel_jobs() {
+    local cores room
+    cores=$(nproc)
+    room=$(awk '/^MemAvailable:/ { print int($2 / 1300000) }' /proc/meminfo 2>/dev/null || true)
+    if [ -n "$room" ] && [ "$room" -lt "$cores" ]; then cores=$((room > 0 ? room : 1)); fi
+    echo "$cores"
+}
+
+# Prints those of the given packages that are not there.
+missing_packages() {
+    local entry asked=() installed
+    for entry in "$@"; do
+        if [[ $entry == *:* ]] && command -v "${entry#*:}" >/dev/null; then continue; fi
+        asked+=("${entry%%:*}")
+    done
+    [ ${#asked[@]} -gt 0 ] || return 0
+    installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${asked[@]}" 2>/dev/null || true)
+    for entry in "${asked[@]}"; do
+        grep -qxF "installed $entry" <<<"$installed" || printf '%s\n' "$entry"
+    done
+}
+
+# Installs those of the given packages that are not there, and nothing else. Does nothing when all are.
+install_packages() {
+    local missing unknown entry reached=true install=(apt-get install -y --no-install-recommends) as_root=()
+    mapfile -t missing < <(missing_packages "$@")
+    [ ${#missing[@]} -gt 0 ] || return 0
+
+    command -v apt-get >/dev/null ||
+        die "this script installs with apt-get on Debian 12, which is not here: install what ${missing[*]} are called on this system, and start again."
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null ||
+            die "packages are missing and there is no sudo: run '${install[*]} ${missing[*]}' as root, and start again."
+        as_root=(sudo)
+    fi
+    require_space /usr $((100 + 60 * ${#missing[@]})) "Installing the ${#missing[@]} missing packages"
+
+    say "Installing ${#missing[@]} missing packages with apt-get: ${missing[*]}"
+    as_root+=(env DEBIAN_FRONTEND=noninteractive)
+    install+=(-o DPkg::Lock::Timeout=300)
+    [ -t 2 ] && install+=(-o Dpkg::Progress-Fancy=1)
+    "${as_root[@]}" apt-get update -q -o APT::Update::Error-Mode=any >&2 </dev/null || reached=false
+    if ! "${as_root[@]}" "${install[@]}" "${missing[@]}" >&2 </dev/null; then
+        $reached ||
+            die "apt-get cannot reach the package archive (its messages are above): see that there is a network, and start again."
+        unknown=$(for entry in "${missing[@]}"; do
+            apt-cache policy "$entry" 2>/dev/null | grep -q 'Candidate: [^(]' || echo "$entry"
+        done | paste -sd' ')
+        [ -z "$unknown" ] ||
+            die "apt-get does not know $unknown: this needs Debian 12 (bookworm), with its main archive in apt's sources."
+        die "apt-get could not install the packages (its message is above): mend what it names, and start again."
+    fi
+}
