@@ -19,8 +19,11 @@ struct Arrays {
 /// its face's, so that the shader need not know the difference.
 Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
+    // Unit, so that float can square them.
     const auto normal = [&](unsigned i) {
-        return geometry.normals.empty() ? glm::vec3(0) : geometry.normals[i];
+        const glm::dvec3 given = geometry.normals.empty() ? glm::dvec3(0) : glm::dvec3(geometry.normals[i]);
+        const double length = glm::length(given);
+        return length > 0 ? glm::vec3(given / length) : glm::vec3(0);
     };
 
     Arrays arrays;

@@ -1,5 +1,7 @@
 #include "engine.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <future>
 
@@ -16,6 +18,8 @@ namespace code = protocol::error_code;
 PainterFactory gl_painter(std::optional<int> device) {
     return [device](std::shared_ptr<const PlacedScene> scene) {
         auto renderer = std::make_shared<Renderer>(device);
+        for (const std::string& sentence : renderer->rejected()) spdlog::warn("passed over {}", sentence);
+        spdlog::info("drawing on {}", renderer->description());
         renderer->set_scene(std::move(scene));
         return Painter{renderer->description(), renderer->software(), renderer->max_size(),
                        [renderer](const View& view, Image& image, FrameStats& stats,

@@ -125,7 +125,11 @@ int main(int argc, char** argv) try {
         return 0;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        std::cerr << "vrut-preview: " << error.what() << "; --help tells more\n";
+        // CLI11 tells of a missing command only, and not of the word that is none.
+        const bool unknown = app.get_subcommands().empty() && !app.remaining().empty();
+        std::cerr << "vrut-preview: "
+                  << (unknown ? "there is no command '" + app.remaining().front() + "'" : error.what())
+                  << "; --help tells more\n";
         return kWrongUsage;
     }
 } catch (const std::invalid_argument& error) {

@@ -51,7 +51,6 @@ void serve_command(const ServeArguments& arguments) {
 
     Server server(options, std::make_shared<const PlacedScene>(place(*std::move(scene))),
                   gl_painter(arguments.device));
-    spdlog::info("drawing on {}", server.description());
     announce(options.listen, server.port(), options.access);
     server.run(true);
     spdlog::info("shut down");

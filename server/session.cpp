@@ -293,8 +293,10 @@ void Session::watch_progress() {
 
 void Session::close(close_code code, const std::string& reason) {
     if (closing_ || dropped_) return;
-    // A close frame holds 123 bytes of reason at most.
-    closing_.emplace(code, reason.substr(0, 123));
+    // A close frame holds 123 bytes of reason at most, and whole characters.
+    std::size_t length = std::min<std::size_t>(reason.size(), 123);
+    while (length < reason.size() && (static_cast<unsigned char>(reason[length]) & 0xC0) == 0x80) --length;
+    closing_.emplace(code, reason.substr(0, length));
     hello_deadline_.cancel();
     pump();
 }

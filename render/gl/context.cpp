@@ -107,7 +107,9 @@ void check_drawing() {
     framebuffer.read(pixels);
     glUseProgram(0);
     const std::array<std::uint8_t, 4> left{51, 102, 153, 255}, right{255, 255, 255, 255};
-    const auto pixel = [&](std::size_t x) { return pixels.data() + (std::size_t{kSize} / 2 * kSize + x) * 4; };
+    const auto pixel = [&](std::size_t x) {
+        return pixels.data() + (std::size_t{kSize} / 2 * kSize + x) * 4;
+    };
     if (glGetError() != GL_NO_ERROR || !std::equal(left.begin(), left.end(), pixel(3)) ||
         !std::equal(right.begin(), right.end(), pixel(12)))
         throw std::runtime_error("what it draws does not read back right");

@@ -8,6 +8,7 @@ namespace vrut {
 namespace {
 
 constexpr double kSmallestNearToFar = 1e-6;
+constexpr double kSmallestNearToFocus = 1e-3;
 constexpr double kMargin = 1e-3;  // keeps what touches the planes from being clipped by rounding
 // Eye and focus closer than this part of their coordinates would no longer say a direction.
 constexpr double kResolution = 1e-12;
@@ -89,7 +90,9 @@ ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds) {
     }
     if (farthest <= 0) return range;  // everything is behind the eye
     range.far = farthest * (1 + kMargin);
-    range.near = std::max(nearest * (1 - kMargin), range.far * kSmallestNearToFar);
+    // Something very far away must not push the near plane through what is looked at.
+    const double smallest = std::min(range.far * kSmallestNearToFar, distance * kSmallestNearToFocus);
+    range.near = std::max(nearest * (1 - kMargin), smallest);
     return range;
 }
 
@@ -120,9 +123,8 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& 
 }
 
 Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
-    const double radius = bounds.empty() || bounds.radius() == 0
-                              ? std::max(1.0, closest_at(bounds.center()))
-                              : std::max(bounds.radius(), closest_at(bounds.center()));
+    const double extent = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
+    const double radius = std::max(extent, closest_at(bounds.center()));
     const double half_fov = camera.fov * kRadiansPerDegree / 2;
     const double half_width = std::atan(std::tan(half_fov) * aspect);
     Camera result = camera;

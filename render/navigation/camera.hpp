@@ -37,7 +37,8 @@ struct ClipRange {
     bool operator==(const ClipRange&) const = default;
 };
 
-/// The tightest near and far around `bounds`, with near never below 10⁻⁶ of far.
+/// The tightest near and far around `bounds`; near is never below 10⁻⁶ of far, or 10⁻³ of the focus' distance
+/// where that is less.
 ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds);
 
 /// Right-handed, view along −z.

@@ -53,6 +53,7 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
     });
     if (input.action == Action::down) {
         if (pressed != pressed_.end()) pressed_.erase(pressed);
+        if (input.device == Device::touch && fingers().size() == 2) return camera;  // a third one
         const glm::dvec2 at{input.x, input.y};
         const unsigned buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);
         pressed_.push_back(
@@ -62,13 +63,14 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
     }
     if (pressed == pressed_.end()) return camera;  // hovering
 
+    // A move without buttons is hovering: the release was not seen, and where it was is not known.
+    const bool lost = input.action == Action::cancel || (input.action == Action::move && input.buttons == 0);
     Camera result = camera;
-    if (input.action != Action::cancel) {
+    if (!lost) {
         pressed->now = {input.x, input.y};
         result = dragged(context);
     }
-    const bool released = input.action != Action::move || input.buttons == 0;
-    if (released) {
+    if (lost || input.action == Action::up) {
         pressed_.erase(pressed);
         restart(result);
     } else if (input.buttons != pressed->buttons) {  // a chord: another button went down or up
@@ -91,14 +93,18 @@ void Gestures::lift(const std::string& client, const Camera& camera) {
     restart(camera);
 }
 
-Camera Gestures::dragged(const NavigationContext& context) const {
-    std::vector<const Pressed*> fingers;
+std::vector<const Gestures::Pressed*> Gestures::fingers() const {
+    std::vector<const Pressed*> touching;
     for (const Pressed& pressed : pressed_)
-        if (pressed.device == Device::touch) fingers.push_back(&pressed);
+        if (pressed.device == Device::touch) touching.push_back(&pressed);
+    return touching;
+}
 
-    if (fingers.size() == 1) return rotate_by(start_, fingers[0]->now - fingers[0]->start, context);
-    if (fingers.size() >= 2) {
-        const Pressed &a = *fingers[0], &b = *fingers[1];
+Camera Gestures::dragged(const NavigationContext& context) const {
+    const std::vector<const Pressed*> touching = fingers();
+    if (touching.size() == 1) return rotate_by(start_, touching[0]->now - touching[0]->start, context);
+    if (touching.size() == 2) {
+        const Pressed &a = *touching[0], &b = *touching[1];
         // The pan comes second, so that it is measured in the picture as the fingers leave it.
         const Camera pinched = zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), context);
         return pan_by(pinched, (a.now + b.now - a.start - b.start) * 0.5, context);

@@ -64,6 +64,7 @@ private:
         int button = 0;  ///< the held one that was pressed last: it says what the drag does
     };
 
+    std::vector<const Pressed*> fingers() const;  ///< two at most: a third is ignored until it is lifted
     Camera dragged(const NavigationContext& context) const;
 
     std::vector<Pressed> pressed_;  // in the order of pressing

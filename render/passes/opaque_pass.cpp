@@ -19,6 +19,7 @@ enum Uniform : GLint {
     diffuse_at = 6,
     specular_at = 7,
     shininess_at = 8,
+    both_sides_at = 9,
 };
 
 constexpr std::string_view kVertexShader = R"(#version 450 core
@@ -48,6 +49,7 @@ layout(location = 5) uniform vec3 base;
 layout(location = 6) uniform vec3 diffuse;
 layout(location = 7) uniform vec3 specular;
 layout(location = 8) uniform float shininess;
+layout(location = 9) uniform bool both_sides;
 in vec3 view_position;
 in vec3 view_normal;
 out vec4 color;
@@ -57,10 +59,9 @@ void main() {
     vec3 to_eye = -view_position / d;
     // A normal that vanishes (flattened parts, opposite neighbours) takes the face's, which faces the viewer.
     vec3 n = view_normal;
-    if (dot(n, n) < 1e-12) n = cross(dFdx(view_position), dFdy(view_position));
+    if (dot(n, n) < 1e-12) n = cross(normalize(dFdx(view_position)), normalize(dFdy(view_position)));
     n = normalize(n);
-    // Only back faces of two-sided parts get here with their normal away from the viewer.
-    if (!gl_FrontFacing && dot(n, to_eye) < 0) n = -n;
+    if (both_sides && dot(n, to_eye) < 0) n = -n;
 
     float intensity = 1 / max(dot(attenuation, vec3(1, d, d * d)), 1e-6);
     float lambert = max(dot(to_eye, n), 0);
@@ -91,6 +92,7 @@ void set_material(const Material& material) {
 }
 
 void set_sides(const DrawItem& item) {
+    glUniform1i(both_sides_at, item.sides == Sides::both);
     if (item.sides == Sides::both)
         glDisable(GL_CULL_FACE);
     else

@@ -1,0 +1,18 @@
+# Fails where a folder includes a library that is none of its business. Libraries of headers alone would compile
+# anywhere; the project's own are kept apart by what each CMake target links.
+function(check folder pattern why)
+    file(GLOB_RECURSE files ${SOURCE}/${folder}/*.cpp ${SOURCE}/${folder}/*.hpp)
+    foreach(file IN LISTS files)
+        file(STRINGS ${file} lines REGEX "^#include [<\"](${pattern})")
+        if(lines)
+            message(SEND_ERROR "${file}: ${lines}: ${why}")
+        endif()
+    endforeach()
+endfunction()
+
+check(protocol "boost/|GL/|EGL/|spdlog/|turbojpeg|png" "protocol/ knows JSON, and no GL and no sockets")
+check(render "boost/|nlohmann/|spdlog/|sys/socket|netinet/" "nothing under render/ knows sockets or JSON")
+check(render/scene "GL/|EGL/|gl\\.hpp" "the scene is plain data")
+check(render/formats "GL/|EGL/|gl\\.hpp" "readers make plain data")
+check(render/navigation "GL/|EGL/|gl\\.hpp|chrono|ctime" "navigation is pure: no clock, no GL")
+check(server "GL/|EGL/|gl\\.hpp|context\\.hpp|nlohmann/" "GL is for render/, JSON for protocol/")

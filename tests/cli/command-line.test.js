@@ -1,0 +1,154 @@
+// The command line: what it prints, what it writes, and how it ends.
+'use strict';
+const assert = require('node:assert/strict');
+const { spawn, spawnSync } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, test } = require('node:test');
+
+const PROGRAM = process.env.VRUT_PREVIEW;
+const CAR = path.join(process.env.VRUT_SCENES, 'car', 'car.vrut');
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
+after(() => fs.rmSync(folder, { recursive: true }));
+
+const file = (name) => path.join(folder, name);
+const run = (...options) => spawnSync(PROGRAM, options, { encoding: 'utf8' });
+const sentences = (text) => text.trim().split('\n');
+
+function succeeds(...options) {
+  const result = run(...options);
+  assert.equal(result.status, 0, result.stderr);
+  return result.stdout;
+}
+
+function fails(status, culprit, ...options) {
+  const result = run(...options);
+  assert.equal(result.status, status, `${options}: ${result.stderr}`);
+  assert.equal(sentences(result.stderr).length, 1, result.stderr);
+  assert.match(result.stderr, culprit);
+  assert.equal(result.stdout, '');
+}
+
+function pngSize(name) {
+  const bytes = fs.readFileSync(file(name));
+  assert.equal(bytes.toString('latin1', 1, 4), 'PNG');
+  return [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
+}
+
+test('help and version', () => {
+  assert.match(succeeds('--version'), /^vrut-preview \d+\.\d+\.\d+\n$/);
+  for (const command of ['serve', 'render', 'info']) {
+    assert.match(succeeds('--help'), new RegExp(command));
+    assert.match(succeeds(command, '--help'), /scene/);
+  }
+});
+
+test('wrong usage is told in a sentence, with status 2', () => {
+  fails(2, /subcommand/);
+  fails(2, /dance/, 'dance');
+  fails(2, /scene/, 'info');
+  fails(2, /--output/, 'render', CAR);
+  fails(2, /--size: .*'12'/, 'render', CAR, '-o', file('x.png'), '--size', '12');
+  fails(2, /--size/, 'render', CAR, '-o', file('x.png'), '--size', '0x5');
+  fails(2, /--samples/, 'render', CAR, '-o', file('x.png'), '--samples', '0');
+  fails(2, /--eye: .*'1,2'/, 'render', CAR, '-o', file('x.png'), '--eye', '1,2');
+  fails(2, /--fov/, 'render', CAR, '-o', file('x.png'), '--fov', '180');
+  fails(2, /'8080'/, 'serve', '--listen', '8080');
+  fails(2, /--log-level/, 'serve', '--log-level', 'loud');
+});
+
+test('what cannot be done is told in a sentence, with status 1', () => {
+  fails(1, /missing\.vrut: there is no such file/, 'info', file('missing.vrut'));
+  fails(1, /no reader/, 'info', __filename);
+  fs.writeFileSync(file('bad.vrut'), 'vrut-text 1\nnode 1 "A" assembly\n  parent 7 end\n');
+  fails(1, /bad\.vrut:2: expected parent 7 of node 1/, 'info', file('bad.vrut'));
+  fails(1, /picture\.gif/, 'render', CAR, '-o', file('picture.gif'));
+  fails(1, /no-such-folder/, 'render', CAR, '-o', file('no-such-folder/x.png'), '--size', '8x8');
+  fails(1, /camera\.json/, 'render', CAR, '-o', file('x.png'), '--camera', file('camera.json'));
+  fails(1, /--size/, 'render', CAR, '-o', file('x.png'), '--size', '100000x2');
+  fails(1, /'camera\.nose'/, 'render', CAR, '-o', file('x.png'), '--set', '{"camera":{"nose":1}}');
+  fails(1, /eye and focus/, 'render', CAR, '-o', file('x.png'), '--eye', '0,0,0', '--focus', '0,0,0');
+  fails(1, /there is no EGL device 99/, 'render', CAR, '-o', file('x.png'), '--device', '99');
+  assert.equal(fs.existsSync(file('x.png')), false);
+});
+
+test('info tells what a scene holds', () => {
+  assert.match(succeeds('info', CAR), /^car: \d+ nodes/);
+  const info = JSON.parse(succeeds('info', CAR, '--json'));
+  assert.equal(info.tree.length, info.nodes);
+  assert.equal(info.tree[0].type, 'root');
+  assert.equal(info.tree.reduce((sum, node) => sum + node.triangles, 0), info.triangles);
+});
+
+test('render draws pictures of the size asked for', () => {
+  succeeds('render', CAR, '-o', file('car.png'), '--size', '320x200');
+  assert.deepEqual(pngSize('car.png'), [320, 200]);
+  succeeds('render', CAR, '-o', file('line.png'), '--size', '1x700', '--samples', '1');
+  assert.deepEqual(pngSize('line.png'), [1, 700]);
+  succeeds('render', CAR, '-o', file('car.jpg'), '--size', '64x64', '--jpeg-quality', '50');
+  assert.equal(fs.readFileSync(file('car.jpg')).readUInt16BE(0), 0xffd8);
+});
+
+test('render tells what a picture took', () => {
+  const stats = JSON.parse(succeeds('render', CAR, '-o', file('s.png'), '--size', '64x64', '--samples', '1', '--stats'));
+  const info = JSON.parse(succeeds('info', CAR, '--json'));
+  assert.equal(stats.passes, 1);
+  assert.equal(stats.triangles, info.triangles);
+  assert.equal(stats.draws, info.tree.filter((node) => node.triangles > 0).length);
+  assert.ok(stats.renderMs > 0);
+});
+
+test('the camera of a file, of --set and of the options is the same camera', () => {
+  const eye = [3, 2.25, 5.5];
+  fs.writeFileSync(file('camera.json'), JSON.stringify({ eye, focus: [0, 0.7, 0], fov: 30, near: 9, node: 4 }));
+  const size = ['--size', '160x90'];
+  succeeds('render', CAR, '-o', file('a.png'), ...size, '--camera', file('camera.json'));
+  succeeds('render', CAR, '-o', file('b.png'), ...size, '--eye', eye.join(','), '--focus', '0,0.7,0', '--fov', '30');
+  const set = JSON.stringify({ camera: { eye, focus: [0, 0.7, 0], fov: 30 } });
+  succeeds('render', CAR, '-o', file('c.png'), ...size, '--set', set);
+  succeeds('render', CAR, '-o', file('home.png'), ...size);
+  assert.deepEqual(fs.readFileSync(file('a.png')), fs.readFileSync(file('b.png')));
+  assert.deepEqual(fs.readFileSync(file('a.png')), fs.readFileSync(file('c.png')));
+  assert.notDeepEqual(fs.readFileSync(file('a.png')), fs.readFileSync(file('home.png')));
+});
+
+/** Starts a server; resolves with the process and what it printed when it is ready. */
+function serve(...options) {
+  const server = spawn(PROGRAM, ['serve', ...options]);
+  let printed = '';
+  const ready = new Promise((resolve, reject) => {
+    server.stdout.on('data', (data) => {
+      printed += data;
+      if (/listening on \S+\n/.test(printed)) resolve(printed);
+    });
+    server.on('exit', () => reject(new Error(`the server ended: ${printed}`)));
+  });
+  return { server, ready };
+}
+
+for (const signal of ['SIGTERM', 'SIGINT']) {
+  test(`${signal} ends the server within five seconds, with status 0`, async () => {
+    const { server, ready } = serve('--listen', '127.0.0.1:0');
+    assert.match(await ready, /listening on http:\/\/127\.0\.0\.1:\d+\/\n/);
+    const start = Date.now();
+    const ended = new Promise((resolve) => server.on('exit', (status) => resolve(status)));
+    server.kill(signal);
+    assert.equal(await ended, 0);
+    assert.ok(Date.now() - start < 5000);
+  });
+}
+
+test('beyond this machine a token is made, and printed with a code to scan', async () => {
+  const { server, ready } = serve(CAR, '--listen', '0.0.0.0:0');
+  const printed = await ready;
+  assert.match(printed, /listening on http:\/\/[\d.]+:\d+\/#token=[0-9a-f]{32}\n/);
+  server.kill('SIGKILL');
+});
+
+test('a port that is taken is told in a sentence', async () => {
+  const { server, ready } = serve('--listen', '127.0.0.1:0');
+  const [, port] = /:(\d+)\//.exec(await ready);
+  fails(1, new RegExp(`cannot listen at 127\\.0\\.0\\.1:${port}`), 'serve', '--listen', `127.0.0.1:${port}`, '--log-level', 'off');
+  server.kill('SIGKILL');
+});

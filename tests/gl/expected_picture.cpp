@@ -1,0 +1,152 @@
+#include "expected_picture.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace vrut {
+
+glm::dvec3 phong(const Material& material, const Headlight& light, const glm::dvec3& eye,
+                 const glm::dvec3& point, const glm::dvec3& normal) {
+    const glm::dvec3 coefficients =
+        light.attenuation == glm::dvec3(0) ? glm::dvec3(1, 0, 0) : light.attenuation;
+    const double d = glm::distance(eye, point);
+    const double intensity = 1 / std::max(coefficients.x + coefficients.y * d + coefficients.z * d * d, 1e-6);
+    const glm::dvec3 to_light = (eye - point) / d, to_eye = to_light;
+    const double lit = std::max(glm::dot(to_light, normal), 0.0);
+    const glm::dvec3 reflected = normal * (2 * glm::dot(to_light, normal)) - to_light;
+    const double highlight = material.shininess == 0
+                                 ? 1
+                                 : std::pow(std::max(glm::dot(reflected, to_eye), 0.0), material.shininess);
+    const glm::dvec3 light_color(light.color);
+    return glm::clamp(glm::dvec3(material.emission) + glm::dvec3(material.ambient) +
+                          glm::dvec3(material.diffuse) * light_color * (lit * intensity) +
+                          glm::dvec3(material.specular) * light_color * (lit * highlight * intensity),
+                      0.0, 1.0);
+}
+
+ExpectedPicture::ExpectedPicture(const PlacedScene& placed, const View& view) : view_(view) {
+    const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, view.camera.eye);
+    std::vector<std::size_t> order(shown.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    const auto id = [&](std::size_t i) { return placed.scene.nodes()[i].id; };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return id(a) < id(b); });
+    for (const std::size_t i : order)
+        if (const auto* data = std::get_if<GeometryData>(&placed.scene.nodes()[i].data); data && shown[i])
+            add(placed, i, *data);
+}
+
+void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const GeometryData& data) {
+    const Geometry& geometry = placed.scene.geometries()[static_cast<std::size_t>(data.geometry)];
+    const Material& material = placed.scene.material(data.material);
+    const glm::dmat4& world = placed.world[node];
+    const glm::dmat3 linear(world);
+    // Eq. 6.3 itself: test scenes whose matrix has no inverse are judged by hand.
+    const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(linear));
+    const bool mirrored = glm::determinant(linear) < 0;
+    const int smooth_surface = surfaces_++;
+    for (const glm::uvec3& indices : geometry.triangles) {
+        const auto position = [&](int k) { return geometry.positions[indices[k]]; };
+        const glm::dvec3 face = glm::cross(position(1) - position(0), position(2) - position(0));
+        Triangle triangle{{}, material, smooth_surface, material.two_sided, mirrored};
+        bool flat = true;
+        for (int k = 0; k < 3; ++k) {
+            glm::dvec3 normal =
+                geometry.normals.empty() ? glm::dvec3(0) : glm::dvec3(geometry.normals[indices[k]]);
+            if (normal == glm::dvec3(0))
+                normal = face;
+            else
+                flat = false;
+            triangle.corners[k] = {glm::dvec3(world * glm::dvec4(position(k), 1)),
+                                   glm::normalize(normal_matrix * normal)};
+        }
+        if (flat) {
+            // Two triangles of one plane are one surface.
+            const auto same_plane =
+                std::find_if(triangles_.begin(), triangles_.end(), [&](const Triangle& other) {
+                    return other.surface > smooth_surface &&
+                           glm::distance(other.corners[0].normal, triangle.corners[0].normal) < 1e-6;
+                });
+            triangle.surface = same_plane == triangles_.end() ? surfaces_++ : same_plane->surface;
+        }
+        triangles_.push_back(triangle);
+    }
+}
+
+ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
+    const Camera& camera = view_.camera;
+    const glm::dvec3 view = glm::normalize(camera.focus - camera.eye);
+    const glm::dvec3 right = glm::normalize(glm::cross(view, camera.up)), up = glm::cross(right, view);
+    const double half_height = std::tan(camera.fov * std::numbers::pi / 360);
+    const double pixel = 2 * half_height / view_.height;
+    const glm::dvec3 ray =
+        view + right * ((x - view_.width / 2.0) * pixel) + up * ((view_.height / 2.0 - y) * pixel);
+
+    Seen seen{-1, view_.background};
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Triangle& triangle : triangles_) {
+        const auto& [a, b, c] = triangle.corners;
+        // Möller and Trumbore: camera.eye + t ray = a + u (b - a) + v (c - a)
+        const glm::dvec3 ab = b.position - a.position, ac = c.position - a.position;
+        const glm::dvec3 p = glm::cross(ray, ac);
+        const double determinant = glm::dot(ab, p);
+        if (determinant == 0) continue;
+        // Counter-clockwise in the geometry's own space, which a mirroring matrix turns clockwise.
+        if (!triangle.both_sides && (determinant > 0) == triangle.mirrored) continue;
+        const glm::dvec3 from_a = camera.eye - a.position;
+        const double u = glm::dot(from_a, p) / determinant;
+        const glm::dvec3 q = glm::cross(from_a, ab);
+        const double v = glm::dot(ray, q) / determinant, t = glm::dot(ac, q) / determinant;
+        // Of the same depth the later one is in front.
+        if (u < 0 || v < 0 || u + v > 1 || t <= 0 || t > nearest) continue;
+        nearest = t;
+        const glm::dvec3 point = camera.eye + ray * t;
+        glm::dvec3 normal = glm::normalize(a.normal * (1 - u - v) + b.normal * u + c.normal * v);
+        if (triangle.both_sides && glm::dot(normal, camera.eye - point) < 0) normal = -normal;
+        seen = {triangle.surface, phong(triangle.material, view_.headlight, camera.eye, point, normal)};
+    }
+    return seen;
+}
+
+std::optional<ExpectedPicture::Seen> ExpectedPicture::pixel(int x, int y) const {
+    const Seen center = at(x + 0.5, y + 0.5);
+    for (const double dx : {0.02, 0.98})
+        for (const double dy : {0.02, 0.98})
+            if (at(x + dx, y + dy).surface != center.surface) return std::nullopt;
+    return center;
+}
+
+Difference difference(const ExpectedPicture& expected, const Image& image) {
+    Difference result;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const auto seen = expected.pixel(x, y);
+            if (!seen) continue;
+            ++result.compared;
+            result.surfaces += seen->surface >= 0;
+            const glm::ivec3 is = pixel_of(image, x, y), should = bytes_of(seen->color);
+            for (int channel = 0; channel < 3; ++channel) {
+                const int off = std::abs(is[channel] - should[channel]);
+                if (off <= result.worst) continue;
+                result.worst = off;
+                const auto text = [](const glm::ivec3& c) {
+                    return std::to_string(c.r) + " " + std::to_string(c.g) + " " + std::to_string(c.b);
+                };
+                result.where = "at " + std::to_string(x) + ", " + std::to_string(y) + ": expected " +
+                               text(should) + ", found " + text(is);
+            }
+        }
+    return result;
+}
+
+glm::ivec3 pixel_of(const Image& image, int x, int y) {
+    const std::uint8_t* bytes = image.rgba.data() + (static_cast<std::size_t>(image.height - 1 - y) *
+                                                         static_cast<std::size_t>(image.width) +
+                                                     static_cast<std::size_t>(x)) *
+                                                        4;
+    return {bytes[0], bytes[1], bytes[2]};
+}
+
+glm::ivec3 bytes_of(const glm::dvec3& color) { return glm::ivec3(glm::floor(color * 255.0 + 0.5)); }
+
+}  // namespace vrut

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "image.hpp"
+#include "scene.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// The colour that the Phong equations give at a point of a surface, in double; the light is at the eye.
+glm::dvec3 phong(const Material& material, const Headlight& light, const glm::dvec3& eye,
+                 const glm::dvec3& point, const glm::dvec3& normal);
+
+/// What a view of a scene shows, computed ray by ray without any of the renderer.
+class ExpectedPicture {
+public:
+    ExpectedPicture(const PlacedScene& placed, const View& view);
+
+    struct Seen {
+        int surface = -1;  ///< which face, or which smooth part; -1 for the background
+        glm::dvec3 color{0};
+    };
+    /// At a place in pixels from the picture's top left.
+    Seen at(double x, double y) const;
+    /// None where the pixel holds an outline or an edge, so that a hair's breadth decides which side is
+    /// drawn.
+    std::optional<Seen> pixel(int x, int y) const;
+
+private:
+    struct Corner {
+        glm::dvec3 position, normal;
+    };
+    struct Triangle {
+        Corner corners[3];
+        Material material;
+        int surface;
+        bool both_sides;
+        bool mirrored;
+    };
+    void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
+
+    View view_;
+    std::vector<Triangle> triangles_;
+    int surfaces_ = 0;
+};
+
+struct Difference {
+    int worst = 0;      ///< of 255
+    std::string where;  ///< that pixel and both its colours
+    int compared = 0;   ///< pixels
+    int surfaces = 0;   ///< those of them that show no background
+};
+
+/// Compares all pixels but those at outlines and edges.
+Difference difference(const ExpectedPicture& expected, const Image& image);
+
+/// The bytes at a pixel, y from the top.
+glm::ivec3 pixel_of(const Image& image, int x, int y);
+glm::ivec3 bytes_of(const glm::dvec3& color);
+
+}  // namespace vrut

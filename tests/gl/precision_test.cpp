@@ -1,0 +1,133 @@
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const Material kRed = material_of({1, 0, 0}), kGreen = material_of({0, 1, 0}), kBlue = material_of({0, 0, 1});
+
+bool is_red(const glm::ivec3& color) { return color.r > 50 && color.g == 0 && color.b == 0; }
+
+View moved(View view, double scale, const glm::dvec3& offset) {
+    view.camera.eye = view.camera.eye * scale + offset;
+    view.camera.focus = view.camera.focus * scale + offset;
+    view.camera.center = view.camera.focus;
+    return view;
+}
+
+/// A few things of all kinds, `in_file` of whose size and place are in the positions and the rest in the
+/// matrices.
+std::shared_ptr<const PlacedScene> things(double scale, const glm::dvec3& offset, bool in_file) {
+    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const auto part = [&](Id id, const Geometry& geometry, const glm::dvec3& at) {
+        if (in_file) return Part{id, mapped(geometry, scale, at * scale + offset), material, glm::dmat4(1)};
+        return Part{id, geometry, material, moved_by(at * scale + offset) * scaled_by(glm::dvec3(scale))};
+    };
+    return scene_of({part(1, sphere(1, 8), {-1, 0, 0}), part(2, box({0.7, 0.7, 0.7}), {1, 0.2, 0}),
+                     part(3, quad(3), {0, 0, -1}), part(4, quad(0.5, false), {0, 1, 1})});
+}
+
+}  // namespace
+
+TEST_CASE("size and place of a scene do not change its picture") {
+    Studio studio;
+    const View view = view_from({1, 1.5, 6});
+    CHECK(studio.check(things(1, {0, 0, 0}, true), view).surfaces > 2000);
+    const glm::dvec3 far{1e7, -1e7, 1e7};
+    for (const bool in_file : {true, false}) {
+        CAPTURE(in_file);
+        for (const double scale : {1e-6, 1e6, 1e-3, 12345.678}) {
+            CAPTURE(scale);
+            studio.check(things(scale, {0, 0, 0}, in_file), moved(view, scale, {0, 0, 0}));
+        }
+        studio.check(things(1, far, in_file), moved(view, 1, far));
+        studio.check(things(1e6, far * 1e6, in_file), moved(view, 1e6, far * 1e6));
+    }
+}
+
+TEST_CASE("a flattened part of any size is lit") {
+    Studio studio;
+    Geometry sideways = quad(1);
+    sideways.normals.assign(4, glm::vec3(1, 0, 0));
+    for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
+        CAPTURE(scale);
+        View view = moved(view_from({0.5, 0.3, 5}), scale, {0, 0, 0});
+        const ExpectedPicture picture(*scene_of({{1, quad(scale), kRed, glm::dmat4(1)}}), view);
+        const Difference result = difference(
+            picture, studio.draw(scene_of({{1, sideways, kRed, scaled_by({scale, scale, 0})}}), view));
+        CHECK_MESSAGE(result.worst <= 1, result.where);
+        CHECK(result.surfaces > 300);
+    }
+}
+
+TEST_CASE("depth tells a millimetre at a kilometre, with something before the eye") {
+    Studio studio;
+    for (const double tilt : {0.0, 30.0, 75.0}) {
+        CAPTURE(tilt);
+        const glm::dmat4 there = moved_by({0, 0, -1000}) * turned_by(tilt, {1, 0, 0});
+        const glm::dmat4 a_bit_nearer = there * moved_by({0, 0, 0.001 / std::cos(glm::radians(tilt))});
+        // Whichever is drawn first; the speck at 1 cm, out of view, draws the near plane close.
+        for (const bool nearer_first : {true, false}) {
+            const auto scene = scene_of({{1, quad(1e-3), kBlue, moved_by({1, 0, -0.01})},
+                                         {nearer_first ? 2 : 4, quad(300), kRed, a_bit_nearer},
+                                         {3, quad(300), kGreen, there}});
+            View view = view_from({0, 0, 0}, {0, 0, -1});
+            view.camera.fov = 20;
+            const Image image = studio.draw(scene, view);
+            int red = 0;
+            for (int y = 0; y < view.height; ++y)
+                for (int x = 0; x < view.width; ++x)
+                    if (std::hypot(x - 47.5, y - 31.5) < (tilt > 60 ? 10 : 25))
+                        red += !is_red(pixel_of(image, x, y));
+            CHECK(red == 0);
+        }
+    }
+}
+
+TEST_CASE("near and far cut nothing off") {
+    Studio studio;
+    // A wall before the eye and one at the horizon, in one view.
+    const auto scene = scene_of({{1, quad(0.002), kRed, moved_by({-0.002, 0, -0.01})},
+                                 {2, quad(5000), kGreen, moved_by({0, 0, -5000})}});
+    const Difference result = studio.check(scene, view_from({0, 0, 0}, {0, 0, -1}));
+    CHECK(result.surfaces == result.compared);
+    // A floor that goes on behind the eye.
+    const auto floor = scene_of({{1, quad(100), kRed, turned_by(-90, {1, 0, 0})}});
+    CHECK(studio.check(floor, view_from({0, 1, 0}, {0, 0.7, -1})).surfaces > 2000);
+}
+
+TEST_CASE("something very far away hides nothing") {
+    Studio studio;
+    for (const double far : {1e5, 1e9, 1e15}) {
+        CAPTURE(far);
+        const auto scene = scene_of({{1, sphere(1, 8), kRed, glm::dmat4(1)},
+                                     {2, quad(1), kGreen, moved_by({0, -0.9, 1.5})},
+                                     {3, quad(far / 1000), kBlue, moved_by({far / 10, 0, -far})}});
+        CHECK(studio.check(scene, view_from({0, 0, 4})).surfaces > 500);
+    }
+}
+
+TEST_CASE("of equal depth the higher id is in front") {
+    Studio studio;
+    const View view = view_from({1, 2, 5});
+    const auto with_ids = [&](Id red, Id green, const Geometry& geometry) {
+        const glm::dmat4 matrix =
+            turned_by(33, glm::normalize(glm::dvec3(1, 1, 0.2))) * scaled_by({1, 1.3, 0.9});
+        std::vector<Part> parts{{red, geometry, kRed, matrix}, {green, geometry, kGreen, matrix}};
+        if (red % 2) std::swap(parts[0], parts[1]);  // the place in the file means nothing
+        return scene_of(parts);
+    };
+    for (const Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)})
+        for (const auto& [red, green] : {std::pair<Id, Id>{8, 2}, {9, 2}, {1000000, 999999}}) {
+            CHECK(
+                studio.draw(with_ids(red, green, geometry), view).rgba ==
+                studio
+                    .draw(scene_of({{1, geometry, kRed, with_ids(red, green, geometry)->world.back()}}), view)
+                    .rgba);
+            CHECK(studio.draw(with_ids(green, red, geometry), view).rgba ==
+                  studio
+                      .draw(scene_of({{1, geometry, kGreen, with_ids(red, green, geometry)->world.back()}}),
+                            view)
+                      .rgba);
+        }
+}

@@ -1,0 +1,335 @@
+#include "renderer.hpp"
+
+#include <algorithm>
+#include <random>
+
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
+
+std::vector<Part> some_parts() {
+    std::vector<Part> parts;
+    for (int i = 0; i < 12; ++i)
+        parts.push_back({10 + i * 7, i % 2 ? sphere(0.6, 6) : box({0.5, 0.4, 0.3}),
+                         material_of({0.1 * (i % 8), 0.5, 0.8 - 0.05 * i}, {0.2, 0.2, 0.2}, 5.0 * i),
+                         moved_by({(i % 4) * 0.9 - 1.4, (i / 4) * 0.9 - 0.9, 0.2 * i - 1}) *
+                             turned_by(17 * i, {0, 1, 0})});
+    return parts;
+}
+
+double average(const Image& image) {
+    double sum = 0;
+    for (const std::uint8_t byte : image.rgba) sum += byte;
+    return sum / static_cast<double>(image.rgba.size());
+}
+
+/// Black before white, seen straight on, `pixels` units wide and high; a unit is a pixel.
+View pixel_view(int width, int height) {
+    View view;
+    view.camera.fov = 90;
+    view.camera.eye = {0, 0, height / 2.0};
+    view.camera.focus = {0, 0, 0};
+    view.width = width;
+    view.height = height;
+    view.background = {1, 1, 1};
+    return view;
+}
+
+Geometry rectangle(double left, double top, double right, double bottom, const View& view) {
+    const double w = view.width / 2.0, h = view.height / 2.0;
+    Geometry geometry;
+    geometry.positions = {{left - w, h - bottom, 0},
+                          {right - w, h - bottom, 0},
+                          {right - w, h - top, 0},
+                          {left - w, h - top, 0}};
+    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
+    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
+    return geometry;
+}
+
+}  // namespace
+
+TEST_CASE("pictures of any size") {
+    Studio studio;
+    const auto scene =
+        scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}, {2, quad(4), kPaint, moved_by({0, 0, -2})}});
+    View view = view_from({0.5, 0.4, 5});
+    for (const auto& [width, height] :
+         {std::pair{1, 1}, {1, 2048}, {2048, 1}, {2, 3}, {97, 61}, {1, 1}, {640, 480}}) {
+        CAPTURE(width);
+        CAPTURE(height);
+        view.width = width;
+        view.height = height;
+        const Image image = studio.draw(scene, view);
+        CHECK(image.width == width);
+        CHECK(image.height == height);
+        CHECK(image.rgba.size() == static_cast<std::size_t>(width * height * 4));
+        if (width * height > 10000) continue;
+        const Difference result = difference(ExpectedPicture(*scene, view), image);
+        CHECK_MESSAGE(result.worst <= 1, result.where);
+    }
+    CHECK(studio.renderer().max_size() >= 2048);
+    view.width = studio.renderer().max_size() + 1;
+    Image image;
+    FrameStats stats;
+    CHECK_THROWS_AS(studio.renderer().render(view, image, stats), std::runtime_error);
+    // And it draws on after that. What the driver said of it is no fault.
+    studio.renderer().take_messages();
+    studio.check(scene, view_from({0.5, 0.4, 5}));
+}
+
+TEST_CASE("one sample is the pixel's centre") {
+    Studio studio;
+    const View view = pixel_view(8, 6);
+    const auto dark = [&](double left, double top, double right, double bottom) {
+        const Image image = studio.draw(
+            scene_of({{1, rectangle(left, top, right, bottom, view), material_of({0, 0, 0}), glm::dmat4(1)}}),
+            view);
+        std::vector<std::pair<int, int>> pixels;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x)
+                if (pixel_of(image, x, y) == glm::ivec3(0)) pixels.emplace_back(x, y);
+        return pixels;
+    };
+    using Pixels = std::vector<std::pair<int, int>>;
+    CHECK(dark(2.45, 1.45, 2.55, 1.55) == Pixels{{2, 1}});
+    CHECK(dark(2.55, 1.45, 3.45, 1.55).empty());
+    CHECK(dark(2.45, 1.55, 2.55, 2.45).empty());
+    CHECK(dark(0.4, 4.4, 1.6, 5.6) == Pixels{{0, 4}, {1, 4}, {0, 5}, {1, 5}});
+}
+
+TEST_CASE("many samples: what an edge covers is told to one part in their number") {
+    Studio studio;
+    View view = pixel_view(8, 6);
+    for (const int samples : {2, 3, 4, 5, 16, 64})
+        for (double edge = 0.03; edge < 1; edge += 0.11) {
+            CAPTURE(samples);
+            CAPTURE(edge);
+            view.samples = samples;
+            const auto white = [&](const Geometry& geometry, int x, int y) {
+                const Image image =
+                    studio.draw(scene_of({{1, geometry, material_of({0, 0, 0}), glm::dmat4(1)}}), view);
+                CHECK(pixel_of(image, 1, 1) == glm::ivec3(0));
+                CHECK(pixel_of(image, 7, 5) == glm::ivec3(255));
+                return pixel_of(image, x, y).g / 255.0;
+            };
+            // Numbers of samples that are no power of two are less even from top to bottom.
+            const double allowed = 1.0 / samples + 0.003,
+                         allowed_down =
+                             (std::has_single_bit(static_cast<unsigned>(samples)) ? 1.0 : 2.0) / samples +
+                             0.003;
+            CHECK(std::abs(white(rectangle(-10, -10, 4 + edge, 20, view), 4, 3) - (1 - edge)) <= allowed);
+            CHECK(std::abs(white(rectangle(-10, -10, 20, 3 + edge, view), 4, 3) - (1 - edge)) <=
+                  allowed_down);
+        }
+}
+
+TEST_CASE("many samples: the average of a finer picture") {
+    Studio studio;
+    const auto scene = scene_of(some_parts());
+    View view = view_from({1, 2, 5});
+    View fine = view;
+    fine.width *= 8;
+    fine.height *= 8;
+    const Image finer = studio.draw(scene, fine);
+    const auto block = [&](int x, int y) {
+        glm::dvec3 sum(0);
+        for (int dy = 0; dy < 8; ++dy)
+            for (int dx = 0; dx < 8; ++dx) sum += glm::dvec3(pixel_of(finer, x * 8 + dx, y * 8 + dy));
+        return sum / 64.0;
+    };
+    double mean_of_16 = 0, mean_of_1 = 0;
+    for (const int samples : {1, 4, 16}) {
+        CAPTURE(samples);
+        view.samples = samples;
+        const Image image = studio.draw(scene, view);
+        double worst = 0, sum = 0;
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                const glm::dvec3 off = glm::abs(glm::dvec3(pixel_of(image, x, y)) - block(x, y));
+                worst = std::max({worst, off.r, off.g, off.b});
+                sum += (off.r + off.g + off.b) / 3;
+            }
+        const double mean = sum / (view.width * view.height);
+        if (samples == 1) mean_of_1 = mean;
+        if (samples == 4) CHECK(worst < 255 * 0.4);
+        if (samples == 16) {
+            mean_of_16 = mean;
+            CHECK(worst < 255 * 0.15);
+            CHECK(mean < 0.5);
+        }
+    }
+    CHECK(mean_of_16 < mean_of_1 / 4);
+}
+
+TEST_CASE("many samples of one colour are that colour") {
+    Studio studio;
+    View view = view_from({0, 0, 5});
+    for (const int samples : {1, 2, 3, 7, 16, 61}) {
+        view.samples = samples;
+        for (const int level : {0, 1, 100, 254, 255}) {
+            view.background = glm::dvec3(level / 255.0);
+            const Image image = studio.draw(scene_of({}), view);
+            CHECK(pixel_of(image, 11, 13) == glm::ivec3(level));
+            CHECK(average(image) == doctest::Approx((level * 3 + 255) / 4.0));
+        }
+    }
+}
+
+TEST_CASE("a picture is given up between two samples, and the next one is whole") {
+    Studio studio;
+    const auto scene = scene_of(some_parts());
+    View view = view_from({1, 2, 5});
+    view.samples = 8;
+    const Image whole = studio.draw(scene, view);
+    Image image;
+    FrameStats stats;
+    int asked = 0;
+    CHECK_FALSE(studio.renderer().render(view, image, stats, [&] { return ++asked == 3; }));
+    CHECK(asked == 3);
+    CHECK(stats.draws == 3 * 12);
+    asked = 0;
+    CHECK(studio.renderer().render(view, image, stats, [&] { return ++asked == 8; }));
+    CHECK(asked == 7);
+    CHECK(image.rgba == whole.rgba);
+
+    view.samples = 1;
+    CHECK(studio.renderer().render(view, image, stats, [] { return true; }));
+}
+
+TEST_CASE("what a picture took") {
+    Studio studio;
+    View view = view_from({1, 2, 5});
+    studio.draw(scene_of({}), view);
+    CHECK(studio.stats.passes == 0);
+    CHECK(studio.stats.draws == 0);
+    CHECK(studio.stats.triangles == 0);
+    CHECK(studio.stats.render_ms > 0);
+    CHECK(studio.stats.readback_ms > 0);
+
+    std::vector<Part> parts{{1, box({1, 1, 1}), kPaint, glm::dmat4(1)},
+                            {2, sphere(1, 4), kPaint, glm::dmat4(1)},
+                            {3, quad(1), kPaint, scaled_by({1, 1, 0})},
+                            {4, Geometry{}, kPaint, glm::dmat4(1)}};
+    studio.draw(scene_of(parts), view);
+    CHECK(studio.stats.passes == 1);
+    CHECK(studio.stats.draws == 3);
+    CHECK(studio.stats.triangles == 12 + (4 * 8 * 2 - 2 * 8) + 2);
+}
+
+TEST_CASE("what does not show is not drawn") {
+    Studio studio;
+    const auto draws = [&](const std::shared_ptr<PlacedScene>& placed, double distance) {
+        studio.draw(placed, view_from({0, 0, distance}));
+        return studio.stats.draws;
+    };
+    const auto scene_with = [](NodeType type, decltype(Node::data) data, bool active) {
+        SceneParts parts;
+        parts.geometries = {sphere(1, 4)};
+        parts.nodes.push_back({Node{1, {}, type, kNone, {}, active, glm::dmat4(1), std::move(data)}, 0});
+        for (Id id = 2; id <= 4; ++id)
+            parts.nodes.push_back(
+                {Node{id, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, kNone}},
+                 1});
+        return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    };
+    CHECK(draws(scene_with(NodeType::assembly, GroupData{}, true), 5) == 3);
+    CHECK(draws(scene_with(NodeType::assembly, GroupData{}, false), 5) == 0);
+    CHECK(draws(scene_with(NodeType::switch_, SwitchData{1}, true), 5) == 1);
+    CHECK(draws(scene_with(NodeType::switch_, SwitchData{7}, true), 5) == 0);
+    CHECK(draws(scene_with(NodeType::lod, LodData{{10, 20, 30}}, true), 15) == 1);
+    CHECK(draws(scene_with(NodeType::lod, LodData{{10, 20, 30}}, true), 35) == 0);
+}
+
+TEST_CASE("a part at no finite place is left out, and the others are drawn") {
+    Studio studio;
+    const View view = view_from({1, 2, 5});
+    std::vector<Part> parts = some_parts();
+    const Image without = studio.draw(scene_of(parts), view);
+    for (const glm::dmat4& matrix :
+         {glm::dmat4(1e300), moved_by({std::nan(""), 0, 0}), moved_by({0, 1e30, 0}),
+          scaled_by({1, std::numeric_limits<double>::infinity(), 1})}) {
+        parts.push_back({900 + static_cast<Id>(parts.size()), sphere(1, 4), kPaint, matrix});
+        CHECK(studio.draw(scene_of(parts), view).rgba == without.rgba);
+    }
+}
+
+TEST_CASE("a chain of a million nodes is drawn") {
+    constexpr Id kCount = 1'000'000;
+    SceneParts parts;
+    parts.geometries = {quad(1)};
+    for (Id id = 1; id < kCount; ++id)
+        parts.nodes.push_back(
+            {Node{id, {}, NodeType::assembly, kNone, {}, true, moved_by({1, 0, 0}), {}}, id - 1});
+    parts.nodes.push_back(
+        {Node{kCount, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, kNone}},
+         kCount - 1});
+    const auto placed = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    Studio studio;
+    const double x = static_cast<double>(kCount - 1);
+    CHECK(studio.check(placed, view_from({x, 0, 4}, {x, 0, 0})).surfaces > 300);
+    CHECK(studio.stats.draws == 1);
+}
+
+TEST_CASE("the order in the file does not change a byte") {
+    Studio studio;
+    std::vector<Part> parts = some_parts();
+    parts.push_back({500, parts[3].geometry, material_of({0, 0, 1}), parts[3].matrix});  // a tie
+    parts.push_back({5, parts[4].geometry, material_of({0, 0, 1}), parts[4].matrix});
+    View view = view_from({1, 2, 5});
+    view.samples = 2;
+    const Image first = studio.draw(scene_of(parts), view);
+    std::mt19937 random(3);
+    for (int round = 0; round < 10; ++round) {
+        std::shuffle(parts.begin(), parts.end(), random);
+        CHECK(studio.draw(scene_of(parts), view).rgba == first.rgba);
+    }
+}
+
+TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
+    Studio studio;
+    const auto scene = scene_of(some_parts());
+    const View view = view_from({1, 2, 5});
+    const Image first = studio.draw(scene, view);
+    View other = view_from({5, 1, 0});
+    other.width = 33;
+    other.samples = 3;
+    studio.draw(scene_of({{1, quad(1), kPaint, scaled_by({-1, 1, 1})}}), other);
+    CHECK(studio.draw(scene, view).rgba == first.rgba);
+}
+
+TEST_CASE("scenes come and go without leaving anything on the GPU") {
+    Studio studio;
+    const View view = view_from({1, 2, 5});
+    studio.draw(scene_of(some_parts()), view);
+    const long before = live_gl_objects();
+    CHECK(before > 12);
+    for (int i = 0; i < 20; ++i) studio.draw(scene_of(some_parts()), view);
+    CHECK(live_gl_objects() == before);
+    studio.draw(scene_of({}), view);
+    CHECK(live_gl_objects() < before - 12);
+}
+
+TEST_CASE("what draws is told, and a device that is not there is refused with a sentence") {
+    {
+        const Renderer renderer;
+        CHECK(renderer.description().find("OpenGL") != std::string::npos);
+        CHECK(renderer.description().starts_with("EGL "));
+        CHECK(renderer.max_size() >= 8192);
+    }
+    CHECK(live_gl_objects() == 0);
+    for (const int device : {999, -1}) {
+        try {
+            const Renderer none(device);
+            FAIL_CHECK("no exception");
+        } catch (const std::runtime_error& error) {
+            CHECK(std::string(error.what()).find("no EGL device " + std::to_string(device)) !=
+                  std::string::npos);
+        }
+    }
+    CHECK(live_gl_objects() == 0);
+}

@@ -1,0 +1,100 @@
+#include "shapes.hpp"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <stdexcept>
+
+namespace vrut {
+
+namespace {
+
+void measure(Geometry& geometry) {
+    geometry.bounds = {};
+    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
+}
+
+}  // namespace
+
+std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& given) {
+    SceneParts parts;
+    for (const Part& part : given) {
+        const auto index = static_cast<Index>(parts.nodes.size());
+        parts.materials.push_back(part.material);
+        parts.geometries.push_back(part.geometry);
+        parts.nodes.push_back(
+            {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{index, index}},
+             0});
+    }
+    auto scene = Scene::build(std::move(parts));
+    if (!scene) throw std::logic_error(scene.error().message);
+    return std::make_shared<PlacedScene>(place(*std::move(scene)));
+}
+
+Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular, double shininess) {
+    Material material;
+    material.diffuse = {diffuse, 1};
+    material.specular = {specular, 1};
+    material.shininess = shininess;
+    return material;
+}
+
+Geometry quad(double half, bool normals) {
+    Geometry geometry;
+    geometry.positions = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
+    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
+    if (normals) geometry.normals.assign(4, glm::vec3(0, 0, 1));
+    measure(geometry);
+    return geometry;
+}
+
+Geometry box(const glm::dvec3& half) {
+    Geometry geometry;
+    for (const glm::dvec3& corner : corners({-half, half})) geometry.positions.push_back(corner);
+    geometry.triangles = {{1, 3, 7}, {1, 7, 5}, {0, 4, 6}, {0, 6, 2}, {2, 6, 7}, {2, 7, 3},
+                          {0, 1, 5}, {0, 5, 4}, {4, 5, 7}, {4, 7, 6}, {0, 2, 3}, {0, 3, 1}};
+    measure(geometry);
+    return geometry;
+}
+
+Geometry sphere(double radius, int rings, bool normals) {
+    Geometry geometry;
+    const int columns = 2 * rings;
+    for (int ring = 0; ring <= rings; ++ring)
+        for (int column = 0; column <= columns; ++column) {
+            const double down = std::numbers::pi * ring / rings,
+                         around = 2 * std::numbers::pi * column / columns;
+            const glm::dvec3 out{std::sin(down) * std::sin(around), std::cos(down),
+                                 std::sin(down) * std::cos(around)};
+            geometry.positions.push_back(out * radius);
+            if (normals) geometry.normals.emplace_back(out);
+        }
+    for (int ring = 0; ring < rings; ++ring)
+        for (int column = 0; column < columns; ++column) {
+            const auto at = static_cast<unsigned>(ring * (columns + 1) + column);
+            const auto below = at + static_cast<unsigned>(columns) + 1;
+            if (ring > 0) geometry.triangles.emplace_back(at, below, at + 1);
+            if (ring < rings - 1) geometry.triangles.emplace_back(at + 1, below, below + 1);
+        }
+    measure(geometry);
+    return geometry;
+}
+
+Geometry mapped(Geometry geometry, double scale, const glm::dvec3& offset) {
+    for (glm::dvec3& position : geometry.positions) position = position * scale + offset;
+    measure(geometry);
+    return geometry;
+}
+
+Geometry turned_inside_out(Geometry geometry) {
+    for (glm::uvec3& triangle : geometry.triangles) std::swap(triangle.y, triangle.z);
+    return geometry;
+}
+
+glm::dmat4 moved_by(const glm::dvec3& offset) { return glm::translate(glm::dmat4(1), offset); }
+glm::dmat4 scaled_by(const glm::dvec3& factors) { return glm::scale(glm::dmat4(1), factors); }
+glm::dmat4 turned_by(double degrees, const glm::dvec3& axis) {
+    return glm::rotate(glm::dmat4(1), glm::radians(degrees), axis);
+}
+
+}  // namespace vrut

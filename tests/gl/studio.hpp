@@ -1,0 +1,55 @@
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include "expected_picture.hpp"
+#include "handles.hpp"
+#include "renderer.hpp"
+#include "shapes.hpp"
+
+namespace vrut {
+
+/// A renderer whose driver must have no complaints and which gives everything back at the end.
+class Studio {
+public:
+    Studio() : renderer_(std::in_place, std::nullopt, true) {}
+    ~Studio() {
+        for (const std::string& message : renderer_->take_messages()) FAIL_CHECK(message);
+        renderer_.reset();
+        CHECK(live_gl_objects() == 0);
+    }
+
+    Renderer& renderer() { return *renderer_; }
+
+    Image draw(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
+        Image image;
+        renderer_->set_scene(scene);
+        CHECK(renderer_->render(view, image, stats));
+        return image;
+    }
+
+    /// Draws and compares with what is computed, at all pixels but those at edges.
+    Difference check(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
+        const Difference result = difference(ExpectedPicture(*scene, view), draw(scene, view));
+        CHECK_MESSAGE(result.worst <= 1, result.where);
+        return result;
+    }
+
+    FrameStats stats;
+
+private:
+    std::optional<Renderer> renderer_;
+};
+
+/// A small view from `eye` towards `focus`.
+inline View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    View view;
+    view.camera.eye = eye;
+    view.camera.focus = focus;
+    view.camera = with_orthogonal_up(view.camera);
+    view.width = 96;
+    view.height = 64;
+    return view;
+}
+
+}  // namespace vrut

@@ -1,0 +1,255 @@
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+
+#include "test_client.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+
+namespace {
+
+double cpu_milliseconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    const auto ms = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_usec) / 1e3;
+    };
+    return ms(usage.ru_utime) + ms(usage.ru_stime);
+}
+
+Json eye(int id, double x) {
+    return {{"type", "patch"}, {"id", id}, {"patch", {{"camera", {{"eye", {x, 0.5, 9}}}}}}};
+}
+
+}  // namespace
+
+TEST_CASE("after a change come moving frames, then one still frame, then none") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    CHECK(client.wait_for_still()["frame"] == 1);  // at rest since long: in full at once
+    client.send(eye(1, 1));
+    client.send({{"type", "frame"}});
+    const Json moving = client.wait_for("frame");
+    CHECK(moving["quality"]["level"] == "moving");
+    CHECK(moving["camera"]["eye"][0] == 1.0);
+    const auto start = std::chrono::steady_clock::now();
+    const Json still = client.wait_for_still();
+    CHECK(std::chrono::steady_clock::now() - start > 100ms);
+    CHECK(still["quality"]["samples"] > 1);
+    CHECK(still["quality"]["scale"] == 1.0);
+    CHECK(still["quality"]["subsampling"] == "4:4:4");
+    client.send({{"type", "frame"}});
+    CHECK_FALSE(client.receive(400ms).has_value());
+    CHECK(server.metrics().frames_rendered() == 3);
+}
+
+TEST_CASE("the header tells the highest id of this client that the picture shows") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join("view");
+    CHECK(a.wait_for_still()["handled"] == 0);
+    a.send(eye(41, 1));
+    a.send({{"type", "frame"}, {"id", 42}});
+    const Json header = a.wait_for("frame");
+    CHECK(header["handled"] == 42);
+    CHECK(header["timing"]["sinceInputMs"] >= 0);
+    CHECK(b.wait_for_still()["handled"] == 0);
+}
+
+TEST_CASE("nothing is drawn that nobody asked for") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    for (int i = 1; i <= 20; ++i) {
+        client.send(eye(i, i));
+        client.wait_for("ok");
+    }
+    std::this_thread::sleep_for(300ms);
+    CHECK(server.metrics().frames_rendered() == 0);
+    CHECK(server.metrics().frames_encoded == 0);
+    client.send({{"type", "frame"}});
+    CHECK(client.wait_for("frame")["camera"]["eye"][0] == 20.0);
+    CHECK(server.metrics().frames_rendered() == 1);
+}
+
+TEST_CASE("a thousand grants count as two") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    client.wait_for_still();
+    for (int i = 0; i < 1000; ++i) client.send({{"type", "frame"}});
+    for (int i = 1; i <= 10; ++i) {
+        client.send(eye(i, i));
+        client.wait_for("ok");
+        std::this_thread::sleep_for(20ms);
+    }
+    int frames = 0;
+    while (const auto message = client.receive(400ms)) frames += message->binary;
+    CHECK(frames <= 2);
+}
+
+TEST_CASE("one rendering and one encoding serve everybody") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port()), c(server.port());
+    a.join();
+    b.join("view");
+    c.join("view");
+    Json frames[3];
+    for (TestClient* client : {&a, &b, &c}) client->send({{"type", "frame"}});
+    frames[0] = a.wait_for_still();
+    frames[1] = b.wait_for("frame");
+    frames[2] = c.wait_for("frame");
+    CHECK(frames[0]["frame"] == frames[1]["frame"]);
+    CHECK(frames[0]["frame"] == frames[2]["frame"]);
+    CHECK(server.metrics().frames_rendered() == 1);
+    CHECK(server.metrics().frames_encoded == 1);
+    CHECK(server.metrics().frames_sent == 3);
+    // Who comes later gets the same one without any work.
+    TestClient d(server.port());
+    d.join("view");
+    CHECK(d.wait_for_still()["frame"] == frames[0]["frame"]);
+    CHECK(server.metrics().frames_rendered() == 1);
+}
+
+TEST_CASE("five seconds without change cost nothing") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join("view");
+    a.send(eye(1, 3));
+    a.wait_for_still();
+    b.wait_for_still();
+    for (TestClient* client : {&a, &b})
+        for (int i = 0; i < 2; ++i) client->send({{"type", "frame"}});
+    std::this_thread::sleep_for(200ms);
+    const auto rendered = server.metrics().frames_rendered();
+    const auto encoded = server.metrics().frames_encoded.load();
+    const auto sent = server.metrics().frames_sent.load();
+    const double cpu = cpu_milliseconds();
+    std::this_thread::sleep_for(5s);
+    const double used = cpu_milliseconds() - cpu;
+    CHECK(server.metrics().frames_rendered() == rendered);
+    CHECK(server.metrics().frames_encoded == encoded);
+    CHECK(server.metrics().frames_sent == sent);
+    MESSAGE("processor time in 5 s at rest: " << used << " ms");
+    CHECK(used < 50);
+}
+
+TEST_CASE("a client that never reads delays nobody, and one frame waits for it at most") {
+    TestServer server({.noise = true});
+    TestClient worker(server.port()), stalled(server.port(), {.receive_buffer = 4096});
+    worker.join();
+    stalled.join("view");
+    constexpr int kFrames = 60;
+    for (int i = 1; i <= kFrames; ++i) {
+        stalled.send({{"type", "frame"}});
+        worker.send({{"type", "frame"}});
+        worker.send(eye(i, i * 0.1));
+        const Json header = worker.wait_for("frame");
+        CHECK(header["handled"].get<int>() >= i - 1);
+    }
+    const Metrics& metrics = server.metrics();
+    // The worker's frames, and of the stalled one's what went into its socket's buffers.
+    CHECK(metrics.frames_sent >= kFrames);
+    CHECK(metrics.frames_sent <= kFrames + 3);
+    CHECK(metrics.frames_replaced >= kFrames - 5);
+    // The stalled client's in its socket, the newest (which is what waits for it), one on its way to the
+    // worker, one fresh from the encoder.
+    CHECK(metrics.pictures_held_most <= 4);
+    CHECK(metrics.frames_encoded <= metrics.frames_granted);
+}
+
+TEST_CASE("a client that takes nothing for ten seconds is cut") {
+    TestServer server({.noise = true});
+    TestClient worker(server.port()), stalled(server.port(), {.receive_buffer = 4096});
+    worker.join();
+    stalled.join("view");
+    for (int i = 1; i <= 5; ++i) {
+        stalled.send({{"type", "frame"}});
+        worker.send({{"type", "frame"}});
+        worker.send(eye(i, i * 0.1));
+        worker.wait_for("frame");
+    }
+    CHECK(server.metrics().clients_left == 0);
+    CHECK(eventually([&] { return server.metrics().clients_left == 1; }, 13s));
+    worker.send(eye(9, 9));
+    CHECK(worker.wait_for("ok")["id"] == 9);
+}
+
+TEST_CASE("input interrupts the picture at rest") {
+    TestServer server({.takes = 50ms});
+    TestClient client(server.port());
+    client.join();
+    client.send({{"type", "frame"}});
+    client.send({{"type", "frame"}});
+    std::this_thread::sleep_for(80ms);  // the first picture, of several samples, is being drawn
+    client.send(eye(1, 2));
+    const Json header = client.wait_for("frame");
+    CHECK(header["quality"]["level"] == "moving");
+    CHECK(header["camera"]["eye"][0] == 2.0);
+    CHECK(server.metrics().frames_interrupted >= 1);
+}
+
+TEST_CASE("the whole scene stays in view while nobody has moved the camera, and then the camera stays") {
+    TestServer server;
+    TestClient client(server.port());
+    const Json home = client.join()["camera"];
+    client.send({{"type", "patch"}, {"patch", Json::object()}});  // takes control
+    client.send({{"type", "resize"}, {"id", 1}, {"width", 400}, {"height", 900}, {"pixelRatio", 1}});
+    client.wait_for("ok");
+    const Json upright = client.state["camera"];
+    CHECK(upright["eye"] != home["eye"]);
+    CHECK(upright["focus"] == home["focus"]);
+    client.send(eye(2, 1));
+    client.wait_for("ok");
+    const Json own = client.state["camera"];
+    client.send({{"type", "resize"}, {"id", 3}, {"width", 900}, {"height", 400}, {"pixelRatio", 1}});
+    client.wait_for("ok");
+    CHECK(client.state["camera"] == own);
+}
+
+TEST_CASE("a painter that fails ends the server with its sentence") {
+    FakePainter fake;
+    ServerOptions options;
+    options.listen = {"127.0.0.1", 0};
+    const PainterFactory broken = [&](std::shared_ptr<const PlacedScene> scene) {
+        Painter painter = fake.factory()(std::move(scene));
+        painter.paint = [count = 0, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
+                                                           const std::function<bool()>& interrupted) mutable {
+            if (++count > 1) throw std::runtime_error("the device is lost");
+            return paint(view, image, stats, interrupted);
+        };
+        return painter;
+    };
+    Server server(options, std::make_shared<const PlacedScene>(place(Scene())), broken);
+    std::string sentence;
+    std::thread thread([&] {
+        try {
+            server.run(false);
+        } catch (const std::exception& error) {
+            sentence = error.what();
+        }
+    });
+    TestClient client(server.port());
+    client.join();
+    client.send({{"type", "frame"}});
+    CHECK(client.wait_for_close() == 1001);
+    thread.join();
+    CHECK(sentence == "drawing has failed: the device is lost");
+}
+
+TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
+    const PainterFactory none = [](std::shared_ptr<const PlacedScene>) -> Painter {
+        throw std::runtime_error("nothing here draws");
+    };
+    ServerOptions options;
+    options.listen = {"127.0.0.1", 0};
+    const auto scene = std::make_shared<const PlacedScene>(place(Scene()));
+    CHECK_THROWS_WITH(Server(options, scene, none), "nothing here draws");
+    TestServer other;
+    options.listen.port = other.port();
+    CHECK_THROWS_WITH(Server(options, scene, FakePainter{}.factory()),
+                      doctest::Contains("cannot listen at 127.0.0.1:"));
+}

@@ -1,0 +1,143 @@
+#include <doctest/doctest.h>
+
+#include "test_client.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+
+namespace {
+
+Json zoom_speed(int id, double speed) {
+    return {{"type", "patch"}, {"id", id}, {"patch", {{"navigation", {{"zoomSpeed", speed}}}}}};
+}
+
+}  // namespace
+
+TEST_CASE("one steers; the other is told that he does not, or nothing for a finger without an id") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join();
+    a.send(zoom_speed(1, 2));
+    a.wait_for("ok");
+    CHECK(a.state["control"]["holder"] == "c1");
+    b.send(zoom_speed(1, 3));
+    CHECK(b.wait_for("error")["code"] == "not-in-control");
+    b.send(pointer_event("pointerdown", 1, 1));
+    b.send({{"type", "resize"}, {"id", 2}, {"width", 100}, {"height", 100}, {"pixelRatio", 1}});
+    for (;;) {
+        const auto message = b.receive();
+        REQUIRE(message.has_value());
+        CHECK(message->json["type"] != "error");
+        if (message->json["type"] == "ok") break;
+    }
+}
+
+TEST_CASE("a holder who leaves leaves control free, and his finger is lifted") {
+    TestServer server;
+    TestClient b(server.port());
+    b.join();
+    {
+        TestClient a(server.port());
+        a.join();
+        a.send(pointer_event("pointerdown", 1, 1));
+        while (!b.state["control"].contains("holder")) b.wait_for("patch");
+    }
+    while (b.state["control"].contains("holder")) b.wait_for("patch");
+    b.send(zoom_speed(1, 3));
+    CHECK(b.wait_for("ok")["id"] == 1);
+    CHECK(b.state["control"]["holder"] == "c1");
+}
+
+TEST_CASE("a quiet holder gives way, one with a finger down does not") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join();
+    a.send(pointer_event("pointerdown", 1, 1));
+    while (!b.state["control"].contains("holder")) b.wait_for("patch");
+    std::this_thread::sleep_for(1100ms);
+    b.send(zoom_speed(1, 3));
+    CHECK(b.wait_for("error")["code"] == "not-in-control");
+    a.send(pointer_event("pointerup", 1, 1, "touch", 0, 0));
+    std::this_thread::sleep_for(1100ms);
+    b.send(zoom_speed(2, 3));
+    CHECK(b.wait_for("ok")["id"] == 2);
+}
+
+TEST_CASE("roles: a view steers nothing, a host the camera alone") {
+    TestServer server;
+    TestClient view(server.port()), host(server.port());
+    view.join("view");
+    host.join("host");
+    view.send(zoom_speed(1, 2));
+    CHECK(view.wait_for("error")["code"] == "not-allowed");
+    view.send(pointer_event("pointerdown", 1, 1));
+    CHECK(view.wait_for("error")["code"] == "not-allowed");
+    host.send(zoom_speed(1, 2));
+    CHECK(host.wait_for("error")["code"] == "not-allowed");
+    host.send(pointer_event("pointerdown", 1, 1));
+    CHECK(host.wait_for("error")["code"] == "not-allowed");
+    host.send({{"type", "patch"}, {"id", 2}, {"patch", {{"camera", {{"fov", 33}}}}}});
+    CHECK(host.wait_for("ok")["id"] == 2);
+    CHECK(host.state["camera"]["fov"] == 33);
+}
+
+TEST_CASE("hovering takes control from nobody") {
+    TestServer server;
+    TestClient a(server.port());
+    a.join();
+    a.send(pointer_event("pointermove", 5, 5, "mouse", -1, 0));
+    a.send({{"type", "resize"}, {"id", 1}, {"width", 300}, {"height", 200}, {"pixelRatio", 1}});
+    a.wait_for("ok");
+    CHECK_FALSE(a.state["control"].contains("holder"));
+}
+
+TEST_CASE("the view has the holder's size") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join();
+    b.send({{"type", "resize"}, {"id", 1}, {"width", 300}, {"height", 200}, {"pixelRatio", 2}});
+    b.wait_for("ok");
+    CHECK(b.wait_for_still()["view"] == Json({{"width", 1280.0}, {"height", 720.0}, {"pixelRatio", 1.0}}));
+    b.send(zoom_speed(2, 2));
+    b.wait_for("ok");
+    const Json header = b.wait_for_still();
+    CHECK(header["view"] == Json({{"width", 300.0}, {"height", 200.0}, {"pixelRatio", 2.0}}));
+    CHECK(header["width"] == 600);
+    CHECK(header["height"] == 400);
+}
+
+TEST_CASE("a drag of 50 moves and the same drag of 2 moves end in the same camera to the last bit") {
+    const auto camera_after = [](int moves, const char* device, int button, unsigned buttons, bool slowly) {
+        TestServer server({.takes = 1ms});
+        TestClient client(server.port());
+        client.join();
+        client.send({{"type", "frame"}});
+        client.send(pointer_event("pointerdown", 200, 300, device, button, buttons));
+        for (int i = 1; i <= moves; ++i) {
+            const double part = static_cast<double>(i) / moves;
+            client.send(
+                pointer_event("pointermove", 200 + 333.3 * part, 300 - 111.1 * part, device, -1, buttons));
+            if (slowly) {  // each move has a picture of its own
+                client.send({{"type", "frame"}});
+                client.wait_for("frame");
+            }
+        }
+        client.send(pointer_event("pointerup", 533.3, 188.9, device, button, 0));
+        client.send({{"type", "resize"}, {"id", 1}, {"width", 1280}, {"height", 720}, {"pixelRatio", 1}});
+        client.wait_for("ok");
+        return client.state["camera"].dump();
+    };
+    struct Drag {
+        const char* device;
+        int button;
+        unsigned buttons;
+    };
+    for (const Drag& drag : {Drag{"touch", 0, 1}, {"mouse", 0, 1}, {"mouse", 2, 2}, {"mouse", 1, 4}}) {
+        const std::string two = camera_after(2, drag.device, drag.button, drag.buttons, true);
+        CHECK(camera_after(50, drag.device, drag.button, drag.buttons, false) == two);
+        CHECK(camera_after(50, drag.device, drag.button, drag.buttons, true) == two);
+    }
+}

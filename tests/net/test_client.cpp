@@ -1,0 +1,236 @@
+#include "test_client.hpp"
+
+#include <doctest/doctest.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/connect.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
+#include <random>
+
+#include "frame_header.hpp"
+#include "vrut_text.hpp"
+
+namespace vrut::test {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+
+namespace {
+
+constexpr const char* kScene = R"(vrut-text 1
+geometry 1 vertices 3 -1 -1 0  1 -1 0  0 1 1 triangles 1 0 1 2 end
+node 1 "Triangle" geometry geometry 1 end
+node 2 "Studio" background active 0 end
+)";
+
+std::shared_ptr<const PlacedScene> triangle() {
+    auto scene = read_vrut_text(kScene, "triangle.vrut");
+    REQUIRE(scene.has_value());
+    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+}
+
+Json merge(Json target, const Json& patch) {
+    target.merge_patch(patch);
+    return target;
+}
+
+Json header_of(const std::string& jpeg) {
+    const std::span bytes(reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size());
+    const std::size_t at = protocol::comment_offset(bytes);
+    REQUIRE(bytes[at] == 0xFF);
+    REQUIRE(bytes[at + 1] == 0xFE);
+    const std::size_t length = static_cast<std::size_t>(bytes[at + 2]) << 8 | bytes[at + 3];
+    return Json::parse(jpeg.substr(at + 4, length - 2));
+}
+
+}  // namespace
+
+PainterFactory FakePainter::factory() const {
+    return [*this](std::shared_ptr<const PlacedScene>) {
+        Painter painter{"fake", false, 16384, {}};
+        painter.paint = [*this](const View& view, Image& image, FrameStats& stats,
+                                const std::function<bool()>& interrupted) {
+            stats = {};
+            image.resize(view.width, view.height);
+            for (int sample = 0; sample < view.samples; ++sample) {
+                if (sample > 0 && interrupted && interrupted()) return false;
+                if (takes.count() > 0) std::this_thread::sleep_for(takes);
+            }
+            std::minstd_rand random(static_cast<unsigned>(std::abs(view.camera.eye.x) * 1000));
+            const auto color = static_cast<std::uint8_t>(std::abs(view.camera.eye.x) * 40);
+            for (auto& byte : image.rgba) byte = noise ? static_cast<std::uint8_t>(random()) : color;
+            return true;
+        };
+        return painter;
+    };
+}
+
+TestServer::TestServer(const FakePainter& painter, const ServerOptions& options)
+    : TestServer(triangle(), painter.factory(), options) {}
+
+TestServer::TestServer(std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter,
+                       ServerOptions options) {
+    spdlog::set_level(spdlog::level::off);
+    options.listen = {"127.0.0.1", 0};
+    server_ = std::make_unique<Server>(std::move(options), std::move(scene), painter);
+    thread_ = std::thread([this] { server_->run(false); });
+}
+
+TestServer::~TestServer() { stop(); }
+
+std::chrono::milliseconds TestServer::stop() {
+    const auto start = std::chrono::steady_clock::now();
+    if (thread_.joinable()) {
+        server_->stop();
+        thread_.join();
+    }
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - start);
+}
+
+struct TestClient::Impl {
+    asio::io_context context{1};
+    websocket::stream<tcp::socket> socket{context};
+    beast::flat_buffer buffer;
+    websocket::response_type response;
+    bool reading = false, arrived = false, ended = false;
+    beast::error_code error;
+};
+
+TestClient::TestClient(std::uint16_t port, const ConnectOptions& options) : impl_(std::make_unique<Impl>()) {
+    tcp::socket& tcp_socket = impl_->socket.next_layer();
+    tcp_socket.open(tcp::v4());
+    if (options.receive_buffer > 0)
+        tcp_socket.set_option(asio::socket_base::receive_buffer_size(options.receive_buffer));
+    tcp_socket.connect({asio::ip::make_address("127.0.0.1"), port});
+    tcp_socket.set_option(tcp::no_delay(true));
+    impl_->socket.set_option(websocket::stream_base::decorator([&](websocket::request_type& request) {
+        if (!options.subprotocol.empty())
+            request.set(beast::http::field::sec_websocket_protocol, options.subprotocol);
+        if (!options.origin.empty()) request.set(beast::http::field::origin, options.origin);
+    }));
+    impl_->socket.read_message_max(std::size_t{1} << 28);
+    const std::string host = options.host.empty() ? "127.0.0.1:" + std::to_string(port) : options.host;
+    beast::error_code refused;
+    impl_->socket.handshake(impl_->response, host, "/ws", refused);
+}
+
+TestClient::~TestClient() = default;
+
+int TestClient::status() const { return static_cast<int>(impl_->response.result_int()); }
+
+std::string TestClient::subprotocol() const {
+    return std::string(impl_->response[beast::http::field::sec_websocket_protocol]);
+}
+
+void TestClient::send_text(const std::string& text) {
+    impl_->socket.text(true);
+    beast::error_code ignored;  // the server may have closed; the test sees that when it reads
+    impl_->socket.write(asio::buffer(text), ignored);
+}
+
+void TestClient::send_binary(const std::string& bytes) {
+    impl_->socket.binary(true);
+    beast::error_code ignored;
+    impl_->socket.write(asio::buffer(bytes), ignored);
+}
+
+std::optional<TestClient::Message> TestClient::receive(std::chrono::milliseconds timeout) {
+    Impl& impl = *impl_;
+    if (impl.ended) return std::nullopt;
+    if (!impl.reading) {
+        impl.reading = true;
+        impl.arrived = false;
+        impl.socket.async_read(impl.buffer, [&impl](beast::error_code error, std::size_t) {
+            impl.reading = false;
+            impl.arrived = true;
+            impl.error = error;
+        });
+    }
+    impl.context.restart();
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    while (!impl.arrived && std::chrono::steady_clock::now() < end) impl.context.run_one_until(end);
+    if (!impl.arrived) return std::nullopt;
+    if (impl.error) {
+        impl.ended = true;
+        return std::nullopt;
+    }
+    Message message;
+    message.binary = impl.socket.got_binary();
+    message.data = beast::buffers_to_string(impl.buffer.data());
+    impl.buffer.consume(impl.buffer.size());
+    message.json = message.binary ? header_of(message.data) : Json::parse(message.data);
+    if (!message.binary && message.json["type"] == "state") state = message.json["state"];
+    if (!message.binary && message.json["type"] == "patch") state = merge(state, message.json["patch"]);
+    return message;
+}
+
+Json TestClient::wait_for(const std::string& type, std::chrono::milliseconds timeout) {
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    for (;;) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+        const auto message = receive(std::max(left, 0ms));
+        REQUIRE_MESSAGE(message.has_value(), "no '" << type << "' came");
+        if (message->binary ? type == "frame" : message->json["type"] == type) return message->json;
+    }
+}
+
+int TestClient::wait_for_close(std::chrono::milliseconds timeout) {
+    const auto end = std::chrono::steady_clock::now() + timeout;
+    while (!impl_->ended) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+        if (left < 0ms) return 0;
+        receive(left);
+    }
+    return impl_->error == websocket::error::closed ? impl_->socket.reason().code : 1006;
+}
+
+Json TestClient::join(const std::string& role, const std::string& token) {
+    Json hello = {{"type", "hello"}, {"role", role}};
+    if (!token.empty()) hello["token"] = token;
+    send(hello);
+    wait_for("welcome");
+    return wait_for("state")["state"];
+}
+
+Json TestClient::wait_for_still() {
+    for (;;) {
+        send({{"type", "frame"}});
+        Json header = wait_for("frame");
+        if (header["quality"]["level"] == "still") return header;
+    }
+}
+
+HttpAnswer http(std::uint16_t port, const std::string& method, const std::string& target,
+                const std::string& headers) {
+    asio::io_context context;
+    tcp::socket socket(context);
+    socket.connect({asio::ip::make_address("127.0.0.1"), port});
+    asio::write(socket, asio::buffer(method + " " + target + " HTTP/1.1\r\n" + headers +
+                                     "Connection: close\r\n\r\n"));
+    std::string text;
+    beast::error_code error;
+    asio::read(socket, asio::dynamic_buffer(text), error);
+    HttpAnswer answer;
+    if (text.size() > 12) answer.status = std::stoi(text.substr(9, 3));
+    const std::size_t end = text.find("\r\n\r\n");
+    answer.headers = text.substr(0, end);
+    if (end != std::string::npos) answer.body = text.substr(end + 4);
+    return answer;
+}
+
+Json pointer_event(const char* type, double x, double y, const char* device, int button, unsigned buttons,
+                   int pointer) {
+    return {{"type", type}, {"pointerId", pointer}, {"pointerType", device}, {"x", x},
+            {"y", y},       {"button", button},     {"buttons", buttons}};
+}
+
+}  // namespace vrut::test

@@ -1,0 +1,138 @@
+#!/usr/bin/env bash
+# Builds the project and runs its tests; installs the Debian packages that are missing.
+set -euo pipefail
+
+ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=deploy/packages.sh
+source "$ROOT/deploy/packages.sh"
+
+usage() {
+    cat <<TEXT
+Usage: tests/run.sh [--all]
+
+Checks the source's format, runs every test of the release build but the long ones, runs clang-tidy, and runs
+the unit, net and replay tests under the address and undefined behaviour sanitizers.
+Debian packages and node modules that are missing are installed first.
+
+  --all     also the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --help    this text
+TEXT
+}
+
+all=false
+while [ $# -gt 0 ]; do
+    case $1 in
+    --all) all=true ;;
+    -h | --help)
+        usage
+        exit 0
+        ;;
+    *)
+        usage >&2
+        exit 2
+        ;;
+    esac
+    shift
+done
+
+cd "$ROOT"
+jobs=$(parallel_jobs)
+done_steps=0
+
+# Runs a function or command as a named step; when it fails, says so with what to do, and stops.
+step() { # NAME REMEDY COMMAND...
+    local name=$1 remedy=$2 start=$SECONDS status
+    shift 2
+    say "[$SECONDS s] $name ..."
+    # Not in a condition, where set -e would not hold inside the step.
+    set +e
+    (set -e && "$@")
+    status=$?
+    set -e
+    if [ "$status" -ne 0 ]; then
+        say "[$SECONDS s] FAILED: $name, after $((SECONDS - start)) s and $done_steps steps that passed.${remedy:+ $remedy}"
+        exit 1
+    fi
+    done_steps=$((done_steps + 1))
+    say "[$SECONDS s] $name: passed in $((SECONDS - start)) s"
+}
+
+sources() { # EXTENSION...
+    local folder extension
+    for folder in protocol render server tests; do
+        for extension in "$@"; do
+            find "$folder" -name node_modules -prune -o -name "*.$extension" -print
+        done
+    done
+}
+
+packages() {
+    local wanted=("${BUILD_PACKAGES[@]}" "${RUN_PACKAGES[@]}" "${TEST_PACKAGES[@]}")
+    if $all; then wanted+=("${FUZZ_PACKAGES[@]}"); fi
+    install_packages "${wanted[@]}"
+}
+
+node_modules() {
+    cd tests/web
+    if [ node_modules/.package-lock.json -nt package-lock.json ]; then return; fi
+    npm ci --no-audit --no-fund --ignore-scripts </dev/null
+    touch node_modules/.package-lock.json
+}
+
+format() {
+    sources cpp hpp | xargs -r clang-format-14 --dry-run -Werror
+}
+
+build() { # PRESET
+    cmake --preset "$1" >"build/$1.configure.log" 2>&1 || {
+        cat "build/$1.configure.log"
+        return 1
+    }
+    NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs"
+}
+
+tests() { # PRESET CTEST-ARGUMENTS...
+    ctest --preset "$1" --no-tests=error "${@:2}" </dev/null
+}
+
+# Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.
+tidy() {
+    local object file stamp
+    mkdir -p build/release/tidy
+    # shellcheck disable=SC2016
+    sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
+        -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
+        while IFS=$'\t' read -r object file; do
+            case ${file#"$ROOT"/} in protocol/* | render/* | server/* | tests/*) ;; *) continue ;; esac
+            stamp=${file#"$ROOT"/}
+            stamp=build/release/tidy/${stamp//\//+}
+            [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
+            printf '%s\0%s\0' "$file" "$stamp"
+        done | xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail
+            clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" "$0" 2>&1 |
+                sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
+}
+
+compile_remedy="The compiler's message is above; if the source is right, remove the folder build and start again."
+if ! mkdir -p build 2>/dev/null || [ ! -w build ]; then
+    die "cannot write to $ROOT/build: start this as the folder's owner, or from a copy of your own."
+fi
+[ -x build/release/server/vrut-preview ] || require_space build 3000 "Building the program and its tests"
+
+step "Debian packages" "" packages
+step "node modules" "npm's message is above: see that there is a network, and start again." node_modules
+step "format" "Run clang-format-14 -i on the files named above." format
+step "build release" "$compile_remedy" build release
+step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
+step "clang-tidy" "Mend what it names above." tidy
+step "build asan" "$compile_remedy" build asan
+step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
+if $all; then
+    step "build tsan" "$compile_remedy" build tsan
+    step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
+    step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'
+    step "benchmarks" "Again alone: ctest --preset release -R NAME." tests release -L '^bench$'
+    step "build fuzz" "$compile_remedy" build fuzz
+    step "fuzzers" "Again alone: ctest --preset fuzz -R NAME." tests fuzz -L '^fuzz$'
+fi
+say "All $done_steps steps passed in $SECONDS s."

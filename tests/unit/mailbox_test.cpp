@@ -1,0 +1,86 @@
+#include "mailbox.hpp"
+
+#include <doctest/doctest.h>
+
+#include <thread>
+
+using namespace vrut;
+using protocol::Pointer;
+
+namespace {
+
+EngineEvent pointer(const char* client, Pointer::Event event, std::int64_t id, double x, int button = -1,
+                    unsigned buttons = 1, std::int64_t pointer_id = 1) {
+    Pointer payload;
+    payload.event = event;
+    payload.pointer_id = pointer_id;
+    payload.x = x;
+    payload.button = button;
+    payload.buttons = buttons;
+    ClientSaid said;
+    said.client = client;
+    said.message.id = id;
+    said.message.payload = payload;
+    said.bytes = 100;
+    return said;
+}
+
+EngineEvent move(const char* client, std::int64_t id, double x) {
+    return pointer(client, Pointer::Event::move, id, x);
+}
+
+std::vector<EngineEvent> take(Mailbox& mailbox) { return mailbox.wait(Clock::now()); }
+
+}  // namespace
+
+TEST_CASE("adjacent moves of one pointer become one, with the last place, the last id and all their bytes") {
+    Mailbox mailbox;
+    for (int i = 1; i <= 50; ++i) mailbox.push(move("a", i, i));
+    const auto events = take(mailbox);
+    REQUIRE(events.size() == 1);
+    const auto& said = std::get<ClientSaid>(events[0]);
+    CHECK(said.message.id == 50);
+    CHECK(std::get<Pointer>(said.message.payload).x == 50);
+    CHECK(said.bytes == 5000);
+}
+
+TEST_CASE("nothing else is merged") {
+    Mailbox mailbox;
+    mailbox.push(pointer("a", Pointer::Event::down, 1, 0, 0));
+    mailbox.push(move("a", 2, 1));
+    mailbox.push(move("b", 1, 1));                                     // another client
+    mailbox.push(move("a", 3, 2));                                     // not adjacent
+    mailbox.push(pointer("a", Pointer::Event::move, 4, 3, 2, 3));      // a chord
+    mailbox.push(pointer("a", Pointer::Event::move, 5, 4, -1, 3));     // other buttons held
+    mailbox.push(pointer("a", Pointer::Event::move, 6, 5, -1, 3, 9));  // another pointer
+    mailbox.push(pointer("a", Pointer::Event::up, 7, 6, 0, 0));
+    mailbox.push(GrantsReturned{"a", 1});
+    mailbox.push(GrantsReturned{"a", 1});
+    CHECK(take(mailbox).size() == 10);
+    CHECK(take(mailbox).empty());
+}
+
+TEST_CASE("input is told from what changes no picture") {
+    Mailbox mailbox;
+    ClientSaid grant{"a", {}, {}, 10};
+    grant.message.payload = protocol::FrameGrant{};
+    mailbox.push(grant);
+    CHECK_FALSE(mailbox.has_input());
+    mailbox.push(move("a", 1, 0));
+    CHECK(mailbox.has_input());
+    take(mailbox);
+    CHECK_FALSE(mailbox.has_input());
+}
+
+TEST_CASE("a wait ends by an event, a wake, its time and the end") {
+    Mailbox mailbox;
+    CHECK(mailbox.wait(Clock::now()).empty());
+    mailbox.wake();
+    CHECK(mailbox.wait(std::nullopt).empty());
+    std::thread other([&] { mailbox.push(ClientLeft{"a"}); });
+    CHECK(mailbox.wait(std::nullopt).size() == 1);
+    other.join();
+    mailbox.close();
+    CHECK(mailbox.closed());
+    CHECK(mailbox.wait(std::nullopt).empty());
+}

@@ -1,0 +1,37 @@
+#include "steering.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace vrut;
+using namespace std::chrono_literals;
+
+TEST_CASE("who steers first holds control until he has been quiet for a second") {
+    Steering steering;
+    const Clock::time_point start = Clock::time_point(1h);
+    CHECK(steering.steer("a", start, false));
+    CHECK(steering.holder() == "a");
+    CHECK_FALSE(steering.steer("b", start + 999ms, false));
+    CHECK(steering.holder() == "a");
+    CHECK(steering.steer("a", start + 999ms, false));
+    CHECK_FALSE(steering.steer("b", start + 1998ms, false));
+    CHECK(steering.steer("b", start + 1999ms, false));
+    CHECK(steering.holder() == "b");
+}
+
+TEST_CASE("a pressed pointer is not quiet") {
+    Steering steering;
+    const Clock::time_point start = Clock::time_point(1h);
+    CHECK(steering.steer("a", start, true));
+    CHECK_FALSE(steering.steer("b", start + 1h, true));
+    CHECK(steering.steer("b", start + 1h, false));
+}
+
+TEST_CASE("a holder who leaves leaves control free, and nobody inherits") {
+    Steering steering;
+    const Clock::time_point start = Clock::time_point(1h);
+    CHECK(steering.steer("a", start, false));
+    CHECK_FALSE(steering.leave("b"));
+    CHECK(steering.leave("a"));
+    CHECK_FALSE(steering.holder().has_value());
+    CHECK(steering.steer("b", start, false));
+}
