@@ -115,6 +115,25 @@ Patch decode_patch(const Members& members) {
             members.optional_integer("ifRevision", 0)};
 }
 
+std::array<double, 2> read_pair(const Members& members, const char* name, double largest) {
+    const Json* value = members.find(name);
+    if (!value) return {0, 0};
+    const glm::dvec2 pair = read_vec2(*value, name, -largest, largest);
+    return {pair.x, pair.y};
+}
+
+Navigate decode_navigate(const Members& members) {
+    Navigate navigate;
+    navigate.rotate = read_pair(members, "rotate", kMaxCoordinate);
+    navigate.pan = read_pair(members, "pan", kMaxCoordinate);
+    if (members.find("zoom")) navigate.zoom = members.number("zoom", 1e-6, 1e6);
+    return navigate;
+}
+
+Control decode_control(const Members& members) {
+    return {read_word(members.at("action"), "action", {"take", "release"}) == 0};
+}
+
 using Payload = decltype(ClientMessage::payload);
 
 struct Decoder {
@@ -134,6 +153,9 @@ constexpr Decoder kDecoders[] = {
     {"keydown", [](const Members& m) -> Payload { return decode_key(m, true); }},
     {"keyup", [](const Members& m) -> Payload { return decode_key(m, false); }},
     {"patch", [](const Members& m) -> Payload { return decode_patch(m); }},
+    {"navigate", [](const Members& m) -> Payload { return decode_navigate(m); }},
+    {"fit", [](const Members& m) -> Payload { return Fit{m.optional_integer("node", 0)}; }},
+    {"control", [](const Members& m) -> Payload { return decode_control(m); }},
 };
 
 Payload decode_payload(const Members& members) {

@@ -106,6 +106,10 @@ std::size_t read_word(const Json& value, std::string_view what,
     out_of_range(what, "one of " + list);
 }
 
+glm::dvec2 read_vec2(const Json& value, std::string_view what, double min, double max) {
+    return read_vector<glm::dvec2>(value, what, min, max);
+}
+
 glm::dvec3 read_vec3(const Json& value, std::string_view what, double min, double max) {
     return read_vector<glm::dvec3>(value, what, min, max);
 }

@@ -35,6 +35,7 @@ std::string read_string(const Json& value, std::string_view what, std::size_t ma
 /// Position in `words` of the value.
 std::size_t read_word(const Json& value, std::string_view what,
                       std::initializer_list<std::string_view> words);
+glm::dvec2 read_vec2(const Json& value, std::string_view what, double min, double max);
 glm::dvec3 read_vec3(const Json& value, std::string_view what, double min, double max);
 glm::dvec4 read_vec4(const Json& value, std::string_view what, double min, double max);
 const Json& read_object(const Json& value, std::string_view what);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
@@ -74,9 +75,24 @@ struct Patch {
     std::optional<std::int64_t> if_revision;
 };
 
+/// Moves for scripts, done in this order; navigation speeds do not apply.
+struct Navigate {
+    std::array<double, 2> rotate{0, 0};  ///< degrees as if dragged right and down
+    std::array<double, 2> pan{0, 0};     ///< fractions of the view's height, right and down
+    double zoom = 1;                     ///< divides the distance from eye to focus
+};
+
+struct Fit {
+    std::optional<std::int64_t> node;  ///< none: the whole scene
+};
+
+struct Control {
+    bool take = true;  ///< and keep; else release
+};
+
 struct ClientMessage {
     std::optional<std::int64_t> id;
-    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Patch> payload;
+    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Patch, Navigate, Fit, Control> payload;
 };
 
 // --- server to client

@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "encoder.hpp"
-#include "gestures.hpp"
 #include "mailbox.hpp"
 #include "metrics.hpp"
 #include "pacing.hpp"
+#include "presentation.hpp"
 #include "scene.hpp"
 #include "state.hpp"
-#include "steering.hpp"
 #include "view.hpp"
 
 namespace vrut {
@@ -28,17 +27,13 @@ struct Painter {
     /// As Renderer::render.
     std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted)> paint;
 };
-using PainterFactory = std::function<Painter(std::shared_ptr<const PlacedScene>)>;
+using PainterFactory = std::function<Painter(const std::shared_ptr<const PlacedScene>&)>;
 
 /// The renderer as a painter, on EGL device `device` or the first that works.
 PainterFactory gl_painter(std::optional<int> device);
 
 /// What the render thread tells the net thread after it has handled a batch of events.
 struct EngineOutput {
-    struct Answer {
-        std::string client, text;
-        std::int64_t revision = 0;  ///< the client must know this revision first
-    };
     struct Owed {
         std::string client;
         std::int64_t frame = 0;  ///< this frame or a newer one answers one grant
@@ -75,46 +70,19 @@ public:
 
 private:
     struct Client {
-        protocol::Role role = protocol::Role::view;
-        std::optional<protocol::Resize> wanted;
         int grants = 0;
         std::int64_t last_frame = 0;  ///< newest that it has been promised
         std::int64_t handled = 0;     ///< highest message id
     };
 
-    // --- events
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
     void handle(const ClientSaid& said);
     void handle(const GrantsReturned& returned);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Hello& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Resize& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::FrameGrant& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Pointer& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Wheel& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Key& payload);
-    void apply(const std::string& client, const protocol::ClientMessage& message,
-               const protocol::Patch& payload);
-
-    // --- state
-    bool may_steer(const std::string& client, const protocol::ClientMessage& message);
-    void set_holder_view();
-    void set_view(const protocol::Resize& view);
-    void move_camera(const Camera& camera);
-    NavigationContext navigation_context() const;
-    double aspect() const { return view_size_.width / view_size_.height; }
-    void commit(const std::string& by);
-    void answer(const std::string& client, const protocol::ClientMessage& message);
-    void refuse(const std::string& client, const protocol::ClientMessage& message, protocol::Error error);
+    void handle_all(const std::vector<EngineEvent>& events);
+    void report();
 
     // --- pictures
-    void note_change();
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
     bool waits_for_newer(const Client& client) const;
@@ -133,20 +101,13 @@ private:
     Encoder encoder_;
     Painter painter_;
 
-    protocol::State starting_, state_;
-    std::shared_ptr<const protocol::StateDocument> document_;
-    protocol::Resize view_size_;
-    bool at_home_ =
-        false;  ///< nobody has moved the camera since it was fitted at loading: it follows the view's size
-    Gestures gestures_;
-    Steering steering_;
+    std::optional<Presentation> presentation_;
     std::map<std::string, Client> clients_;
     EngineOutput output_;
+    std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output told of
 
-    View visible_;                   ///< what is to be seen now
-    Clock::time_point last_change_;  ///< of visible_ or the view's size; long ago at the start
-    Clock::time_point arrival_;      ///< of the message in hand
-    std::optional<Clock::time_point> newest_input_;
+    Clock::time_point last_change_;                  ///< of what is to be seen; long ago at the start
+    std::optional<Clock::time_point> newest_input_;  ///< arrival of the last message that changed it
     struct Drawn {
         std::int64_t frame = 0;
         View visible;

@@ -20,6 +20,9 @@ constexpr auto kHelloDeadline = 5s;
 constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
 constexpr auto kIdle = 30s;   // a peer that does not even answer pings is gone
 constexpr std::size_t kMaxUnhandled = 1 << 20;
+// Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
+// overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
+constexpr std::size_t kMaxRead = 1 << 20;
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
 
 /// Bytes that the peer has acknowledged since the connection began.
@@ -61,7 +64,7 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
     deadlines.idle_timeout = kIdle;
     deadlines.keep_alive_pings = true;
     socket_.set_option(deadlines);
-    socket_.read_message_max(protocol::kMaxMessageBytes);
+    socket_.read_message_max(kMaxRead);
     socket_.auto_fragment(false);  // one frame, one write
     if (request.find(beast::http::field::sec_websocket_protocol) != request.end())
         socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
@@ -107,6 +110,12 @@ void Session::read() {
 }
 
 void Session::on_text(std::string_view text) {
+    if (text.size() > protocol::kMaxMessageBytes)
+        return refuse_and_close(
+            {{},
+             protocol::error_code::bad_message,
+             "the message is longer than " + std::to_string(protocol::kMaxMessageBytes) + " bytes"},
+            close_code::too_big);
     auto message = protocol::decode(text);
     const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
     if (client_.empty() && !hello) {
@@ -122,7 +131,7 @@ void Session::on_text(std::string_view text) {
     if (hello) return on_hello(*hello);
     if (!message) {
         ++hub_.metrics->messages_refused;
-        return answer({client_, protocol::encode(message.error()), 0});
+        return answer({client_, protocol::encode(message.error()), 0, true});
     }
     unhandled_bytes_ += text.size();
     hub_.engine->mailbox().push(ClientSaid{client_, *std::move(message), Clock::now(), text.size()});
@@ -155,18 +164,18 @@ void Session::on_hello(const protocol::Hello& hello) {
     welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = 10'000;
     welcome.limits.max_server_message = std::size_t{64} << 20;
-    answer({client_, protocol::encode(welcome), -1});
+    answer({client_, protocol::encode(welcome), -1, false});
 }
 
 void Session::refuse_and_close(const protocol::Error& error, close_code code) {
     ++hub_.metrics->messages_refused;
-    answers_.push_back({client_, protocol::encode(error), -1});
+    answers_.push_back({client_, protocol::encode(error), -1, true});
     close(code, error.message);
 }
 
 // --- what there is to send
 
-void Session::answer(EngineOutput::Answer answer) {
+void Session::answer(Answer answer) {
     answers_.push_back(std::move(answer));
     pump();
 }

@@ -29,7 +29,7 @@ public:
     void accept(const boost::beast::http::request<boost::beast::http::string_body>& request);
 
     // What the engine says.
-    void answer(EngineOutput::Answer answer);
+    void answer(Answer answer);
     void owe(std::int64_t frame);
     void handled(std::size_t bytes);
     /// The hub has a newer picture than `before`.
@@ -64,7 +64,7 @@ private:
 
     // --- what the client knows and is owed
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
-    std::deque<EngineOutput::Answer> answers_;
+    std::deque<Answer> answers_;
     std::deque<std::int64_t> owed_;
     std::int64_t last_frame_ = 0;
 

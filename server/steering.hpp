@@ -16,12 +16,16 @@ public:
 
     /// `client` wants to steer. True where it holds control now, perhaps since just now.
     bool steer(const std::string& client, Clock::time_point now, bool holder_presses);
-    /// `client` is gone. True where it held control.
-    bool leave(const std::string& client);
+    /// `client` takes control and keeps it, however quiet it is, until it gives it back or another takes it.
+    void take(const std::string& client, Clock::time_point now);
+    /// `client` gives control back, or is gone. True where it held control; nobody inherits.
+    bool release(const std::string& client);
     const std::optional<std::string>& holder() const { return holder_; }
+    bool kept() const { return kept_; }
 
 private:
     std::optional<std::string> holder_;
+    bool kept_ = false;
     Clock::time_point last_;
 };
 

@@ -117,7 +117,8 @@ compile_remedy="The compiler's message is above; if the source is right, remove 
 if ! mkdir -p build 2>/dev/null || [ ! -w build ]; then
     die "cannot write to $ROOT/build: start this as the folder's owner, or from a copy of your own."
 fi
-[ -x build/release/server/vrut-preview ] || require_space build 3000 "Building the program and its tests"
+if [ ! -d build/asan ]; then require_space build 2000 "Building the program and its tests"; fi
+if $all && [ ! -d build/tsan ]; then require_space build 2500 "Building the tests of --all"; fi
 
 step "Debian packages" "" packages
 step "node modules" "npm's message is above: see that there is a network, and start again." node_modules

@@ -208,20 +208,35 @@ std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>&
     return shown;
 }
 
-Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world) {
+namespace {
+
+Bounds bounds_below(const Scene& scene, const std::vector<glm::dmat4>& world, std::size_t top) {
     // Squares and sums of what is used below stay finite.
     constexpr double kFarthest = 1e150;
     Bounds bounds;
     const std::vector<bool> shown = shown_nodes(scene, world, std::nullopt);
-    for (std::size_t i = 0; i < shown.size(); ++i) {
+    std::vector<bool> below(shown.size());
+    for (std::size_t i = top; i < shown.size(); ++i) {
+        const Index parent = scene.nodes()[i].parent;
+        below[i] = i == top || (parent != kNone && below[static_cast<std::size_t>(parent)]);
         const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
-        if (!shown[i] || !data || data->geometry == kNone || !is_finite(world[i])) continue;
+        if (!below[i] || !shown[i] || !data || data->geometry == kNone || !is_finite(world[i])) continue;
         const Bounds box =
             transformed(world[i], scene.geometries()[static_cast<std::size_t>(data->geometry)].bounds);
         if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest)
             bounds.add(box);
     }
     return bounds;
+}
+
+}  // namespace
+
+Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world) {
+    return bounds_below(scene, world, 0);
+}
+
+Bounds subtree_bounds(const PlacedScene& placed, Index node) {
+    return bounds_below(placed.scene, placed.world, static_cast<std::size_t>(node));
 }
 
 PlacedScene place(Scene scene) {

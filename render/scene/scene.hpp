@@ -171,6 +171,9 @@ struct PlacedScene {
 
 PlacedScene place(Scene scene);
 
+/// scene_bounds of what hangs at and below `node`.
+Bounds subtree_bounds(const PlacedScene& placed, Index node);
+
 /// True when every number of the matrix is finite.
 bool is_finite(const glm::dmat4& matrix);
 

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <vector>
 
@@ -15,12 +16,12 @@ using namespace vrut::test;
 namespace {
 
 struct Series {
-    const char* name;
+    const char* name = "";
     std::vector<double> ms;
 
     double percentile(double part) {
         std::sort(ms.begin(), ms.end());
-        return ms[static_cast<std::size_t>(part * static_cast<double>(ms.size() - 1) + 0.5)];
+        return ms[static_cast<std::size_t>(std::lround(part * static_cast<double>(ms.size() - 1)))];
     }
 };
 

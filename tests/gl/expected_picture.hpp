@@ -30,14 +30,14 @@ public:
 
 private:
     struct Corner {
-        glm::dvec3 position, normal;
+        glm::dvec3 position{0}, normal{0};
     };
     struct Triangle {
         Corner corners[3];
         Material material;
-        int surface;
-        bool both_sides;
-        bool mirrored;
+        int surface = -1;
+        bool both_sides = false;
+        bool mirrored = false;
     };
     void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
 

@@ -110,24 +110,34 @@ TEST_CASE("something very far away hides nothing") {
 TEST_CASE("of equal depth the higher id is in front") {
     Studio studio;
     const View view = view_from({1, 2, 5});
-    const auto with_ids = [&](Id red, Id green, const Geometry& geometry) {
-        const glm::dmat4 matrix =
-            turned_by(33, glm::normalize(glm::dvec3(1, 1, 0.2))) * scaled_by({1, 1.3, 0.9});
-        std::vector<Part> parts{{red, geometry, kRed, matrix}, {green, geometry, kGreen, matrix}};
-        if (red % 2) std::swap(parts[0], parts[1]);  // the place in the file means nothing
-        return scene_of(parts);
-    };
-    for (const Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)})
-        for (const auto& [red, green] : {std::pair<Id, Id>{8, 2}, {9, 2}, {1000000, 999999}}) {
-            CHECK(
-                studio.draw(with_ids(red, green, geometry), view).rgba ==
-                studio
-                    .draw(scene_of({{1, geometry, kRed, with_ids(red, green, geometry)->world.back()}}), view)
-                    .rgba);
-            CHECK(studio.draw(with_ids(green, red, geometry), view).rgba ==
-                  studio
-                      .draw(scene_of({{1, geometry, kGreen, with_ids(red, green, geometry)->world.back()}}),
-                            view)
-                      .rgba);
-        }
+    const glm::dmat4 matrix = turned_by(33, glm::normalize(glm::dvec3(1, 1, 0.2))) * scaled_by({1, 1.3, 0.9});
+    for (const Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)}) {
+        const auto alone = [&](const Material& material) {
+            return studio.draw(scene_of({{1, geometry, material, matrix}}), view).rgba;
+        };
+        const std::vector<std::uint8_t> red = alone(kRed), green = alone(kGreen);
+        // The first deeper in the tree than the second or not, in either order in the file.
+        const auto both = [&](Id red_id, Id green_id, bool deeper, bool red_first) {
+            SceneParts parts;
+            parts.materials = {kRed, kGreen};
+            parts.geometries = {geometry};
+            const auto add = [&](Id id, Id parent, Index material) {
+                parts.nodes.push_back(
+                    {Node{id, {}, NodeType::geometry, kNone, {}, true, matrix, GeometryData{0, material}},
+                     parent});
+            };
+            if (!red_first) add(green_id, 0, 1);
+            add(red_id, deeper ? 1 : 0, 0);
+            if (red_first) add(green_id, 0, 1);
+            parts.nodes.push_back({Node{1, {}, NodeType::assembly, kNone, {}, true, glm::dmat4(1), {}}, 0});
+            return studio.draw(std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts)))), view)
+                .rgba;
+        };
+        for (const bool deeper : {false, true})
+            for (const bool red_first : {false, true}) {
+                CHECK(both(8, 2, deeper, red_first) == red);
+                CHECK(both(2, 8, deeper, red_first) == green);
+                CHECK(both(1000000, 999999, deeper, red_first) == red);
+            }
+    }
 }

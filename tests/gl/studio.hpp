@@ -30,7 +30,7 @@ public:
 
     /// Draws and compares with what is computed, at all pixels but those at edges.
     Difference check(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
-        const Difference result = difference(ExpectedPicture(*scene, view), draw(scene, view));
+        Difference result = difference(ExpectedPicture(*scene, view), draw(scene, view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         return result;
     }

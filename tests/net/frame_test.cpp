@@ -214,8 +214,8 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
     FakePainter fake;
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
-    const PainterFactory broken = [&](std::shared_ptr<const PlacedScene> scene) {
-        Painter painter = fake.factory()(std::move(scene));
+    const PainterFactory broken = [&](const std::shared_ptr<const PlacedScene>& scene) {
+        Painter painter = fake.factory()(scene);
         painter.paint = [count = 0, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
                                                            const std::function<bool()>& interrupted) mutable {
             if (++count > 1) throw std::runtime_error("the device is lost");
@@ -241,7 +241,7 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
 }
 
 TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
-    const PainterFactory none = [](std::shared_ptr<const PlacedScene>) -> Painter {
+    const PainterFactory none = [](const std::shared_ptr<const PlacedScene>&) -> Painter {
         throw std::runtime_error("nothing here draws");
     };
     ServerOptions options;

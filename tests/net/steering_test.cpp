@@ -28,8 +28,8 @@ TEST_CASE("one steers; the other is told that he does not, or nothing for a fing
     for (;;) {
         const auto message = b.receive();
         REQUIRE(message.has_value());
-        CHECK(message->json["type"] != "error");
-        if (message->json["type"] == "ok") break;
+        CHECK(message->json()["type"] != "error");
+        if (message->json()["type"] == "ok") break;
     }
 }
 

@@ -36,11 +36,6 @@ std::shared_ptr<const PlacedScene> triangle() {
     return std::make_shared<const PlacedScene>(place(*std::move(scene)));
 }
 
-Json merge(Json target, const Json& patch) {
-    target.merge_patch(patch);
-    return target;
-}
-
 Json header_of(const std::string& jpeg) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size());
     const std::size_t at = protocol::comment_offset(bytes);
@@ -53,7 +48,7 @@ Json header_of(const std::string& jpeg) {
 }  // namespace
 
 PainterFactory FakePainter::factory() const {
-    return [*this](std::shared_ptr<const PlacedScene>) {
+    return [*this](const std::shared_ptr<const PlacedScene>&) {
         Painter painter{"fake", false, 16384, {}};
         painter.paint = [*this](const View& view, Image& image, FrameStats& stats,
                                 const std::function<bool()>& interrupted) {
@@ -141,6 +136,8 @@ void TestClient::send_binary(const std::string& bytes) {
     impl_->socket.write(asio::buffer(bytes), ignored);
 }
 
+Json TestClient::Message::json() const { return binary ? header_of(data) : Json::parse(data); }
+
 std::optional<TestClient::Message> TestClient::receive(std::chrono::milliseconds timeout) {
     Impl& impl = *impl_;
     if (impl.ended) return std::nullopt;
@@ -165,9 +162,10 @@ std::optional<TestClient::Message> TestClient::receive(std::chrono::milliseconds
     message.binary = impl.socket.got_binary();
     message.data = beast::buffers_to_string(impl.buffer.data());
     impl.buffer.consume(impl.buffer.size());
-    message.json = message.binary ? header_of(message.data) : Json::parse(message.data);
-    if (!message.binary && message.json["type"] == "state") state = message.json["state"];
-    if (!message.binary && message.json["type"] == "patch") state = merge(state, message.json["patch"]);
+    if (message.binary) return message;
+    const Json json = message.json();
+    if (json["type"] == "state") state = json["state"];
+    if (json["type"] == "patch") state.merge_patch(json["patch"]);
     return message;
 }
 
@@ -178,7 +176,8 @@ Json TestClient::wait_for(const std::string& type, std::chrono::milliseconds tim
             std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
         const auto message = receive(std::max(left, 0ms));
         REQUIRE_MESSAGE(message.has_value(), "no '" << type << "' came");
-        if (message->binary ? type == "frame" : message->json["type"] == type) return message->json;
+        Json json = message->json();
+        if (message->binary ? type == "frame" : json["type"] == type) return json;
     }
 }
 

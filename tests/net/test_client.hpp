@@ -64,7 +64,8 @@ public:
     struct Message {
         bool binary = false;
         std::string data;
-        Json json;  ///< of a text, or a frame's header
+        /// A text's, or a frame's header.
+        Json json() const;
     };
     /// The next message; none when `timeout` passes or the connection has ended.
     std::optional<Message> receive(std::chrono::milliseconds timeout = 5s);

@@ -203,8 +203,8 @@ TEST_CASE("a drag to the right turns the scene to the right, down tips its top t
         CHECK(seen(rotated(camera, 0, -30, keep_upright), {0, 1, 0}).z ==
               doctest::Approx(5.5).epsilon(1e-12));
     }
-    for (double right = -360; right <= 360; right += 30)
-        for (double down = -90; down <= 90; down += 15) {
+    for (int right = -360; right <= 360; right += 30)
+        for (int down = -90; down <= 90; down += 15) {
             const double a = degrees(right), b = degrees(down);
             const Camera turned = rotated(camera, right, down, true);
             CHECK(near(turned.eye,

@@ -80,6 +80,17 @@ TEST_CASE("every member of every message is read") {
     const auto patch =
         std::get<Patch>(decoded(R"({"type":"patch","patch":{"camera":{}},"ifRevision":4})").payload);
     CHECK(patch.if_revision == 4);
+
+    const auto navigate = std::get<Navigate>(
+        decoded(R"({"type":"navigate","rotate":[10,-20],"pan":[0.5,0.25],"zoom":2})").payload);
+    CHECK(navigate.rotate == std::array<double, 2>{10, -20});
+    CHECK(navigate.pan == std::array<double, 2>{0.5, 0.25});
+    CHECK(navigate.zoom == 2);
+    CHECK(std::get<Navigate>(decoded(R"({"type":"navigate"})").payload).zoom == 1);
+    CHECK(std::get<Fit>(decoded(R"({"type":"fit","node":4})").payload).node == 4);
+    CHECK_FALSE(std::get<Fit>(decoded(R"({"type":"fit"})").payload).node.has_value());
+    CHECK(std::get<Control>(decoded(R"({"type":"control","action":"take"})").payload).take);
+    CHECK_FALSE(std::get<Control>(decoded(R"({"type":"control","action":"release"})").payload).take);
 }
 
 TEST_CASE("the pointer's event is in the type") {
@@ -147,6 +158,14 @@ TEST_CASE("what is wrong is refused, with the culprit named") {
         {R"({"type":"wheel","x":0,"y":0,"deltaX":0,"deltaY":true,"deltaMode":0})", "bad-message", "'deltaY'"},
         {R"({"type":"keydown","key":"f"})", "bad-message", "'code'"},
         {R"({"type":"keydown","key":"f","code":"KeyF","shiftKey":1})", "bad-message", "'shiftKey'"},
+        {R"({"type":"navigate","rotate":5})", "bad-message", "'rotate'"},
+        {R"({"type":"navigate","pan":[1]})", "out-of-range", "'pan'"},
+        {R"({"type":"navigate","zoom":0})", "out-of-range", "'zoom'"},
+        {R"({"type":"navigate","zoom":1e7})", "out-of-range", "'zoom'"},
+        {R"({"type":"fit","node":-1})", "out-of-range", "'node'"},
+        {R"({"type":"fit","node":"4"})", "bad-message", "'node'"},
+        {R"({"type":"control"})", "bad-message", "'action'"},
+        {R"({"type":"control","action":"keep"})", "out-of-range", "'action'"},
         {R"({"type":"patch"})", "bad-message", "'patch'"},
         {R"({"type":"patch","patch":[]})", "bad-message", "'patch'"},
         {R"({"type":"patch","patch":{},"ifRevision":-1})", "out-of-range", "'ifRevision'"},

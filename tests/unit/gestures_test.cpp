@@ -460,6 +460,7 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
             double x, y;
         };
         std::vector<Move> path;
+        path.reserve(50);
         for (int i = 0; i < 50; ++i)
             path.push_back({kind.button == -1 ? 1 + i % 2 : 1, place(random), place(random)});
 

@@ -4,7 +4,7 @@
 #include <png.h>
 #include <turbojpeg.h>
 
-#include <cstring>
+#include <algorithm>
 
 #include "frame_header.hpp"
 
@@ -16,15 +16,12 @@ namespace {
 Image two_halves(int width, int height) {
     Image image;
     image.resize(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            auto* pixel = &image.rgba[static_cast<std::size_t>((y * width + x) * 4)];
-            const bool low = y < height / 2;
-            pixel[0] = low ? 255 : 0;
-            pixel[1] = 10;
-            pixel[2] = low ? 0 : 255;
-            pixel[3] = 255;
-        }
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const bool low = i < image.rgba.size() / 2;
+        const std::uint8_t color[] = {static_cast<std::uint8_t>(low ? 255 : 0), 10,
+                                      static_cast<std::uint8_t>(low ? 0 : 255), 255};
+        std::copy(std::begin(color), std::end(color), image.rgba.begin() + static_cast<std::ptrdiff_t>(i));
+    }
     return image;
 }
 
@@ -33,7 +30,8 @@ std::vector<std::uint8_t> decode_jpeg(const std::vector<std::uint8_t>& jpeg, int
     tjhandle handle = tjInitDecompress();
     REQUIRE(tjDecompressHeader2(handle, const_cast<std::uint8_t*>(jpeg.data()), jpeg.size(), &width, &height,
                                 &sampling) == 0);
-    std::vector<std::uint8_t> rgb(static_cast<std::size_t>(width * height * 3));
+    std::vector<std::uint8_t> rgb(std::size_t{3} * static_cast<unsigned>(width) *
+                                  static_cast<unsigned>(height));
     REQUIRE(tjDecompress2(handle, jpeg.data(), jpeg.size(), rgb.data(), width, 0, height, TJPF_RGB, 0) == 0);
     tjDestroy(handle);
     return rgb;
@@ -51,11 +49,11 @@ TEST_CASE("a PNG is exact, opaque and upright") {
     CHECK(header.height == 4);
     CHECK((header.format & PNG_FORMAT_FLAG_ALPHA) == 0);
     header.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> rgb(5 * 4 * 3);
+    std::vector<std::uint8_t> rgb(std::size_t{5} * 4 * 3);
     REQUIRE(png_image_finish_read(&header, nullptr, rgb.data(), 0, nullptr));
     const std::uint8_t blue[] = {0, 10, 255}, red[] = {255, 10, 0};
-    CHECK(std::memcmp(rgb.data(), blue, 3) == 0);
-    CHECK(std::memcmp(rgb.data() + 3 * 5 * 3, red, 3) == 0);
+    CHECK(std::equal(std::begin(blue), std::end(blue), rgb.begin()));
+    CHECK(std::equal(std::begin(red), std::end(red), rgb.end() - 3));
 }
 
 TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in it") {
@@ -70,8 +68,8 @@ TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in 
         CHECK(width == 64);
         CHECK(height == 48);
         CHECK(sampling == (subsampled ? TJSAMP_420 : TJSAMP_444));
-        CHECK(rgb[2] > 240);                    // blue at the top
-        CHECK(rgb[rgb.size() - 64 * 3] > 240);  // red at the bottom
+        CHECK(rgb[2] > 240);                                 // blue at the top
+        CHECK(rgb[rgb.size() - std::size_t{64} * 3] > 240);  // red at the bottom
     }
 }
 

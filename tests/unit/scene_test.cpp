@@ -346,6 +346,25 @@ TEST_CASE("the scene's bounds hold what could show from anywhere") {
     CHECK(bounds_of(lod).max == glm::dvec3(51, 1, 1));
 }
 
+TEST_CASE("a subtree's bounds hold what shows at and below its node") {
+    const std::vector<Geometry> geometries{geometry_of({{-1, -1, -1}, {1, 1, 1}})};
+    const auto at = [](Id id, Id parent, double x) {
+        return geometry_part(id, parent, 0, moved_by(x, 0, 0));
+    };
+    std::vector<SceneParts::PartNode> nodes{part(9, 0), at(1, 9, 10), at(2, 1, 10), at(3, 0, -50),
+                                            at(4, 0, 90)};
+    nodes[4].node.active = false;
+    const PlacedScene placed = place(built(nodes, geometries));
+    const auto of = [&](Id id) { return subtree_bounds(placed, placed.scene.find_node(id)); };
+    CHECK(of(9).min == glm::dvec3(9, -1, -1));
+    CHECK(of(9).max == glm::dvec3(21, 1, 1));
+    CHECK(of(2).min == glm::dvec3(19, -1, -1));
+    CHECK(of(3).max == glm::dvec3(-49, 1, 1));
+    CHECK(of(4).empty());
+    CHECK(of(0).min == placed.bounds.min);
+    CHECK(of(0).max == placed.bounds.max);
+}
+
 TEST_CASE("parts beyond the range of double leave the bounds alone") {
     const double infinity = std::numeric_limits<double>::infinity();
     const std::vector<Geometry> geometries{geometry_of({{-1, -1, -1}, {1, 1, 1}})};
@@ -367,26 +386,25 @@ TEST_CASE("parts beyond the range of double leave the bounds alone") {
 
 TEST_CASE("a chain of a million nodes is built, placed and given back") {
     constexpr Id kCount = 1'000'000;
-    SceneParts parts;
-    parts.geometries = {geometry_of({{0, 0, 0}})};
-    parts.nodes.reserve(static_cast<std::size_t>(kCount));
-    parts.nodes.push_back(geometry_part(1, 2, 0, moved_by(1, 0, 0)));
-    for (Id id = 2; id <= kCount; ++id) {  // each child stands before its parent
-        parts.nodes.push_back(part(id, id == kCount ? 0 : id + 1));
-        parts.nodes.back().node.matrix = moved_by(1, 0, 0);
-    }
-    SUBCASE("hanging under the root") {
-        auto scene = Scene::build(std::move(parts));
-        REQUIRE(scene);
-        const PlacedScene placed = place(*std::move(scene));
-        CHECK(placed.scene.nodes().size() == static_cast<std::size_t>(kCount) + 1);
-        CHECK(placed.bounds.min == glm::dvec3(1e6, 0, 0));
-        CHECK(placed.bounds.max == glm::dvec3(1e6, 0, 0));
-    }
-    SUBCASE("closed to a ring") {
-        parts.nodes.back().parent_id = 1;
-        const auto scene = Scene::build(std::move(parts));
-        REQUIRE_FALSE(scene);
-        CHECK(contains(scene.error().message, "among its own ancestors"));
-    }
+    const auto chain = [&](Id last_parent) {
+        SceneParts parts;
+        parts.geometries = {geometry_of({{0, 0, 0}})};
+        parts.nodes.reserve(static_cast<std::size_t>(kCount));
+        parts.nodes.push_back(geometry_part(1, 2, 0, moved_by(1, 0, 0)));
+        for (Id id = 2; id <= kCount; ++id) {  // each child stands before its parent
+            parts.nodes.push_back(part(id, id == kCount ? last_parent : id + 1));
+            parts.nodes.back().node.matrix = moved_by(1, 0, 0);
+        }
+        return Scene::build(std::move(parts));
+    };
+    auto scene = chain(0);
+    REQUIRE(scene);
+    const PlacedScene placed = place(*std::move(scene));
+    CHECK(placed.scene.nodes().size() == static_cast<std::size_t>(kCount) + 1);
+    CHECK(placed.bounds.min == glm::dvec3(1e6, 0, 0));
+    CHECK(placed.bounds.max == glm::dvec3(1e6, 0, 0));
+
+    const auto ring = chain(1);
+    REQUIRE_FALSE(ring);
+    CHECK(contains(ring.error().message, "among its own ancestors"));
 }

@@ -26,12 +26,27 @@ TEST_CASE("a pressed pointer is not quiet") {
     CHECK(steering.steer("b", start + 1h, false));
 }
 
+TEST_CASE("who takes control keeps it, however quiet he is, until he gives it back or another takes it") {
+    Steering steering;
+    const Clock::time_point start = Clock::time_point(1h);
+    CHECK(steering.steer("a", start, true));
+    steering.take("b", start);
+    CHECK(steering.holder() == "b");
+    CHECK(steering.kept());
+    CHECK_FALSE(steering.steer("a", start + 1h, false));
+    steering.take("a", start);
+    CHECK(steering.holder() == "a");
+    CHECK(steering.release("a"));
+    CHECK_FALSE(steering.kept());
+    CHECK(steering.steer("b", start, false));
+}
+
 TEST_CASE("a holder who leaves leaves control free, and nobody inherits") {
     Steering steering;
     const Clock::time_point start = Clock::time_point(1h);
     CHECK(steering.steer("a", start, false));
-    CHECK_FALSE(steering.leave("b"));
-    CHECK(steering.leave("a"));
+    CHECK_FALSE(steering.release("b"));
+    CHECK(steering.release("a"));
     CHECK_FALSE(steering.holder().has_value());
     CHECK(steering.steer("b", start, false));
 }

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gestures.hpp"
+#include "messages.hpp"
+#include "pacing.hpp"
+#include "scene.hpp"
+#include "state.hpp"
+#include "steering.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// What a client is to be told; it must know `revision` of the state first.
+struct Answer {
+    std::string client, text;
+    std::int64_t revision = 0;
+    bool refusal = false;
+};
+
+/// The scene, the state and the camera that all clients share, who steers them, and what each message does to
+/// them. No thread, no clock, no GL: the same messages in the same order lead to the same camera.
+class Presentation {
+public:
+    Presentation(std::shared_ptr<const PlacedScene> scene, std::vector<std::string> notices);
+
+    void join(const std::string& client, protocol::Role role);
+    void leave(const std::string& client);
+    /// Any message but `frame`. `arrival` tells how long a holder has been quiet.
+    void say(const std::string& client, const protocol::ClientMessage& message, Clock::time_point arrival);
+
+    const PlacedScene& scene() const { return *scene_; }
+    const protocol::State& state() const { return state_; }
+    /// CSS size of the view.
+    const protocol::Resize& view_size() const { return view_size_; }
+    /// What is to be seen, but for size and samples.
+    const View& visible() const { return visible_; }
+
+    /// The document of the present state. Changes since the last call become one revision, made by
+    /// `changed_by`.
+    const std::shared_ptr<const protocol::StateDocument>& document();
+    /// Who made the newest revision; empty: the server.
+    const std::string& changed_by() const { return changed_by_; }
+    std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
+
+private:
+    struct Client {
+        protocol::Role role = protocol::Role::view;
+        std::optional<protocol::Resize> wanted;
+    };
+    /// The message in hand.
+    struct Said {
+        const std::string& client;
+        const protocol::ClientMessage& message;
+        Clock::time_point arrival;
+    };
+
+    void apply(const Said& said, const protocol::Hello& hello);
+    void apply(const Said& said, const protocol::FrameGrant& grant);
+    void apply(const Said& said, const protocol::Resize& resize);
+    void apply(const Said& said, const protocol::Pointer& pointer);
+    void apply(const Said& said, const protocol::Wheel& wheel);
+    void apply(const Said& said, const protocol::Key& key);
+    void apply(const Said& said, const protocol::Patch& patch);
+    void apply(const Said& said, const protocol::Navigate& navigate);
+    void apply(const Said& said, const protocol::Fit& fit);
+    void apply(const Said& said, const protocol::Control& control);
+
+    void answer(const Said& said);
+    void refuse(const Said& said, protocol::Error error);
+
+    bool may_steer(const Said& said);
+    void hold(const std::optional<std::string>& holder);
+    void set_view(const protocol::Resize& view);
+
+    Camera camera() const;
+    Camera home() const;
+    double aspect() const { return view_size_.width / view_size_.height; }
+    NavigationContext navigation_context() const;
+    /// From a drag: it goes on from where it began.
+    void drag_camera(const Camera& camera);
+    /// From anything else: drags begin anew there.
+    void move_camera(const Camera& camera);
+
+    std::shared_ptr<const PlacedScene> scene_;
+    protocol::State starting_, state_;
+    std::shared_ptr<const protocol::StateDocument> document_;
+    std::string changed_by_, changing_;
+    std::vector<Answer> answers_;
+    std::map<std::string, Client> clients_;
+    Steering steering_;
+    Gestures gestures_;
+    protocol::Resize view_size_;
+    View visible_;
+    bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
+};
+
+}  // namespace vrut
