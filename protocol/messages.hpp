@@ -128,7 +128,7 @@ namespace error_code {
 inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",
                             *unknown_member = "unknown-member", *read_only = "read-only",
                             *unknown_node = "unknown-node", *stale_revision = "stale-revision",
-                            *not_in_control = "not-in-control", *not_allowed = "not-allowed", *busy = "busy",
+                            *not_in_control = "not-in-control", *not_allowed = "not-allowed",
                             *too_many = "too-many", *failed = "failed";
 }  // namespace error_code
 

@@ -256,6 +256,11 @@ tl::expected<CameraState, Error> parse_camera(std::string_view text, const Camer
     }
 }
 
+bool names_camera_up(const Json& patch) {
+    const auto camera = patch.find("camera");
+    return camera != patch.end() && (camera->is_null() || camera->contains("up"));
+}
+
 // --- the document
 
 struct StateDocument::Section {

@@ -87,6 +87,8 @@ struct State {
 /// pose makes sense.
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
 
+/// Whether the patch names `camera.up`.
+bool names_camera_up(const nlohmann::json& patch);
 /// A camera from the text of a JSON object with members of the state's `camera`; what is left out is as in
 /// `base`, read-only and unknown members are ignored.
 tl::expected<CameraState, Error> parse_camera(std::string_view text, const CameraState& base);

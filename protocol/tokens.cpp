@@ -4,13 +4,15 @@
 
 namespace vrut::protocol {
 
+bool is_token(std::string_view text) { return text.size() >= 16 && text.size() <= 1000; }
+
 namespace {
 
 std::string read_token(const Json& json, const char* name) {
     const auto found = json.find(name);
     if (found == json.end()) return {};
     std::string token = read_string(*found, name, 1000);
-    if (token.size() < 16)
+    if (!is_token(token))
         throw BadJson{error_code::out_of_range, "'" + std::string(name) + "' must be at least 16 bytes long"};
     return token;
 }

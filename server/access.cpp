@@ -1,5 +1,6 @@
 #include "access.hpp"
 
+#include <arpa/inet.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 
@@ -36,7 +37,11 @@ bool Access::accepts_host(std::string_view host) const {
     if (needs_token()) return true;
     const std::size_t colon = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
     const std::string_view name = host.substr(0, colon);
-    return name == "localhost" || name == "[::1]" || name.starts_with("127.");
+    in_addr address{};
+    // Only a number is one: "127.example.org" is a name, and may lead anywhere.
+    const bool loopback_number =
+        ::inet_pton(AF_INET, std::string(name).c_str(), &address) == 1 && ntohl(address.s_addr) >> 24 == 127;
+    return name == "localhost" || name == "[::1]" || loopback_number;
 }
 
 bool Access::accepts_origin(std::string_view origin, std::string_view host) const {
@@ -52,6 +57,9 @@ Access read_access(const std::filesystem::path& token_file) {
     Access access;
     if (const char* token = std::getenv("VRUT_PREVIEW_CONTROL_TOKEN")) access.control_token = token;
     if (const char* token = std::getenv("VRUT_PREVIEW_VIEW_TOKEN")) access.view_token = token;
+    for (const std::string* token : {&access.control_token, &access.view_token})
+        if (!token->empty() && !protocol::is_token(*token))
+            throw std::runtime_error("a token in the environment must be 16 to 1000 bytes long");
     if (token_file.empty()) return access;
 
     struct stat status {};

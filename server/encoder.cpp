@@ -64,6 +64,11 @@ Image Encoder::take_spare() {
     return std::exchange(spare_, {});
 }
 
+void Encoder::give_spare(Image image) {
+    const std::lock_guard lock(mutex_);
+    spare_ = std::move(image);
+}
+
 void Encoder::run() {
     JpegEncoder jpeg;
     for (;;) {
@@ -84,10 +89,7 @@ void Encoder::run() {
         static_cast<Picture&>(*encoded) = std::move(picture);
         encoded->header.encode_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
         ++metrics_.frames_encoded;
-        {
-            const std::lock_guard lock(mutex_);
-            spare_ = std::move(image);
-        }
+        give_spare(std::move(image));
         on_encoded_(encoded);
     }
 }

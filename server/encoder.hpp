@@ -45,6 +45,7 @@ public:
     void offer(Picture picture, Image image);
     /// An image to draw into, used before where possible: its pages are there already.
     Image take_spare();
+    void give_spare(Image image);
 
 private:
     void run();

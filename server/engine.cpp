@@ -45,10 +45,12 @@ Engine::Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& f
             return;
         }
         try {
-            run(std::move(painter));
+            painter_ = std::move(painter);
+            run();
         } catch (const std::exception& error) {
             callbacks_.on_failure(error.what());
         }
+        painter_ = {};  // what belongs to GL ends on the thread that it began on
     });
     try {
         start.get();
@@ -63,8 +65,7 @@ Engine::~Engine() {
     thread_.join();
 }
 
-void Engine::run(Painter painter) {
-    painter_ = std::move(painter);
+void Engine::run() {
     std::vector<std::string> notices = all_notices(scene_->scene);
     if (painter_.software)
         notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
@@ -87,7 +88,6 @@ void Engine::run(Painter painter) {
         }
         handle_all(mailbox_.wait(decision.until));
     }
-    painter_ = {};
 }
 
 // --- events
@@ -106,10 +106,12 @@ void Engine::handle(const ClientLeft& left) {
     presentation_->leave(left.client);
 }
 
-void Engine::handle(const GrantsReturned& returned) {
-    const auto client = clients_.find(returned.client);
-    if (client != clients_.end())
-        client->second.grants = std::min(client->second.grants + returned.count, protocol::kMaxGrants);
+void Engine::handle(const FrameSent& sent) {
+    const auto found = clients_.find(sent.client);
+    if (found == clients_.end()) return;
+    Client& client = found->second;
+    client.last_frame = std::max(client.last_frame, sent.frame);
+    client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
 }
 
 void Engine::handle(const ClientSaid& said) {
@@ -117,19 +119,22 @@ void Engine::handle(const ClientSaid& said) {
     if (found == clients_.end()) return;  // it has left
     Client& client = found->second;
     output_.handled_bytes[said.client] += said.bytes;
-    if (std::holds_alternative<protocol::FrameGrant>(said.message.payload)) {
+    const auto id = said.message ? said.message->id : said.message.error().id;
+    if (!said.message) {
+        presentation_->refuse(said.client, said.message.error());
+    } else if (std::holds_alternative<protocol::FrameGrant>(said.message->payload)) {
         ++metrics_.frames_granted;
         client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
     } else {
         const View before = presentation_->visible();
         const protocol::Resize size_before = presentation_->view_size();
-        presentation_->say(said.client, said.message, said.arrival);
+        presentation_->say(said.client, *said.message, said.arrival);
         if (presentation_->visible() != before || presentation_->view_size() != size_before) {
             last_change_ = Clock::now();
             newest_input_ = said.arrival;
         }
     }
-    if (said.message.id) client.handled = std::max(client.handled, *said.message.id);
+    if (id) client.handled = std::max(client.handled, *id);
 }
 
 /// Hands over what there is to tell.
@@ -137,6 +142,7 @@ void Engine::report() {
     if (const auto& document = presentation_->document(); document != reported_) {
         reported_ = output_.document = document;
         output_.by = presentation_->changed_by();
+        output_.by_since = presentation_->changed_by_since();
     }
     output_.answers = presentation_->take_answers();
     for (const Answer& answer : output_.answers) metrics_.messages_refused += answer.refusal;
@@ -180,43 +186,47 @@ PacingDecision Engine::pace() {
 }
 
 void Engine::draw(bool still) {
-    const protocol::Resize& view_size = presentation_->view_size();
-    const protocol::Quality quality =
-        still ? still_quality(view_size, limits_) : moving_quality(view_size, limits_);
-    const PictureSize size = picture_size(view_size, quality.scale);
-    View view = presentation_->visible();
-    view.width = size.width;
-    view.height = size.height;
-    view.samples = quality.samples;
-
-    Image image = encoder_.take_spare();
-    FrameStats stats;
-    if (!painter_.paint(view, image, stats, [&] { return mailbox_.has_input(); })) {
-        ++metrics_.frames_interrupted;
-        // What interrupted it is handled before the next decision.
-        handle_all(mailbox_.wait(Clock::now()));
-        return;
-    }
-    ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
-    drawn_ = {drawn_.frame + 1, presentation_->visible(), view_size, still};
-
+    // What is drawn is what stands here now, whatever comes in meanwhile.
+    const View visible = presentation_->visible();
+    const protocol::Resize view_size = presentation_->view_size();
     Picture picture;
     protocol::FrameHeader& header = picture.header;
-    header.frame = drawn_.frame;
+    header.quality = still ? still_quality(view_size, limits_) : moving_quality(view_size, limits_);
+    const PictureSize size = picture_size(view_size, header.quality.scale);
+    header.frame = drawn_.frame + 1;
     header.revision = presentation_->document()->revision();
     header.camera = presentation_->state().camera;
-    header.view_matrix = view_from_world(view.camera);
-    header.projection_matrix = clip_from_view(view.camera, static_cast<double>(size.width) / size.height,
+    header.view_matrix = view_from_world(visible.camera);
+    header.projection_matrix = clip_from_view(visible.camera, static_cast<double>(size.width) / size.height,
                                               {header.camera.near, header.camera.far});
     header.width = size.width;
     header.height = size.height;
     header.view = view_size;
-    header.quality = quality;
+    picture.newest_input = newest_input_;
+    for (const auto& [name, client] : clients_) picture.handled[name] = client.handled;
+
+    View view = visible;
+    view.width = size.width;
+    view.height = size.height;
+    view.samples = header.quality.samples;
+    Image image = encoder_.take_spare();
+    FrameStats stats;
+    const auto interrupted = [&] {
+        handle_all(mailbox_.wait(Clock::now()));
+        report();
+        return mailbox_.closed() || presentation_->visible() != visible ||
+               presentation_->view_size() != view_size;
+    };
+    if (!painter_.paint(view, image, stats, interrupted)) {
+        ++metrics_.frames_interrupted;
+        encoder_.give_spare(std::move(image));
+        return;
+    }
+    ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
+    drawn_ = {header.frame, visible, view_size, still};
     header.render_ms = stats.render_ms;
     header.readback_ms = stats.readback_ms;
-    picture.newest_input = newest_input_;
     for (auto& [name, client] : clients_) {
-        picture.handled[name] = client.handled;
         if (client.grants == 0) continue;
         --client.grants;
         client.last_frame = drawn_.frame;

@@ -39,7 +39,8 @@ struct EngineOutput {
         std::int64_t frame = 0;  ///< this frame or a newer one answers one grant
     };
     std::shared_ptr<const protocol::StateDocument> document;  ///< the newest; null if unchanged
-    std::string by;                                           ///< who changed it; empty: the server
+    std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
+    std::int64_t by_since = 0;
     std::vector<Answer> answers;
     std::vector<Owed> owed;
     std::map<std::string, std::size_t> handled_bytes;  ///< of messages, for each client
@@ -78,7 +79,7 @@ private:
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
     void handle(const ClientSaid& said);
-    void handle(const GrantsReturned& returned);
+    void handle(const FrameSent& sent);
     void handle_all(const std::vector<EngineEvent>& events);
     void report();
 
@@ -90,7 +91,7 @@ private:
     PacingDecision pace();
     void draw(bool still);
 
-    void run(Painter painter);
+    void run();
 
     std::shared_ptr<const PlacedScene> scene_;
     Metrics& metrics_;

@@ -117,11 +117,24 @@ public:
         stream_.expires_after(kDeadline);
         http::async_read(stream_, buffer_, *parser_,
                          [self = shared_from_this()](beast::error_code error, std::size_t) {
-                             if (!error) self->on_request();
+                             if (!error) return self->on_request();
+                             if (error.category() == make_error_code(http::error::bad_method).category())
+                                 self->on_bad_request(error);
                          });
     }
 
 private:
+    void on_bad_request(beast::error_code error) {
+        if (error == http::error::end_of_stream || error == http::error::partial_message) return;
+        const http::status status = error == http::error::header_limit
+                                        ? http::status::request_header_fields_too_large
+                                    : error == http::error::body_limit ? http::status::payload_too_large
+                                                                       : http::status::bad_request;
+        Response response = refuse(Request{}, status, "the request cannot be read: " + error.message());
+        response.keep_alive(false);
+        send(std::move(response));
+    }
+
     void on_request() {
         Request request = parser_->release();
         if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request))
@@ -138,7 +151,7 @@ private:
             return send(refuse(request, http::status::forbidden, "pages of this origin may not connect"));
         if (!speaks_our_subprotocol(request))
             return send(refuse(request, http::status::bad_request, "the subprotocol is vrut-preview.v1"));
-        if (hub_.stopping || hub_.connections >= 2 * hub_.max_clients)
+        if (hub_.stopping || hub_.connections.size() >= 2 * hub_.max_clients)
             return send(refuse(request, http::status::service_unavailable, "there are too many connections"));
         std::make_shared<Session>(std::move(stream_), hub_)->accept(request);
     }

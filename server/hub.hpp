@@ -2,6 +2,7 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 
 #include "access.hpp"
@@ -20,10 +21,11 @@ struct Hub {
     Metrics* metrics = nullptr;
     Engine* engine = nullptr;
     std::shared_ptr<const protocol::StateDocument> document;
-    std::string document_by;
+    std::string document_by;  ///< who made it and the revisions before it, down to document_by_since
+    std::int64_t document_by_since = 0;
     std::shared_ptr<const EncodedPicture> newest;
     std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
-    std::size_t connections = 0;                               ///< WebSockets, with or without hello
+    std::set<Session*> connections;                            ///< those, and those that did not yet
     std::int64_t next_client = 1;
     bool stopping = false;
 };

@@ -19,15 +19,20 @@ JpegEncoder::~JpegEncoder() { tjDestroy(handle_); }
 
 std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, bool subsampled) {
     const int sampling = subsampled ? TJSAMP_420 : TJSAMP_444;
-    std::vector<std::uint8_t> jpeg(tjBufSize(image.width, image.height, sampling));
-    unsigned char* out = jpeg.data();
-    unsigned long size = jpeg.size();
+    // What the worst picture needs is many times what most take: it is kept for the next, and the file
+    // copied.
+    const std::size_t worst = tjBufSize(image.width, image.height, sampling);
+    if (scratch_size_ < worst) {
+        scratch_ = std::make_unique_for_overwrite<std::uint8_t[]>(worst);
+        scratch_size_ = worst;
+    }
+    unsigned char* out = scratch_.get();
+    unsigned long size = scratch_size_;
     if (tjCompress2(handle_, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &out, &size,
                     sampling, quality, TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
         throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
                                  tjGetErrorStr2(handle_));
-    jpeg.resize(size);
-    return jpeg;
+    return {scratch_.get(), scratch_.get() + size};
 }
 
 std::vector<std::uint8_t> encode_png(const Image& image) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,8 @@ public:
 
 private:
     void* handle_;
+    std::unique_ptr<std::uint8_t[]> scratch_;  // of the largest size that was needed
+    std::size_t scratch_size_ = 0;
 };
 
 /// An opaque RGB PNG. Throws std::runtime_error.

@@ -8,7 +8,8 @@ using protocol::Pointer;
 
 /// A move that only says where the pointer is now: no button went down or up with it.
 const Pointer* plain_move(const ClientSaid& said) {
-    const auto* pointer = std::get_if<Pointer>(&said.message.payload);
+    if (!said.message || !said.may_steer) return nullptr;
+    const auto* pointer = std::get_if<Pointer>(&said.message->payload);
     return pointer && pointer->event == Pointer::Event::move && pointer->button == -1 ? pointer : nullptr;
 }
 
@@ -20,16 +21,11 @@ bool merge(EngineEvent& last, const EngineEvent& next) {
     const Pointer *a = plain_move(*before), *b = plain_move(*after);
     if (!a || !b || a->pointer_id != b->pointer_id || a->buttons != b->buttons) return false;
     const std::size_t bytes = before->bytes;
-    const auto id = before->message.id;
+    const auto id = before->message->id;
     *before = *after;
     before->bytes += bytes;
-    if (!before->message.id) before->message.id = id;
+    if (!before->message->id) before->message->id = id;
     return true;
-}
-
-bool is_input(const EngineEvent& event) {
-    const auto* said = std::get_if<ClientSaid>(&event);
-    return said && !std::holds_alternative<protocol::FrameGrant>(said->message.payload);
 }
 
 }  // namespace
@@ -37,7 +33,11 @@ bool is_input(const EngineEvent& event) {
 void Mailbox::push(EngineEvent event) {
     {
         const std::lock_guard lock(mutex_);
-        has_input_ = has_input_ || is_input(event);
+        if (const auto* left = std::get_if<ClientLeft>(&event))
+            std::erase_if(events_, [&](const EngineEvent& waiting) {
+                const auto* said = std::get_if<ClientSaid>(&waiting);
+                return said && said->client == left->client;
+            });
         if (!events_.empty() && merge(events_.back(), event)) return;
         events_.push_back(std::move(event));
     }
@@ -65,11 +65,6 @@ bool Mailbox::closed() const {
     return closed_;
 }
 
-bool Mailbox::has_input() const {
-    const std::lock_guard lock(mutex_);
-    return has_input_ || closed_;
-}
-
 std::vector<EngineEvent> Mailbox::wait(std::optional<Clock::time_point> until) {
     std::unique_lock lock(mutex_);
     const auto ready = [&] { return !events_.empty() || woken_ || closed_; };
@@ -78,7 +73,6 @@ std::vector<EngineEvent> Mailbox::wait(std::optional<Clock::time_point> until) {
     else
         condition_.wait(lock, ready);
     woken_ = false;
-    has_input_ = false;
     return std::exchange(events_, {});
 }
 

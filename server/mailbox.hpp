@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tl/expected.hpp>
 #include <variant>
 #include <vector>
 
@@ -23,18 +24,20 @@ struct ClientLeft {
 
 struct ClientSaid {
     std::string client;
-    protocol::ClientMessage message;
+    tl::expected<protocol::ClientMessage, protocol::Error> message;  ///< or why it cannot be read
     Clock::time_point arrival;
     std::size_t bytes = 0;  ///< on the wire, merged ones summed
+    bool may_steer = true;  ///< else its moves are not merged: each is answered as wrong
 };
 
-/// Grants whose frame was never sent, because one frame served two of them.
-struct GrantsReturned {
+/// A newer frame than the promised one was sent, or one frame for two grants.
+struct FrameSent {
     std::string client;
-    int count = 0;
+    std::int64_t frame = 0;
+    int unused_grants = 0;
 };
 
-using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, GrantsReturned>;
+using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent>;
 
 /// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or
 /// dropped.
@@ -46,8 +49,6 @@ public:
     /// No more events: every wait ends at once.
     void close();
     bool closed() const;
-    /// True where something waits that may change what is to be seen.
-    bool has_input() const;
     /// Empties the mailbox; waits for an event, a wake, the end, or `until` first.
     std::vector<EngineEvent> wait(std::optional<Clock::time_point> until);
 
@@ -56,7 +57,6 @@ private:
     std::condition_variable condition_;
     std::vector<EngineEvent> events_;
     bool woken_ = false, closed_ = false;
-    bool has_input_ = false;
 };
 
 }  // namespace vrut

@@ -15,7 +15,8 @@ std::string Metrics::text() const {
     add("frames_granted_total", "Frames that clients asked for.", frames_granted);
     add("frames_rendered_moving_total", "Pictures drawn while things moved.", frames_rendered_moving);
     add("frames_rendered_still_total", "Pictures drawn at rest.", frames_rendered_still);
-    add("frames_interrupted_total", "Pictures at rest given up because something moved.", frames_interrupted);
+    add("frames_interrupted_total", "Pictures given up because what was to be seen had changed.",
+        frames_interrupted);
     add("frames_encoded_total", "Pictures encoded.", frames_encoded);
     add("frames_sent_total", "Frames handed to sockets.", frames_sent);
     add("frames_replaced_total", "Frames that gave way to newer ones before they were sent.",

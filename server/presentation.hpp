@@ -31,7 +31,8 @@ public:
 
     void join(const std::string& client, protocol::Role role);
     void leave(const std::string& client);
-    /// Any message but `frame`. `arrival` tells how long a holder has been quiet.
+    /// Any message but `frame`. `arrival` tells how long a holder has been quiet. What is refused changes
+    /// nothing, and not who steers either.
     void say(const std::string& client, const protocol::ClientMessage& message, Clock::time_point arrival);
 
     const PlacedScene& scene() const { return *scene_; }
@@ -44,8 +45,11 @@ public:
     /// The document of the present state. Changes since the last call become one revision, made by
     /// `changed_by`.
     const std::shared_ptr<const protocol::StateDocument>& document();
-    /// Who made the newest revision; empty: the server.
+    /// Who made the newest revision and those before it, down to `changed_by_since()`; empty: the server.
     const std::string& changed_by() const { return changed_by_; }
+    std::int64_t changed_by_since() const { return changed_by_since_; }
+    /// Answers what a client said that cannot be read.
+    void refuse(const std::string& client, const protocol::Error& error);
     std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
 
 private:
@@ -72,11 +76,13 @@ private:
     void apply(const Said& said, const protocol::Control& control);
 
     void answer(const Said& said);
-    void refuse(const Said& said, protocol::Error error);
 
+    /// Whether this message may steer; else it is refused.
     bool may_steer(const Said& said);
+    /// The message steers: its client holds control.
+    void steer(const Said& said);
     void hold(const std::optional<std::string>& holder);
-    void set_view(const protocol::Resize& view);
+    void use_holders_size();
 
     Camera camera() const;
     Camera home() const;
@@ -91,11 +97,14 @@ private:
     protocol::State starting_, state_;
     std::shared_ptr<const protocol::StateDocument> document_;
     std::string changed_by_, changing_;
+    std::int64_t changed_by_since_ = 0;
     std::vector<Answer> answers_;
     std::map<std::string, Client> clients_;
     Steering steering_;
     Gestures gestures_;
     protocol::Resize view_size_;
+    bool size_waits_ =
+        false;  ///< for the press that took control to end: it is measured in the view that it began in
     View visible_;
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
 };

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -41,7 +42,10 @@ protocol::State wanted_state(const RenderArguments& arguments, const PlacedScene
     if (arguments.focus) state.camera.focus = *arguments.focus;
     if (arguments.up) state.camera.up = *arguments.up;
     if (arguments.fov) state.camera.fov = *arguments.fov;
-    const Camera camera = camera_of(state.camera);
+    Camera camera = camera_of(state.camera);
+    const bool up_is_given = camera.up != starting.camera.up ||
+                             std::abs(glm::dot(camera.up, glm::normalize(camera.focus - camera.eye))) < 1e-9;
+    if (!up_is_given) camera = with_roll_of(camera_of(starting.camera), camera);
     if (!is_valid_pose(camera, placed.bounds.radius()))
         throw std::runtime_error(
             "the camera sees nothing: eye and focus must be apart, up neither zero nor along the view");

@@ -11,9 +11,25 @@ namespace vrut {
 
 namespace {
 
+/// RFC 3986: all but unreserved characters as %XX.
+std::string percent_encoded(const std::string& text) {
+    constexpr char kDigits[] = "0123456789ABCDEF";
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (letter || c == '-' || c == '.' || c == '_' || c == '~')
+            result += c;
+        else
+            result += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+    return result;
+}
+
 std::string url(const std::string& host, std::uint16_t port, const std::string& token) {
     const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
-    return "http://" + name + ":" + std::to_string(port) + "/" + (token.empty() ? "" : "#token=" + token);
+    return "http://" + name + ":" + std::to_string(port) + "/" +
+           (token.empty() ? "" : "#token=" + percent_encoded(token));
 }
 
 void announce(const ListenAddress& listen, std::uint16_t port, const Access& access) {

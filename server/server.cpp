@@ -93,6 +93,7 @@ struct Server::Impl {
         if (output.document) {
             hub.document = std::move(output.document);
             hub.document_by = std::move(output.by);
+            hub.document_by_since = output.by_since;
         }
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
@@ -109,11 +110,9 @@ struct Server::Impl {
         for_each_session([&](Session& session) { session.newest_changed(before); });
     }
 
-    /// Over a copy: a session may end, and leave the list, meanwhile.
     template <class Function>
     void for_each_session(Function function) {
-        const auto sessions = hub.sessions;
-        for (const auto& [name, session] : sessions) function(*session);
+        for (const auto& [name, session] : hub.sessions) function(*session);
     }
 
     // --- the end
@@ -123,17 +122,16 @@ struct Server::Impl {
         acceptor.close();
         accept_pause.cancel();
         signals.cancel();
-        for_each_session([](Session& session) {
-            session.close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
-        });
+        for (Session* session : hub.connections)
+            session->close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
         // Whoever has not said goodbye by then is left standing.
-        deadline.expires_after(hub.connections > 0 ? 2000ms : 0ms);
+        deadline.expires_after(!hub.connections.empty() ? 2000ms : 0ms);
         deadline.async_wait([this](boost::system::error_code) { context.stop(); });
         wait_for_goodbyes();
     }
 
     void wait_for_goodbyes() {
-        if (hub.sessions.empty()) return context.stop();
+        if (hub.connections.empty()) return context.stop();
         goodbye.expires_after(10ms);
         goodbye.async_wait([this](boost::system::error_code) { wait_for_goodbyes(); });
     }

@@ -1,8 +1,10 @@
 #include "session.hpp"
 
+#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "codec.hpp"
@@ -18,8 +20,9 @@ namespace {
 
 constexpr auto kHelloDeadline = 5s;
 constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
-constexpr auto kIdle = 30s;   // a peer that does not even answer pings is gone
-constexpr std::size_t kMaxUnhandled = 1 << 20;
+// Who has sent so much that is not handled, or has not taken so much of its answers, is not read until that
+// is done.
+constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxAnswers = 256 * 1024;
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20;
@@ -38,6 +41,22 @@ std::uint64_t bytes_acknowledged(int socket) {
     return bytes;
 }
 
+/// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
+/// s.
+void find_dead_peers(int socket) {
+    const int on = 1, idle_s = 10, interval_s = 5, probes = 2;
+    ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof idle_s);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof interval_s);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
+}
+
+/// Bytes that were handed over and that the peer has not acknowledged.
+int bytes_unacknowledged(int socket) {
+    int bytes = 0;
+    return ::ioctl(socket, SIOCOUTQ, &bytes) == 0 ? bytes : 0;
+}
+
 }  // namespace
 
 Session::Session(beast::tcp_stream stream, Hub& hub)
@@ -45,10 +64,10 @@ Session::Session(beast::tcp_stream stream, Hub& hub)
       hub_(hub),
       hello_deadline_(socket_.get_executor()),
       write_watch_(socket_.get_executor()) {
-    ++hub_.connections;
+    hub_.connections.insert(this);
 }
 
-Session::~Session() { --hub_.connections; }
+Session::~Session() { hub_.connections.erase(this); }
 
 void Session::accept(const beast::http::request<beast::http::string_body>& request) {
     beast::tcp_stream& stream = beast::get_lowest_layer(socket_);
@@ -61,8 +80,11 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
 
     websocket::stream_base::timeout deadlines{};
     deadlines.handshake_timeout = 5s;
-    deadlines.idle_timeout = kIdle;
-    deadlines.keep_alive_pings = true;
+    // Beast's own deadline counts what is read only: it would cut a slow reader, whose pings wait behind a
+    // frame.
+    deadlines.idle_timeout = websocket::stream_base::none();
+    deadlines.keep_alive_pings = false;
+    find_dead_peers(stream.socket().native_handle());
     socket_.set_option(deadlines);
     socket_.read_message_max(kMaxRead);
     socket_.auto_fragment(false);  // one frame, one write
@@ -88,7 +110,8 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
 // --- reading
 
 void Session::read() {
-    if (reading_ || dropped_ || closing_ || unhandled_bytes_ >= kMaxUnhandled) return;
+    if (reading_ || dropped_ || closing_ || unhandled_bytes_ >= kMaxUnhandled || answer_bytes_ >= kMaxAnswers)
+        return;
     reading_ = true;
     socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->reading_ = false;
@@ -129,12 +152,9 @@ void Session::on_text(std::string_view text) {
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello);
-    if (!message) {
-        ++hub_.metrics->messages_refused;
-        return answer({client_, protocol::encode(message.error()), 0, true});
-    }
     unhandled_bytes_ += text.size();
-    hub_.engine->mailbox().push(ClientSaid{client_, *std::move(message), Clock::now(), text.size()});
+    hub_.engine->mailbox().push(
+        ClientSaid{client_, std::move(message), Clock::now(), text.size(), may_steer_});
 }
 
 void Session::on_hello(const protocol::Hello& hello) {
@@ -150,7 +170,9 @@ void Session::on_hello(const protocol::Hello& hello) {
              protocol::error_code::too_many,
              "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
             close_code::try_again_later);
+    if (hub_.stopping) return;  // the close is on its way
     hello_deadline_.cancel();
+    may_steer_ = *role == protocol::Role::control;
     client_ = "c" + std::to_string(hub_.next_client++);
     hub_.sessions[client_] = shared_from_this();
     ++hub_.metrics->clients_joined;
@@ -164,23 +186,29 @@ void Session::on_hello(const protocol::Hello& hello) {
     welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = 10'000;
     welcome.limits.max_server_message = std::size_t{64} << 20;
-    answer({client_, protocol::encode(welcome), -1, false});
+    answer({client_, protocol::encode(welcome), 0, false});
 }
 
 void Session::refuse_and_close(const protocol::Error& error, close_code code) {
     ++hub_.metrics->messages_refused;
-    answers_.push_back({client_, protocol::encode(error), -1, true});
+    answer({client_, protocol::encode(error), 0, true});
     close(code, error.message);
 }
 
 // --- what there is to send
 
 void Session::answer(Answer answer) {
+    answer_bytes_ += answer.text.size();
     answers_.push_back(std::move(answer));
     pump();
 }
 
 void Session::owe(std::int64_t frame) {
+    if (frame <= last_frame_) {
+        // A newer one went out meanwhile: the grant is for what comes next.
+        hub_.engine->mailbox().push(FrameSent{client_, last_frame_, 1});
+        return;
+    }
     owed_.push_back(frame);
     pump();
 }
@@ -204,37 +232,38 @@ void Session::pump() {
     if (writing_ || dropped_) return;
     const std::int64_t known = document_ ? document_->revision() : 0;
     if (closing_) {
-        if (!answers_.empty()) {
-            std::string text = std::move(answers_.front().text);
-            answers_.pop_front();
-            return send_text(std::move(text));
-        }
+        if (!answers_.empty()) return send_answer();
         writing_ = true;  // nothing goes out behind the close
         return socket_.async_close(*closing_,
                                    [self = shared_from_this()](beast::error_code) { self->drop(); });
     }
     // A frame or answer goes when the client knows the revision that it speaks of.
     if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
-    if (!answers_.empty() && known >= answers_.front().revision) {
-        std::string text = std::move(answers_.front().text);
-        answers_.pop_front();
-        return send_text(std::move(text));
-    }
+    if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (client_.empty() || !hub_.document || document_ == hub_.document) return;
     const auto before = std::exchange(document_, hub_.document);
-    send_text(before ? document_->encode_patch_from(*before, hub_.document_by) : document_->encode());
+    if (!before) return send_text(document_->encode());
+    const bool one_author = before->revision() + 1 >= hub_.document_by_since;
+    send_text(document_->encode_patch_from(*before, one_author ? hub_.document_by : ""));
+}
+
+void Session::send_answer() {
+    std::string text = std::move(answers_.front().text);
+    answers_.pop_front();
+    answer_bytes_ -= text.size();
+    send_text(std::move(text));
 }
 
 void Session::send_frame() {
     picture_ = hub_.newest;
     last_frame_ = picture_->header.frame;
     int grants = 0;
-    while (!owed_.empty() && owed_.front() <= last_frame_) {
-        owed_.pop_front();
-        ++grants;
-    }
-    // One frame answers one grant; the others are asked for again.
-    if (grants > 1) hub_.engine->mailbox().push(GrantsReturned{client_, grants - 1});
+    std::int64_t promised = 0;
+    for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front(), ++grants)
+        promised = owed_.front();
+    // One frame answers one grant; the others are for what comes next.
+    if (grants > 1 || promised != last_frame_)
+        hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);
@@ -263,8 +292,11 @@ template <class Buffers>
 void Session::write(const Buffers& buffers) {
     writing_ = true;
     hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
-    progress_at_ = Clock::now();
-    watch_progress();
+    if (!watching_) {
+        watching_ = true;
+        progress_at_ = Clock::now();
+        watch_progress();
+    }
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->on_written(error);
     });
@@ -272,29 +304,30 @@ void Session::write(const Buffers& buffers) {
 
 void Session::on_written(beast::error_code error) {
     writing_ = false;
-    write_watch_.cancel();
     picture_.reset();
     if (error) return drop();
     pump();
+    read();
 }
 
-/// Cuts the connection when a write stands and the peer has acknowledged nothing for kStuck. Runs only during
-/// writes.
+/// Cuts the connection when the peer has something to take and has acknowledged nothing for kStuck. Runs only
+/// while there is something.
 void Session::watch_progress() {
     write_watch_.expires_after(1s);
     write_watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
         const auto self = weak.lock();
-        if (stopped || !self || !self->writing_) return;
-        const std::uint64_t acknowledged =
-            bytes_acknowledged(beast::get_lowest_layer(self->socket_).socket().native_handle());
-        if (acknowledged != std::exchange(self->acknowledged_, acknowledged)) {
-            self->progress_at_ = Clock::now();
-        } else if (Clock::now() - self->progress_at_ >= kStuck) {
-            spdlog::warn("client {} takes nothing and is cut off", self->client_);
-            beast::get_lowest_layer(self->socket_).close();
+        if (stopped || !self || self->dropped_) return;
+        const int socket = beast::get_lowest_layer(self->socket_).socket().native_handle();
+        if (!self->writing_ && bytes_unacknowledged(socket) == 0) {
+            self->watching_ = false;
             return;
         }
-        self->watch_progress();
+        const std::uint64_t acknowledged = bytes_acknowledged(socket);
+        if (std::exchange(self->acknowledged_, acknowledged) != acknowledged)
+            self->progress_at_ = Clock::now();
+        if (Clock::now() - self->progress_at_ < kStuck) return self->watch_progress();
+        spdlog::warn("client {} takes nothing and is cut off", self->client_);
+        self->drop();
     });
 }
 

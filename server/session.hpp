@@ -15,9 +15,9 @@
 
 namespace vrut {
 
-/// One WebSocket client, on the net thread. What waits for a slow one is replaced, never queued: it keeps the
+/// One WebSocket client, on the net thread. What waits for a slow one is replaced, not queued: it keeps the
 /// document that it last got and is sent the difference; it is owed a number of frames and is sent the
-/// newest.
+/// newest. Only answers queue, and who does not take them is not read.
 class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(boost::beast::tcp_stream stream, Hub& hub);
@@ -47,6 +47,7 @@ private:
 
     bool frame_is_due() const;
     void send_frame();
+    void send_answer();
     void send_text(std::string text);
     template <class Buffers>
     void write(const Buffers& buffers);
@@ -59,12 +60,14 @@ private:
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, write_watch_;
     std::string client_;  // empty before hello
+    bool may_steer_ = false;
     std::string peer_;
     bool dropped_ = false;
 
     // --- what the client knows and is owed
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
     std::deque<Answer> answers_;
+    std::size_t answer_bytes_ = 0;  // of answers_
     std::deque<std::int64_t> owed_;
     std::int64_t last_frame_ = 0;
 
@@ -73,6 +76,7 @@ private:
     std::string text_;
     std::vector<std::uint8_t> comment_;
     std::shared_ptr<const EncodedPicture> picture_;
+    bool watching_ = false;
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
     Clock::time_point progress_at_;   // when it last saw more of them
     std::optional<boost::beast::websocket::close_reason> closing_;

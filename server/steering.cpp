@@ -2,12 +2,13 @@
 
 namespace vrut {
 
-bool Steering::steer(const std::string& client, Clock::time_point now, bool holder_presses) {
-    const bool free = !holder_ || (!kept_ && !holder_presses && now - last_ >= kQuietHolder);
-    if (holder_ != client && !free) return false;
+bool Steering::may_steer(const std::string& client, Clock::time_point now, bool holder_presses) const {
+    return !holder_ || holder_ == client || (!kept_ && !holder_presses && now - last_ >= kQuietHolder);
+}
+
+void Steering::steer(const std::string& client, Clock::time_point now) {
     holder_ = client;
     last_ = now;
-    return true;
 }
 
 void Steering::take(const std::string& client, Clock::time_point now) {

@@ -14,8 +14,10 @@ class Steering {
 public:
     static constexpr std::chrono::milliseconds kQuietHolder{1000};
 
-    /// `client` wants to steer. True where it holds control now, perhaps since just now.
-    bool steer(const std::string& client, Clock::time_point now, bool holder_presses);
+    /// Whether `client` may steer at `now`: it holds control, or nobody does, or the holder gives way.
+    bool may_steer(const std::string& client, Clock::time_point now, bool holder_presses) const;
+    /// `client`, who may, steers: it holds control from now on.
+    void steer(const std::string& client, Clock::time_point now);
     /// `client` takes control and keeps it, however quiet it is, until it gives it back or another takes it.
     void take(const std::string& client, Clock::time_point now);
     /// `client` gives control back, or is gone. True where it held control; nobody inherits.

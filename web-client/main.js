@@ -36,8 +36,8 @@ const connection = new Connection({
 
     state(state) {
       const notices = state.scene?.notices ?? [];
-      const news = notices.find((notice) => !noticesSeen.has(notice));
-      if (news) status.pass(news);
+      const news = notices.filter((notice) => !noticesSeen.has(notice));
+      if (news.length > 0) status.pass(news.join(' · '));
       for (const notice of notices) noticesSeen.add(notice);
     },
 

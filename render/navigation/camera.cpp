@@ -77,6 +77,14 @@ Camera with_orthogonal_up(Camera camera) {
     return camera;
 }
 
+Camera with_roll_of(const Camera& before, Camera pose) {
+    const bool level = std::abs(right_direction(before).y) < 1e-9;
+    const glm::dvec3 view = pose.focus - pose.eye;
+    const bool vertical_view = glm::length(glm::dvec2(view.x, view.z)) <= 1e-9 * glm::length(view);
+    if (level && !vertical_view) pose.up = before.up.y < 0 ? -kVertical : kVertical;
+    return pose;
+}
+
 ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds) {
     const double distance = focus_distance(camera);
     ClipRange range{distance * 0.01, distance * 10};

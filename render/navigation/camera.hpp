@@ -32,6 +32,10 @@ bool is_valid_pose(const Camera& camera, double scene_radius);
 /// The same camera with `up` at right angles to the view and unit; the pose must be valid.
 Camera with_orthogonal_up(Camera camera);
 
+/// `pose`, for which no up was given, with the roll of `before`: one that stood upright (or on its head) goes
+/// on to.
+Camera with_roll_of(const Camera& before, Camera pose);
+
 struct ClipRange {
     double near = 0.1, far = 100;
     bool operator==(const ClipRange&) const = default;

@@ -10,6 +10,9 @@ namespace {
 using Device = PointerInput::Device;
 using Action = PointerInput::Action;
 
+// More than any hand has; without a bound each press would make the next one slower.
+constexpr std::size_t kMostPressed = 16;
+
 enum Button { left = 0, middle = 1, right = 2 };
 
 /// W3C numbers a button one way and its bit among the held ones another.
@@ -53,6 +56,7 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
     });
     if (input.action == Action::down) {
         if (pressed != pressed_.end()) pressed_.erase(pressed);
+        if (pressed_.size() == kMostPressed) return camera;
         if (input.device == Device::touch && fingers().size() == 2) return camera;  // a third one
         const glm::dvec2 at{input.x, input.y};
         const unsigned buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);

@@ -192,6 +192,47 @@ TEST_CASE("input interrupts the picture at rest") {
     CHECK(server.metrics().frames_interrupted >= 1);
 }
 
+TEST_CASE("messages that change nothing to be seen do not keep the picture at rest away") {
+    TestServer server({.takes = 40ms});
+    TestClient watcher(server.port()), noisy(server.port());
+    watcher.join("view");
+    noisy.join("view");
+    watcher.send({{"type", "frame"}});
+    int sent = 0;
+    const auto end = std::chrono::steady_clock::now() + 3s;
+    while (server.metrics().frames_rendered_still == 0 && std::chrono::steady_clock::now() < end) {
+        noisy.send({{"type", "keyup"}, {"key", "f"}, {"code", "KeyF"}});
+        std::this_thread::sleep_for(10ms);
+        ++sent;
+    }
+    CHECK(sent > 5);
+    CHECK(server.metrics().frames_rendered_still == 1);
+    CHECK(server.metrics().frames_interrupted == 0);
+}
+
+TEST_CASE("a slow client gets no frame twice") {
+    TestServer server({.noise = true});
+    TestClient worker(server.port()), slow(server.port(), {.receive_buffer = 4096});
+    worker.join();
+    slow.join("view");
+    std::int64_t last = 0;
+    for (int i = 1; i <= 20; ++i) {
+        slow.send({{"type", "frame"}});
+        worker.send({{"type", "frame"}});
+        worker.send(eye(i, i * 0.1));
+        worker.wait_for("frame");
+    }
+    for (int i = 0; i < 4; ++i) {
+        slow.send({{"type", "frame"}});
+        while (const auto message = slow.receive(300ms)) {
+            if (!message->binary) continue;
+            CHECK(message->json()["frame"] > last);
+            last = message->json()["frame"];
+        }
+    }
+    CHECK(last > 0);
+}
+
 TEST_CASE("the whole scene stays in view while nobody has moved the camera, and then the camera stays") {
     TestServer server;
     TestClient client(server.port());

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -96,6 +98,49 @@ TEST_CASE("a bad message is answered by an error with its id, and the connection
     CHECK(error["code"] == "unknown-member");
     client.send({{"type", "resize"}, {"id", 6}, {"width", 100}, {"height", 100}, {"pixelRatio", 1}});
     CHECK(client.wait_for("ok")["id"] == 6);
+}
+
+TEST_CASE("answers come in order, those to unreadable messages too") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    // More answers than may wait: the server stops reading until they are taken.
+    constexpr int kMessages = 6000;
+    std::thread sender([&] {
+        for (int id = 1; id <= kMessages; ++id) {
+            if (id % 2 == 0)
+                client.send({{"type", "dance"}, {"id", id}});
+            else
+                client.send({{"type", "resize"}, {"id", id}, {"width", 9}, {"height", 9}, {"pixelRatio", 1}});
+        }
+    });
+    for (int id = 1; id <= kMessages; ++id) {
+        const auto answer = client.receive();
+        REQUIRE(answer.has_value());
+        CHECK(answer->json()["id"] == id);
+        CHECK(answer->json()["type"] == (id % 2 == 0 ? "error" : "ok"));
+    }
+    sender.join();
+    CHECK(client.wait_for_still()["handled"] == kMessages);
+}
+
+TEST_CASE("a camera that stands upright stays upright where no up is given") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    const auto up_after = [&](const Json& camera) {
+        client.send({{"type", "patch"}, {"id", 1}, {"patch", {{"camera", camera}}}});
+        client.wait_for("ok");
+        const Json& state = client.state["camera"];
+        const auto eye = state["eye"], focus = state["focus"], up = state["up"];
+        // How far the camera's right axis, view × up, leans: 0 without roll.
+        return (focus[2].get<double>() - eye[2].get<double>()) * up[0].get<double>() -
+               (focus[0].get<double>() - eye[0].get<double>()) * up[2].get<double>();
+    };
+    CHECK(std::abs(up_after({{"eye", {3, 2, 5}}, {"focus", {0, 0.7, 0}}})) < 1e-12);
+    CHECK(std::abs(up_after({{"eye", {-7, 1, 0.5}}})) < 1e-12);
+    CHECK(std::abs(up_after({{"up", {1, 1, 0}}})) > 0.1);
+    CHECK(std::abs(up_after({{"eye", {3, 2, 5}}})) > 0.01);  // it leans, and goes on to
 }
 
 TEST_CASE("a patch reaches everybody; its sender before the answer and before any frame of its revision") {

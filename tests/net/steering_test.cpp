@@ -141,3 +141,63 @@ TEST_CASE("a drag of 50 moves and the same drag of 2 moves end in the same camer
         CHECK(camera_after(50, drag.device, drag.button, drag.buttons, true) == two);
     }
 }
+
+TEST_CASE("a refused message changes nothing, and not who steers either") {
+    TestServer server;
+    TestClient client(server.port()), host(server.port());
+    client.join();
+    host.join("host");
+    client.send({{"type", "resize"}, {"id", 1}, {"width", 300}, {"height", 200}, {"pixelRatio", 1}});
+    const std::int64_t revision = client.wait_for("ok")["revision"];
+    const auto refused = [&](TestClient& who, Json message) {
+        message["id"] = 2;
+        who.send(message);
+        who.wait_for("error");
+        who.send({{"type", "resize"}, {"id", 3}, {"width", 300}, {"height", 200}, {"pixelRatio", 1}});
+        CHECK(who.wait_for("ok")["revision"] == revision);
+        CHECK_FALSE(who.state["control"].contains("holder"));
+    };
+    refused(host, {{"type", "navigate"}, {"rotate", {5, 5}}});
+    refused(host, zoom_speed(2, 2));
+    refused(client, {{"type", "patch"}, {"patch", {{"nose", 1}}}});
+    refused(client, {{"type", "patch"}, {"patch", {{"camera", {{"up", {0, 0, 0}}}}}}});
+    refused(client, {{"type", "fit"}, {"node", 99}});
+    refused(client, {{"type", "wheel"}});
+    // Taking control fits the untouched view to the new size; that is no reason to call the patch stale.
+    client.send(
+        {{"type", "patch"}, {"id", 4}, {"patch", {{"camera", {{"fov", 33}}}}}, {"ifRevision", revision}});
+    CHECK(client.wait_for("ok")["id"] == 4);
+}
+
+TEST_CASE("a press that takes control is measured in the view that it began in") {
+    TestServer server;
+    TestClient a(server.port()), b(server.port());
+    a.join();
+    b.join();
+    b.send({{"type", "resize"}, {"width", 390}, {"height", 844}, {"pixelRatio", 1}});
+    b.send(pointer_event("pointerdown", 100, 100));
+    b.send(pointer_event("pointermove", 200, 100));
+    CHECK(b.wait_for_still()["view"]["width"] == 1280.0);
+    b.send(pointer_event("pointerup", 200, 100, "touch", 0, 0));
+    b.send({{"type", "patch"}, {"id", 1}, {"patch", Json::object()}});
+    b.wait_for("ok");
+    CHECK(b.wait_for_still()["view"]["width"] == 390.0);
+}
+
+TEST_CASE("a patch says who made it, unless several did") {
+    TestServer server({.takes = 100ms});
+    TestClient a(server.port()), b(server.port()), watcher(server.port());
+    a.join();
+    b.join();
+    watcher.join("view");
+    a.send(zoom_speed(1, 2));
+    CHECK(watcher.wait_for("patch")["by"] == "c1");
+    // While a picture is drawn both change the state: the watcher hears of it in one patch.
+    watcher.send({{"type", "frame"}});
+    std::this_thread::sleep_for(30ms);
+    a.send({{"type", "control"}, {"action", "release"}});
+    std::this_thread::sleep_for(10ms);
+    b.send(zoom_speed(1, 4));
+    Json patch = watcher.wait_for("patch");
+    if (patch["patch"].contains("navigation")) CHECK_FALSE(patch.contains("by"));
+}

@@ -57,8 +57,8 @@ TEST_CASE("without a token the request must name the loopback interface") {
     for (const char* good :
          {"localhost", "localhost:8080", "127.0.0.1:8080", "127.0.0.1", "[::1]:8080", "[::1]"})
         CHECK_MESSAGE(access.accepts_host(good), good);
-    for (const char* bad :
-         {"", "evil.example:8080", "localhost.evil.example", "192.0.2.1:8080", "[::2]:8080"})
+    for (const char* bad : {"", "evil.example:8080", "localhost.evil.example", "192.0.2.1:8080", "[::2]:8080",
+                            "127.evil.example:8080", "127.0.0.1.evil.example", "127.1", "localhost."})
         CHECK_FALSE_MESSAGE(access.accepts_host(bad), bad);
     access.control_token = "control-token-16";
     CHECK(access.accepts_host("cave.example:8080"));
@@ -82,6 +82,9 @@ TEST_CASE("the environment may hold tokens") {
     CHECK(read_access({}).view_token == "from-environment");
     ::unsetenv("VRUT_PREVIEW_VIEW_TOKEN");
     CHECK_FALSE(read_access({}).needs_token());
+    ::setenv("VRUT_PREVIEW_CONTROL_TOKEN", "short", 1);
+    CHECK_THROWS_WITH(read_access({}), doctest::Contains("16 to 1000 bytes"));
+    ::unsetenv("VRUT_PREVIEW_CONTROL_TOKEN");
 }
 
 TEST_CASE("tokens are long and never the same") {

@@ -19,8 +19,7 @@ EngineEvent pointer(const char* client, Pointer::Event event, std::int64_t id, d
     payload.buttons = buttons;
     ClientSaid said;
     said.client = client;
-    said.message.id = id;
-    said.message.payload = payload;
+    said.message = protocol::ClientMessage{id, payload};
     said.bytes = 100;
     return said;
 }
@@ -39,8 +38,8 @@ TEST_CASE("adjacent moves of one pointer become one, with the last place, the la
     const auto events = take(mailbox);
     REQUIRE(events.size() == 1);
     const auto& said = std::get<ClientSaid>(events[0]);
-    CHECK(said.message.id == 50);
-    CHECK(std::get<Pointer>(said.message.payload).x == 50);
+    CHECK(said.message->id == 50);
+    CHECK(std::get<Pointer>(said.message->payload).x == 50);
     CHECK(said.bytes == 5000);
 }
 
@@ -54,22 +53,31 @@ TEST_CASE("nothing else is merged") {
     mailbox.push(pointer("a", Pointer::Event::move, 5, 4, -1, 3));     // other buttons held
     mailbox.push(pointer("a", Pointer::Event::move, 6, 5, -1, 3, 9));  // another pointer
     mailbox.push(pointer("a", Pointer::Event::up, 7, 6, 0, 0));
-    mailbox.push(GrantsReturned{"a", 1});
-    mailbox.push(GrantsReturned{"a", 1});
+    mailbox.push(FrameSent{"a", 1, 1});
+    mailbox.push(FrameSent{"a", 1, 1});
     CHECK(take(mailbox).size() == 10);
     CHECK(take(mailbox).empty());
 }
 
-TEST_CASE("input is told from what changes no picture") {
+TEST_CASE("moves of a client that may not steer are not merged: each has its answer") {
     Mailbox mailbox;
-    ClientSaid grant{"a", {}, {}, 10};
-    grant.message.payload = protocol::FrameGrant{};
-    mailbox.push(grant);
-    CHECK_FALSE(mailbox.has_input());
+    for (int i = 1; i <= 3; ++i) {
+        EngineEvent event = move("a", i, i);
+        std::get<ClientSaid>(event).may_steer = false;
+        mailbox.push(event);
+    }
+    CHECK(take(mailbox).size() == 3);
+}
+
+TEST_CASE("what a client said and left is dropped") {
+    Mailbox mailbox;
     mailbox.push(move("a", 1, 0));
-    CHECK(mailbox.has_input());
-    take(mailbox);
-    CHECK_FALSE(mailbox.has_input());
+    mailbox.push(move("b", 1, 0));
+    mailbox.push(ClientLeft{"a"});
+    const auto events = take(mailbox);
+    REQUIRE(events.size() == 2);
+    CHECK(std::get<ClientSaid>(events[0]).client == "b");
+    CHECK(std::get<ClientLeft>(events[1]).client == "a");
 }
 
 TEST_CASE("a wait ends by an event, a wake, its time and the end") {
