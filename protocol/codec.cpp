@@ -134,6 +134,17 @@ Control decode_control(const Members& members) {
     return {read_word(members.at("action"), "action", {"take", "release"}) == 0};
 }
 
+Pick decode_pick(const Members& members) {
+    Pick pick;
+    pick.x = members.number("x", -kMaxCoordinate, kMaxCoordinate);
+    pick.y = members.number("y", -kMaxCoordinate, kMaxCoordinate);
+    pick.frame = members.optional_integer("frame", 0);
+    if (const Json* then = members.find("then"))
+        pick.then = static_cast<Pick::Then>(1 + read_word(*then, "then", {"select", "center", "lookAt"}));
+    pick.through = members.flag("through");
+    return pick;
+}
+
 using Payload = decltype(ClientMessage::payload);
 
 struct Decoder {
@@ -156,6 +167,7 @@ constexpr Decoder kDecoders[] = {
     {"navigate", [](const Members& m) -> Payload { return decode_navigate(m); }},
     {"fit", [](const Members& m) -> Payload { return Fit{m.optional_integer("node", 0)}; }},
     {"control", [](const Members& m) -> Payload { return decode_control(m); }},
+    {"pick", [](const Members& m) -> Payload { return decode_pick(m); }},
 };
 
 Payload decode_payload(const Members& members) {
@@ -214,6 +226,18 @@ std::string encode(const Welcome& message) {
 
 std::string encode(const Ok& message) {
     return dump({{"type", "ok"}, {"id", message.id}, {"revision", message.revision}});
+}
+
+std::string encode(const Picked& message) {
+    Json json = {{"type", "picked"}, {"id", message.id}};
+    if (const auto& hit = message.hit)
+        json.update({{"node", hit->node},
+                     {"name", hit->name},
+                     {"path", hit->path},
+                     {"point", to_json(hit->point)},
+                     {"normal", to_json(hit->normal)},
+                     {"distance", hit->distance}});
+    return dump(json);
 }
 
 std::string encode(const Error& message) {

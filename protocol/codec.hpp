@@ -13,6 +13,7 @@ tl::expected<ClientMessage, Error> decode(std::string_view text);
 
 std::string encode(const Welcome& message);
 std::string encode(const Ok& message);
+std::string encode(const Picked& message);
 std::string encode(const Error& message);
 
 const char* name_of(Role role);

@@ -2,11 +2,13 @@
 
 #include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 /// What travels between clients and the server. PROTOCOL.md tells what each message means; the structs here
 /// have its members under its names.
@@ -90,9 +92,18 @@ struct Control {
     bool take = true;  ///< and keep; else release
 };
 
+/// What is under a point of the view, as a frame showed it.
+struct Pick {
+    enum class Then { nothing, select, center, look_at };
+    double x = 0, y = 0;                ///< CSS pixels
+    std::optional<std::int64_t> frame;  ///< none: the newest
+    Then then = Then::nothing;
+    bool through = false;  ///< transparent parts are passed
+};
+
 struct ClientMessage {
     std::optional<std::int64_t> id;
-    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Patch, Navigate, Fit, Control> payload;
+    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Patch, Navigate, Fit, Control, Pick> payload;
 };
 
 // --- server to client
@@ -118,6 +129,18 @@ struct Ok {
     std::int64_t revision = 0;
 };
 
+struct Picked {
+    struct Hit {
+        std::int64_t node = 0;
+        std::string name;
+        std::vector<std::string> path;   ///< names from the root, the last 32
+        glm::dvec3 point{0}, normal{0};  ///< world; the normal is geometric, unit, towards the viewer
+        double distance = 0;             ///< from the eye
+    };
+    std::int64_t id = 0;
+    std::optional<Hit> hit;
+};
+
 /// One sentence for a person that names the culprit, and a code for a program.
 struct Error {
     std::optional<std::int64_t> id;
@@ -127,9 +150,9 @@ struct Error {
 namespace error_code {
 inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",
                             *unknown_member = "unknown-member", *read_only = "read-only",
-                            *unknown_node = "unknown-node", *stale_revision = "stale-revision",
-                            *not_in_control = "not-in-control", *not_allowed = "not-allowed",
-                            *too_many = "too-many", *failed = "failed";
+                            *unknown_node = "unknown-node", *unknown_frame = "unknown-frame",
+                            *stale_revision = "stale-revision", *not_in_control = "not-in-control",
+                            *not_allowed = "not-allowed", *too_many = "too-many", *failed = "failed";
 }  // namespace error_code
 
 }  // namespace vrut::protocol

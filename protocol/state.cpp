@@ -53,6 +53,11 @@ Json section_json(const BackgroundsState& backgrounds) {
         {"active", backgrounds.active}, {"color", to_json(backgrounds.color)}, {"items", std::move(items)}};
 }
 
+Json section_json(const SelectionState& selection) {
+    if (!selection.node) return Json::object();
+    return {{"node", *selection.node}, {"name", selection.name}, {"path", selection.path}};
+}
+
 Json section_json(const ControlState& control) {
     Json json = {{"kept", control.kept}};
     if (control.holder) json["holder"] = *control.holder;
@@ -194,6 +199,17 @@ void patch_backgrounds(BackgroundsState& backgrounds, const BackgroundsState& st
                                      })}});
 }
 
+void patch_selection(SelectionState& selection, const SelectionState& start, const Json& patch,
+                     const std::string& path) {
+    patch_members(patch, path,
+                  {{"node", leaf(selection.node, start.node,
+                                 [](const Json& value, const std::string& at) {
+                                     return std::optional(read_integer(value, at, 0, kMaxInteger));
+                                 })},
+                   {"name", {}},
+                   {"path", {}}});
+}
+
 State patched_or_throw(const State& state, const State& starting, const Json& patch) {
     State result = state;
     patch_members(patch, "",
@@ -202,6 +218,7 @@ State patched_or_throw(const State& state, const State& starting, const Json& pa
                    {"navigation", section(result.navigation, starting.navigation, patch_navigation)},
                    {"lights", section(result.lights, starting.lights, patch_lights)},
                    {"backgrounds", section(result.backgrounds, starting.backgrounds, patch_backgrounds)},
+                   {"selection", section(result.selection, starting.selection, patch_selection)},
                    {"control", {}}});
     return result;
 }
@@ -326,6 +343,7 @@ std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& pr
     update("navigation", state.navigation, previous.state_.navigation);
     update("lights", state.lights, previous.state_.lights);
     update("backgrounds", state.backgrounds, previous.state_.backgrounds);
+    update("selection", state.selection, previous.state_.selection);
     update("control", state.control, previous.state_.control);
     return document;
 }

@@ -65,6 +65,13 @@ struct BackgroundsState {
     bool operator==(const BackgroundsState&) const = default;
 };
 
+struct SelectionState {
+    std::optional<std::int64_t> node;
+    std::string name;               // r
+    std::vector<std::string> path;  // r: names from the root, the last 32
+    bool operator==(const SelectionState&) const = default;
+};
+
 struct ControlState {  // r
     std::optional<std::string> holder;
     bool kept = false;
@@ -78,6 +85,7 @@ struct State {
     NavigationState navigation;
     LightsState lights;
     BackgroundsState backgrounds;
+    SelectionState selection;
     ControlState control;
     bool operator==(const State&) const = default;
 };

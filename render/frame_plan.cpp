@@ -5,20 +5,6 @@
 
 namespace vrut {
 
-namespace {
-
-// Positions are float on the GPU, and their squares are taken there.
-constexpr double kFarthest = 1e18;
-
-/// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid
-/// one.
-double relative_determinant(const glm::dmat3& m) {
-    const double edges = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
-    return edges > 0 ? glm::determinant(m) / edges : 0;
-}
-
-}  // namespace
-
 FramePlan plan_frame(const PlacedScene& placed, const Camera& camera) {
     const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, camera.eye);
     const glm::dmat4 view = view_from_world(camera);
@@ -32,7 +18,8 @@ FramePlan plan_frame(const PlacedScene& placed, const Camera& camera) {
         DrawItem item{
             static_cast<Index>(i), data->geometry, data->material, view * placed.world[i], {}, false};
         const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
-        if (!(glm::length(in_view.min) < kFarthest && glm::length(in_view.max) < kFarthest)) continue;
+        if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn))
+            continue;
         const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
         const bool singular = !(std::abs(determinant) > 1e-12);
         item.sides = singular || placed.scene.material(data->material).two_sided ? Sides::both : Sides::front;

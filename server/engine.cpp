@@ -224,6 +224,7 @@ void Engine::draw(bool still) {
     }
     ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
     drawn_ = {header.frame, visible, view_size, still};
+    presentation_->remember(drawn_.frame);
     header.render_ms = stats.render_ms;
     header.readback_ms = stats.readback_ms;
     for (auto& [name, client] : clients_) {

@@ -1,12 +1,22 @@
 #include "presentation.hpp"
 
+#include <algorithm>
+
 #include "codec.hpp"
+#include "picking.hpp"
 #include "scene_state.hpp"
 
 namespace vrut {
 
 using protocol::Role;
 namespace code = protocol::error_code;
+
+namespace {
+
+constexpr std::size_t kFramesRemembered = 64;
+constexpr std::size_t kLongestPath = 32;
+
+}  // namespace
 
 Presentation::Presentation(std::shared_ptr<const PlacedScene> scene, std::vector<std::string> notices)
     : scene_(std::move(scene)),
@@ -22,6 +32,7 @@ void Presentation::leave(const std::string& client) {
     document();  // what was before is the client's own doing
     clients_.erase(client);
     gestures_.lift(client, camera());
+    clicks_.lift(client);
     if (steering_.release(client)) hold(std::nullopt);
     changing_.clear();
 }
@@ -72,6 +83,13 @@ void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
     input.button = pointer.button;
     input.buttons = pointer.buttons;
     drag_camera(gestures_.pointer(input, camera(), navigation_context()));
+    const double arrival = std::chrono::duration<double, std::milli>(said.arrival.time_since_epoch()).count();
+    const double time = clients_[said.client].clock.time(pointer.time_stamp, arrival);
+    if (const std::optional<Click> click = clicks_.pointer(input, time)) {
+        std::optional<Look> seen = look(click->x, click->y, pointer.frame, false);
+        if (!seen) seen = look(click->x, click->y, std::nullopt, false);  // long forgotten: the newest
+        apply(click->operation, seen->hit);
+    }
 }
 
 void Presentation::apply(const Said& said, const protocol::Wheel& wheel) {
@@ -84,7 +102,14 @@ void Presentation::apply(const Said& said, const protocol::Wheel& wheel) {
 void Presentation::apply(const Said& said, const protocol::Key& key) {
     if (!key.down || !may_steer(said)) return;
     steer(said);
-    move_camera(key_down({key.key, key.modifiers.shift}, camera(), home(), navigation_context()));
+    if (key.key == "Escape") select(kNone);
+    NavigationContext context = navigation_context();
+    if (state_.selection.node) {
+        // What is selected is what `f` fits; zooming keeps the whole scene's limits.
+        const Bounds selected = subtree_bounds(*scene_, scene_->scene.find_node(*state_.selection.node));
+        if (key.key == "f" && !selected.empty()) context.bounds = selected;
+    }
+    move_camera(key_down({key.key, key.modifiers.shift}, camera(), home(), context));
 }
 
 void Presentation::apply(const Said& said, const protocol::Patch& patch) {
@@ -99,10 +124,15 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     if (clients_[said.client].role == Role::host) {
         protocol::State but_camera = *next;
         but_camera.camera = state_.camera;
+        but_camera.selection = state_.selection;
         if (but_camera != state_)
-            return refuse(said.client,
-                          {said.message.id, code::not_allowed, "a host may patch nothing but 'camera'"});
+            return refuse(said.client, {said.message.id, code::not_allowed,
+                                        "a host may patch nothing but 'camera' and 'selection'"});
     }
+    const std::optional<Id> selected = next->selection.node;
+    if (selected && scene_->scene.find_node(*selected) == kNone)
+        return refuse(said.client, {said.message.id, code::unknown_node,
+                                    "'selection.node': there is no node " + std::to_string(*selected)});
     Camera pose = camera_of(next->camera);
     if (moves && !protocol::names_camera_up(*patch.patch)) pose = with_roll_of(camera(), pose);
     if (moves && !is_valid_pose(pose, scene_->bounds.radius()))
@@ -115,6 +145,7 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     next->camera = moves ? state_of(with_orthogonal_up(pose), scene_->bounds) : state_.camera;
     next->control = state_.control;
     state_ = *std::move(next);
+    select(selected ? scene_->scene.find_node(*selected) : kNone);
     gestures_.restart(camera());
     answer(said);
 }
@@ -159,6 +190,82 @@ void Presentation::apply(const Said& said, const protocol::Control& control) {
     answer(said);
 }
 
+void Presentation::apply(const Said& said, const protocol::Pick& pick) {
+    using Then = protocol::Pick::Then;
+    const bool steers = pick.then != Then::nothing;
+    if (steers && !may_steer(said)) return;
+    const std::optional<Look> seen = look(pick.x, pick.y, pick.frame, pick.through);
+    if (!seen)
+        return refuse(said.client, {said.message.id, code::unknown_frame,
+                                    "frame " + std::to_string(*pick.frame) + " is not among the last " +
+                                        std::to_string(kFramesRemembered)});
+    if (steers) {
+        steer(said);
+        apply(pick.then == Then::select   ? Click::Operation::select
+              : pick.then == Then::center ? Click::Operation::set_center
+                                          : Click::Operation::look_at,
+              seen->hit);
+    }
+    if (!said.message.id) return;
+    protocol::Picked picked{*said.message.id, {}};
+    if (const auto& hit = seen->hit) {
+        const Node& node = scene_->scene.nodes()[static_cast<std::size_t>(hit->node)];
+        picked.hit = {node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance};
+    }
+    answers_.push_back({said.client, protocol::encode(picked), document()->revision()});
+}
+
+std::optional<Presentation::Look> Presentation::look(double x, double y, std::optional<std::int64_t> frame,
+                                                     bool through) const {
+    Frame seen{0, camera(), view_size_};
+    if (frame) {
+        const auto found = std::find_if(frames_.begin(), frames_.end(),
+                                        [&](const Frame& candidate) { return candidate.number == *frame; });
+        if (found == frames_.end()) return std::nullopt;
+        seen = *found;
+    } else if (!frames_.empty()) {
+        seen = frames_.back();
+    }
+    const protocol::Resize& size = seen.view_size;
+    const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
+    return Look{pick(*scene_,
+                     {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)},
+                     through)};
+}
+
+void Presentation::apply(Click::Operation operation, const std::optional<Hit>& hit) {
+    if (operation == Click::Operation::select) return select(hit ? hit->node : kNone);
+    if (!hit) return;
+    Camera moved = camera();
+    moved.center = hit->point;
+    if (operation == Click::Operation::look_at) {
+        moved.eye += hit->point - moved.focus;
+        moved.focus = hit->point;
+    }
+    move_camera(moved);
+}
+
+void Presentation::remember(std::int64_t frame) {
+    frames_.push_back({frame, visible_.camera, view_size_});
+    if (frames_.size() > kFramesRemembered) frames_.pop_front();
+}
+
+void Presentation::select(Index node) {
+    state_.selection = {};
+    if (node == kNone) return;
+    const Node& selected = scene_->scene.nodes()[static_cast<std::size_t>(node)];
+    state_.selection = {selected.id, selected.name, path_of(node)};
+}
+
+std::vector<std::string> Presentation::path_of(Index node) const {
+    std::vector<std::string> path;
+    for (; node != kNone && path.size() < kLongestPath;
+         node = scene_->scene.nodes()[static_cast<std::size_t>(node)].parent)
+        path.push_back(scene_->scene.nodes()[static_cast<std::size_t>(node)].name);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
 void Presentation::answer(const Said& said) {
     if (!said.message.id) return;
     const std::int64_t revision = document()->revision();
@@ -200,7 +307,10 @@ void Presentation::steer(const Said& said) {
 void Presentation::hold(const std::optional<std::string>& holder) {
     protocol::ControlState& control = state_.control;
     if (control.holder != holder) {
-        if (control.holder) gestures_.lift(*control.holder, camera());
+        if (control.holder) {
+            gestures_.lift(*control.holder, camera());
+            clicks_.lift(*control.holder);
+        }
         control.holder = holder;
         if (!size_waits_) use_holders_size();
     }

@@ -1,14 +1,17 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "clicks.hpp"
 #include "gestures.hpp"
 #include "messages.hpp"
 #include "pacing.hpp"
+#include "picking.hpp"
 #include "scene.hpp"
 #include "state.hpp"
 #include "steering.hpp"
@@ -48,6 +51,8 @@ public:
     /// Who made the newest revision and those before it, down to `changed_by_since()`; empty: the server.
     const std::string& changed_by() const { return changed_by_; }
     std::int64_t changed_by_since() const { return changed_by_since_; }
+    /// A frame has been drawn of visible() at view_size(): picks name it.
+    void remember(std::int64_t frame);
     /// Answers what a client said that cannot be read.
     void refuse(const std::string& client, const protocol::Error& error);
     std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
@@ -56,6 +61,7 @@ private:
     struct Client {
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
+        EventClock clock;
     };
     /// The message in hand.
     struct Said {
@@ -74,6 +80,7 @@ private:
     void apply(const Said& said, const protocol::Navigate& navigate);
     void apply(const Said& said, const protocol::Fit& fit);
     void apply(const Said& said, const protocol::Control& control);
+    void apply(const Said& said, const protocol::Pick& pick);
 
     void answer(const Said& said);
 
@@ -83,6 +90,16 @@ private:
     void steer(const Said& said);
     void hold(const std::optional<std::string>& holder);
     void use_holders_size();
+
+    /// What a frame showed at a point of its view, and how much of it; none where that frame is not
+    /// remembered.
+    struct Look {
+        std::optional<Hit> hit;
+    };
+    std::optional<Look> look(double x, double y, std::optional<std::int64_t> frame, bool through) const;
+    void apply(Click::Operation operation, const std::optional<Hit>& hit);
+    void select(Index node);
+    std::vector<std::string> path_of(Index node) const;
 
     Camera camera() const;
     Camera home() const;
@@ -102,11 +119,18 @@ private:
     std::map<std::string, Client> clients_;
     Steering steering_;
     Gestures gestures_;
+    Clicks clicks_;
     protocol::Resize view_size_;
     bool size_waits_ =
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     View visible_;
-    bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
+    struct Frame {
+        std::int64_t number = 0;
+        Camera camera;
+        protocol::Resize view_size;
+    };
+    std::deque<Frame> frames_;  ///< the last kFramesRemembered
+    bool at_home_ = false;      ///< nobody has moved the camera since loading: it follows the view's size
 };
 
 }  // namespace vrut

@@ -130,6 +130,13 @@ glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& 
     return matrix;
 }
 
+glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dvec2& point) {
+    const double half = std::tan(camera.fov * kRadiansPerDegree / 2);
+    const glm::dvec3 view = view_direction(camera), right = right_direction(camera);
+    return glm::normalize(view + right * (point.x * half * aspect) -
+                          glm::cross(right, view) * (point.y * half));
+}
+
 Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
     const double extent = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
     const double radius = std::max(extent, closest_at(bounds.center()));

@@ -50,6 +50,9 @@ glm::dmat4 view_from_world(const Camera& camera);
 /// OpenGL's: clip z from −w to w. `aspect` is width / height.
 glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& range);
 
+/// Unit direction from the eye through a point of the view: x and y from −1 (left, top) to 1 (right, bottom).
+glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dvec2& point);
+
 /// The camera, looking along the same direction, from where the sphere around `bounds` just fits into a view
 /// of `aspect`: distance r / sin(half of the smaller fov). Empty bounds count as a unit sphere at the origin.
 Camera fitted(const Camera& camera, const Bounds& bounds, double aspect);

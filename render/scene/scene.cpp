@@ -246,6 +246,13 @@ PlacedScene place(Scene scene) {
     return placed;
 }
 
+/// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid
+/// one.
+double relative_determinant(const glm::dmat3& m) {
+    const double edges = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);
+    return edges > 0 ? glm::determinant(m) / edges : 0;
+}
+
 bool is_finite(const glm::dmat4& matrix) {
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)

@@ -174,6 +174,14 @@ PlacedScene place(Scene scene);
 /// scene_bounds of what hangs at and below `node`.
 Bounds subtree_bounds(const PlacedScene& placed, Index node);
 
+/// What lies further from the eye is neither drawn nor picked: positions are float on the GPU, and squared
+/// there.
+inline constexpr double kFarthestDrawn = 1e18;
+
+/// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid
+/// one.
+double relative_determinant(const glm::dmat3& m);
+
 /// True when every number of the matrix is finite.
 bool is_finite(const glm::dmat4& matrix);
 

@@ -81,6 +81,15 @@ TEST_CASE("every member of every message is read") {
         std::get<Patch>(decoded(R"({"type":"patch","patch":{"camera":{}},"ifRevision":4})").payload);
     CHECK(patch.if_revision == 4);
 
+    const auto pick = std::get<Pick>(
+        decoded(R"({"type":"pick","x":1.5,"y":2,"frame":7,"then":"lookAt","through":true})").payload);
+    CHECK(pick.x == 1.5);
+    CHECK(pick.y == 2);
+    CHECK(pick.frame == 7);
+    CHECK(pick.then == Pick::Then::look_at);
+    CHECK(pick.through);
+    CHECK(std::get<Pick>(decoded(R"({"type":"pick","x":1,"y":2})").payload).then == Pick::Then::nothing);
+
     const auto navigate = std::get<Navigate>(
         decoded(R"({"type":"navigate","rotate":[10,-20],"pan":[0.5,0.25],"zoom":2})").payload);
     CHECK(navigate.rotate == std::array<double, 2>{10, -20});
@@ -164,6 +173,9 @@ TEST_CASE("what is wrong is refused, with the culprit named") {
         {R"({"type":"navigate","zoom":1e7})", "out-of-range", "'zoom'"},
         {R"({"type":"fit","node":-1})", "out-of-range", "'node'"},
         {R"({"type":"fit","node":"4"})", "bad-message", "'node'"},
+        {R"({"type":"pick","x":1})", "bad-message", "'y'"},
+        {R"({"type":"pick","x":1,"y":1,"then":"dance"})", "out-of-range", "'then'"},
+        {R"({"type":"pick","x":1,"y":1,"through":1})", "bad-message", "'through'"},
         {R"({"type":"control"})", "bad-message", "'action'"},
         {R"({"type":"control","action":"keep"})", "out-of-range", "'action'"},
         {R"({"type":"patch"})", "bad-message", "'patch'"},
@@ -208,6 +220,10 @@ TEST_CASE("messages to clients") {
     CHECK(encode(Error{3, "busy", "too much"}) ==
           R"({"code":"busy","id":3,"message":"too much","type":"error"})");
     CHECK(encode(Error{{}, "busy", "bad \xff"}).find("\xef\xbf\xbd") != std::string::npos);
+    CHECK(encode(Picked{4, {}}) == R"({"id":4,"type":"picked"})");
+    CHECK(encode(Picked{4, Picked::Hit{7, "Door", {"Car", "Door"}, {1, 2, 3}, {0, 0, 1}, 5}}) ==
+          R"({"distance":5.0,"id":4,"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"
+          R"("point":[1.0,2.0,3.0],"type":"picked"})");
     const std::string welcome = encode(Welcome{"0.1", "c1", Role::control, {}});
     for (const char* member :
          {R"("version":1)", R"("client":"c1")", R"("role":"control")", R"("maxGrants":2)"})

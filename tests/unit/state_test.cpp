@@ -74,6 +74,7 @@ TEST_CASE("every writable member can be patched and given back") {
         R"({"backgrounds":{"active":"11"}})",
         R"({"backgrounds":{"color":[0,0,0,1]}})",
         R"({"backgrounds":{"items":{"11":{"color":[0,0,0,1]}}}})",
+        R"({"selection":{"node":5}})",
     };
     for (const char* patch : patches) {
         INFO(patch);
@@ -116,6 +117,8 @@ TEST_CASE("what is wrong with a patch is named, and nothing is changed") {
         {R"({"lights":{"items":{"headlight":{"attenuation":[1,-1,0]}}}})", "out-of-range", "attenuation"},
         {R"({"backgrounds":{"color":[0,0,2,1]}})", "out-of-range", "'backgrounds.color'"},
         {R"({"backgrounds":{"active":11}})", "bad-message", "'backgrounds.active'"},
+        {R"({"selection":{"node":1.5}})", "out-of-range", "'selection.node'"},
+        {R"({"selection":{"name":"x"}})", "read-only", "'selection.name'"},
         // One wrong member spoils the whole patch.
         {R"({"camera":{"fov":50},"navigation":{"zoomSpeed":0}})", "out-of-range", "'navigation.zoomSpeed'"},
     };
