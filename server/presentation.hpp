@@ -111,6 +111,7 @@ private:
     void move_camera(const Camera& camera);
 
     std::shared_ptr<const PlacedScene> scene_;
+    protocol::Resize view_size_;  // before the state, whose first camera is fitted to it
     protocol::State starting_, state_;
     std::shared_ptr<const protocol::StateDocument> document_;
     std::string changed_by_, changing_;
@@ -120,7 +121,6 @@ private:
     Steering steering_;
     Gestures gestures_;
     Clicks clicks_;
-    protocol::Resize view_size_;
     bool size_waits_ =
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     View visible_;

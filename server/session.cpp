@@ -22,7 +22,7 @@ constexpr auto kHelloDeadline = 5s;
 constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
 // Who has sent so much that is not handled, or has not taken so much of its answers, is not read until that
 // is done.
-constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxAnswers = 256 * 1024;
+constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxAnswers = 1 << 18;
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20;
