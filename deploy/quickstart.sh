@@ -33,7 +33,7 @@ while [ $# -gt 0 ]; do
         break
         ;;
     *)
-        usage >&2
+        say "quickstart.sh: there is no option '$1'; --help tells which there are."
         exit 2
         ;;
     esac

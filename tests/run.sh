@@ -28,7 +28,7 @@ while [ $# -gt 0 ]; do
         exit 0
         ;;
     *)
-        usage >&2
+        say "run.sh: there is no option '$1'; --help tells which there are."
         exit 2
         ;;
     esac
@@ -108,7 +108,7 @@ tidy() {
             stamp=build/release/tidy/${stamp//\//+}
             [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
             printf '%s\0%s\0' "$file" "$stamp"
-        done | xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail
+        done | xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
             clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" "$0" 2>&1 |
                 sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
 }
