@@ -70,7 +70,9 @@ void Presentation::apply(const Said& said, const protocol::Resize& resize) {
 void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
     // Only a press asks for control; what follows belongs to it, and hovering does nothing.
     const bool press = pointer.event == protocol::Pointer::Event::down;
-    const bool known = press || gestures_.is_pressed(said.client, pointer.pointer_id);
+    // A third finger drags nothing, but its release counts.
+    const bool known = press || gestures_.is_pressed(said.client, pointer.pointer_id) ||
+                       clicks_.is_pressed(said.client, pointer.pointer_id);
     if ((!known && clients_[said.client].role == Role::control) || !may_steer(said)) return;
     steer(said);
     PointerInput input;

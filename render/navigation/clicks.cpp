@@ -91,6 +91,12 @@ std::optional<Click> Clicks::released(const Press& press, double time) {
     return operation ? std::optional(Click{*operation, press.place.x, press.place.y}) : std::nullopt;
 }
 
+bool Clicks::is_pressed(const std::string& client, std::int64_t pointer) const {
+    return std::any_of(pressed_.begin(), pressed_.end(), [&](const Press& press) {
+        return press.pointer == pointer && press.client == client;
+    });
+}
+
 void Clicks::lift(const std::string& client) {
     std::erase_if(pressed_, [&](const Press& press) { return press.client == client; });
     last_.reset();

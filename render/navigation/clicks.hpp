@@ -41,6 +41,7 @@ public:
     /// What `input`, at `time` ms of its client's clock, completes.
     std::optional<Click> pointer(const PointerInput& input, double time);
     void lift(const std::string& client);
+    bool is_pressed(const std::string& client, std::int64_t pointer) const;
 
 private:
     struct Press {

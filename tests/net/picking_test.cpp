@@ -169,3 +169,23 @@ TEST_CASE("double clicks, double taps and a tap beside a resting finger select, 
     CHECK(client.state["camera"]["focus"][0].get<double>() == doctest::Approx(-across));
     CHECK(client.state["camera"]["center"] == client.state["camera"]["focus"]);
 }
+
+TEST_CASE("three fingers leave nothing behind: a double tap after them still selects") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    client.send({{"type", "patch"}, {"id", 1}, {"patch", {{"camera", kCamera}}}});
+    for (int pointer = 1; pointer <= 3; ++pointer)
+        client.send(pointer_event("pointerdown", 100 * pointer, 100, "touch", 0, 1, pointer));
+    for (int pointer = 1; pointer <= 3; ++pointer)
+        client.send(pointer_event("pointerup", 100 * pointer, 100, "touch", 0, 0, pointer));
+    client.send({{"type", "patch"}, {"id", 2}, {"patch", {{"camera", kCamera}}}});
+    for (int pointer = 4; pointer <= 5; ++pointer) {
+        client.send(pointer_event("pointerdown", 640, 360, "touch", 0, 1, pointer));
+        client.send(pointer_event("pointerup", 640, 360, "touch", 0, 0, pointer));
+    }
+    client.send({{"type", "resize"}, {"id", 3}, {"width", 1280}, {"height", 720}, {"pixelRatio", 1}});
+    while (client.wait_for("ok")["id"] != 3) {
+    }
+    CHECK(client.state["selection"]["node"] == 1);
+}
