@@ -73,13 +73,15 @@ GpuGeometry upload(const Geometry& geometry) {
 
 }  // namespace
 
-GpuScene::GpuScene(std::shared_ptr<const PlacedScene> placed)
-    : placed_(std::move(placed)), geometries_(placed_->scene.geometries().size()) {}
+GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)), geometries_(scene_->geometries().size()) {}
 
 const GpuGeometry& GpuScene::geometry(Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
-    if (!geometry.vertex_array)
-        geometry = upload(placed_->scene.geometries()[static_cast<std::size_t>(index)]);
+    if (!geometry.vertex_array) {
+        geometry = upload(scene_->geometries()[static_cast<std::size_t>(index)]);
+        ++uploads_;
+    }
     return geometry;
 }
 

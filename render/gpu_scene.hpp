@@ -20,13 +20,16 @@ struct GpuGeometry {
 /// The geometries of a scene, each uploaded when it is first drawn.
 class GpuScene {
 public:
-    explicit GpuScene(std::shared_ptr<const PlacedScene> placed);
-    const PlacedScene& placed() const { return *placed_; }
+    explicit GpuScene(std::shared_ptr<const Scene> scene);
+    const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const GpuGeometry& geometry(Index index);
+    /// Geometries uploaded so far.
+    int uploads() const { return uploads_; }
 
 private:
-    std::shared_ptr<const PlacedScene> placed_;
+    std::shared_ptr<const Scene> scene_;
     std::vector<GpuGeometry> geometries_;
+    int uploads_ = 0;
 };
 
 }  // namespace vrut

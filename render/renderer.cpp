@@ -43,6 +43,18 @@ glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dve
     return matrix;
 }
 
+void add(const std::vector<std::uint8_t>& sample, Accumulation& sum) {
+    for (std::size_t k = 0; k < sample.size(); ++k) sum.sums[k] += sample[k];
+    ++sum.samples;
+}
+
+void average(const Accumulation& sum, std::vector<std::uint8_t>& rgba) {
+    // Division in float is vectorised, and exact here: the sums are integers far below 2^24.
+    const auto count = static_cast<float>(sum.samples), half = std::floor(count / 2);
+    for (std::size_t k = 0; k < rgba.size(); ++k)
+        rgba[k] = static_cast<std::uint8_t>((static_cast<float>(sum.sums[k]) + half) / count);
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -51,6 +63,18 @@ struct Renderer::Impl {
         glClearDepth(0);
         glEnable(GL_DEPTH_TEST);
         glDisable(GL_DITHER);
+    }
+
+    void use_target(int width, int height) {
+        if (target && target->width() == width && target->height() == height) return;
+        target.reset();  // the old one's memory is free before the new one takes its own
+        target.emplace(width, height);
+    }
+
+    void use_scene(const std::shared_ptr<const Scene>& wanted) {
+        if (scene && scene->scene() == wanted) return;
+        scene.reset();
+        scene.emplace(wanted);
     }
 
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
@@ -69,12 +93,10 @@ struct Renderer::Impl {
     std::optional<Framebuffer> target;
     OpaquePass opaque;
     std::vector<std::uint8_t> sample;
-    std::vector<std::uint32_t> sums;
+    Accumulation accumulation;  // of pictures whose samples the caller does not keep
 };
 
-Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {
-    set_scene(std::make_shared<PlacedScene>(place(Scene())));
-}
+Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {}
 Renderer::~Renderer() = default;
 
 const std::string& Renderer::description() const { return impl_->context.description(); }
@@ -83,44 +105,47 @@ bool Renderer::software() const { return impl_->context.software(); }
 int Renderer::max_size() const { return impl_->context.max_size(); }
 std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
 
-void Renderer::set_scene(std::shared_ptr<const PlacedScene> scene) { impl_->scene.emplace(std::move(scene)); }
-
 bool Renderer::render(const View& view, Image& image, FrameStats& stats,
-                      const std::function<bool()>& interrupted) {
+                      const std::function<bool()>& interrupted, Accumulation* kept) {
     stats = {};
-    if (!impl_->target || impl_->target->width() != view.width || impl_->target->height() != view.height) {
-        impl_->target.reset();  // the old one's memory is free before the new one takes its own
-        impl_->target.emplace(view.width, view.height);
-    }
+    impl_->use_target(view.width, view.height);
     image.resize(view.width, view.height);
 
     Clock::time_point start = Clock::now();
-    const PlacedScene& placed = impl_->scene->placed();
-    const FramePlan plan = plan_frame(placed, view.camera);
-    const double near = fit_clip_range(view.camera, placed.bounds).near;
-    if (view.samples > 1) impl_->sums.assign(image.rgba.size(), 0);
-    for (int i = 0; i < view.samples; ++i) {
-        if (i > 0 && interrupted && interrupted()) return false;
+    FramePlan plan;
+    double near = 1;
+    if (view.scene) {
+        impl_->use_scene(view.scene->scene);
+        plan = plan_frame(*view.scene, view.camera);
+        near = fit_clip_range(view.camera, view.scene->bounds).near;
+    }
+    const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
+    Accumulation& sum = kept ? *kept : impl_->accumulation;
+    const bool goes_on =
+        kept && kept->samples > 0 && kept->samples < view.samples && kept->sums.size() == image.rgba.size();
+    if (!goes_on) sum.samples = 0;
+    if (view.samples > 1 && !goes_on) sum.sums.assign(image.rgba.size(), 0);
+    const int first = sum.samples;
+    for (int i = first; i < view.samples; ++i) {
+        if (i > first && interrupted && interrupted()) return false;
         impl_->draw(plan, view, near, sample_offset(i, view.samples), stats);
         wait_for_gl();
         stats.render_ms += milliseconds_since(start);
+        stats.uploads = (impl_->scene ? impl_->scene->uploads() : 0) - uploads_before;
 
         start = Clock::now();
         std::vector<std::uint8_t>& pixels = view.samples > 1 ? impl_->sample : image.rgba;
         pixels.resize(image.rgba.size());
         impl_->target->read(pixels);
-        if (view.samples > 1)
-            for (std::size_t k = 0; k < pixels.size(); ++k) impl_->sums[k] += pixels[k];
+        if (view.samples > 1) add(pixels, sum);
         stats.readback_ms += milliseconds_since(start);
         start = Clock::now();
     }
     if (view.samples > 1) {
-        // Division in float is vectorised, and exact here: the sums are integers far below 2^24.
-        const auto count = static_cast<float>(view.samples), half = std::floor(count / 2);
-        for (std::size_t k = 0; k < image.rgba.size(); ++k)
-            image.rgba[k] = static_cast<std::uint8_t>((static_cast<float>(impl_->sums[k]) + half) / count);
+        average(sum, image.rgba);
         stats.readback_ms += milliseconds_since(start);
     }
+    if (kept) *kept = {};
     return true;
 }
 

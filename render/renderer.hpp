@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "image.hpp"
-#include "scene.hpp"
 #include "view.hpp"
 
 namespace vrut {
@@ -28,12 +27,12 @@ public:
     int max_size() const;
     std::vector<std::string> take_messages();
 
-    /// What render() draws from now on.
-    void set_scene(std::shared_ptr<const PlacedScene> scene);
     /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks
-    /// `interrupted`; if that says yes the picture is given up and false comes back.
+    /// `interrupted`; if that says yes the picture is given up and false comes back. With `kept` its samples
+    /// are left there, and the same view given again goes on from them; `kept` is empty after a whole
+    /// picture. The scene drawn last stays on the GPU.
     bool render(const View& view, Image& image, FrameStats& stats,
-                const std::function<bool()>& interrupted = {});
+                const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
 
 private:
     struct Impl;

@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
+#include <vector>
 
 #include "camera.hpp"
+#include "scene.hpp"
 
 namespace vrut {
 
@@ -19,6 +22,7 @@ inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 /
 
 /// What a picture shows, in pixels of the picture.
 struct View {
+    std::shared_ptr<const PlacedScene> scene;  ///< null: the background only; views are equal by its address
     Camera camera;
     int width = 1280, height = 720;
     int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
@@ -28,11 +32,18 @@ struct View {
     bool operator==(const View&) const = default;
 };
 
+/// Samples of a picture that were drawn before it had to give way: for each byte of the picture their sum.
+struct Accumulation {
+    std::vector<std::uint32_t> sums;
+    int samples = 0;
+};
+
 /// What a picture took.
 struct FrameStats {
     int passes = 0;
     int draws = 0;
     std::uint64_t triangles = 0;
+    int uploads = 0;         ///< geometries brought to the GPU
     double render_ms = 0;    ///< from the first command to the fence behind the last
     double readback_ms = 0;  ///< from the GPU into memory
 };

@@ -10,15 +10,14 @@
 namespace vrut {
 
 PainterFactory gl_painter(std::optional<int> device) {
-    return [device](const std::shared_ptr<const PlacedScene>& scene) {
+    return [device] {
         auto renderer = std::make_shared<Renderer>(device);
         for (const std::string& sentence : renderer->rejected()) spdlog::warn("passed over {}", sentence);
         spdlog::info("drawing on {}", renderer->description());
-        renderer->set_scene(scene);
         return Painter{renderer->description(), renderer->software(), renderer->max_size(),
                        [renderer](const View& view, Image& image, FrameStats& stats,
-                                  const std::function<bool()>& interrupted) {
-                           return renderer->render(view, image, stats, interrupted);
+                                  const std::function<bool()>& interrupted, Accumulation* kept) {
+                           return renderer->render(view, image, stats, interrupted, kept);
                        }};
     };
 }
@@ -35,7 +34,7 @@ Engine::Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& f
     thread_ = std::thread([this, &factory, &started] {
         Painter painter;
         try {
-            painter = factory(scene_);
+            painter = factory();
             description_ = painter.description;
             limits_.max_side = std::min(painter.max_size, limits_.max_side);
             started.set_value();
@@ -65,7 +64,7 @@ Engine::~Engine() {
 }
 
 void Engine::run() {
-    std::vector<std::string> notices = all_notices(scene_->scene);
+    std::vector<std::string> notices = all_notices(*scene_->scene);
     if (painter_.software)
         notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
     presentation_.emplace(scene_, std::move(notices));
@@ -75,7 +74,7 @@ void Engine::run() {
     FrameStats stats;
     View small = presentation_->visible();
     small.width = small.height = 64;
-    painter_.paint(small, image, stats, {});
+    painter_.paint(small, image, stats, {}, nullptr);
 
     while (!mailbox_.closed()) {
         serve_newest();
@@ -216,7 +215,7 @@ void Engine::draw(bool still) {
         return mailbox_.closed() || presentation_->visible() != visible ||
                presentation_->view_size() != view_size;
     };
-    if (!painter_.paint(view, image, stats, interrupted)) {
+    if (!painter_.paint(view, image, stats, interrupted, nullptr)) {
         ++metrics_.frames_interrupted;
         encoder_.give_spare(std::move(image));
         return;

@@ -25,9 +25,11 @@ struct Painter {
     bool software = false;
     int max_size = 16384;
     /// As Renderer::render.
-    std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted)> paint;
+    std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
+                       Accumulation* kept)>
+        paint;
 };
-using PainterFactory = std::function<Painter(const std::shared_ptr<const PlacedScene>&)>;
+using PainterFactory = std::function<Painter()>;
 
 /// The renderer as a painter, on EGL device `device` or the first that works.
 PainterFactory gl_painter(std::optional<int> device);

@@ -11,7 +11,8 @@ namespace vrut {
 namespace {
 
 /// Depth first, as a tree is read; without recursion, since a scene may be a chain of a million nodes.
-std::vector<protocol::NodeReport> list_nodes(const Scene& scene) {
+std::vector<protocol::NodeReport> list_nodes(const PlacedScene& placed) {
+    const Scene& scene = *placed.scene;
     struct Place {
         Index node;
         int depth;
@@ -27,8 +28,8 @@ std::vector<protocol::NodeReport> list_nodes(const Scene& scene) {
             data && data->geometry != kNone
                 ? scene.geometries()[static_cast<std::size_t>(data->geometry)].triangles.size()
                 : 0;
-        list.push_back(
-            {node.id, node.name, std::string(name_of(node.type)), triangles, node.active, place.depth});
+        list.push_back({node.id, node.name, std::string(name_of(node.type)), triangles,
+                        placed.nodes[static_cast<std::size_t>(place.node)].active, place.depth});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
             open.push_back({*child, place.depth + 1});
     }
@@ -57,8 +58,8 @@ void info_command(const InfoArguments& arguments) {
     auto scene = read_scene(arguments.scene);
     if (!scene) throw std::runtime_error(scene.error());
     const PlacedScene placed = place(*std::move(scene));
-    const protocol::SceneState state = starting_state(placed, 1, all_notices(placed.scene)).scene;
-    const auto nodes = list_nodes(placed.scene);
+    const protocol::SceneState state = starting_state(placed, 1, all_notices(*placed.scene)).scene;
+    const auto nodes = list_nodes(placed);
     if (arguments.json)
         std::cout << protocol::encode_info(state, nodes) << std::endl;
     else

@@ -23,7 +23,7 @@ Presentation::Presentation(std::shared_ptr<const PlacedScene> scene, std::vector
       starting_(starting_state(*scene_, aspect(), std::move(notices))),
       state_(starting_),
       document_(protocol::StateDocument::next({}, state_)),
-      visible_(view_of(state_, *scene_)),
+      visible_(view_of(state_, scene_)),
       at_home_(!first_camera_node(*scene_)) {}
 
 void Presentation::join(const std::string& client, Role role) { clients_[client].role = role; }
@@ -44,7 +44,7 @@ void Presentation::say(const std::string& client, const protocol::ClientMessage&
     changing_ = client;
     std::visit([&](const auto& payload) { apply({client, message, arrival}, payload); }, message.payload);
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
-    visible_ = view_of(state_, *scene_);
+    visible_ = view_of(state_, scene_);
 }
 
 const std::shared_ptr<const protocol::StateDocument>& Presentation::document() {
@@ -108,7 +108,7 @@ void Presentation::apply(const Said& said, const protocol::Key& key) {
     NavigationContext context = navigation_context();
     if (state_.selection.node) {
         // What is selected is what `f` fits; zooming keeps the whole scene's limits.
-        const Bounds selected = subtree_bounds(*scene_, scene_->scene.find_node(*state_.selection.node));
+        const Bounds selected = subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
         if (key.key == "f" && !selected.empty()) context.bounds = selected;
     }
     move_camera(key_down({key.key, key.modifiers.shift}, camera(), home(), context));
@@ -132,7 +132,7 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
                                         "a host may patch nothing but 'camera' and 'selection'"});
     }
     const std::optional<Id> selected = next->selection.node;
-    if (selected && scene_->scene.find_node(*selected) == kNone)
+    if (selected && scene_->scene->find_node(*selected) == kNone)
         return refuse(said.client, {said.message.id, code::unknown_node,
                                     "'selection.node': there is no node " + std::to_string(*selected)});
     Camera pose = camera_of(next->camera);
@@ -147,7 +147,7 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     next->camera = moves ? state_of(with_orthogonal_up(pose), scene_->bounds) : state_.camera;
     next->control = state_.control;
     state_ = *std::move(next);
-    select(selected ? scene_->scene.find_node(*selected) : kNone);
+    select(selected ? scene_->scene->find_node(*selected) : kNone);
     gestures_.restart(camera());
     answer(said);
 }
@@ -165,7 +165,7 @@ void Presentation::apply(const Said& said, const protocol::Fit& fit) {
     if (!may_steer(said)) return;
     Bounds bounds = scene_->bounds;
     if (fit.node) {
-        const Index node = scene_->scene.find_node(*fit.node);
+        const Index node = scene_->scene->find_node(*fit.node);
         const std::string name = "node " + std::to_string(*fit.node);
         if (node == kNone)
             return refuse(said.client, {said.message.id, code::unknown_node, "there is no " + name});
@@ -211,7 +211,7 @@ void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     if (!said.message.id) return;
     protocol::Picked picked{*said.message.id, {}};
     if (const auto& hit = seen->hit) {
-        const Node& node = scene_->scene.nodes()[static_cast<std::size_t>(hit->node)];
+        const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
         picked.hit = {node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance};
     }
     answers_.push_back({said.client, protocol::encode(picked), document()->revision()});
@@ -255,15 +255,15 @@ void Presentation::remember(std::int64_t frame) {
 void Presentation::select(Index node) {
     state_.selection = {};
     if (node == kNone) return;
-    const Node& selected = scene_->scene.nodes()[static_cast<std::size_t>(node)];
+    const Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
     state_.selection = {selected.id, selected.name, path_of(node)};
 }
 
 std::vector<std::string> Presentation::path_of(Index node) const {
     std::vector<std::string> path;
     for (; node != kNone && path.size() < kLongestPath;
-         node = scene_->scene.nodes()[static_cast<std::size_t>(node)].parent)
-        path.push_back(scene_->scene.nodes()[static_cast<std::size_t>(node)].name);
+         node = scene_->scene->nodes()[static_cast<std::size_t>(node)].parent)
+        path.push_back(scene_->scene->nodes()[static_cast<std::size_t>(node)].name);
     std::reverse(path.begin(), path.end());
     return path;
 }

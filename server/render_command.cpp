@@ -64,7 +64,7 @@ void render_command(const RenderArguments& arguments) {
     if (!scene) throw std::runtime_error(scene.error());
     const auto placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
 
-    View view = view_of(wanted_state(arguments, *placed), *placed);
+    View view = view_of(wanted_state(arguments, *placed), placed);
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;
@@ -73,7 +73,6 @@ void render_command(const RenderArguments& arguments) {
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
                                  " pixels a side");
-    renderer.set_scene(placed);
     Image image;
     FrameStats stats;
     renderer.render(view, image, stats);

@@ -7,13 +7,13 @@ namespace vrut {
 namespace {
 
 void add_backgrounds(const PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
-    const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, std::nullopt);
+    const std::vector<bool> shown = shown_nodes(placed, std::nullopt);
     Id first = -1;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const Node& node = placed.scene.nodes()[i];
+        const Node& node = placed.scene->nodes()[i];
         const auto* data = std::get_if<BackgroundData>(&node.data);
         if (!data) continue;
-        const glm::dvec4 color = glm::min(placed.scene.material(data->material).diffuse, glm::dvec4(1));
+        const glm::dvec4 color = glm::min(placed.scene->material(data->material).diffuse, glm::dvec4(1));
         backgrounds.items[std::to_string(node.id)] = {node.name, color};
         if (shown[i] && (first < 0 || node.id < first)) first = node.id;
     }
@@ -21,9 +21,8 @@ void add_backgrounds(const PlacedScene& placed, protocol::BackgroundsState& back
 }
 
 bool is_shown(const PlacedScene& placed, Id id) {
-    const Index index = placed.scene.find_node(id);
-    return index != kNone &&
-           shown_nodes(placed.scene, placed.world, std::nullopt)[static_cast<std::size_t>(index)];
+    const Index index = placed.scene->find_node(id);
+    return index != kNone && shown_nodes(placed, std::nullopt)[static_cast<std::size_t>(index)];
 }
 
 }  // namespace
@@ -36,11 +35,11 @@ std::vector<std::string> all_notices(const Scene& scene) {
 
 protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices) {
     protocol::State state;
-    state.scene = {.name = placed.scene.name(),
-                   .nodes = placed.scene.nodes().size(),
-                   .materials = placed.scene.materials().size(),
-                   .geometries = placed.scene.geometries().size(),
-                   .triangles = placed.scene.triangle_count(),
+    state.scene = {.name = placed.scene->name(),
+                   .nodes = placed.scene->nodes().size(),
+                   .materials = placed.scene->materials().size(),
+                   .geometries = placed.scene->geometries().size(),
+                   .triangles = placed.scene->triangle_count(),
                    .min = placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.min,
                    .max = placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.max,
                    .notices = std::move(notices)};
@@ -61,14 +60,15 @@ protocol::CameraState state_of(const Camera& camera, const Bounds& bounds) {
     return {camera.eye, camera.focus, camera.up, camera.center, camera.fov, range.near, range.far};
 }
 
-View view_of(const protocol::State& state, const PlacedScene& placed) {
+View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
     View view;
     view.camera = camera_of(state.camera);
     const protocol::LightState& headlight = state.lights.items.at("headlight");
     view.headlight = {headlight.color, headlight.attenuation};
     const std::string& active = state.backgrounds.active;
-    const bool plain = active == "color" || !is_shown(placed, std::stoll(active));
+    const bool plain = active == "color" || !is_shown(*placed, std::stoll(active));
     view.background = glm::dvec3(plain ? state.backgrounds.color : state.backgrounds.items.at(active).color);
+    view.scene = std::move(placed);
     return view;
 }
 

@@ -18,6 +18,6 @@ protocol::CameraState state_of(const Camera& camera, const Bounds& bounds);
 
 /// What of the state and the scene is to be seen, but for size and samples. The background is the active one,
 /// if its subtree is active, else the plain colour.
-View view_of(const protocol::State& state, const PlacedScene& placed);
+View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed);
 
 }  // namespace vrut

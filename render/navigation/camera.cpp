@@ -150,7 +150,7 @@ Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
 }
 
 std::optional<Camera> first_camera_node(const PlacedScene& placed) {
-    const auto& nodes = placed.scene.nodes();
+    const auto& nodes = placed.scene->nodes();
     std::size_t first = nodes.size();
     for (std::size_t i = 0; i < nodes.size(); ++i)
         if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id))

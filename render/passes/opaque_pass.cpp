@@ -124,7 +124,7 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, const gl
         const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
         glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
         glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
-        set_material(scene.placed().scene.material(item.material));
+        set_material(scene.scene()->material(item.material));
         set_sides(item);
         glBindVertexArray(geometry.vertex_array.get());
         glDrawElements(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT, nullptr);

@@ -174,8 +174,8 @@ bool meet_triangles(const Part& part, const RaySpace& space, const Faces& faces,
 
 std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_transparent) {
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::dvec3(0)) return {};
-    const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, ray.origin);
-    const auto& nodes = placed.scene.nodes();
+    const std::vector<bool> shown = shown_nodes(placed, ray.origin);
+    const auto& nodes = placed.scene->nodes();
     const RaySpace space(ray.direction);
     std::vector<glm::dvec3> corners;
     Hit best;
@@ -183,8 +183,8 @@ std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const auto* data = std::get_if<GeometryData>(&nodes[i].data);
         if (!shown[i] || !data || data->geometry == kNone || !is_finite(placed.world[i])) continue;
-        const Geometry& geometry = placed.scene.geometries()[static_cast<std::size_t>(data->geometry)];
-        const Material& material = placed.scene.material(data->material);
+        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+        const Material& material = placed.scene->material(placed.nodes[i].material);
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
         if (through_transparent && material.diffuse.a < 1) continue;
 

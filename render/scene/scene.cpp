@@ -1,6 +1,7 @@
 #include "scene.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -164,12 +165,38 @@ std::uint64_t Scene::triangle_count() const {
     return count;
 }
 
-std::vector<glm::dmat4> world_matrices(const Scene& scene) {
-    std::vector<glm::dmat4> world(scene.nodes().size());
+std::vector<NodeState> file_states(const Scene& scene) {
+    std::vector<NodeState> states;
+    states.reserve(scene.nodes().size());
+    for (const Node& node : scene.nodes()) {
+        NodeState& state = states.emplace_back();
+        state.active = node.active;
+        state.matrix = node.matrix;
+        if (const auto* data = std::get_if<SwitchData>(&node.data)) state.active_child = data->active_child;
+        if (const auto* data = std::get_if<GeometryData>(&node.data)) state.material = data->material;
+    }
+    return states;
+}
+
+PlacedScene place(Scene scene) {
+    std::vector<NodeState> states = file_states(scene);
+    return place(std::make_shared<const Scene>(std::move(scene)), std::move(states));
+}
+
+PlacedScene place(std::shared_ptr<const Scene> scene, std::vector<NodeState> nodes) {
+    assert(nodes.size() == scene->nodes().size());
+    PlacedScene placed{std::move(scene), std::move(nodes), {}, {}};
+    placed.world = world_matrices(*placed.scene, placed.nodes);
+    placed.bounds = subtree_bounds(placed, 0);
+    return placed;
+}
+
+std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<NodeState>& states) {
+    std::vector<glm::dmat4> world(states.size());
     for (std::size_t i = 0; i < world.size(); ++i) {
-        const Node& node = scene.nodes()[i];
-        world[i] =
-            node.parent == kNone ? node.matrix : world[static_cast<std::size_t>(node.parent)] * node.matrix;
+        const Index parent = scene.nodes()[i].parent;
+        const glm::dmat4& matrix = states[i].matrix;
+        world[i] = parent == kNone ? matrix : world[static_cast<std::size_t>(parent)] * matrix;
     }
     return world;
 }
@@ -177,13 +204,15 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene) {
 namespace {
 
 /// Whether a LOD or switch at `index` lets its child number `place` show.
-bool chooses(const Node& node, std::size_t place, const glm::dvec3& origin,
+bool chooses(const PlacedScene& placed, std::size_t index, std::size_t place,
              const std::optional<glm::dvec3>& eye) {
-    if (const auto* data = std::get_if<SwitchData>(&node.data))
-        return data->active_child == SwitchData::kAllChildren ||
-               data->active_child == static_cast<int>(place);
+    const Node& node = placed.scene->nodes()[index];
+    if (std::holds_alternative<SwitchData>(node.data)) {
+        const int active_child = placed.nodes[index].active_child;
+        return active_child == SwitchData::kAllChildren || active_child == static_cast<int>(place);
+    }
     if (const auto* data = std::get_if<LodData>(&node.data); data && eye) {
-        const double distance = glm::distance(*eye, origin);
+        const double distance = glm::distance(*eye, glm::dvec3(placed.world[index][3]));
         std::size_t level = 0;
         while (level < data->ranges.size() && distance >= data->ranges[level]) ++level;
         return place == level;
@@ -193,57 +222,40 @@ bool chooses(const Node& node, std::size_t place, const glm::dvec3& origin,
 
 }  // namespace
 
-std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>& world,
-                              const std::optional<glm::dvec3>& eye) {
-    const auto& nodes = scene.nodes();
+std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye) {
+    const auto& nodes = placed.scene->nodes();
     std::vector<bool> shown(nodes.size());
-    shown[0] = nodes[0].active;
+    shown[0] = placed.nodes[0].active;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (!shown[i]) continue;
         for (std::size_t place = 0; place < nodes[i].children.size(); ++place) {
             const auto child = static_cast<std::size_t>(nodes[i].children[place]);
-            shown[child] = nodes[child].active && chooses(nodes[i], place, glm::dvec3(world[i][3]), eye);
+            shown[child] = placed.nodes[child].active && chooses(placed, i, place, eye);
         }
     }
     return shown;
 }
 
-namespace {
-
-Bounds bounds_below(const Scene& scene, const std::vector<glm::dmat4>& world, std::size_t top) {
+Bounds subtree_bounds(const PlacedScene& placed, Index node) {
     // Squares and sums of what is used below stay finite.
     constexpr double kFarthest = 1e150;
+    const auto top = static_cast<std::size_t>(node);
     Bounds bounds;
-    const std::vector<bool> shown = shown_nodes(scene, world, std::nullopt);
+    const std::vector<bool> shown = shown_nodes(placed, std::nullopt);
     std::vector<bool> below(shown.size());
     for (std::size_t i = top; i < shown.size(); ++i) {
-        const Index parent = scene.nodes()[i].parent;
-        below[i] = i == top || (parent != kNone && below[static_cast<std::size_t>(parent)]);
-        const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
-        if (!below[i] || !shown[i] || !data || data->geometry == kNone || !is_finite(world[i])) continue;
+        const Node& candidate = placed.scene->nodes()[i];
+        const glm::dmat4& world = placed.world[i];
+        below[i] =
+            i == top || (candidate.parent != kNone && below[static_cast<std::size_t>(candidate.parent)]);
+        const auto* data = std::get_if<GeometryData>(&candidate.data);
+        if (!below[i] || !shown[i] || !data || data->geometry == kNone || !is_finite(world)) continue;
         const Bounds box =
-            transformed(world[i], scene.geometries()[static_cast<std::size_t>(data->geometry)].bounds);
+            transformed(world, placed.scene->geometries()[static_cast<std::size_t>(data->geometry)].bounds);
         if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest)
             bounds.add(box);
     }
     return bounds;
-}
-
-}  // namespace
-
-Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world) {
-    return bounds_below(scene, world, 0);
-}
-
-Bounds subtree_bounds(const PlacedScene& placed, Index node) {
-    return bounds_below(placed.scene, placed.world, static_cast<std::size_t>(node));
-}
-
-PlacedScene place(Scene scene) {
-    PlacedScene placed{std::move(scene), {}, {}};
-    placed.world = world_matrices(placed.scene);
-    placed.bounds = scene_bounds(placed.scene, placed.world);
-    return placed;
 }
 
 /// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid

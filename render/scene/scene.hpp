@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -150,28 +151,41 @@ private:
     std::unordered_map<Id, Index> index_of_;
 };
 
+/// What of a node can change while its scene is shown; it starts as the file says.
+struct NodeState {
+    bool active = true;
+    int active_child = 0;    ///< of a switch, as SwitchData's
+    Index material = kNone;  ///< of a geometry node; kNone: the default material
+    glm::dmat4 matrix{1};    ///< parent from node
+
+    bool operator==(const NodeState&) const = default;
+};
+
+/// One for each of the scene's nodes.
+std::vector<NodeState> file_states(const Scene& scene);
+
+/// A scene, its nodes' states, and what follows from them.
+struct PlacedScene {
+    std::shared_ptr<const Scene> scene;  ///< never null
+    std::vector<NodeState> nodes;        ///< one for each of the scene's
+    std::vector<glm::dmat4> world;       ///< world from node
+    Bounds bounds;                       ///< subtree_bounds of the root
+};
+
+/// As the file says.
+PlacedScene place(Scene scene);
+/// `nodes` holds one state for each of the scene's nodes.
+PlacedScene place(std::shared_ptr<const Scene> scene, std::vector<NodeState> nodes);
+
 /// World from node for each node.
-std::vector<glm::dmat4> world_matrices(const Scene& scene);
+std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<NodeState>& states);
 
 /// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs
 /// choose by the distance of `eye` (world space); without one all their children count.
-std::vector<bool> shown_nodes(const Scene& scene, const std::vector<glm::dmat4>& world,
-                              const std::optional<glm::dvec3>& eye);
+std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye);
 
-/// Box around the geometry that could show from anywhere: active and chosen by its switches. Nodes that lie
-/// beyond the range of double are left out.
-Bounds scene_bounds(const Scene& scene, const std::vector<glm::dmat4>& world);
-
-/// A scene with what follows from its nodes' places.
-struct PlacedScene {
-    Scene scene;
-    std::vector<glm::dmat4> world;
-    Bounds bounds;
-};
-
-PlacedScene place(Scene scene);
-
-/// scene_bounds of what hangs at and below `node`.
+/// Box around the geometry at and below `node` that could show from anywhere: active and chosen by its
+/// switches. Nodes that lie beyond the range of double are left out.
 Bounds subtree_bounds(const PlacedScene& placed, Index node);
 
 /// What lies further from the eye is neither drawn nor picked: positions are float on the GPU, and squared

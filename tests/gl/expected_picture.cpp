@@ -26,19 +26,19 @@ glm::dvec3 phong(const Material& material, const Headlight& light, const glm::dv
 }
 
 ExpectedPicture::ExpectedPicture(const PlacedScene& placed, const View& view) : view_(view) {
-    const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, view.camera.eye);
+    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
     std::vector<std::size_t> order(shown.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto id = [&](std::size_t i) { return placed.scene.nodes()[i].id; };
+    const auto id = [&](std::size_t i) { return placed.scene->nodes()[i].id; };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return id(a) < id(b); });
     for (const std::size_t i : order)
-        if (const auto* data = std::get_if<GeometryData>(&placed.scene.nodes()[i].data); data && shown[i])
+        if (const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data); data && shown[i])
             add(placed, i, *data);
 }
 
 void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const GeometryData& data) {
-    const Geometry& geometry = placed.scene.geometries()[static_cast<std::size_t>(data.geometry)];
-    const Material& material = placed.scene.material(data.material);
+    const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
+    const Material& material = placed.scene->material(placed.nodes[node].material);
     const glm::dmat4& world = placed.world[node];
     const glm::dmat3 linear(world);
     // Eq. 6.3 itself: test scenes whose matrix has no inverse are judged by hand.

@@ -105,7 +105,7 @@ TEST_CASE("the headlight's colour and attenuation") {
     // A denominator below a millionth counts as one.
     const auto dim = scene_of({{1, quad(3), material_of({3e-7, 5e-7, 7e-7}), glm::dmat4(1)}});
     view.headlight = {{1, 1, 1, 1}, {0, 0, 1e-9}};
-    CHECK(glm::length(phong(dim->scene.materials()[0], view.headlight, {0, 0, 3}, {0, 0, 0}, {0, 0, 1}) -
+    CHECK(glm::length(phong(dim->scene->materials()[0], view.headlight, {0, 0, 3}, {0, 0, 0}, {0, 0, 1}) -
                       glm::dvec3(0.3, 0.5, 0.7)) < 1e-9);
     studio.check(dim, view);
 }

@@ -187,10 +187,10 @@ TEST_CASE("many samples of one colour are that colour") {
 
 TEST_CASE("a picture is given up between two samples, and the next one is whole") {
     Studio studio;
-    const auto scene = scene_of(some_parts());
     View view = view_from({1, 2, 5});
+    view.scene = scene_of(some_parts());
     view.samples = 8;
-    const Image whole = studio.draw(scene, view);
+    const Image whole = studio.draw(view.scene, view);
     Image image;
     FrameStats stats;
     int asked = 0;
@@ -204,6 +204,90 @@ TEST_CASE("a picture is given up between two samples, and the next one is whole"
 
     view.samples = 1;
     CHECK(studio.renderer().render(view, image, stats, [] { return true; }));
+}
+
+TEST_CASE("a picture that had to give way goes on where it was, to the same bytes") {
+    Studio studio;
+    View view = view_from({1, 2, 5});
+    view.scene = scene_of(some_parts());
+    view.samples = 8;
+    const Image whole = studio.draw(view.scene, view);
+    Image image;
+    FrameStats stats;
+    Accumulation kept;
+    for (int sample = 1; sample < 8; ++sample) {
+        CHECK_FALSE(studio.renderer().render(
+            view, image, stats, [] { return true; }, &kept));
+        CHECK(kept.samples == sample);
+        CHECK(stats.draws == 12);
+        // The live picture comes between.
+        View other = view_from({5, 1, 0});
+        other.scene = view.scene;
+        other.samples = 3;
+        CHECK(studio.renderer().render(other, image, stats));
+    }
+    CHECK(studio.renderer().render(
+        view, image, stats, [] { return true; }, &kept));
+    CHECK(stats.draws == 12);
+    CHECK(image.rgba == whole.rgba);
+    CHECK(kept.samples == 0);
+    CHECK(kept.sums.empty());
+
+    // Whole in one go, with nothing kept before; and what was kept of another size is not taken up.
+    CHECK(studio.renderer().render(view, image, stats, {}, &kept));
+    CHECK(image.rgba == whole.rgba);
+    kept = {std::vector<std::uint32_t>(12, 7), 3};
+    CHECK(studio.renderer().render(view, image, stats, {}, &kept));
+    CHECK(image.rgba == whole.rgba);
+    view.samples = 1;
+    const Image plain = studio.draw(view.scene, view);
+    CHECK(studio.renderer().render(
+        view, image, stats, [] { return true; }, &kept));
+    CHECK(image.rgba == plain.rgba);
+}
+
+TEST_CASE("a view without a scene shows the background, with its samples or without") {
+    Studio studio;
+    View view = view_from({0, 0, 5});
+    view.background = {1, 0.5, 0};
+    for (const int samples : {1, 3}) {
+        view.samples = samples;
+        studio.draw(scene_of({{1, quad(9), kPaint, glm::dmat4(1)}}), view);
+        const Image image = studio.draw(nullptr, view);
+        CHECK(pixel_of(image, 48, 32) == glm::ivec3(255, 128, 0));
+        CHECK(studio.stats.draws == 0);
+    }
+}
+
+TEST_CASE("other states of the same scene change the picture and upload nothing") {
+    Studio studio;
+    const View view = view_from({0, 0, 5});
+    const auto first =
+        scene_of({{1, quad(1), kPaint, glm::dmat4(1)}, {2, box({1, 1, 1}), kPaint, moved_by({0, 9, 0})}});
+    const Image before = studio.draw(first, view);
+    CHECK(studio.stats.uploads == 2);
+    const long objects = live_gl_objects();
+    std::vector<NodeState> states = first->nodes;
+    for (NodeState& state : states) state.material = kNone;
+    const auto painted = std::make_shared<const PlacedScene>(place(first->scene, states));
+    CHECK(studio.draw(painted, view).rgba != before.rgba);
+    studio.check(painted, view);
+    CHECK(studio.stats.uploads == 0);
+    states[1].active = false;
+    studio.draw(std::make_shared<const PlacedScene>(place(first->scene, states)), view);
+    CHECK(studio.stats.draws == 1);
+    CHECK(studio.stats.uploads == 0);
+    states = first->nodes;
+    states[1].matrix = moved_by({0.5, 0, 0.2});
+    studio.check(std::make_shared<const PlacedScene>(place(first->scene, states)), view);
+    CHECK(studio.stats.uploads == 0);
+    CHECK(live_gl_objects() == objects);
+    CHECK(studio.draw(first, view).rgba == before.rgba);
+    CHECK(studio.stats.uploads == 0);
+    // Another scene, though it holds the same: its own copy, and nothing left of the first.
+    studio.draw(std::make_shared<const PlacedScene>(place(*first->scene)), view);
+    CHECK(studio.stats.uploads == 2);
+    CHECK(live_gl_objects() == objects);
 }
 
 TEST_CASE("what a picture took") {

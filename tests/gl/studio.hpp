@@ -23,8 +23,9 @@ public:
 
     Image draw(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
         Image image;
-        renderer_->set_scene(scene);
-        CHECK(renderer_->render(view, image, stats));
+        View shown = view;
+        shown.scene = scene;
+        CHECK(renderer_->render(shown, image, stats));
         return image;
     }
 

@@ -255,12 +255,13 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
     FakePainter fake;
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
-    const PainterFactory broken = [&](const std::shared_ptr<const PlacedScene>& scene) {
-        Painter painter = fake.factory()(scene);
+    const PainterFactory broken = [&] {
+        Painter painter = fake.factory()();
         painter.paint = [count = 0, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
-                                                           const std::function<bool()>& interrupted) mutable {
+                                                           const std::function<bool()>& interrupted,
+                                                           Accumulation* kept) mutable {
             if (++count > 1) throw std::runtime_error("the device is lost");
-            return paint(view, image, stats, interrupted);
+            return paint(view, image, stats, interrupted, kept);
         };
         return painter;
     };
@@ -282,9 +283,7 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
 }
 
 TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
-    const PainterFactory none = [](const std::shared_ptr<const PlacedScene>&) -> Painter {
-        throw std::runtime_error("nothing here draws");
-    };
+    const PainterFactory none = []() -> Painter { throw std::runtime_error("nothing here draws"); };
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
     const auto scene = std::make_shared<const PlacedScene>(place(Scene()));

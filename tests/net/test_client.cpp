@@ -48,16 +48,19 @@ Json header_of(const std::string& jpeg) {
 }  // namespace
 
 PainterFactory FakePainter::factory() const {
-    return [*this](const std::shared_ptr<const PlacedScene>&) {
+    return [*this] {
         Painter painter{"fake", false, 16384, {}};
         painter.paint = [*this](const View& view, Image& image, FrameStats& stats,
-                                const std::function<bool()>& interrupted) {
+                                const std::function<bool()>& interrupted, Accumulation* kept) {
             stats = {};
             image.resize(view.width, view.height);
-            for (int sample = 0; sample < view.samples; ++sample) {
-                if (sample > 0 && interrupted && interrupted()) return false;
+            const int first = kept && kept->samples < view.samples ? kept->samples : 0;
+            for (int sample = first; sample < view.samples; ++sample) {
+                if (sample > first && interrupted && interrupted()) return false;
                 if (takes.count() > 0) std::this_thread::sleep_for(takes);
+                if (kept) kept->samples = sample + 1;
             }
+            if (kept) *kept = {};
             std::minstd_rand random(static_cast<unsigned>(std::abs(view.camera.eye.x) * 1000));
             const auto color = static_cast<std::uint8_t>(std::abs(view.camera.eye.x) * 40);
             for (auto& byte : image.rgba) byte = noise ? static_cast<std::uint8_t>(random()) : color;

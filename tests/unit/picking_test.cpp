@@ -139,7 +139,7 @@ Ray down_z(double x, double y, double z = 5) { return {{x, y, z}, {0, 0, -1}}; }
 /// The node's id; −1 where nothing is hit.
 Id picked_id(const PlacedScene& placed, const Ray& ray, bool through_transparent = false) {
     const auto hit = pick(placed, ray, through_transparent);
-    return hit ? placed.scene.nodes()[static_cast<std::size_t>(hit->node)].id : -1;
+    return hit ? placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id : -1;
 }
 
 void check_vector(const glm::dvec3& value, const glm::dvec3& expected, double tolerance) {
@@ -175,7 +175,7 @@ const PlacedScene& car() {
 
 PlacedScene seen_through(const glm::dmat4& matrix, PlacedScene placed) {
     for (glm::dmat4& world : placed.world) world = matrix * world;
-    placed.bounds = scene_bounds(placed.scene, placed.world);
+    placed.bounds = subtree_bounds(placed, 0);
     return placed;
 }
 
@@ -228,15 +228,15 @@ struct Reference {
 };
 
 Reference reference_pick(const PlacedScene& placed, const Ray& ray, bool through_transparent) {
-    const std::vector<bool> shown = shown_nodes(placed.scene, placed.world, ray.origin);
+    const std::vector<bool> shown = shown_nodes(placed, ray.origin);
     Reference best;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const Node& node = placed.scene.nodes()[i];
+        const Node& node = placed.scene->nodes()[i];
         const auto* data = std::get_if<GeometryData>(&node.data);
         if (!shown[i] || !data) continue;
-        const Material& material = placed.scene.material(data->material);
+        const Material& material = placed.scene->material(placed.nodes[i].material);
         if (through_transparent && material.diffuse.a < 1) continue;
-        const Geometry& geometry = placed.scene.geometries()[static_cast<std::size_t>(data->geometry)];
+        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const glm::mat<4, 4, Long> world(placed.world[i]);
         const glm::mat<3, 3, Long> axes(world);
         const LongVec place = LongVec(world[3]) - LongVec(ray.origin);
@@ -261,7 +261,7 @@ Ray random_ray(std::mt19937& random, const Bounds& box, bool inside) {
 }
 
 void check_hit(const PlacedScene& placed, const Ray& ray, const Hit& hit, const Reference& expected) {
-    const Id id = placed.scene.nodes()[static_cast<std::size_t>(hit.node)].id;
+    const Id id = placed.scene->nodes()[static_cast<std::size_t>(hit.node)].id;
     CHECK(id == expected.node);
     CHECK(std::abs(static_cast<Long>(hit.distance) - expected.distance) < 1e-9L * expected.distance);
     CHECK(hit.point == ray.origin + ray.direction * hit.distance);
@@ -301,7 +301,7 @@ TEST_CASE("a triangle: point, normal and distance") {
     const PlacedScene placed = scene_of(corner_triangle());
     const auto hit = pick(placed, down_z(0.25, 0.5), false);
     REQUIRE(hit);
-    CHECK(placed.scene.nodes()[static_cast<std::size_t>(hit->node)].id == 1);
+    CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == 1);
     CHECK(hit->distance == 5);
     CHECK(hit->point == glm::dvec3(0.25, 0.5, 0));
     CHECK(hit->normal == glm::dvec3(0, 0, 1));
@@ -375,7 +375,7 @@ TEST_CASE("edges and corners belong to the triangle") {
     for (const glm::dvec3 at : {glm::dvec3(0.1, 0.7, 0.3), {1000.1, -3000.7, 0.3}, {1e7 + 0.1, 3.3, 1e7}}) {
         const PlacedScene placed = scene_of(
             geometry_of({at, at + glm::dvec3(0.1, 0.03, 0), at + glm::dvec3(0.02, 0.17, 0)}, {{0, 1, 2}}));
-        for (const glm::dvec3& corner : placed.scene.geometries()[0].positions)
+        for (const glm::dvec3& corner : placed.scene->geometries()[0].positions)
             CHECK(picked_id(placed, {corner + glm::dvec3(0, 0, 5), {0, 0, -1}}) == 1);
     }
     // Past an edge by less than rounded products can tell: a × b is −2⁻¹⁰⁴.
@@ -475,14 +475,14 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
                 REQUIRE(hit.has_value() == (expected >= 0));
                 if (!hit) continue;
                 CHECK(hit->distance == doctest::Approx(10 - highest).epsilon(1e-14));
-                if (known) CHECK(placed.scene.nodes()[static_cast<std::size_t>(hit->node)].id == expected);
+                if (known) CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == expected);
             }
         }
     }
 }
 
 TEST_CASE("the car, against the reference") {
-    REQUIRE(car().scene.triangle_count() > 1000);
+    REQUIRE(car().scene->triangle_count() > 1000);
     compare_with_reference(car(), 2000, false);
     compare_with_reference(car(), 300, true);
     compare_with_reference(seen_through(turned_by(0.4, 2.2), car()), 300, false);
@@ -745,4 +745,19 @@ TEST_CASE("nothing there, and numbers that are none") {
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1e19})), down_z(0.25, 0.25)) == -1);
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1.7e308})), down_z(0.25, 0.25, 1.7e308)) ==
           -1);
+}
+
+TEST_CASE("what is hit follows from the states of the nodes") {
+    const PlacedScene file = scene_of(corner_triangle(), glm::dmat4(1), kTwoSided);
+    const Ray from_behind{{0.25, 0.25, -1}, {0, 0, 1}};
+    const auto hit_with = [&](auto change) {
+        std::vector<NodeState> states = file.nodes;
+        change(states[1]);
+        return pick(place(file.scene, states), from_behind, false);
+    };
+    CHECK(hit_with([](NodeState&) {}));
+    CHECK_FALSE(hit_with([](NodeState& state) { state.material = kPlain; }));
+    CHECK_FALSE(hit_with([](NodeState& state) { state.active = false; }));
+    CHECK_FALSE(hit_with([](NodeState& state) { state.matrix = moved_by({0, 0, -2}); }));
+    CHECK(hit_with([](NodeState& state) { state.matrix = moved_by({0, 0, 2}); })->distance == 3);
 }

@@ -46,14 +46,18 @@ bool contains(const std::string& text, const std::string& what) {
     return text.find(what) != std::string::npos;
 }
 
-std::vector<Id> shown_ids(const Scene& scene, const std::optional<glm::dvec3>& eye = std::nullopt) {
-    const std::vector<bool> shown = shown_nodes(scene, world_matrices(scene), eye);
-    REQUIRE(shown.size() == scene.nodes().size());
+std::vector<Id> shown_ids(const PlacedScene& placed, const std::optional<glm::dvec3>& eye = std::nullopt) {
+    const std::vector<bool> shown = shown_nodes(placed, eye);
+    REQUIRE(shown.size() == placed.scene->nodes().size());
     std::vector<Id> ids;
     for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i]) ids.push_back(scene.nodes()[i].id);
+        if (shown[i]) ids.push_back(placed.scene->nodes()[i].id);
     std::sort(ids.begin(), ids.end());
     return ids;
+}
+
+std::vector<Id> shown_ids(Scene scene, const std::optional<glm::dvec3>& eye = std::nullopt) {
+    return shown_ids(place(std::move(scene)), eye);
 }
 
 using Ids = std::vector<Id>;
@@ -202,7 +206,7 @@ TEST_CASE("world = parent * local, from the root down") {
     nodes[1].node.matrix = rows({2, 0, 0, 5}, {0, 3, 0, 0}, {0, 0, 4, 0});
     nodes[2].node.matrix = rows({0, -1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 7});  // a quarter turn about z
     const Scene scene = built(nodes);
-    const std::vector<glm::dmat4> world = world_matrices(scene);
+    const std::vector<glm::dmat4> world = world_matrices(scene, file_states(scene));
     const auto of = [&](Id id) { return world[static_cast<std::size_t>(scene.find_node(id))]; };
     CHECK(of(0) == moved_by(10, 20, 30));
     CHECK(of(4) == moved_by(10, 20, 30));
@@ -355,7 +359,7 @@ TEST_CASE("a subtree's bounds hold what shows at and below its node") {
                                             at(4, 0, 90)};
     nodes[4].node.active = false;
     const PlacedScene placed = place(built(nodes, geometries));
-    const auto of = [&](Id id) { return subtree_bounds(placed, placed.scene.find_node(id)); };
+    const auto of = [&](Id id) { return subtree_bounds(placed, placed.scene->find_node(id)); };
     CHECK(of(9).min == glm::dvec3(9, -1, -1));
     CHECK(of(9).max == glm::dvec3(21, 1, 1));
     CHECK(of(2).min == glm::dvec3(19, -1, -1));
@@ -380,8 +384,8 @@ TEST_CASE("parts beyond the range of double leave the bounds alone") {
     const PlacedScene placed = place(built(nodes, geometries));
     CHECK(placed.bounds.min == glm::dvec3(-1, -1, -1));
     CHECK(placed.bounds.max == glm::dvec3(1, 1, 1));
-    CHECK(is_finite(placed.world[static_cast<std::size_t>(placed.scene.find_node(1))]));
-    CHECK_FALSE(is_finite(placed.world[static_cast<std::size_t>(placed.scene.find_node(3))]));
+    CHECK(is_finite(placed.world[static_cast<std::size_t>(placed.scene->find_node(1))]));
+    CHECK_FALSE(is_finite(placed.world[static_cast<std::size_t>(placed.scene->find_node(3))]));
 }
 
 TEST_CASE("a chain of a million nodes is built, placed and given back") {
@@ -400,11 +404,65 @@ TEST_CASE("a chain of a million nodes is built, placed and given back") {
     auto scene = chain(0);
     REQUIRE(scene);
     const PlacedScene placed = place(*std::move(scene));
-    CHECK(placed.scene.nodes().size() == static_cast<std::size_t>(kCount) + 1);
+    CHECK(placed.scene->nodes().size() == static_cast<std::size_t>(kCount) + 1);
     CHECK(placed.bounds.min == glm::dvec3(1e6, 0, 0));
     CHECK(placed.bounds.max == glm::dvec3(1e6, 0, 0));
 
     const auto ring = chain(1);
     REQUIRE_FALSE(ring);
     CHECK(contains(ring.error().message, "among its own ancestors"));
+}
+
+TEST_CASE("nodes start as the file says") {
+    std::vector<SceneParts::PartNode> nodes{part(1, 0), part(2, 1), part(3, 1), part(4, 0)};
+    nodes[0].node.type = NodeType::switch_;
+    nodes[0].node.data = SwitchData{-2};
+    nodes[0].node.matrix = moved_by(1, 2, 3);
+    nodes[1].node.active = false;
+    nodes[2].node.type = NodeType::geometry;
+    nodes[2].node.data = GeometryData{0, 1};
+    SceneParts parts;
+    parts.nodes = nodes;
+    parts.materials.resize(2);
+    parts.geometries.resize(1);
+    const auto scene = Scene::build(std::move(parts));
+    REQUIRE(scene);
+    const std::vector<NodeState> states = file_states(*scene);
+    REQUIRE(states.size() == 5);
+    const auto of = [&](Id id) { return states[static_cast<std::size_t>(scene->find_node(id))]; };
+    CHECK(of(1) == NodeState{true, -2, kNone, moved_by(1, 2, 3)});
+    CHECK(of(2) == NodeState{false, 0, kNone, glm::dmat4(1)});
+    CHECK(of(3) == NodeState{true, 0, 1, glm::dmat4(1)});
+    CHECK(of(4) == NodeState{});
+    CHECK(place(Scene()).nodes == std::vector<NodeState>{NodeState{}});
+}
+
+TEST_CASE("what shows, and where, follows from the states and not from the file") {
+    std::vector<SceneParts::PartNode> nodes{part(1, 0), part(2, 1), part(3, 1)};
+    nodes[0].node.type = NodeType::switch_;
+    nodes[0].node.data = SwitchData{0};
+    const std::vector<Geometry> geometries{geometry_of({{0, 0, 0}, {1, 1, 1}})};
+    for (std::size_t i = 1; i <= 2; ++i) {
+        nodes[i].node.type = NodeType::geometry;
+        nodes[i].node.data = GeometryData{0, kNone};
+    }
+    const auto scene = std::make_shared<const Scene>(built(nodes, geometries));
+    const PlacedScene first = place(scene, file_states(*scene));
+    CHECK(shown_ids(first) == Ids{0, 1, 2});
+    CHECK(first.bounds.max == glm::dvec3(1));
+
+    const auto at = [&](Id id) { return static_cast<std::size_t>(scene->find_node(id)); };
+    std::vector<NodeState> states = first.nodes;
+    states[at(1)].active_child = 1;
+    states[at(1)].matrix = moved_by(10, 0, 0);
+    states[at(3)].matrix = moved_by(0, 5, 0);
+    const PlacedScene second = place(scene, states);
+    CHECK(second.scene == scene);
+    CHECK(shown_ids(second) == Ids{0, 1, 3});
+    CHECK(glm::dvec3(second.world[at(3)][3]) == glm::dvec3(10, 5, 0));
+    CHECK(second.bounds.min == glm::dvec3(10, 5, 0));
+    CHECK(second.bounds.max == glm::dvec3(11, 6, 1));
+    states[at(3)].active = false;
+    CHECK(shown_ids(place(scene, states)) == Ids{0, 1});
+    CHECK(place(scene, states).bounds.empty());
 }
