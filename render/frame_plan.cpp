@@ -2,36 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace vrut {
 
-FramePlan plan_frame(const PlacedScene& placed, const Camera& camera) {
-    const std::vector<bool> shown = shown_nodes(placed, camera.eye);
-    const glm::dmat4 view = view_from_world(camera);
+namespace {
 
+/// None where the node draws nothing.
+std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, const glm::dmat4& view) {
+    const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[node].data);
+    if (!data || data->geometry == kNone) return {};
+    const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+    if (geometry.triangles.empty()) return {};
+    const Index material = placed.nodes[node].material;
+    DrawItem item{static_cast<Index>(node), data->geometry, material, view * placed.world[node], {}, false};
+    const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
+    if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn)) return {};
+    const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
+    const bool singular = !(std::abs(determinant) > 1e-12);
+    item.sides = singular || placed.scene->material(material).two_sided ? Sides::both : Sides::front;
+    item.mirrored = determinant < 0;
+    return item;
+}
+
+/// Equal depth: the higher id is in front, so it comes last.
+void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
+    const auto id = [&](const DrawItem& item) {
+        return scene.nodes()[static_cast<std::size_t>(item.node)].id;
+    };
+    std::sort(items.begin(), items.end(),
+              [&](const DrawItem& a, const DrawItem& b) { return id(a) < id(b); });
+}
+
+}  // namespace
+
+FramePlan plan_frame(const View& view) {
     FramePlan plan;
-    for (std::size_t i = 0; i < shown.size(); ++i) {
-        const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data);
-        if (!shown[i] || !data || data->geometry == kNone) continue;
-        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
-        if (geometry.triangles.empty()) continue;
-        const Index material = placed.nodes[i].material;
-        DrawItem item{static_cast<Index>(i), data->geometry, material, view * placed.world[i], {}, false};
-        const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
-        if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn))
-            continue;
-        const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
-        const bool singular = !(std::abs(determinant) > 1e-12);
-        item.sides = singular || placed.scene->material(material).two_sided ? Sides::both : Sides::front;
-        item.mirrored = determinant < 0;
-        plan.opaque.push_back(item);
+    if (!view.scene) return plan;
+    const PlacedScene& placed = *view.scene;
+    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
+    const glm::dmat4 view_matrix = view_from_world(view.camera);
+    std::vector<DrawItem> items;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i])
+            if (const auto item = item_of(placed, i, view_matrix)) items.push_back(*item);
+    sort_by_id(items, *placed.scene);
+
+    if (view.selected != kNone) {
+        const std::vector<bool> selected = subtree(*placed.scene, view.selected);
+        for (const DrawItem& item : items)
+            if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
     }
-    // Equal depth: the higher id is in front, so it comes last.
-    std::sort(plan.opaque.begin(), plan.opaque.end(), [&](const DrawItem& a, const DrawItem& b) {
-        const auto& nodes = placed.scene->nodes();
-        return nodes[static_cast<std::size_t>(a.node)].id < nodes[static_cast<std::size_t>(b.node)].id;
-    });
+    if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
+    if (!view.wireframe) plan.opaque = std::move(items);
     return plan;
+}
+
+ClassCounts count_classes(const PlacedScene& placed) {
+    ClassCounts counts;
+    for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
+        if (!std::holds_alternative<GeometryData>(placed.scene->nodes()[i].data)) continue;
+        const Material& material = placed.scene->material(placed.nodes[i].material);
+        ++(material.diffuse.a < 1      ? counts.transparent
+           : material.reflectivity > 0 ? counts.reflective
+                                       : counts.solid);
+    }
+    return counts;
 }
 
 std::vector<std::string> undrawn_features(const Scene& scene) {
@@ -48,8 +84,6 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
     say(std::count_if(materials.begin(), materials.end(),
                       [](const Material& m) { return m.reflectivity > 0; }),
         " reflective materials are drawn without reflections");
-    say(std::count_if(nodes.begin(), nodes.end(), [](const Node& n) { return n.type == NodeType::light; }),
-        " lights cannot be chosen: the headlight shines");
     say(std::count_if(nodes.begin(), nodes.end(),
                       [&](const Node& node) {
                           const auto* data = std::get_if<BackgroundData>(&node.data);

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "camera.hpp"
 #include "scene.hpp"
+#include "view.hpp"
 
 namespace vrut {
 
@@ -18,12 +18,25 @@ struct DrawItem {
     bool mirrored = false;  ///< the matrix turns counter-clockwise triangles clockwise
 };
 
-/// What a frame needs, and no more: a pass without items does not run.
+/// What a frame needs, and no more: a pass without items does not run. Each by rising id.
 struct FramePlan {
-    std::vector<DrawItem> opaque;
+    std::vector<DrawItem> opaque;    ///< with faces
+    std::vector<DrawItem> edges;     ///< with edges
+    std::vector<DrawItem> selected;  ///< to be marked
 };
 
-FramePlan plan_frame(const PlacedScene& placed, const Camera& camera);
+/// Empty where the view has no scene.
+FramePlan plan_frame(const View& view);
+
+/// Geometry nodes of a scene by what their material is.
+struct ClassCounts {
+    std::uint64_t solid = 0;
+    std::uint64_t transparent = 0;  ///< diffuse alpha below 1
+    std::uint64_t reflective = 0;   ///< opaque, with reflectivity above 0
+
+    bool operator==(const ClassCounts&) const = default;
+};
+ClassCounts count_classes(const PlacedScene& placed);
 
 /// A sentence for each thing that the scene holds and the renderer does not draw.
 std::vector<std::string> undrawn_features(const Scene& scene);

@@ -1,6 +1,9 @@
 #include "gpu_scene.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <numeric>
+#include <tuple>
 
 namespace vrut {
 
@@ -14,6 +17,21 @@ struct Arrays {
     std::vector<Vertex> vertices;
     std::vector<glm::uvec3> triangles;
 };
+
+GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
+    GlVertexArray result = make_vertex_array();
+    const GLuint array = result.get();
+    glVertexArrayVertexBuffer(array, 0, vertices.get(), 0, sizeof(Vertex));
+    glVertexArrayElementBuffer(array, indices.get());
+    const auto attribute = [&](GLuint location, std::size_t offset) {
+        glEnableVertexArrayAttrib(array, location);
+        glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+        glVertexArrayAttribBinding(array, location, 0);
+    };
+    attribute(0, offsetof(Vertex, position));
+    attribute(1, offsetof(Vertex, normal));
+    return result;
+}
 
 /// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
 /// its face's, so that the shader need not know the difference.
@@ -57,24 +75,68 @@ GpuGeometry upload(const Geometry& geometry) {
     result.indices = make_buffer(arrays.triangles.data(), arrays.triangles.size() * sizeof(glm::uvec3));
     result.index_count = static_cast<GLsizei>(arrays.triangles.size() * 3);
 
-    result.vertex_array = make_vertex_array();
-    const GLuint array = result.vertex_array.get();
-    glVertexArrayVertexBuffer(array, 0, result.vertices.get(), 0, sizeof(Vertex));
-    glVertexArrayElementBuffer(array, result.indices.get());
-    const auto attribute = [&](GLuint location, std::size_t offset) {
-        glEnableVertexArrayAttrib(array, location);
-        glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-        glVertexArrayAttribBinding(array, location, 0);
+    result.vertex_array = vertex_array_of(result.vertices, result.indices);
+    return result;
+}
+
+/// For each position the lowest index of one that is the same, so that corners with normals of their own are
+/// known as one.
+std::vector<unsigned> first_of_same(const std::vector<glm::dvec3>& positions) {
+    std::vector<unsigned> order(positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto before = [&](unsigned a, unsigned b) {
+        const glm::dvec3 &p = positions[a], &q = positions[b];
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
     };
-    attribute(0, offsetof(Vertex, position));
-    attribute(1, offsetof(Vertex, normal));
+    std::sort(order.begin(), order.end(), before);
+    std::vector<unsigned> first(positions.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+        first[order[i]] = same ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+/// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
+std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector<glm::uvec3>& vertices) {
+    struct Edge {
+        glm::uvec2 corners;  // known as one, the lower first
+        std::size_t number;
+        glm::uvec2 vertices;
+    };
+    const std::vector<unsigned> known_as = first_of_same(geometry.positions);
+    std::vector<Edge> edges;
+    edges.reserve(vertices.size() * 3);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            const int next = (k + 1) % 3;
+            const unsigned a = known_as[geometry.triangles[i][k]], b = known_as[geometry.triangles[i][next]];
+            if (a == b) continue;
+            edges.push_back(
+                {{std::min(a, b), std::max(a, b)}, edges.size(), {vertices[i][k], vertices[i][next]}});
+        }
+    const auto key = [](const Edge& edge) { return std::tie(edge.corners.x, edge.corners.y, edge.number); };
+    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+    std::vector<glm::uvec2> result;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (i == 0 || edges[i].corners != edges[i - 1].corners) result.push_back(edges[i].vertices);
+    return result;
+}
+
+GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
+    GpuEdges result;
+    const auto edges = unique_edges(geometry, make_arrays(geometry, uploaded.origin).triangles);
+    if (edges.empty()) return result;
+    result.indices = make_buffer(edges.data(), edges.size() * sizeof(glm::uvec2));
+    result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
+    result.index_count = static_cast<GLsizei>(edges.size() * 2);
     return result;
 }
 
 }  // namespace
 
 GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
-    : scene_(std::move(scene)), geometries_(scene_->geometries().size()) {}
+    : scene_(std::move(scene)), geometries_(scene_->geometries().size()), edges_(geometries_.size()) {}
 
 const GpuGeometry& GpuScene::geometry(Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
@@ -83,6 +145,15 @@ const GpuGeometry& GpuScene::geometry(Index index) {
         ++uploads_;
     }
     return geometry;
+}
+
+const GpuEdges& GpuScene::edges(Index index) {
+    std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
+    if (!edges) {
+        edges = upload_edges(scene_->geometries()[static_cast<std::size_t>(index)], geometry(index));
+        ++uploads_;
+    }
+    return *edges;
 }
 
 }  // namespace vrut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "handles.hpp"
@@ -17,18 +18,28 @@ struct GpuGeometry {
     glm::dvec3 origin{0};
 };
 
+/// The edges of a geometry's triangles, as lines between its vertices: each once, however many triangles
+/// share it, and though their corners have normals of their own.
+struct GpuEdges {
+    GlBuffer indices;
+    GlVertexArray vertex_array;  ///< with the geometry's vertices
+    GLsizei index_count = 0;
+};
+
 /// The geometries of a scene, each uploaded when it is first drawn.
 class GpuScene {
 public:
     explicit GpuScene(std::shared_ptr<const Scene> scene);
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const GpuGeometry& geometry(Index index);
-    /// Geometries uploaded so far.
+    const GpuEdges& edges(Index index);
+    /// Geometries and edges uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
     std::shared_ptr<const Scene> scene_;
     std::vector<GpuGeometry> geometries_;
+    std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
     int uploads_ = 0;
 };
 

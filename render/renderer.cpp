@@ -8,7 +8,10 @@
 #include "frame_plan.hpp"
 #include "framebuffer.hpp"
 #include "gpu_scene.hpp"
+#include "passes/colors.hpp"
+#include "passes/edge_pass.hpp"
 #include "passes/opaque_pass.hpp"
+#include "passes/outline_pass.hpp"
 
 namespace vrut {
 
@@ -83,15 +86,22 @@ struct Renderer::Impl {
         glClearColor(static_cast<float>(view.background.r), static_cast<float>(view.background.g),
                      static_cast<float>(view.background.b), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-        if (!plan.opaque.empty())
-            opaque.draw(plan.opaque, *scene, reversed_clip_from_view(view, near, offset), view.headlight,
-                        stats);
+        const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
+        if (!plan.opaque.empty()) opaque.draw(plan.opaque, *scene, view, clip, stats);
+        if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view, clip, stats);
+        if (plan.selected.empty()) return;
+        if (view.wireframe)
+            edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
+        else
+            outline.draw(plan.selected, *scene, clip, *target, stats);
     }
 
     GlContext context;  // first: destroyed after everything below
     std::optional<GpuScene> scene;
     std::optional<Framebuffer> target;
     OpaquePass opaque;
+    EdgePass edges;
+    OutlinePass outline;
     std::vector<std::uint8_t> sample;
     Accumulation accumulation;  // of pictures whose samples the caller does not keep
 };
@@ -112,13 +122,9 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     image.resize(view.width, view.height);
 
     Clock::time_point start = Clock::now();
-    FramePlan plan;
-    double near = 1;
-    if (view.scene) {
-        impl_->use_scene(view.scene->scene);
-        plan = plan_frame(*view.scene, view.camera);
-        near = fit_clip_range(view.camera, view.scene->bounds).near;
-    }
+    if (view.scene) impl_->use_scene(view.scene->scene);
+    const FramePlan plan = plan_frame(view);
+    const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
     const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
     Accumulation& sum = kept ? *kept : impl_->accumulation;
     const bool goes_on =

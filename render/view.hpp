@@ -6,19 +6,16 @@
 #include <vector>
 
 #include "camera.hpp"
+#include "light.hpp"
 #include "scene.hpp"
 
 namespace vrut {
 
-/// A point light at the eye. `attenuation`: constant, linear, quadratic; all zero means none.
-struct Headlight {
-    glm::dvec4 color{1, 1, 1, 1};
-    glm::dvec3 attenuation{1, 0, 0};
-    bool operator==(const Headlight&) const = default;
-};
-
 /// The plain background: 230/255, 235/255, 242/255.
 inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+
+/// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
+enum class DrawMode { realistic, stylized };
 
 /// What a picture shows, in pixels of the picture.
 struct View {
@@ -26,7 +23,10 @@ struct View {
     Camera camera;
     int width = 1280, height = 720;
     int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
-    Headlight headlight;
+    Light light;
+    DrawMode mode = DrawMode::realistic;
+    bool wireframe = false;  ///< the edges of all triangles, and no faces
+    Index selected = kNone;  ///< a node whose subtree is marked: by an outline, in a wireframe by its edges
     glm::dvec3 background = kDefaultBackground;
 
     bool operator==(const View&) const = default;
@@ -43,7 +43,8 @@ struct FrameStats {
     int passes = 0;
     int draws = 0;
     std::uint64_t triangles = 0;
-    int uploads = 0;         ///< geometries brought to the GPU
+    std::uint64_t edges = 0;
+    int uploads = 0;         ///< geometries and edges brought to the GPU
     double render_ms = 0;    ///< from the first command to the fence behind the last
     double readback_ms = 0;  ///< from the GPU into memory
 };

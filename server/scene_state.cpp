@@ -64,7 +64,8 @@ View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> pl
     View view;
     view.camera = camera_of(state.camera);
     const protocol::LightState& headlight = state.lights.items.at("headlight");
-    view.headlight = {headlight.color, headlight.attenuation};
+    view.light.color = headlight.color;
+    view.light.attenuation = headlight.attenuation;
     const std::string& active = state.backgrounds.active;
     const bool plain = active == "color" || !is_shown(*placed, std::stoll(active));
     view.background = glm::dvec3(plain ? state.backgrounds.color : state.backgrounds.items.at(active).color);

@@ -15,6 +15,7 @@ void count_gl_object(long change) { live_objects += change; }
 void destroy_buffer(GLuint name) { glDeleteBuffers(1, &name); }
 void destroy_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
 void destroy_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
+void destroy_texture(GLuint name) { glDeleteTextures(1, &name); }
 void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 void destroy_shader(GLuint name) { glDeleteShader(name); }
 void destroy_program(GLuint name) { glDeleteProgram(name); }
@@ -40,6 +41,16 @@ GlRenderbuffer make_renderbuffer(GLenum format, int width, int height) {
     GlRenderbuffer renderbuffer(name);
     glNamedRenderbufferStorage(name, format, width, height);
     return renderbuffer;
+}
+
+GlTexture make_texture(GLenum format, int width, int height) {
+    GLuint name = 0;
+    glCreateTextures(GL_TEXTURE_2D, 1, &name);
+    GlTexture texture(name);
+    glTextureStorage2D(name, 1, format, width, height);
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
 }
 
 GlFramebuffer make_framebuffer() {

@@ -41,6 +41,7 @@ namespace detail {
 void destroy_buffer(GLuint name);
 void destroy_vertex_array(GLuint name);
 void destroy_renderbuffer(GLuint name);
+void destroy_texture(GLuint name);
 void destroy_framebuffer(GLuint name);
 void destroy_shader(GLuint name);
 void destroy_program(GLuint name);
@@ -49,6 +50,7 @@ void destroy_program(GLuint name);
 using GlBuffer = GlHandle<detail::destroy_buffer>;
 using GlVertexArray = GlHandle<detail::destroy_vertex_array>;
 using GlRenderbuffer = GlHandle<detail::destroy_renderbuffer>;
+using GlTexture = GlHandle<detail::destroy_texture>;
 using GlFramebuffer = GlHandle<detail::destroy_framebuffer>;
 using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
@@ -56,6 +58,8 @@ using GlProgram = GlHandle<detail::destroy_program>;
 GlBuffer make_buffer(const void* data, std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
+/// Two dimensions, one level, read texel by texel.
+GlTexture make_texture(GLenum format, int width, int height);
 GlFramebuffer make_framebuffer();
 
 }  // namespace vrut

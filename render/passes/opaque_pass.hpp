@@ -2,21 +2,20 @@
 
 #include <span>
 
-#include "frame_plan.hpp"
-#include "gpu_scene.hpp"
-#include "view.hpp"
+#include "passes/programs.hpp"
 
 namespace vrut {
 
-/// Opaque surfaces under Phong light, evaluated per pixel (Macků 2016, eq. 6.4–6.9 in their robust form).
+/// Faces under the view's light: realistic ones in their materials, stylized ones all in the same, and a
+/// little further away, so that their edges lie before them.
 class OpaquePass {
 public:
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
-    void draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-              const Headlight& headlight, FrameStats& stats);
+    void draw(std::span<const DrawItem> items, GpuScene& scene, const View& view,
+              const glm::dmat4& clip_from_view, FrameStats& stats);
 
 private:
-    GlProgram program_;
+    SurfacePrograms programs_{SurfacePrograms::Shape::faces};
 };
 
 }  // namespace vrut

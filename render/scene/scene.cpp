@@ -236,19 +236,23 @@ std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm
     return shown;
 }
 
+std::vector<bool> subtree(const Scene& scene, Index top) {
+    std::vector<bool> below(scene.nodes().size());
+    below[static_cast<std::size_t>(top)] = true;
+    for (auto i = static_cast<std::size_t>(top) + 1; i < below.size(); ++i)
+        below[i] = below[static_cast<std::size_t>(scene.nodes()[i].parent)];
+    return below;
+}
+
 Bounds subtree_bounds(const PlacedScene& placed, Index node) {
     // Squares and sums of what is used below stay finite.
     constexpr double kFarthest = 1e150;
-    const auto top = static_cast<std::size_t>(node);
     Bounds bounds;
     const std::vector<bool> shown = shown_nodes(placed, std::nullopt);
-    std::vector<bool> below(shown.size());
-    for (std::size_t i = top; i < shown.size(); ++i) {
-        const Node& candidate = placed.scene->nodes()[i];
+    const std::vector<bool> below = subtree(*placed.scene, node);
+    for (std::size_t i = 0; i < shown.size(); ++i) {
         const glm::dmat4& world = placed.world[i];
-        below[i] =
-            i == top || (candidate.parent != kNone && below[static_cast<std::size_t>(candidate.parent)]);
-        const auto* data = std::get_if<GeometryData>(&candidate.data);
+        const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data);
         if (!below[i] || !shown[i] || !data || data->geometry == kNone || !is_finite(world)) continue;
         const Bounds box =
             transformed(world, placed.scene->geometries()[static_cast<std::size_t>(data->geometry)].bounds);

@@ -184,6 +184,9 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<Nod
 /// choose by the distance of `eye` (world space); without one all their children count.
 std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye);
 
+/// For each node, whether it is `top` or hangs below it.
+std::vector<bool> subtree(const Scene& scene, Index top);
+
 /// Box around the geometry at and below `node` that could show from anywhere: active and chosen by its
 /// switches. Nodes that lie beyond the range of double are left out.
 Bounds subtree_bounds(const PlacedScene& placed, Index node);

@@ -6,13 +6,24 @@
 
 namespace vrut {
 
-glm::dvec3 phong(const Material& material, const Headlight& light, const glm::dvec3& eye,
-                 const glm::dvec3& point, const glm::dvec3& normal) {
-    const glm::dvec3 coefficients =
-        light.attenuation == glm::dvec3(0) ? glm::dvec3(1, 0, 0) : light.attenuation;
-    const double d = glm::distance(eye, point);
-    const double intensity = 1 / std::max(coefficients.x + coefficients.y * d + coefficients.z * d * d, 1e-6);
-    const glm::dvec3 to_light = (eye - point) / d, to_eye = to_light;
+glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3& eye, const glm::dvec3& point,
+                 const glm::dvec3& normal) {
+    const glm::dvec3 to_eye = glm::normalize(eye - point);
+    glm::dvec3 to_light = -light.direction;
+    double intensity = 1;
+    if (light.headlight || light.type != LightData::Type::directional) {
+        const glm::dvec3 position = light.headlight ? eye : light.position;
+        const glm::dvec3 coefficients =
+            light.attenuation == glm::dvec3(0) ? glm::dvec3(1, 0, 0) : light.attenuation;
+        const double d = glm::distance(position, point);
+        intensity = 1 / std::max(coefficients.x + coefficients.y * d + coefficients.z * d * d, 1e-6);
+        to_light = (position - point) / d;
+        if (!light.headlight && light.type == LightData::Type::spot) {
+            const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
+            intensity *= glm::smoothstep(cosine(light.angle / 2), cosine(0.45 * light.angle),
+                                         glm::dot(-to_light, light.direction));
+        }
+    }
     const double lit = std::max(glm::dot(to_light, normal), 0.0);
     const glm::dvec3 reflected = normal * (2 * glm::dot(to_light, normal)) - to_light;
     const double highlight = material.shininess == 0
@@ -103,7 +114,7 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
         const glm::dvec3 point = camera.eye + ray * t;
         glm::dvec3 normal = glm::normalize(a.normal * (1 - u - v) + b.normal * u + c.normal * v);
         if (triangle.both_sides && glm::dot(normal, camera.eye - point) < 0) normal = -normal;
-        seen = {triangle.surface, phong(triangle.material, view_.headlight, camera.eye, point, normal)};
+        seen = {triangle.surface, phong(triangle.material, view_.light, camera.eye, point, normal)};
     }
     return seen;
 }

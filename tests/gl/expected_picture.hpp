@@ -9,9 +9,9 @@
 
 namespace vrut {
 
-/// The colour that the Phong equations give at a point of a surface, in double; the light is at the eye.
-glm::dvec3 phong(const Material& material, const Headlight& light, const glm::dvec3& eye,
-                 const glm::dvec3& point, const glm::dvec3& normal);
+/// The colour that the Phong equations give at a point of a surface, in double.
+glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3& eye, const glm::dvec3& point,
+                 const glm::dvec3& normal);
 
 /// What a view of a scene shows, computed ray by ray without any of the renderer.
 class ExpectedPicture {

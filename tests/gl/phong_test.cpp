@@ -93,19 +93,20 @@ TEST_CASE("the headlight's colour and attenuation") {
     Studio studio;
     const auto scene = scene_of({{1, quad(3), rich(20), glm::dmat4(1)}});
     View view = view_from({1, 1, 3});
-    view.headlight.color = {0.9, 0.5, 0.2, 0.1};  // its alpha means nothing
+    view.light.color = {0.9, 0.5, 0.2, 0.1};  // its alpha means nothing
     studio.check(scene, view);
     for (const glm::dvec3& attenuation :
          {glm::dvec3(2, 0, 0), glm::dvec3(0, 0.5, 0), glm::dvec3(0.1, 0.2, 0.05), glm::dvec3(0, 0, 0.3),
           glm::dvec3(0, 0, 0), glm::dvec3(0.5, 0, 0), glm::dvec3(0, 1e15, 1e15)}) {
         CAPTURE(attenuation.y);
-        view.headlight.attenuation = attenuation;
+        view.light.attenuation = attenuation;
         studio.check(scene, view);
     }
     // A denominator below a millionth counts as one.
     const auto dim = scene_of({{1, quad(3), material_of({3e-7, 5e-7, 7e-7}), glm::dmat4(1)}});
-    view.headlight = {{1, 1, 1, 1}, {0, 0, 1e-9}};
-    CHECK(glm::length(phong(dim->scene->materials()[0], view.headlight, {0, 0, 3}, {0, 0, 0}, {0, 0, 1}) -
+    view.light.color = {1, 1, 1, 1};
+    view.light.attenuation = {0, 0, 1e-9};
+    CHECK(glm::length(phong(dim->scene->materials()[0], view.light, {0, 0, 3}, {0, 0, 0}, {0, 0, 1}) -
                       glm::dvec3(0.3, 0.5, 0.7)) < 1e-9);
     studio.check(dim, view);
 }
@@ -118,7 +119,7 @@ TEST_CASE("colours are clamped, not wrapped") {
     const auto scene = scene_of({{1, sphere(1.5, 8), bright, glm::dmat4(1)}});
     View view = view_from({0, 0, 5});
     CHECK(studio.check(scene, view).surfaces > 500);
-    view.headlight.color = {1e6, 1e6, 1e6, 1};
+    view.light.color = {1e6, 1e6, 1e6, 1};
     studio.check(scene, view);
 }
 

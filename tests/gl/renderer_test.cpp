@@ -29,30 +29,6 @@ double average(const Image& image) {
     return sum / static_cast<double>(image.rgba.size());
 }
 
-/// Black before white, seen straight on, `pixels` units wide and high; a unit is a pixel.
-View pixel_view(int width, int height) {
-    View view;
-    view.camera.fov = 90;
-    view.camera.eye = {0, 0, height / 2.0};
-    view.camera.focus = {0, 0, 0};
-    view.width = width;
-    view.height = height;
-    view.background = {1, 1, 1};
-    return view;
-}
-
-Geometry rectangle(double left, double top, double right, double bottom, const View& view) {
-    const double w = view.width / 2.0, h = view.height / 2.0;
-    Geometry geometry;
-    geometry.positions = {{left - w, h - bottom, 0},
-                          {right - w, h - bottom, 0},
-                          {right - w, h - top, 0},
-                          {left - w, h - top, 0}};
-    geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
-    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
-    return geometry;
-}
-
 }  // namespace
 
 TEST_CASE("pictures of any size") {

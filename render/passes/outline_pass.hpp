@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "framebuffer.hpp"
+#include "passes/programs.hpp"
+
+namespace vrut {
+
+/// Pixels from `low` to before `high`, y up.
+struct PixelBox {
+    glm::ivec2 low{0}, high{0};
+    glm::ivec2 size() const { return high - low; }
+};
+
+/// An outline around all that some nodes cover, of constant width in pixels, over everything. What they
+/// cover, seen or hidden, is drawn as a mask; then each pixel outside that has some of it within the width is
+/// coloured. The distance is found first along the rows and then down the columns: exact, and for a width w
+/// 4w + 2 looks at a pixel.
+class OutlinePass {
+public:
+    /// Draws into `target`, which is bound afterwards; adds its draws and triangles to `stats`.
+    void draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+              const Framebuffer& target, FrameStats& stats);
+
+private:
+    void prepare(const Framebuffer& target);
+    /// Draws the mask within `all`; a box for each item.
+    void cover(std::span<const DrawItem> items, std::span<const PixelBox> boxes, const PixelBox& all,
+               GpuScene& scene, const glm::dmat4& clip_from_view, FrameStats& stats);
+
+    struct Mask {
+        Mask(int width, int height);
+        int width, height;
+        GlTexture covered, across;  ///< 1 inside; how far along the row to the nearest covered pixel
+        GlFramebuffer covered_target, across_target;
+    };
+    std::optional<Mask> mask_;
+    PlainProgram cover_;
+    GlProgram measure_, mark_;
+    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+};
+
+/// Width of an outline in a picture of that height: 2 pixels at 1 megapixel (1152 x 864).
+int outline_width(int picture_height);
+
+}  // namespace vrut

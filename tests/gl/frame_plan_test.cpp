@@ -1,0 +1,64 @@
+#include "frame_plan.hpp"
+
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+/// Geometry nodes 1 to 4 with the materials plain, glass, chrome and mirrored glass, and node 5 with none.
+PlacedScene showroom() {
+    SceneParts parts;
+    parts.geometries = {quad(1)};
+    parts.materials.resize(4);
+    parts.materials[1].diffuse.a = 0.5;
+    parts.materials[2].reflectivity = 0.1;
+    parts.materials[3].diffuse.a = 0.99;
+    parts.materials[3].reflectivity = 1;
+    for (Id id = 1; id <= 5; ++id) {
+        const GeometryData data{0, id == 5 ? kNone : static_cast<Index>(id - 1)};
+        parts.nodes.push_back({Node{id, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), data}, 0});
+    }
+    parts.nodes.push_back({Node{6, {}, NodeType::light, kNone, {}, true, glm::dmat4(1), LightData{}}, 0});
+    return place(*Scene::build(std::move(parts)));
+}
+
+}  // namespace
+
+TEST_CASE("geometry nodes are counted by what their material is now") {
+    PlacedScene placed = showroom();
+    CHECK(count_classes(placed) == ClassCounts{2, 2, 1});
+    for (NodeState& state : placed.nodes) state.material = 2;
+    CHECK(count_classes(placed) == ClassCounts{0, 0, 5});
+    CHECK(count_classes(place(Scene())) == ClassCounts{});
+}
+
+TEST_CASE("a plan holds what the view needs and no more") {
+    View view = view_from({0, 0, 5});
+    CHECK(plan_frame(view).opaque.empty());
+    view.scene = std::make_shared<const PlacedScene>(showroom());
+    const auto sizes = [&] {
+        const FramePlan plan = plan_frame(view);
+        return std::array{plan.opaque.size(), plan.edges.size(), plan.selected.size()};
+    };
+    using Sizes = std::array<std::size_t, 3>;
+    CHECK(sizes() == Sizes{5, 0, 0});
+    view.wireframe = true;
+    CHECK(sizes() == Sizes{0, 5, 0});
+    view.mode = DrawMode::stylized;
+    CHECK(sizes() == Sizes{0, 5, 0});
+    view.wireframe = false;
+    CHECK(sizes() == Sizes{5, 5, 0});
+    view.selected = view.scene->scene->find_node(2);
+    CHECK(sizes() == Sizes{5, 5, 1});
+    view.selected = view.scene->scene->find_node(0);
+    CHECK(sizes() == Sizes{5, 5, 5});
+    view.selected = view.scene->scene->find_node(6);
+    CHECK(sizes() == Sizes{5, 5, 0});
+}
+
+TEST_CASE("what is not drawn is told, and lights are drawn") {
+    const auto notices = undrawn_features(*showroom().scene);
+    CHECK(notices == std::vector<std::string>{"2 transparent materials are drawn opaque",
+                                              "2 reflective materials are drawn without reflections"});
+}

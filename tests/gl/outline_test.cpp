@@ -1,0 +1,181 @@
+#include <cmath>
+
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const glm::ivec3 kMarked{255, 153, 0};
+const Material kPaint = material_of({0.2, 0.3, 0.4});
+
+int count(const Image& image, const glm::ivec3& color) {
+    int found = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) found += pixel_of(image, x, y) == color;
+    return found;
+}
+
+/// How many pixels are not as they should be: marked within `width` of what `covers` outside of it, and as in
+/// `plain` elsewhere.
+template <class Covers>
+int faults(const Image& image, const Image& plain, int width, const Covers& covers) {
+    int wrong = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            bool near = false;
+            for (int dy = -width; dy <= width; ++dy)
+                for (int dx = -width; dx <= width; ++dx)
+                    near = near || (dx * dx + dy * dy <= width * width && covers(x + dx, y + dy));
+            const bool marked = near && !covers(x, y);
+            wrong += pixel_of(image, x, y) != (marked ? kMarked : pixel_of(plain, x, y));
+        }
+    return wrong;
+}
+
+}  // namespace
+
+TEST_CASE("an outline is as wide in pixels everywhere: two at a megapixel, more in larger pictures") {
+    Studio studio;
+    struct Case {
+        int height, width;
+    };
+    for (const Case& c : {Case{64, 1}, {432, 1}, {640, 2}, {864, 2}, {865, 3}, {1728, 4}}) {
+        CAPTURE(c.height);
+        View view = pixel_view(60, c.height);
+        const auto scene = scene_of({{1, rectangle(20, 30, 41, 50, view), kPaint, glm::dmat4(1)}});
+        const Image plain = studio.draw(scene, view);
+        CHECK(studio.stats.passes == 1);
+        view.selected = 1;
+        const Image image = studio.draw(scene, view);
+        CHECK(studio.stats.passes == 2);
+        CHECK(faults(image, plain, c.width,
+                     [](int x, int y) { return x >= 20 && x < 41 && y >= 30 && y < 50; }) == 0);
+        const int sides = 2 * (21 + 20) * c.width;
+        CHECK(count(image, kMarked) >= sides);
+        CHECK(count(image, kMarked) <= sides + 4 * c.width * c.width);
+    }
+}
+
+TEST_CASE("an outline lies over everything, around all of a subtree together") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    SceneParts parts;
+    parts.materials = {kPaint};
+    parts.geometries = {rectangle(10, 10, 30, 30, view), rectangle(25, 20, 45, 40, view),
+                        rectangle(60, 10, 70, 20, view), rectangle(5, 5, 75, 55, view),
+                        rectangle(1, 1, 3, 3, view)};
+    const auto add = [&](Id id, Id parent, Index geometry, double z, bool active) {
+        if (geometry == kNone)
+            parts.nodes.push_back(
+                {Node{id, {}, NodeType::assembly, kNone, {}, active, moved_by({0, 0, z}), {}}, parent});
+        else
+            parts.nodes.push_back({Node{id,
+                                        {},
+                                        NodeType::geometry,
+                                        kNone,
+                                        {},
+                                        active,
+                                        moved_by({0, 0, z}),
+                                        GeometryData{geometry, 0}},
+                                   parent});
+    };
+    add(1, 0, kNone, 0, true);
+    add(2, 1, 0, 0, true);
+    add(3, 1, kNone, 0, true);
+    add(4, 3, 1, 0, true);
+    add(5, 3, 4, 0, false);  // does not show
+    add(6, 0, 2, 0, true);
+    add(7, 0, 3, 1e-6, true);  // the curtain before it all
+    add(8, 0, kNone, 0, true);
+    const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    const Image plain = studio.draw(scene, view);
+    const auto first = [](int x, int y) { return x >= 10 && x < 30 && y >= 10 && y < 30; };
+    const auto second = [](int x, int y) { return x >= 25 && x < 45 && y >= 20 && y < 40; };
+    const auto third = [](int x, int y) { return x >= 60 && x < 70 && y >= 10 && y < 20; };
+    const auto select = [&](Id id) {
+        view.selected = scene->scene->find_node(id);
+        return studio.draw(scene, view);
+    };
+    CHECK(faults(select(1), plain, 1, [&](int x, int y) { return first(x, y) || second(x, y); }) == 0);
+    CHECK(studio.stats.draws == 4 + 2 + 2);
+    CHECK(faults(select(2), plain, 1, first) == 0);
+    CHECK(faults(select(3), plain, 1, second) == 0);
+    CHECK(faults(select(6), plain, 1, third) == 0);
+    // Nothing that shows: nothing is drawn for it.
+    for (const Id id : {5, 8}) {
+        CHECK(select(id).rgba == plain.rgba);
+        CHECK(studio.stats.passes == 1);
+    }
+    CHECK(faults(select(0), plain, 1, [](int x, int y) { return x >= 5 && x < 75 && y >= 5 && y < 55; }) ==
+          0);
+}
+
+TEST_CASE("outlines at the picture's border, before and behind the eye, and of what is as small as a speck") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    view.selected = 1;
+    const auto draw = [&](const Geometry& geometry, const glm::dmat4& matrix = glm::dmat4(1)) {
+        return studio.draw(scene_of({{1, geometry, kPaint, matrix}}), view);
+    };
+    const auto plain = [&](const Geometry& geometry) {
+        View unmarked = view;
+        unmarked.selected = kNone;
+        return studio.draw(scene_of({{1, geometry, kPaint, glm::dmat4(1)}}), unmarked);
+    };
+    const Geometry corner = rectangle(-20, -20, 10, 10, view);
+    CHECK(faults(draw(corner), plain(corner), 1,
+                 [](int x, int y) { return x >= -20 && x < 10 && y >= -20 && y < 10; }) == 0);
+    CHECK(count(draw(rectangle(-20, -20, 100, 100, view)), kMarked) == 0);
+    CHECK(count(draw(rectangle(-20, -20, -5, -5, view)), kMarked) == 0);
+    CHECK(count(draw(quad(5), moved_by({0, 0, 200})), kMarked) == 0);  // behind the eye
+    // A floor that goes on behind the eye: the upper edge alone.
+    const Image floor = draw(quad(20), moved_by({0, -10, 30}) * turned_by(-90, {1, 0, 0}));
+    CHECK(count(floor, kMarked) > 30);
+    // Half a hundredth of a pixel, between the centres.
+    const Image speck = draw(rectangle(30.2, 20.2, 30.205, 20.205, view));
+    CHECK(count(speck, kMarked) == 4);
+    CHECK(pixel_of(speck, 29, 20) == kMarked);
+    CHECK(pixel_of(speck, 30, 19) == kMarked);
+}
+
+TEST_CASE("an outline owes nothing to the one before") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    const auto scene = scene_of({{1, rectangle(10, 10, 30, 30, view), kPaint, glm::dmat4(1)},
+                                 {2, rectangle(33, 12, 60, 28, view), kPaint, glm::dmat4(1)}});
+    view.selected = 2;
+    const Image fresh = studio.draw(scene, view);
+    view.selected = 1;
+    const Image first = studio.draw(scene, view);
+    CHECK(first.rgba != fresh.rgba);
+    View other = view;
+    other.width = 33;
+    studio.draw(scene, other);
+    studio.draw(scene, view);
+    view.selected = 2;
+    CHECK(studio.draw(scene, view).rgba == fresh.rgba);
+    view.selected = 1;
+    CHECK(studio.draw(scene, view).rgba == first.rgba);
+}
+
+TEST_CASE("an outline in the stylized drawing, around what faces away too, and finer with more samples") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    view.mode = DrawMode::stylized;
+    view.selected = 1;
+    const Geometry geometry = turned_inside_out(rectangle(20, 10, 41, 30, view));
+    const Image image = studio.draw(scene_of({{1, geometry, kPaint, glm::dmat4(1)}}), view);
+    CHECK(studio.stats.passes == 3);
+    CHECK(count(image, kMarked) == 2 * (21 + 20));
+    view.mode = DrawMode::realistic;
+    view.samples = 16;
+    const Image fine = studio.draw(scene_of({{1, sphere(20, 16), kPaint, glm::dmat4(1)}}), view);
+    int between = 0;
+    for (int y = 0; y < 60; ++y)
+        for (int x = 0; x < 80; ++x) {
+            const glm::ivec3 color = pixel_of(fine, x, y);
+            between += color.r == 255 && color.b > 10 && color.b < 245;
+        }
+    CHECK(between > 50);
+}
