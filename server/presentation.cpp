@@ -84,10 +84,13 @@ void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
     input.y = pointer.y;
     input.button = pointer.button;
     input.buttons = pointer.buttons;
-    drag_camera(gestures_.pointer(input, camera(), navigation_context()));
-    const double arrival = std::chrono::duration<double, std::milli>(said.arrival.time_since_epoch()).count();
-    const double time = clients_[said.client].clock.time(pointer.time_stamp, arrival);
-    if (const std::optional<Click> click = clicks_.pointer(input, time)) {
+    input.modifiers = {pointer.modifiers.alt, pointer.modifiers.ctrl, pointer.modifiers.shift,
+                       pointer.modifiers.meta};
+    const NavigationContext context = navigation_context();
+    drag_camera(gestures_.pointer(input, camera(), context));
+    const EventTime when{pointer.time_stamp, std::chrono::duration_cast<std::chrono::microseconds>(
+                                                 said.arrival.time_since_epoch())};
+    if (const std::optional<Click> click = clicks_.pointer(input, when, context.style)) {
         std::optional<Look> seen = look(click->x, click->y, pointer.frame, false);
         if (!seen) seen = look(click->x, click->y, std::nullopt, false);  // long forgotten: the newest
         apply(click->operation, seen->hit);
@@ -102,16 +105,20 @@ void Presentation::apply(const Said& said, const protocol::Wheel& wheel) {
 }
 
 void Presentation::apply(const Said& said, const protocol::Key& key) {
-    if (!key.down || !may_steer(said)) return;
+    const KeyInput input{key.key, key.modifiers.shift, key.code};
+    if (!key.down) return gestures_.key_up(said.client, input);
+    if (!may_steer(said)) return;
     steer(said);
-    if (key.key == "Escape") select(kNone);
+    gestures_.key_down(said.client, input);
+    const std::optional<KeyOperation> operation = key_operation(input);
+    if (!operation) return;
+    if (operation->kind == KeyOperation::Kind::escape) select(kNone);
     NavigationContext context = navigation_context();
-    if (state_.selection.node) {
-        // What is selected is what `f` fits; zooming keeps the whole scene's limits.
+    if (operation->kind == KeyOperation::Kind::fit && state_.selection.node) {
         const Bounds selected = subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
-        if (key.key == "f" && !selected.empty()) context.bounds = selected;
+        if (!selected.empty()) context.bounds = selected;
     }
-    move_camera(key_down({key.key, key.modifiers.shift}, camera(), home(), context));
+    move_camera(operated(*operation, camera(), home(), context));
 }
 
 void Presentation::apply(const Said& said, const protocol::Patch& patch) {
@@ -339,8 +346,8 @@ Camera Presentation::home() const {
 
 NavigationContext Presentation::navigation_context() const {
     const protocol::NavigationState& navigation = state_.navigation;
-    return {view_size_.width,        view_size_.height,    scene_->bounds,       navigation.keep_upright,
-            navigation.rotate_speed, navigation.pan_speed, navigation.zoom_speed};
+    return {view_size_.width,        view_size_.height,    scene_->bounds,        navigation.keep_upright,
+            navigation.rotate_speed, navigation.pan_speed, navigation.zoom_speed, NavigationStyle::vrut};
 }
 
 void Presentation::drag_camera(const Camera& moved) {

@@ -9,6 +9,7 @@
 
 #include "clicks.hpp"
 #include "gestures.hpp"
+#include "keys.hpp"
 #include "messages.hpp"
 #include "pacing.hpp"
 #include "picking.hpp"
@@ -61,7 +62,6 @@ private:
     struct Client {
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
-        EventClock clock;
     };
     /// The message in hand.
     struct Said {

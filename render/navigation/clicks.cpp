@@ -12,7 +12,11 @@ using Device = PointerInput::Device;
 using Operation = Click::Operation;
 
 constexpr std::size_t kMostPressed = 16;
-constexpr double kTrusted = 1000;
+constexpr std::chrono::milliseconds kTrusted{1000};
+
+std::chrono::microseconds whole(double milliseconds) {
+    return std::chrono::microseconds(std::llround(milliseconds * 1000));
+}
 
 std::optional<Operation> operation_of(int button) {
     switch (button) {
@@ -29,54 +33,60 @@ std::optional<Operation> operation_of(int button) {
 
 }  // namespace
 
-double EventClock::time(std::optional<double> time_stamp, double arrival) {
-    double step = arrival - last_arrival_;
-    if (time_stamp && last_stamp_) {
-        const double stamped = *time_stamp - *last_stamp_;
-        if (stamped >= 0 && std::abs(stamped - step) <= kTrusted) step = stamped;
+std::chrono::microseconds EventClock::time(const EventTime& event) {
+    if (last_) {
+        std::chrono::microseconds step = event.arrival - last_->arrival;
+        if (event.stamp && last_->stamp) {
+            const std::chrono::microseconds stamped = whole(*event.stamp) - whole(*last_->stamp);
+            if (stamped.count() >= 0 && std::chrono::abs(stamped - step) <= kTrusted) step = stamped;
+        }
+        time_ += step;
     }
-    if (started_) time_ += step;
-    started_ = true;
-    last_stamp_ = time_stamp;
-    last_arrival_ = arrival;
+    last_ = event;
     return time_;
 }
 
-std::optional<Click> Clicks::pointer(const PointerInput& input, double time) {
+std::optional<Click> Clicks::pointer(const PointerInput& input, const EventTime& when,
+                                     NavigationStyle style) {
     const auto pressed = std::find_if(pressed_.begin(), pressed_.end(), [&](const Press& press) {
         return press.pointer == input.pointer && press.client == input.client;
     });
-    const glm::dvec2 place{input.x, input.y};
     if (input.action == Action::down) {
         if (pressed != pressed_.end()) pressed_.erase(pressed);
-        if (pressed_.size() < kMostPressed)
-            pressed_.push_back(
-                {input.client, input.pointer, input.device, std::max(input.button, 0), place, time, false});
+        if (pressed_.size() < kMostPressed) press(input, when, style);
         return std::nullopt;
     }
     if (pressed == pressed_.end()) return std::nullopt;
-    if (glm::distance(place, pressed->place) > kFarthest) pressed->moved = true;
+    pressed->now = {input.x, input.y};
     // A second button of the same mouse makes a drag of two buttons, and no click.
-    if (input.action == Action::move && input.button >= 0) pressed->moved = true;
+    if (input.action == Action::move && input.button >= 0) pressed->clicks = false;
     if (input.action == Action::move && input.buttons != 0) return std::nullopt;
 
     const Press press = *pressed;
     pressed_.erase(pressed);
-    if (input.action == Action::up) return released(press, time);
+    if (input.action == Action::up) return released(press, clocks_[input.client].time(when));
     last_.reset();  // cancelled, or a release that was not seen
     return std::nullopt;
 }
 
-std::optional<Click> Clicks::released(const Press& press, double time) {
+void Clicks::press(const PointerInput& input, const EventTime& when, NavigationStyle style) {
+    const glm::dvec2 at{input.x, input.y};
+    const bool drags = input.device != Device::touch && takes_clicks(style, input.modifiers);
+    pressed_.push_back({input.client, input.pointer, input.device, std::max(input.button, 0), at, at,
+                        clocks_[input.client].time(when), !drags});
+}
+
+std::optional<Click> Clicks::released(const Press& press, std::chrono::microseconds time) {
     const std::optional<Press> before = std::exchange(last_, std::nullopt);
-    if (press.moved || time - press.time > kLongest) return std::nullopt;
+    if (!press.stays() || time - press.time > kLongest) return std::nullopt;
 
     const bool touch = press.device == Device::touch;
     if (touch && !pressed_.empty()) {
-        // The first finger rests: it lies there longer than a tap would, alone, and has not moved.
+        // The first finger rests: it lies longer than a tap would, alone, and is where it was put.
         const Press& first = pressed_.front();
         const bool rests = pressed_.size() == 1 && first.device == Device::touch &&
-                           first.client == press.client && !first.moved && press.time - first.time > kLongest;
+                           first.client == press.client && first.stays() &&
+                           press.time - first.time > kLongest;
         if (!rests) return std::nullopt;
         return Click{Operation::look_at, press.place.x, press.place.y};
     }
@@ -99,6 +109,7 @@ bool Clicks::is_pressed(const std::string& client, std::int64_t pointer) const {
 
 void Clicks::lift(const std::string& client) {
     std::erase_if(pressed_, [&](const Press& press) { return press.client == client; });
+    clocks_.erase(client);
     last_.reset();
 }
 

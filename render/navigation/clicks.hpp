@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,18 +10,24 @@
 
 namespace vrut {
 
-/// One client's time in ms, from its events' own time stamps where they can be trusted: a link that delays
-/// events must not turn two clicks into a double one, or a double one into two. Where a stamp is absent,
-/// falls, or departs from the arrival by more than a second, the arrival counts.
+/// When an event happened.
+struct EventTime {
+    std::optional<double> stamp;           ///< `Event.timeStamp`: ms of its client's clock, within ±10¹⁵
+    std::chrono::microseconds arrival{0};  ///< by the server's clock, from any start
+};
+
+/// One client's time, from its events' own time stamps where they can be trusted: a link that delays events
+/// must not turn two clicks into a double one, or a double one into two. Where a stamp is absent, falls, or
+/// departs from the arrival by more than a second, the arrival counts. In whole microseconds, so that sums
+/// are exact: only differences matter, not where the clocks start.
 class EventClock {
 public:
-    /// Time of an event since the first; never falls as long as `arrival` does not. Both in ms.
-    double time(std::optional<double> time_stamp, double arrival);
+    /// Time of an event since the first; never falls as long as the arrivals do not.
+    std::chrono::microseconds time(const EventTime& event);
 
 private:
-    bool started_ = false;
-    std::optional<double> last_stamp_;
-    double last_arrival_ = 0, time_ = 0;
+    std::optional<EventTime> last_;
+    std::chrono::microseconds time_{0};
 };
 
 /// What a click asks for, to be done with what is hit at the point.
@@ -29,17 +37,18 @@ struct Click {
     double x = 0, y = 0;  ///< CSS pixels
 };
 
-/// Double clicks, double taps, and a second finger that taps while the first rests. Pure: time comes with the
-/// input.
+/// Double clicks, double taps, and a second finger that taps while the first rests. Only presses, releases
+/// and chords count, and where a pointer is when one comes: moves between may be merged as for Gestures.
 class Clicks {
 public:
-    static constexpr double kLongest = 250;     ///< ms from press to release
-    static constexpr double kFarthest = 10;     ///< CSS pixels that a click may move
-    static constexpr double kNextWithin = 400;  ///< ms from the first press to the second
-    static constexpr double kNextNear = 24;     ///< CSS pixels between them
+    static constexpr std::chrono::milliseconds kLongest{250};     ///< from press to release
+    static constexpr double kFarthest = 10;                       ///< CSS pixels between them
+    static constexpr std::chrono::milliseconds kNextWithin{400};  ///< from the first press to the second
+    static constexpr double kNextNear = 24;                       ///< CSS pixels between them
 
-    /// What `input`, at `time` ms of its client's clock, completes.
-    std::optional<Click> pointer(const PointerInput& input, double time);
+    /// What `input` completes.
+    std::optional<Click> pointer(const PointerInput& input, const EventTime& when,
+                                 NavigationStyle style = NavigationStyle::vrut);
     void lift(const std::string& client);
     bool is_pressed(const std::string& client, std::int64_t pointer) const;
 
@@ -49,14 +58,18 @@ private:
         std::int64_t pointer = 0;
         PointerInput::Device device = PointerInput::Device::mouse;
         int button = 0;
-        glm::dvec2 place{0};
-        double time = 0;
-        bool moved = false;
-    };
-    std::optional<Click> released(const Press& press, double time);
+        glm::dvec2 place{0}, now{0};
+        std::chrono::microseconds time{0};
+        bool clicks = true;  ///< else a drag: the camera's, or one of two buttons
 
-    std::vector<Press> pressed_;  // in the order of pressing
-    std::optional<Press> last_;   // the last click, until a second follows it
+        bool stays() const { return clicks && glm::distance(now, place) <= kFarthest; }
+    };
+    void press(const PointerInput& input, const EventTime& when, NavigationStyle style);
+    std::optional<Click> released(const Press& press, std::chrono::microseconds time);
+
+    std::map<std::string, EventClock> clocks_;  // by client; asked for presses and releases only
+    std::vector<Press> pressed_;                // in the order of pressing
+    std::optional<Press> last_;                 // the last click, until a second follows it
 };
 
 }  // namespace vrut

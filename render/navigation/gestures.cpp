@@ -13,17 +13,20 @@ using Action = PointerInput::Action;
 // More than any hand has; without a bound each press would make the next one slower.
 constexpr std::size_t kMostPressed = 16;
 
-enum Button { left = 0, middle = 1, right = 2 };
-
-/// W3C numbers a button one way and its bit among the held ones another.
-unsigned bit_of(int button) {
-    return button == right ? 2u : button == middle ? 4u : button == left ? 1u : 0u;
-}
-
 int first_held(unsigned buttons) {
-    for (int button : {left, right, middle})
+    for (int button : {left_button, right_button, middle_button})
         if (buttons & bit_of(button)) return button;
     return -1;
+}
+
+/// The digit that a key types, else the one that is printed on it: with Shift, or on a French keyboard, it
+/// types another sign. 0 for other keys.
+int number_of(const KeyInput& input) {
+    const auto digit = [](const std::string& text, std::size_t at) {
+        return text.size() == at + 1 && text[at] >= '1' && text[at] <= '9' ? text[at] - '0' : 0;
+    };
+    const int typed = digit(input.key, 0);
+    return typed == 0 && input.code.starts_with("Digit") ? digit(input.code, 5) : typed;
 }
 
 Camera rotate_by(const Camera& camera, const glm::dvec2& moved, const NavigationContext& context) {
@@ -58,10 +61,7 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
         if (pressed != pressed_.end()) pressed_.erase(pressed);
         if (pressed_.size() == kMostPressed) return camera;
         if (input.device == Device::touch && fingers().size() == 2) return camera;  // a third one
-        const glm::dvec2 at{input.x, input.y};
-        const unsigned buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);
-        pressed_.push_back(
-            {input.client, input.pointer, input.device, at, at, buttons, std::max(input.button, 0)});
+        press(input);
         restart(camera);
         return camera;
     }
@@ -69,6 +69,10 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
 
     // A move without buttons is hovering: the release was not seen, and where it was is not known.
     const bool lost = input.action == Action::cancel || (input.action == Action::move && input.buttons == 0);
+    if (!lost && input.action == Action::move && input.button < 0 && input.buttons != pressed->grip.buttons) {
+        change_buttons(*pressed, input);  // unseen, too: the whole way since is the new drag's
+        restart(camera);
+    }
     Camera result = camera;
     if (!lost) {
         pressed->now = {input.x, input.y};
@@ -77,14 +81,64 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
     if (lost || input.action == Action::up) {
         pressed_.erase(pressed);
         restart(result);
-    } else if (input.buttons != pressed->buttons) {  // a chord: another button went down or up
-        pressed->buttons = input.buttons;
-        const bool went_down = (input.buttons & bit_of(input.button)) != 0;
-        if (went_down) pressed->button = input.button;
-        if (!(input.buttons & bit_of(pressed->button))) pressed->button = first_held(input.buttons);
+    } else if (input.buttons != pressed->grip.buttons) {  // a chord
+        change_buttons(*pressed, input);
+        pressed->grip.modifiers = input.modifiers;
+        pressed->grip.number = number_held(input.client);
         restart(result);
     }
     return result;
+}
+
+void Gestures::press(const PointerInput& input) {
+    Grip grip;
+    grip.buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);
+    grip.button = input.button >= 0 ? input.button : first_held(grip.buttons);
+    grip.modifiers = input.modifiers;
+    grip.number = number_held(input.client);
+    const glm::dvec2 at{input.x, input.y};
+    pressed_.push_back({input.client, input.pointer, input.device, at, at, grip});
+}
+
+/// Another button went down or up.
+void Gestures::change_buttons(Pressed& pressed, const PointerInput& input) {
+    Grip& grip = pressed.grip;
+    const unsigned middle = bit_of(middle_button), others = bit_of(left_button) | bit_of(right_button);
+    grip.after_chord = (grip.buttons & input.buttons & middle) && (grip.after_chord || grip.buttons & others);
+    grip.buttons = input.buttons;
+    const bool went_down = (input.buttons & bit_of(input.button)) != 0;
+    if (went_down) grip.button = input.button;
+    if (!(input.buttons & bit_of(grip.button))) grip.button = first_held(input.buttons);
+}
+
+int Gestures::number_held(const std::string& client) const {
+    const auto newest =
+        std::find_if(keys_.rbegin(), keys_.rend(), [&](const HeldKey& key) { return key.client == client; });
+    return newest == keys_.rend() ? 0 : newest->number;
+}
+
+void Gestures::key_down(const std::string& client, const KeyInput& input) {
+    const HeldKey key{client, number_of(input)};
+    // A held key repeats itself.
+    if (key.number != 0 && std::find(keys_.begin(), keys_.end(), key) == keys_.end()) keys_.push_back(key);
+}
+
+void Gestures::key_up(const std::string& client, const KeyInput& input) {
+    std::erase(keys_, HeldKey{client, number_of(input)});
+}
+
+KeyInput Gestures::HeldKey::input() const {
+    const std::string digit = std::to_string(number);
+    return {digit, false, "Digit" + digit};
+}
+
+std::vector<PointerInput> Gestures::pressed() const {
+    std::vector<PointerInput> inputs;
+    inputs.reserve(pressed_.size());
+    for (const Pressed& p : pressed_)
+        inputs.push_back({Action::down, p.client, p.pointer, p.device, p.now.x, p.now.y, p.grip.button,
+                          p.grip.buttons, p.grip.modifiers});
+    return inputs;
 }
 
 void Gestures::restart(const Camera& camera) {
@@ -94,6 +148,7 @@ void Gestures::restart(const Camera& camera) {
 
 void Gestures::lift(const std::string& client, const Camera& camera) {
     std::erase_if(pressed_, [&](const Pressed& pressed) { return pressed.client == client; });
+    std::erase_if(keys_, [&](const HeldKey& key) { return key.client == client; });
     restart(camera);
 }
 
@@ -115,16 +170,17 @@ Camera Gestures::dragged(const NavigationContext& context) const {
     }
     const Pressed& pressed = pressed_.back();
     const glm::dvec2 moved = pressed.now - pressed.start;
-    switch (pressed.button) {
-        case left:
+    switch (drag_operation(context.style, pressed.grip)) {
+        case DragOperation::rotate:
             return rotate_by(start_, moved, context);
-        case right:
+        case DragOperation::pan:
             return pan_by(start_, moved, context);
-        case middle:
+        case DragOperation::zoom:
             return zoom_by(start_, std::pow(4, -moved.y / context.height), context);
-        default:
-            return start_;
+        case DragOperation::none:
+            break;
     }
+    return start_;
 }
 
 Camera wheel(const WheelInput& input, const Camera& camera, const NavigationContext& context) {
@@ -132,23 +188,6 @@ Camera wheel(const WheelInput& input, const Camera& camera, const NavigationCont
                         : input.unit == WheelInput::Unit::line ? 3.0
                                                                : 1.0 / 3;
     return zoom_by(camera, std::pow(1.1, -input.delta_y / step), context);
-}
-
-Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home,
-                const NavigationContext& context) {
-    const auto arrow = [&](double x, double y) {
-        return input.shift ? panned(camera, x * 0.05, y * 0.05)
-                           : rotated(camera, x * 5, y * 5, context.keep_upright);
-    };
-    if (input.key == "ArrowLeft") return arrow(-1, 0);
-    if (input.key == "ArrowRight") return arrow(1, 0);
-    if (input.key == "ArrowUp") return arrow(0, -1);
-    if (input.key == "ArrowDown") return arrow(0, 1);
-    if (input.key == "+") return zoomed(camera, 1.1, context.bounds.radius());
-    if (input.key == "-") return zoomed(camera, 1 / 1.1, context.bounds.radius());
-    if (input.key == "f") return fitted(camera, context.bounds, context.width / context.height);
-    if (input.key == "Home") return home;
-    return camera;
 }
 
 }  // namespace vrut

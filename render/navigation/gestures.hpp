@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "camera.hpp"
+#include "navigation_style.hpp"
 
 namespace vrut {
 
@@ -19,6 +20,7 @@ struct PointerInput {
     double x = 0, y = 0;
     int button = -1;       ///< the one that changed; -1 none
     unsigned buttons = 0;  ///< those held: 1 left, 2 right, 4 middle
+    ModifierKeys modifiers{};
 };
 
 struct WheelInput {
@@ -30,6 +32,7 @@ struct WheelInput {
 struct KeyInput {
     std::string key;  ///< `KeyboardEvent.key`
     bool shift = false;
+    std::string code{};  ///< `KeyboardEvent.code`: where the key lies
 };
 
 /// What turns an input into a move, besides the input.
@@ -38,21 +41,41 @@ struct NavigationContext {
     Bounds bounds;                      ///< of the scene
     bool keep_upright = true;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
+    NavigationStyle style = NavigationStyle::vrut;
 };
 
 /// Drags by mouse, pen and touch. Pure: no clock, no input but its arguments. A drag is computed from the
 /// camera at its start and the pointers' places since, so that dropped or merged moves give the same camera
-/// to the last bit.
+/// to the last bit. A move (of which `button` is -1) may be dropped for the next one of the same pointer with
+/// the same buttons, where nothing else came between.
 class Gestures {
 public:
+    struct HeldKey {
+        std::string client;
+        int number = 0;  ///< 1 to 9
+
+        KeyInput input() const;
+        bool operator==(const HeldKey&) const = default;
+    };
+
     /// The camera after `input`, from `camera` before it.
     Camera pointer(const PointerInput& input, const Camera& camera, const NavigationContext& context);
+    /// Number keys, which some navigation styles have for drags that begin while they are held; others are
+    /// ignored.
+    void key_down(const std::string& client, const KeyInput& input);
+    void key_up(const std::string& client, const KeyInput& input);
     /// To be called after the camera changed by anything but pointer(): drags begin anew there.
     void restart(const Camera& camera);
-    /// Lifts the pointers of `client`; the camera stays where it is.
+    /// Lifts the pointers and keys of `client`; the camera stays where it is.
     void lift(const std::string& client, const Camera& camera);
     bool any_pressed() const { return !pressed_.empty(); }
     bool is_pressed(const std::string& client, std::int64_t pointer) const;
+
+    /// The keys held, and the pointers as if they were just pressed, each where it is now. After these, in
+    /// this order and at the present camera, this and a fresh Gestures go on alike. (Drags begin anew, so
+    /// that keys released since they began no longer count, nor does a button released since.)
+    std::vector<HeldKey> held_keys() const { return keys_; }
+    std::vector<PointerInput> pressed() const;
 
 private:
     struct Pressed {
@@ -60,24 +83,22 @@ private:
         std::int64_t pointer = 0;
         PointerInput::Device device = PointerInput::Device::mouse;
         glm::dvec2 start{0}, now{0};
-        unsigned buttons = 0;
-        int button = 0;  ///< the held one that was pressed last: it says what the drag does
+        Grip grip;
     };
 
+    int number_held(const std::string& client) const;
+    void press(const PointerInput& input);
+    static void change_buttons(Pressed& pressed, const PointerInput& input);
     std::vector<const Pressed*> fingers() const;  ///< two at most: a third is ignored until it is lifted
     Camera dragged(const NavigationContext& context) const;
 
     std::vector<Pressed> pressed_;  // in the order of pressing
+    std::vector<HeldKey> keys_;     // in the order of pressing
     Camera start_;
 };
 
 /// The camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides the
 /// distance by 1.1.
 Camera wheel(const WheelInput& input, const Camera& camera, const NavigationContext& context);
-
-/// The camera after a key is pressed; the same camera for keys that do not move it. `home` is where Home
-/// goes.
-Camera key_down(const KeyInput& input, const Camera& camera, const Camera& home,
-                const NavigationContext& context);
 
 }  // namespace vrut

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "clicks.hpp"
+#include "keys.hpp"
+
 using namespace vrut;
 
 namespace {
@@ -13,7 +16,22 @@ namespace {
 using Action = PointerInput::Action;
 using Device = PointerInput::Device;
 
+using Style = NavigationStyle;
+using Operation = DragOperation;
+
 constexpr unsigned kLeft = 1, kRight = 2, kMiddle = 4;
+constexpr ModifierKeys kAlt{true, false, false, false};
+
+bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
+    return glm::distance(a, b) <= tolerance;
+}
+bool near(const glm::dvec2& a, const glm::dvec2& b, double tolerance = 1e-9) {
+    return glm::distance(a, b) <= tolerance;
+}
+bool near(const Camera& a, const Camera& b) {
+    return near(a.eye, b.eye) && near(a.focus, b.focus) && near(a.up, b.up) && near(a.center, b.center) &&
+           a.fov == b.fov;
+}
 
 /// A view of 1280x720 with the eye at (0, 0, 5), the focus at the origin, and hands on it.
 class Hands {
@@ -21,6 +39,7 @@ public:
     Camera camera;
     NavigationContext context;
     Gestures gestures;
+    ModifierKeys modifiers;
 
     Hands() {
         context.bounds.add({-1, -1, -1});
@@ -29,7 +48,8 @@ public:
 
     void send(Action action, double x, double y, int button, unsigned buttons, Device device = Device::mouse,
               std::int64_t pointer = 1, const std::string& client = "tablet") {
-        camera = gestures.pointer({action, client, pointer, device, x, y, button, buttons}, camera, context);
+        camera = gestures.pointer({action, client, pointer, device, x, y, button, buttons, modifiers}, camera,
+                                  context);
     }
     void mouse_down(double x, double y, int button, unsigned buttons) {
         send(Action::down, x, y, button, buttons);
@@ -49,6 +69,22 @@ public:
         send(Action::up, x, y, 0, 0, Device::touch, finger);
     }
 
+    /// What a move from (100, 400) to (136, 40) does; the hand goes back then.
+    Operation operation(unsigned buttons) {
+        const Camera before = camera;
+        mouse_move(136, 40, buttons);
+        const Camera after = camera;
+        mouse_move(100, 400, buttons);
+        CHECK(near(camera, before));
+        camera = before;
+        gestures.restart(before);
+        if (after == before) return Operation::none;
+        if (near(after, rotated(before, 9, -90, true))) return Operation::rotate;
+        if (near(after, panned(before, 0.05, -0.5))) return Operation::pan;
+        CHECK(near(after, zoomed(before, 2, context.bounds.radius())));
+        return Operation::zoom;
+    }
+
     /// Where `point` is in the view, in CSS pixels from its top left.
     glm::dvec2 pixel_of(const glm::dvec3& point) const {
         const glm::dvec4 clip = clip_from_view(camera, context.width / context.height, {0.01, 100}) *
@@ -63,17 +99,6 @@ public:
                    (height / context.height);
     }
 };
-
-bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
-    return glm::distance(a, b) <= tolerance;
-}
-bool near(const glm::dvec2& a, const glm::dvec2& b, double tolerance = 1e-9) {
-    return glm::distance(a, b) <= tolerance;
-}
-bool near(const Camera& a, const Camera& b) {
-    return near(a.eye, b.eye) && near(a.focus, b.focus) && near(a.up, b.up) && near(a.center, b.center) &&
-           a.fov == b.fov;
-}
 
 }  // namespace
 
@@ -260,6 +285,10 @@ TEST_CASE("chords: the button pressed last decides, and no step jumps") {
     }
     SUBCASE("a change of buttons that no event named") {
         hands.mouse_move(700, 400, kLeft);
+        hands.mouse_move(720, 400, kLeft);
+        CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
+    }
+    SUBCASE("and where it was is not known: the whole way is the new drag's") {
         hands.mouse_move(720, 400, kLeft);
         CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
     }
@@ -504,6 +533,326 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
     }
 }
 
+TEST_CASE("navigation styles: which button does what with which key held") {
+    struct Row {
+        Style style;
+        ModifierKeys modifiers;
+        Operation left, middle, right;
+    };
+    using enum DragOperation;
+    const ModifierKeys others{false, true, true, true};
+    for (const Row& row : {
+             Row{Style::vrut, {}, rotate, zoom, pan},
+             Row{Style::vrut, kAlt, rotate, zoom, pan},
+             Row{Style::vrut, others, rotate, zoom, pan},
+             Row{Style::maya, {}, none, none, none},
+             Row{Style::maya, kAlt, rotate, pan, zoom},
+             Row{Style::maya, others, none, none, none},
+             Row{Style::maya, {true, true, true, true}, rotate, pan, zoom},
+             Row{Style::cinema4d, {}, none, none, none},
+             Row{Style::cinema4d, kAlt, rotate, pan, zoom},
+             Row{Style::cinema4d, others, none, none, none},
+             Row{Style::catia, {}, none, pan, none},
+             Row{Style::catia, kAlt, none, pan, none},
+         }) {
+        const auto drag = [&](int button, unsigned buttons) {
+            Hands hands;
+            hands.context.style = row.style;
+            hands.modifiers = row.modifiers;
+            hands.mouse_down(100, 400, button, buttons);
+            return hands.operation(buttons);
+        };
+        CAPTURE(static_cast<int>(row.style));
+        CAPTURE(row.modifiers.alt);
+        CHECK(drag(0, kLeft) == row.left);
+        CHECK(drag(1, kMiddle) == row.middle);
+        CHECK(drag(2, kRight) == row.right);
+        CHECK(drag(3, 8) == none);
+    }
+}
+
+TEST_CASE("the modifier counts when a drag begins, or begins anew with other buttons") {
+    Hands hands;
+    hands.context.style = Style::maya;
+    hands.modifiers = kAlt;
+    hands.mouse_down(100, 400, 0, kLeft);
+    hands.modifiers = {};
+    CHECK(hands.operation(kLeft) == Operation::rotate);
+    hands.chord(100, 400, 1, kLeft | kMiddle);
+    CHECK(hands.operation(kLeft | kMiddle) == Operation::none);
+    hands.modifiers = kAlt;
+    CHECK(hands.operation(kLeft | kMiddle) == Operation::none);
+    hands.chord(100, 400, 2, kLeft | kMiddle | kRight);
+    CHECK(hands.operation(kLeft | kMiddle | kRight) == Operation::zoom);
+    hands.chord(100, 400, 2, kLeft | kMiddle);
+    CHECK(hands.operation(kLeft | kMiddle) == Operation::rotate);  // as when the last one goes up in vrut
+    hands.chord(100, 400, 0, kMiddle);
+    CHECK(hands.operation(kMiddle) == Operation::pan);
+}
+
+TEST_CASE("catia: the middle button pans, with another it turns, and zooms once that is up again") {
+    for (const auto& [other, bit] : {std::pair{0, kLeft}, {2, kRight}}) {
+        Hands hands;
+        hands.context.style = Style::catia;
+        hands.mouse_down(100, 400, 1, kMiddle);
+        CHECK(hands.operation(kMiddle) == Operation::pan);
+        for (int round = 0; round < 2; ++round) {
+            hands.chord(100, 400, other, kMiddle | bit);
+            CHECK(hands.operation(kMiddle | bit) == Operation::rotate);
+            hands.chord(100, 400, other, kMiddle);
+            CHECK(hands.operation(kMiddle) == Operation::zoom);
+        }
+        hands.mouse_up(100, 400, 1);
+        hands.mouse_down(100, 400, 1, kMiddle);  // forgotten with the release
+        CHECK(hands.operation(kMiddle) == Operation::pan);
+    }
+    Hands hands;  // the other one first
+    hands.context.style = Style::catia;
+    hands.mouse_down(100, 400, 0, kLeft);
+    CHECK(hands.operation(kLeft) == Operation::none);
+    hands.chord(100, 400, 1, kLeft | kMiddle);
+    CHECK(hands.operation(kLeft | kMiddle) == Operation::rotate);
+    hands.chord(100, 400, 2, kLeft | kMiddle | kRight);
+    CHECK(hands.operation(kLeft | kMiddle | kRight) == Operation::rotate);
+    hands.chord(100, 400, 0, kMiddle | kRight);
+    CHECK(hands.operation(kMiddle | kRight) == Operation::rotate);
+    hands.chord(100, 400, 1, kRight);  // the middle one up: nothing left
+    CHECK(hands.operation(kRight) == Operation::none);
+    hands.chord(100, 400, 1, kRight | kMiddle);
+    hands.chord(100, 400, 2, kMiddle);
+    CHECK(hands.operation(kMiddle) == Operation::zoom);
+    hands.chord(100, 400, 3, kMiddle | 8);  // a button that means nothing
+    CHECK(hands.operation(kMiddle | 8) == Operation::zoom);
+}
+
+TEST_CASE("cinema4d: number keys say what the left button does") {
+    const auto drag = [](const std::vector<KeyInput>& held, Style style = Style::cinema4d,
+                         const std::string& client = "tablet") {
+        Hands hands;
+        hands.context.style = style;
+        for (const KeyInput& key : held) hands.gestures.key_down(client, key);
+        hands.mouse_down(100, 400, 0, kLeft);
+        return hands.operation(kLeft);
+    };
+    CHECK(drag({{"1", false, "Digit1"}}) == Operation::pan);
+    CHECK(drag({{"2", false, "Digit2"}}) == Operation::zoom);
+    CHECK(drag({{"3", false, "Digit3"}}) == Operation::rotate);
+    CHECK(drag({{"4", false, "Digit4"}}) == Operation::none);
+    CHECK(drag({{"0", false, "Digit0"}}) == Operation::none);
+    CHECK(drag({{"2", false, "Numpad2"}}) == Operation::zoom);
+    CHECK(drag({{"ArrowDown", false, "Numpad2"}}) == Operation::none);
+    CHECK(drag({{"&", false, "Digit1"}}) == Operation::pan);                           // on a French keyboard
+    CHECK(drag({{"1", false, "Digit1"}, {"2", false, "Digit2"}}) == Operation::zoom);  // the newest
+    CHECK(drag({{"a", false, "KeyA"}, {"10", false, ""}, {"F1", false, "F1"}}) == Operation::none);
+    CHECK(drag({{"3", false, "Digit3"}}, Style::cinema4d, "other") == Operation::none);
+    CHECK(drag({{"3", false, "Digit3"}}, Style::maya) == Operation::none);
+    CHECK(drag({{"2", false, "Digit2"}}, Style::vrut) == Operation::rotate);
+
+    Hands hands;
+    hands.context.style = Style::cinema4d;
+    Gestures& gestures = hands.gestures;
+    gestures.key_down("tablet", {"1", false, "Digit1"});
+    gestures.key_down("tablet", {"1", false, "Digit1"});  // it repeats itself
+    hands.mouse_down(100, 400, 0, kLeft);
+    gestures.key_up("tablet", {"!", true, "Digit1"});  // released with Shift held
+    CHECK(gestures.held_keys().empty());
+    CHECK(hands.operation(kLeft) == Operation::pan);  // it counts when the drag begins
+    gestures.key_down("tablet", {"3", false, "Digit3"});
+    CHECK(hands.operation(kLeft) == Operation::pan);
+    hands.mouse_up(100, 400, 0);
+    hands.mouse_down(100, 400, 0, kLeft);
+    CHECK(hands.operation(kLeft) == Operation::rotate);
+    hands.mouse_up(100, 400, 0);
+    hands.mouse_down(100, 400, 2, kRight);
+    CHECK(hands.operation(kRight) == Operation::none);  // the left button only
+    gestures.key_down("other", {"2", false, "Digit2"});
+    gestures.lift("tablet", hands.camera);
+    CHECK(gestures.held_keys() == std::vector<Gestures::HeldKey>{{"other", 2}});
+}
+
+TEST_CASE("touch and the wheel are the same in all styles") {
+    for (const Style style : {Style::maya, Style::catia, Style::cinema4d}) {
+        Hands same, other;
+        other.context.style = style;
+        for (Hands* hands : {&same, &other}) {
+            hands->finger_down(1, 400, 300);
+            hands->finger_move(1, 500, 350);
+            hands->finger_down(2, 600, 300);
+            hands->finger_move(2, 700, 100);
+            hands->camera = wheel({-50, WheelInput::Unit::pixel}, hands->camera, hands->context);
+        }
+        CHECK(other.camera == same.camera);
+        CHECK_FALSE(near(same.camera, Camera{}));
+    }
+}
+
+// --- whole sessions, made by chance
+
+namespace {
+
+struct Event {
+    PointerInput input;
+    EventTime when;
+};
+
+/// Any events of a mouse, a pen and four fingers of two clients, sensible or not, with much dragging.
+std::vector<Event> random_events(unsigned seed) {
+    std::mt19937 random(seed);
+    const auto number = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
+    std::vector<Event> events;
+    PointerInput input;
+    double time = 1000;
+    for (int i = 0; i < 400; ++i) {
+        if (number(0, 2) == 0 || i == 0) {
+            input.pointer = number(1, 6);
+            input.client = number(0, 4) == 0 ? "b" : "a";
+            input.device = input.pointer == 1   ? Device::mouse
+                           : input.pointer == 2 ? Device::pen
+                                                : Device::touch;
+        }
+        const Action last = input.action;
+        const bool goes_on = i > 0 && number(0, 3) != 0;  // presses become clicks, clicks double ones
+        if (goes_on && (last == Action::down || last == Action::up)) {
+            input.action = last == Action::down ? Action::up : Action::down;
+        } else {
+            const int kind = number(0, 11);
+            input.action = kind < 2    ? Action::down
+                           : kind < 3  ? Action::up
+                           : kind == 3 ? Action::cancel
+                                       : Action::move;
+            // Steps of 8 pixels and 10 ms: what almost is something is as frequent as what is.
+            input.x = 400 + number(-1, 1) * 8 + (number(0, 5) == 0 ? number(-300, 300) * 1.37 : 0);
+            input.y = 300 + number(-1, 1) * 8;
+            input.modifiers.alt = number(0, 1) == 0;
+            input.button = input.action == Action::down || number(0, 7) == 0 ? number(0, 2) : -1;
+        }
+        if (input.action == Action::move)
+            input.buttons = number(0, 5) == 0 ? static_cast<unsigned>(number(0, 7)) : input.buttons;
+        else
+            input.buttons = input.action == Action::down ? bit_of(input.button) : 0;
+        time += number(0, 12) * 10.1;
+        events.push_back(
+            {input, {time, std::chrono::microseconds(std::llround(time * 1000) + number(0, 50000))}});
+    }
+    return events;
+}
+
+/// What the server does with them: drags, and clicks that set the centre.
+struct Session {
+    Hands hands;
+    Clicks clicks;
+    int completed = 0;
+
+    explicit Session(Style style) {
+        hands.camera.eye = {3, 4, 5};
+        hands.context.style = style;
+        hands.camera = with_orthogonal_up(hands.camera);
+    }
+    void send(const Event& event) {
+        hands.camera = hands.gestures.pointer(event.input, hands.camera, hands.context);
+        if (const auto click = clicks.pointer(event.input, event.when, hands.context.style)) {
+            ++completed;
+            hands.camera.center = {click->x / 1000, click->y / 1000, static_cast<int>(click->operation)};
+            hands.gestures.restart(hands.camera);
+        }
+    }
+};
+
+bool may_be_merged(const PointerInput& a, const PointerInput& b) {
+    return a.action == Action::move && b.action == Action::move && a.button == -1 && b.button == -1 &&
+           a.pointer == b.pointer && a.client == b.client && a.buttons == b.buttons;
+}
+
+}  // namespace
+
+TEST_CASE("moves merged or not, and clocks that start elsewhere: the same camera to the bit") {
+    int completed = 0, merged = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        const Style style = static_cast<Style>(seed % 4);
+        CAPTURE(seed);
+        const std::vector<Event> events = random_events(seed);
+        Session all(style), few(style), later(style);
+        for (std::size_t i = 0; i < events.size(); ++i) {
+            all.send(events[i]);
+            Event shifted = events[i];
+            *shifted.when.stamp += 1048576;
+            shifted.when.arrival -= std::chrono::microseconds(987654321987);
+            later.send(shifted);
+            if (i + 1 < events.size() && may_be_merged(events[i].input, events[i + 1].input)) {
+                ++merged;
+                continue;
+            }
+            few.send(events[i]);
+            REQUIRE(few.hands.camera == all.hands.camera);
+            REQUIRE(later.hands.camera == all.hands.camera);
+        }
+        CHECK(few.completed == all.completed);
+        completed += all.completed;
+    }
+    CHECK(completed > 100);  // else nothing was tested
+    CHECK(merged > 5000);
+}
+
+TEST_CASE("what is pressed, pressed again: a fresh Gestures goes on alike, to the bit") {
+    int in_drag = 0;
+    for (unsigned seed = 0; seed < 200; ++seed) {
+        CAPTURE(seed);
+        const std::vector<Event> events = random_events(seed);
+        Session session(static_cast<Style>(seed % 4));
+        Hands& hands = session.hands;
+        const std::size_t begin = 20 + seed;
+        for (std::size_t i = 0; i < begin; ++i) {
+            if (i % 5 == 0)
+                hands.gestures.key_down(i % 2 == 0 ? "a" : "b", {std::to_string(1 + i % 3), false});
+            session.send(events[i]);
+        }
+        in_drag += hands.gestures.any_pressed() ? 1 : 0;
+        const Camera before = hands.camera;
+        Hands fresh = hands;
+        fresh.gestures = {};
+        const auto keys = hands.gestures.held_keys();
+        const auto pressed = hands.gestures.pressed();
+        for (Hands* each : {&hands, &fresh}) {
+            for (const Gestures::HeldKey& key : keys) each->gestures.key_down(key.client, key.input());
+            for (const PointerInput& input : pressed)
+                each->camera = each->gestures.pointer(input, each->camera, each->context);
+            REQUIRE(each->camera == before);
+            REQUIRE(each->gestures.held_keys() == keys);
+        }
+        for (std::size_t i = begin; i < events.size(); ++i) {
+            for (Hands* each : {&hands, &fresh})
+                each->camera = each->gestures.pointer(events[i].input, each->camera, each->context);
+            REQUIRE(fresh.camera == hands.camera);
+        }
+    }
+    CHECK(in_drag > 100);
+}
+
+TEST_CASE("what is pressed is told as it is now") {
+    Hands hands;
+    hands.modifiers = kAlt;
+    hands.mouse_down(100, 200, 0, kLeft);
+    hands.modifiers = {};
+    hands.mouse_move(110, 220, kLeft);
+    hands.modifiers.shift = true;
+    hands.finger_down(7, 300, 400);
+    const std::vector<PointerInput> pressed = hands.gestures.pressed();
+    REQUIRE(pressed.size() == 2);
+    CHECK(pressed[0].action == Action::down);
+    CHECK(pressed[0].client == "tablet");
+    CHECK(pressed[0].pointer == 1);
+    CHECK(pressed[0].device == Device::mouse);
+    CHECK(pressed[0].x == 110);
+    CHECK(pressed[0].y == 220);
+    CHECK(pressed[0].button == 0);
+    CHECK(pressed[0].buttons == kLeft);
+    CHECK(pressed[0].modifiers.alt);
+    CHECK_FALSE(pressed[0].modifiers.shift);
+    CHECK(pressed[1].pointer == 7);
+    CHECK(pressed[1].device == Device::touch);
+    CHECK(pressed[1].modifiers.shift);
+}
+
 TEST_CASE("wheel: a step is 100 pixels, 3 lines or a third of a page") {
     const Hands hands;
     const auto distance = [&](double delta, WheelInput::Unit unit) {
@@ -537,7 +886,8 @@ TEST_CASE("keys") {
     Camera home;
     home.eye = {9, 9, 9};
     const auto pressed = [&](const std::string& key, bool shift = false) {
-        return key_down({key, shift}, hands.camera, home, hands.context);
+        const std::optional<KeyOperation> operation = key_operation({key, shift, ""});
+        return operation ? operated(*operation, hands.camera, home, hands.context) : hands.camera;
     };
     const double s = 5 * std::sin(5 * std::numbers::pi / 180), c = 5 * std::cos(5 * std::numbers::pi / 180);
     CHECK(near(pressed("ArrowRight").eye, {-s, 0, c}));
@@ -560,6 +910,14 @@ TEST_CASE("keys") {
     CHECK(near(pressed("-").eye, {0, 0, 5 * 1.1}));
     CHECK(near(pressed("f").eye, {0, 0, std::sqrt(3.0) / std::sin(20 * std::numbers::pi / 180)}, 1e-9));
     CHECK(pressed("Home") == home);
-    for (const char* key : {"a", "F5", "Enter", "", "arrowleft", "Shift", "Escape"})
+
+    using Kind = KeyOperation::Kind;
+    for (const auto& [key, kind] :
+         {std::pair{"w", Kind::toggle_wireframe}, {"s", Kind::toggle_stylized}, {"Escape", Kind::escape}}) {
+        REQUIRE(key_operation({key, false, ""}).has_value());
+        CHECK(key_operation({key, false, ""})->kind == kind);
         CHECK(pressed(key) == hands.camera);
+    }
+    for (const char* key : {"a", "F5", "Enter", "", "arrowleft", "Shift", "1", "=", "W", "F"})
+        CHECK_FALSE(key_operation({key, false, ""}).has_value());
 }
