@@ -535,9 +535,9 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
 
 TEST_CASE("navigation styles: which button does what with which key held") {
     struct Row {
-        Style style;
+        Style style = Style::vrut;
         ModifierKeys modifiers;
-        Operation left, middle, right;
+        Operation left = Operation::none, middle = Operation::none, right = Operation::none;
     };
     using enum DragOperation;
     const ModifierKeys others{false, true, true, true};

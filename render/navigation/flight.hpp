@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include "camera.hpp"
+
+namespace vrut {
+
+struct Keyframe {
+    double at = 0;  ///< ms since the start
+    Camera camera;
+};
+
+enum class Easing {
+    smooth,  ///< starts and ends softly, and passes the keyframes between without a stop
+    linear,  ///< equal steps in equal times from each to the next
+};
+
+/// A path through cameras in time. Pure: the same time gives the same camera to the last bit.
+///
+/// From one to the next focus, centre and fov go straight, the distance eye-focus by equal factors in equal
+/// parts of the way, and the direction around the focus by azimuth (the shorter way) and elevation where both
+/// stand level and upright, so that the horizon stays level, else by the shortest turn of the whole frame.
+class Flight {
+public:
+    /// `from` is where it starts; the keyframes' times are 0 or more and rise, their poses are valid. One at
+    /// 0 takes the place of `from`.
+    Flight(const Camera& from, const std::vector<Keyframe>& keyframes, Easing easing);
+
+    /// Each keyframe's own camera, to the bit, at its time; the first before the start, the last after the
+    /// end.
+    Camera at(double ms) const;
+    double duration() const { return path_.back().at; }
+
+private:
+    /// How far from `path_[index]` to the next, 0 to 1.
+    double progress(std::size_t index, double ms) const;
+    double slope(std::size_t index) const;
+
+    std::vector<Keyframe> path_;  // the start and the keyframes
+    Easing easing_;
+};
+
+}  // namespace vrut
