@@ -269,6 +269,7 @@ TEST_CASE("every pose on the way is valid, however extreme the ends") {
         }
     }
     // A hair's breadth from something here to something very far away.
-    const Flight flight(around(0, 0, 1e-14), {{1000, around(90, 0, 1e-3, {1e12, 0, 0})}}, Easing::linear);
+    const Flight flight(around(0, 0, 1e-14), {{1000, around(90, 0, 1e-3, {1e12, 1e12, 1e12})}},
+                        Easing::linear);
     for (int at = 0; at <= 1000; ++at) CHECK(is_valid_pose(flight.at(at), 0));
 }

@@ -665,6 +665,10 @@ TEST_CASE("cinema4d: number keys say what the left button does") {
     hands.mouse_up(100, 400, 0);
     hands.mouse_down(100, 400, 2, kRight);
     CHECK(hands.operation(kRight) == Operation::none);  // the left button only
+    gestures.key_up("tablet", {"3", false, "Digit3"});
+    gestures.key_down("tablet", {"2", false, "Digit2"});
+    hands.chord(100, 400, 0, kRight | kLeft);
+    CHECK(hands.operation(kRight | kLeft) == Operation::zoom);
     gestures.key_down("other", {"2", false, "Digit2"});
     gestures.lift("tablet", hands.camera);
     CHECK(gestures.held_keys() == std::vector<Gestures::HeldKey>{{"other", 2}});
