@@ -258,6 +258,7 @@ TEST_CASE("a client's own time counts, so that the link's delays do not") {
     CHECK(time(8350, 1401) == ms(650));
     CHECK(time(8450, 2501) == ms(750));   // a second apart
     CHECK(time(8550, 3602) == ms(1851));  // and more
+    CHECK(time(8540, 3702) == ms(1951));  // falls a little
 }
 
 TEST_CASE("time does not depend on where the clocks start, nor on how often they are asked") {
