@@ -1,11 +1,13 @@
 // A host without walls: prints the shared camera as it changes, and reports it shown at once.
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
 #include "preview_client.hpp"
 
@@ -15,12 +17,13 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 constexpr int kOrbitSteps = 180;  // of 2°, one a frame
+constexpr std::chrono::milliseconds kFrame{16};
 volatile std::sig_atomic_t interrupted = 0;
 
 constexpr const char* kUsage =
     "Usage: example_host [--host ADDRESS] [--port N] [--token TEXT] [--name TEXT] [--lead]\n\n"
     "Follows the camera of VRUT Preview: one line a change, until interrupted.\n\n"
-    "  --host   default 127.0.0.1\n  --port   default 8080\n  --token  default: VRUT_PREVIEW_CONTROL_TOKEN\n"
+    "  --host   default 127.0.0.1\n  --port   default 8080\n  --token  default: VRUT_PREVIEW_TOKEN\n"
     "  --name   that others see, default example_host\n  --lead   also leads the camera once around its "
     "center\n";
 
@@ -29,20 +32,27 @@ struct Arguments {
     bool lead = false, help = false;
 };
 
-/// Throws std::exception where they cannot be understood.
+std::uint16_t read_port(const std::string& text) {
+    const int port = std::atoi(text.c_str());
+    if (port < 1 || port > 65'535) throw std::invalid_argument("--port " + text);
+    return static_cast<std::uint16_t>(port);
+}
+
+/// Throws std::invalid_argument where they cannot be understood.
 Arguments read_arguments(int argc, char** argv) {
     Arguments arguments;
     arguments.options.name = "example_host";
-    if (const char* token = std::getenv("VRUT_PREVIEW_CONTROL_TOKEN")) arguments.options.token = token;
+    if (const char* token = std::getenv("VRUT_PREVIEW_TOKEN")) arguments.options.token = token;
     for (int i = 1; i < argc; ++i) {
         const std::string option = argv[i];
         const auto value = [&] {
-            return i + 1 < argc ? std::string(argv[++i]) : throw std::invalid_argument(option);
+            if (i + 1 == argc) throw std::invalid_argument(option);
+            return std::string(argv[++i]);
         };
         if (option == "--host")
             arguments.options.host = value();
         else if (option == "--port")
-            arguments.options.port = static_cast<std::uint16_t>(std::stoi(value()));
+            arguments.options.port = read_port(value());
         else if (option == "--token")
             arguments.options.token = value();
         else if (option == "--name")
@@ -103,7 +113,8 @@ void run(const Arguments& arguments) {
 
     Camera start;
     while (!interrupted) {
-        preview.poll(std::chrono::milliseconds(16));
+        preview.poll(std::chrono::milliseconds(0));
+        std::this_thread::sleep_for(kFrame);  // a real host draws its walls here
         if (!arguments.lead || !preview.connected() || step == kOrbitSteps) continue;
         if (step == 0) start = preview.camera();
         if (preview.lead(on_orbit(start, step + 1)) != 0) ++step;
@@ -116,7 +127,7 @@ int main(int argc, char** argv) {
     Arguments arguments;
     try {
         arguments = read_arguments(argc, argv);
-    } catch (const std::exception& error) {
+    } catch (const std::invalid_argument& error) {
         std::fprintf(stderr, "example_host: cannot understand %s; --help tells the options\n", error.what());
         return 2;
     }

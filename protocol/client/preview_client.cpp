@@ -264,8 +264,8 @@ void PreviewClient::Impl::on_handshake(error_code error) {
     if (error == websocket::error::upgrade_declined) {
         const auto& response = connection->response;
         const unsigned status = response.result_int();
-        return lose(connection_problem("it declines: HTTP " + std::to_string(status) + ", " +
-                                       response.body().substr(0, 300)),
+        const std::string sentence = response.body().substr(0, response.body().find('\n')).substr(0, 300);
+        return lose(connection_problem("it declines: HTTP " + std::to_string(status) + ", " + sentence),
                     status >= 400 && status < 500);
     }
     if (error) return lose(connection_problem(error.message()), false);

@@ -412,6 +412,9 @@ TEST_CASE("a server that declines is told with its sentence") {
     host.poll_for(1s);
     REQUIRE(host.problems.size() == 1);
     CHECK(host.problems[0].code == "connection");
+    CHECK(host.problems[0].message ==
+          "VRUT Preview at [::ffff:127.0.0.1]:" + std::to_string(server.port()) +
+              ": it declines: HTTP 403, this server is to be reached as localhost");
 }
 
 // needs shown

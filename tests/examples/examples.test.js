@@ -1,0 +1,260 @@
+// The example scripts of protocol/examples and example_host, run as a reader would, against a server with tokens.
+'use strict';
+const assert = require('node:assert/strict');
+const { execFile, spawn } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, before, test } = require('node:test');
+const WebSocket = require('../web/node_modules/ws');
+
+const { VRUT_PREVIEW, VRUT_SCENES, VRUT_EXAMPLE_HOST, PYTHON } = process.env;
+const EXAMPLES = path.join(__dirname, '../../protocol/examples');
+const TOKEN = 'a-token-of-the-tests';
+const DOOR = '3'; // the front left door of the car
+// To be taken away once the server has tree, nodes, snapshot and /frame.jpg.
+const SKIP = { skip: 'needs tree, nodes, snapshot, /frame.jpg' };
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
+const file = (name) => path.join(folder, name);
+
+let server;
+let port;
+let watcher;
+
+before(async () => {
+  server = spawn(VRUT_PREVIEW, ['serve', path.join(VRUT_SCENES, 'car/car.vrut'), '--listen', '127.0.0.1:0'], {
+    env: { ...process.env, VRUT_PREVIEW_CONTROL_TOKEN: TOKEN },
+    stdio: ['ignore', 'pipe', 'ignore'],
+  });
+  port = await printed(server, /listening on http:\/\/127\.0\.0\.1:(\d+)\//);
+  watcher = await Watcher.join();
+  // A script finds `ws` beside it, as after `npm install ws`.
+  fs.copyFileSync(path.join(EXAMPLES, 'snapshot.mjs'), file('snapshot.mjs'));
+  fs.symlinkSync(path.join(__dirname, '../web/node_modules'), file('node_modules'));
+});
+
+after(() => {
+  watcher?.socket.terminate();
+  server?.kill();
+  fs.rmSync(folder, { recursive: true });
+});
+
+/** Resolves with what `pattern` finds in what a process prints, from now on. */
+function printed(child, pattern) {
+  let text = '';
+  return new Promise((resolve, reject) => {
+    child.stdout.on('data', (data) => {
+      text += data;
+      const found = pattern.exec(text);
+      if (found) resolve(found[1] ?? found[0]);
+    });
+    child.once('exit', () => reject(new Error(`ended without ${pattern}: ${text}`)));
+  });
+}
+
+/** Runs a script; the address and the token come from the environment. */
+function run(command, args, env = {}) {
+  const environment = { ...process.env, VRUT_PREVIEW_URL: `http://127.0.0.1:${port}/`, VRUT_PREVIEW_TOKEN: TOKEN, ...env };
+  return new Promise((resolve) => {
+    execFile(command, args, { cwd: folder, env: environment, timeout: 60_000 }, (error, stdout, stderr) => {
+      resolve({ status: error ? error.code : 0, stdout, stderr });
+    });
+  });
+}
+const python = (script, ...args) => run(PYTHON, [path.join(EXAMPLES, script), ...args]);
+const snapshot = (...args) => run(process.execPath, [file('snapshot.mjs'), ...args]);
+const picture = (...args) => run('bash', [path.join(EXAMPLES, 'picture.sh'), ...args]);
+
+async function succeeds(running) {
+  const result = await running;
+  assert.equal(result.status, 0, `${result.stdout}${result.stderr}`);
+  return result.stdout;
+}
+
+/** A client of role control that knows the state, and how it came about. */
+class Watcher {
+  patches = [];
+
+  static async join() {
+    const self = new Watcher();
+    self.socket = new WebSocket(`ws://127.0.0.1:${port}/ws`, 'vrut-preview.v1');
+    await new Promise((resolve, reject) => {
+      self.socket.on('open', () => self.send({ type: 'hello', role: 'control', token: TOKEN }));
+      self.socket.on('error', reject);
+      self.socket.on('message', (data) => {
+        const message = JSON.parse(data);
+        if (message.type === 'state') resolve((self.state = message.state));
+        if (message.type === 'patch') self.patches.push(message.patch);
+        if (message.type === 'patch') self.state = merged(self.state, message.patch);
+      });
+    });
+    return self;
+  }
+
+  send(message) {
+    this.socket.send(JSON.stringify(message));
+  }
+
+  async until(condition) {
+    for (const limit = Date.now() + 10_000; !condition(); ) {
+      assert.ok(Date.now() < limit, `waited in vain for ${condition}`);
+      await new Promise((resolve) => setTimeout(resolve, 10));
+    }
+  }
+}
+
+function merged(target, patch) {
+  if (patch === null || typeof patch !== 'object' || Array.isArray(patch)) return patch;
+  const result = { ...target };
+  for (const [name, value] of Object.entries(patch)) {
+    if (value === null) delete result[name];
+    else result[name] = merged(result[name] ?? {}, value);
+  }
+  return result;
+}
+
+/** Size and header of a JPEG frame. */
+function jpeg(name) {
+  const bytes = fs.readFileSync(file(name));
+  assert.equal(bytes.readUInt16BE(0), 0xffd8, `${name} is no JPEG file`);
+  const result = {};
+  for (let at = 2; result.width === undefined; at += 2 + bytes.readUInt16BE(at + 2)) {
+    const marker = bytes[at + 1];
+    if (marker === 0xfe) result.header = JSON.parse(bytes.toString('utf8', at + 4, at + 2 + bytes.readUInt16BE(at + 2)));
+    if (marker >= 0xc0 && marker <= 0xc2) {
+      result.height = bytes.readUInt16BE(at + 5);
+      result.width = bytes.readUInt16BE(at + 7);
+    }
+  }
+  return result;
+}
+
+/** Size and header of a PNG snapshot. */
+function png(name) {
+  const bytes = fs.readFileSync(file(name));
+  assert.equal(bytes.toString('latin1', 1, 4), 'PNG', `${name} is no PNG file`);
+  const start = bytes.indexOf('iTXtvrut-preview\0') + 'iTXtvrut-preview\0'.length;
+  const end = start - 'iTXtvrut-preview\0'.length + 4 + bytes.readUInt32BE(start - 'iTXtvrut-preview\0'.length - 4);
+  const fields = 4; // not compressed, no method, no language, no translated keyword
+  return {
+    width: bytes.readUInt32BE(16),
+    height: bytes.readUInt32BE(20),
+    header: JSON.parse(bytes.toString('utf8', start + fields, end)),
+  };
+}
+
+test('each script tells its usage', async () => {
+  assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
+  assert.match(await succeeds(python('door.py', '--help')), /--hinge/);
+  assert.match(await succeeds(snapshot('--help')), /--camera/);
+  assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
+  assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
+  assert.equal((await snapshot()).status, 2);
+  assert.equal((await picture()).status, 2);
+  assert.equal((await run(VRUT_EXAMPLE_HOST, ['--nose'])).status, 2);
+});
+
+test('a wrong token is told in a sentence', async () => {
+  for (const [script, args] of [['orbit.py', []], ['door.py', []]]) {
+    const result = await python(script, ...args, '--token', 'guess');
+    assert.equal(result.status, 1);
+    assert.equal(result.stderr, `${script}: the token is wrong\n`);
+  }
+  const result = await snapshot('x.png', '--token', 'guess');
+  assert.equal(result.status, 1);
+  assert.equal(result.stderr, 'snapshot.mjs: the token is wrong\n');
+  const refused = await run('bash', [path.join(EXAMPLES, 'picture.sh'), 'x.jpg'], { VRUT_PREVIEW_TOKEN: 'guess' });
+  assert.notEqual(refused.status, 0);
+  assert.match(refused.stderr, /401/);
+});
+
+test('orbit.py saves the views of a whole turn, told the address as it is printed', async () => {
+  const env = { VRUT_PREVIEW_URL: '', VRUT_PREVIEW_TOKEN: '' };
+  const address = `http://127.0.0.1:${port}/#token=${TOKEN}`;
+  const script = [path.join(EXAMPLES, 'orbit.py'), '--url', address, '--steps', '3', '--size', '320x200', '--out', 'orbit'];
+  await succeeds(run(PYTHON, script, env));
+  const names = fs.readdirSync(file('orbit')).sort();
+  assert.deepEqual(names, ['frame-000.jpg', 'frame-001.jpg', 'frame-002.jpg']);
+  const directions = names.map((name) => {
+    const { width, height, header } = jpeg(`orbit/${name}`);
+    assert.deepEqual([width, height], [320, 200]);
+    assert.equal(header.quality.level, 'still');
+    const { eye, center } = header.camera;
+    return (Math.atan2(eye[0] - center[0], eye[2] - center[2]) * 180) / Math.PI;
+  });
+  // The scene turns to the right, so the eye goes to the left around it.
+  for (let i = 1; i < 3; ++i) {
+    const turn = (directions[i - 1] - directions[i] + 360) % 360;
+    assert.ok(Math.abs(turn - 120) < 1e-9, `turned by ${turn}`);
+  }
+});
+
+test('example_host prints the camera that others set, and ends at SIGINT', async () => {
+  const host = spawn(VRUT_EXAMPLE_HOST, ['--port', port, '--token', TOKEN, '--name', 'wall']);
+  const ended = new Promise((resolve) => host.on('exit', (status) => resolve(status)));
+  await printed(host, /^revision \d+ eye .* fov 40\n/);
+  watcher.send({ type: 'patch', patch: { camera: { eye: [4, 1.5, 3], focus: [0, 0.5, 0], up: [0, 1, 0], fov: 35 } } });
+  await printed(host, /^revision \d+ eye 4 1.5 3 focus 0 0.5 0 up \S+ \S+ \S+ fov 35\n/m);
+  host.kill('SIGINT');
+  assert.equal(await ended, 0);
+});
+
+test('example_host leads the camera once around, back to where it was', async () => {
+  await new Promise((resolve) => setTimeout(resolve, 1200)); // until who steered last counts as quiet
+  const { eye } = watcher.state.camera;
+  const opposite = (at) => Math.hypot(at[0] + eye[0], at[2] + eye[2]) < 0.02;
+  watcher.send({ type: 'patch', patch: { camera: { center: [0, 0, 0] } } });
+  await new Promise((resolve) => setTimeout(resolve, 1200));
+  watcher.patches.length = 0;
+  const host = spawn(VRUT_EXAMPLE_HOST, ['--port', port, '--token', TOKEN, '--lead']);
+  await watcher.until(() => watcher.patches.some((patch) => patch.camera?.eye && opposite(patch.camera.eye)));
+  await watcher.until(() => watcher.state.camera.eye.every((x, i) => x === eye[i]));
+  host.kill('SIGTERM');
+});
+
+test('door.py opens a door and closes it', SKIP, async () => {
+  watcher.patches.length = 0;
+  await succeeds(python('door.py', '--hold', '0.1'));
+  const matrices = watcher.patches.map((patch) => patch.nodes?.[DOOR]?.matrix).filter(Boolean);
+  assert.ok(matrices.length >= 5, `${matrices.length} steps`);
+  const open = matrices.at(-1); // -65°: cos 0.42261826, sin -0.90630779
+  const expected = [0.42261826, 0, -0.90630779, 0.8, 0, 1, 0, 0, 0.90630779, 0, 0.42261826, 0.84, 0, 0, 0, 1];
+  expected.forEach((value, i) => assert.ok(Math.abs(open[i] - value) < 1e-7, `${open}`));
+  await watcher.until(() => !(DOOR in (watcher.state.nodes ?? {})));
+  assert.match((await python('door.py', '--door', 'Nose')).stderr, /^door\.py: .*'Nose'\n$/);
+});
+
+test('snapshot.mjs saves pictures of the size and from where it is asked to', SKIP, async () => {
+  const before = JSON.stringify(watcher.state.camera);
+  await succeeds(snapshot('view.jpg', '--size', '300x170', '--quality', '80'));
+  const shared = jpeg('view.jpg');
+  assert.deepEqual([shared.width, shared.height], [300, 170]);
+  assert.deepEqual(shared.header.camera.eye, watcher.state.camera.eye);
+  assert.equal(shared.header.quality.jpegQuality, 80);
+
+  fs.writeFileSync(file('camera.json'), JSON.stringify({ eye: [0, 9, 0.5], focus: [0, 0, 0], fov: 25 }));
+  await succeeds(snapshot('above.png', '--size', '64x48', '--camera', 'camera.json'));
+  const above = png('above.png');
+  assert.deepEqual([above.width, above.height], [64, 48]);
+  assert.deepEqual(above.header.camera.eye, [0, 9, 0.5]);
+  assert.equal(above.header.snapshot, 1);
+  assert.equal(JSON.stringify(watcher.state.camera), before);
+
+  const refused = await snapshot('x.png', '--size', '0x5');
+  assert.equal(refused.status, 1);
+  assert.match(refused.stderr, /^snapshot\.mjs: .*width/);
+  assert.ok(!fs.existsSync(file('x.png')));
+});
+
+test('picture.sh fetches the picture, and again only when it has changed', SKIP, async () => {
+  assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: saved\n[^]*vrut_preview_clients \d/);
+  const first = jpeg('p.jpg');
+  assert.deepEqual([first.width, first.height], [200, 100]);
+  const bytes = fs.readFileSync(file('p.jpg'));
+  for (let i = 0; i < 2; ++i) assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: unchanged\n/);
+  assert.deepEqual(fs.readFileSync(file('p.jpg')), bytes);
+  watcher.send({ type: 'patch', patch: { camera: { fov: 44 } } });
+  await watcher.until(() => watcher.state.camera.fov === 44);
+  assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: saved\n/);
+  assert.notDeepEqual(fs.readFileSync(file('p.jpg')), bytes);
+});
