@@ -21,6 +21,7 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using beast::error_code;
+using TcpStream = beast::basic_stream<tcp, asio::io_context::executor_type>;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
@@ -30,6 +31,7 @@ namespace {
 constexpr auto kFirstRetry = 250ms, kLastRetry = 4000ms, kRetryAfterRefusal = 30'000ms;
 constexpr auto kIdle = 20s;  // a silent server is pinged after half of it and given up after all of it
 constexpr auto kWork = 2ms;  // handling what has come may last so much longer than poll() was asked to
+constexpr std::chrono::milliseconds kLongestWait = 1h;
 constexpr std::size_t kMaxQueue = 64, kMaxMessage = 65'536;
 constexpr double kPi = 3.14159265358979323846;
 
@@ -70,7 +72,7 @@ const char* name_of(Role role) {
 struct Connection {
     explicit Connection(asio::io_context& context) : resolver(context), stream(context) {}
     tcp::resolver resolver;
-    websocket::stream<beast::tcp_stream> stream;
+    websocket::stream<TcpStream> stream;
     std::vector<tcp::endpoint> endpoints;
     websocket::response_type response;
     beast::flat_buffer incoming;
@@ -97,24 +99,13 @@ Matrix4 view_matrix(const Camera& camera) {
 }
 
 Matrix4 projection_matrix(const Camera& camera, double aspect) {
-    const double cotangent = 1 / std::tan(camera.fov * kPi / 360);
+    const double cotangent = 1 / std::tan(camera.fov * kPi / 360), across = cotangent / aspect;
     const double near_plane = camera.near_plane, far_plane = camera.far_plane, depth = far_plane - near_plane;
-    return {cotangent / aspect,
-            0,
-            0,
-            0,  //
-            0,
-            cotangent,
-            0,
-            0,  //
-            0,
-            0,
-            -(far_plane + near_plane) / depth,
-            -2 * far_plane * near_plane / depth,  //
-            0,
-            0,
-            -1,
-            0};
+    const double a = -(far_plane + near_plane) / depth, b = -2 * far_plane * near_plane / depth;
+    return {across, 0,         0,  0,  //
+            0,      cotangent, 0,  0,  //
+            0,      0,         a,  b,  //
+            0,      0,         -1, 0};
 }
 
 struct PreviewClient::Impl {
@@ -192,7 +183,7 @@ bool PreviewClient::Impl::poll(std::chrono::milliseconds wait) {
         bool& flag;
         ~Guard() { flag = false; }
     } guard{polling = true};
-    const auto end = Clock::now() + wait;
+    const auto end = Clock::now() + (std::min)((std::max)(wait, std::chrono::milliseconds(0)), kLongestWait);
     bool happened = false;
     do {
         read();
@@ -234,7 +225,7 @@ void PreviewClient::Impl::connect() {
 }
 
 void PreviewClient::Impl::connect_to_endpoints() {
-    beast::tcp_stream& stream = beast::get_lowest_layer(connection->stream);
+    TcpStream& stream = beast::get_lowest_layer(connection->stream);
     stream.expires_after(options.connect_timeout);
     stream.async_connect(connection->endpoints, on_present([this](error_code error, const tcp::endpoint&) {
                              if (error) return lose(connection_problem(error.message()), false);

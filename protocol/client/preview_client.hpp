@@ -91,7 +91,7 @@ public:
 
     /// Patches the shared camera's eye, focus, up, center and fov. Call it when the host's own user moves,
     /// not every frame: whoever leads keeps the others from steering. Of poses that wait to be sent the
-    /// newest goes.
+    /// newest goes, and only its id is answered.
     std::int64_t lead(const Camera& camera);
     /// A merge patch (RFC 7396) on the state; a host may patch `camera`, `nodes` and `selection`.
     std::int64_t patch(const std::string& json);

@@ -1,8 +1,11 @@
 // The client for hosts, against the server.
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/websocket.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -17,6 +20,7 @@ using namespace vrut::test;
 using client::PreviewClient;
 using client::Problem;
 using Clock = std::chrono::steady_clock;
+using boost::asio::ip::tcp;
 
 namespace {
 
@@ -94,6 +98,46 @@ private:
     std::unique_ptr<Server> server_;
     std::thread thread_;
 };
+
+/// Says what it is told to, to one client, and then listens until that one leaves.
+class FakeServer {
+public:
+    explicit FakeServer(std::vector<std::string> texts) : texts_(std::move(texts)) {
+        thread_ = std::thread([this] { run(); });
+    }
+    ~FakeServer() { thread_.join(); }
+    std::uint16_t port() const { return acceptor_.local_endpoint().port(); }
+    Json hello;  ///< once something it says has come
+    std::atomic<int> pongs{0};
+
+private:
+    void run() {
+        boost::beast::websocket::stream<tcp::socket> socket(context_);
+        acceptor_.accept(socket.next_layer());
+        socket.accept();
+        boost::beast::flat_buffer buffer;
+        socket.read(buffer);
+        hello = Json::parse(boost::beast::buffers_to_string(buffer.data()));
+        socket.control_callback([this](boost::beast::websocket::frame_type kind, boost::beast::string_view) {
+            if (kind == boost::beast::websocket::frame_type::pong) ++pongs;
+        });
+        boost::beast::error_code error;
+        socket.ping({}, error);
+        for (const std::string& text : texts_) socket.write(boost::asio::buffer(text), error);
+        while (!error) socket.read(buffer, error);
+    }
+
+    std::vector<std::string> texts_;
+    boost::asio::io_context context_;
+    tcp::acceptor acceptor_{context_, {boost::asio::ip::make_address("127.0.0.1"), 0}};
+    std::thread thread_;
+};
+
+constexpr const char* kWelcome =
+    R"({"type":"welcome","version":1,"client":"c7","role":"host","limits":{"maxServerMessage":1000}})";
+constexpr const char* kState =
+    R"({"type":"state","revision":5,"state":{"selection":{},"camera":{"eye":[0,0,4],"focus":[0,0,0],)"
+    R"("up":[0,1,0],"center":[0,0,0],"fov":40,"near":1,"far":9}}})";
 
 client::Camera camera_of(const Json& json) {
     client::Camera camera;
@@ -357,7 +401,7 @@ TEST_CASE("a message that is larger than allowed ends the connection") {
 
 TEST_CASE("poll waits no longer than asked, also where nobody answers") {
     boost::asio::io_context context;
-    boost::asio::ip::tcp::acceptor silent(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
+    tcp::acceptor silent(context, {boost::asio::ip::make_address("127.0.0.1"), 0});
     client::Options options = options_for(silent.local_endpoint().port());
     options.connect_timeout = 300ms;
     Host host(options);
@@ -415,6 +459,56 @@ TEST_CASE("a server that declines is told with its sentence") {
     CHECK(host.problems[0].message ==
           "VRUT Preview at [::ffff:127.0.0.1]:" + std::to_string(server.port()) +
               ": it declines: HTTP 403, this server is to be reached as localhost");
+}
+
+TEST_CASE("a client says who it is, answers pings, and tells of loading and of what it does not know") {
+    FakeServer server({kWelcome, kState, R"({"type":"loading","scene":"truck","fraction":0.25})",
+                       R"({"type":"loading","scene":"truck","fraction":1,"refused":"no wheels"})",
+                       R"({"type":"news","of":"tomorrow"})"});
+    client::Options options = options_for(server.port());
+    options.token = "secret";
+    Host host(options);
+    std::vector<client::Loading> loadings;
+    host.client.on_loading = [&](const client::Loading& loading) { loadings.push_back(loading); };
+    REQUIRE(host.poll_until([&] { return host.messages.size() == 1 && server.pongs == 1; }));
+    CHECK(server.hello == Json({{"type", "hello"}, {"role", "host"}, {"name", "wall"}, {"token", "secret"}}));
+    CHECK(host.client.client() == "c7");
+    CHECK(host.client.revision() == 5);
+    CHECK(host.client.camera().far_plane == 9);
+    REQUIRE(loadings.size() == 2);
+    CHECK(loadings[0].scene == "truck");
+    CHECK(loadings[0].fraction == 0.25);
+    CHECK_FALSE(loadings[0].done);
+    CHECK(loadings[0].refused.empty());
+    CHECK(loadings[1].refused == "no wheels");
+    CHECK(host.messages[0].first == "news");
+    CHECK(host.messages[0].second["of"] == "tomorrow");
+}
+
+TEST_CASE("a server that talks nonsense, or more than it said, is left") {
+    const std::vector<std::string> nonsense = {
+        "nonsense",
+        "[]",
+        R"({"type":7})",
+        R"({"type":"state"})",
+        R"({"type":"state","revision":6,"state":{}})",
+        R"({"type":"patch","revision":6,"patch":{"camera":null}})",
+        R"({"type":"patch","revision":6,"patch":{"camera":{"eye":[1,2]}}})",
+        R"({"type":"patch","revision":6,"patch":{"selection":{"node":"one"}}})",
+        R"({"type":"error"})",
+        R"({"type":"loading","scene":1})",
+        R"({"type":"welcome","version":2,"client":"c1","limits":{}})",
+        R"({"type":"news","of":")" + std::string(1000, 'x') + R"("})",
+    };
+    for (const std::string& text : nonsense) {
+        CAPTURE(text);
+        FakeServer server({kWelcome, kState, text});
+        Host host(server.port());
+        REQUIRE(host.poll_until([&] { return !host.problems.empty(); }));
+        CHECK(host.problems[0].code == "connection");
+        CHECK(host.connections == std::vector<bool>{true, false});
+        CHECK_FALSE(host.client.connected());
+    }
 }
 
 // needs shown
