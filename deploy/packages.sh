@@ -9,7 +9,7 @@
 BUILD_PACKAGES=(
     g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
     libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
-    libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libqrencode-dev
+    libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev zlib1g-dev libssl-dev libqrencode-dev
 )
 # To draw: EGL, and Mesa's drivers, with one that draws in software where there is no GPU.
 # shellcheck disable=SC2034
@@ -17,7 +17,7 @@ RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri)
 # To test: doctest, a browser and what steers it, and what checks the source.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
-    doctest-dev nodejs:node npm:npm chromium:chromium
+    doctest-dev nodejs:node npm:npm chromium:chromium python3-websockets curl:curl
     clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.

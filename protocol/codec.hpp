@@ -10,12 +10,22 @@ namespace vrut::protocol {
 
 /// A client's text message. The error carries the message's `id` where that could be read.
 tl::expected<ClientMessage, Error> decode(std::string_view text);
+/// The other way: decode() of it gives the same message. What has its default is left out.
+std::string encode(const ClientMessage& message);
 
 std::string encode(const Welcome& message);
 std::string encode(const Ok& message);
 std::string encode(const Picked& message);
+std::string encode(const Flown& message);
+std::string encode(const TreePage& message);
+std::string encode(const Loading& message);
+std::string encode(const Stats& message);
 std::string encode(const Error& message);
 
 const char* name_of(Role role);
+
+/// The JSON Schema (draft 2020-12) of everything that travels. Its $defs hold each message, and
+/// `clientMessage`, `serverMessage`, `frameHeader`, `stateDocument` and `statePatch`.
+std::string json_schema();
 
 }  // namespace vrut::protocol

@@ -3,38 +3,22 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "json_reader.hpp"
-#include "state_json.hpp"
+#include "descriptions.hpp"
 
 namespace vrut::protocol {
 
+namespace {
+
+constexpr std::size_t kLongestComment = 65'533;
+
+}  // namespace
+
 std::string encode(const FrameHeader& header) {
-    Json camera = section_json(header.camera);
-    camera["viewMatrix"] = to_json(header.view_matrix);
-    camera["projectionMatrix"] = to_json(header.projection_matrix);
-    Json timing = {
-        {"renderMs", header.render_ms}, {"readbackMs", header.readback_ms}, {"encodeMs", header.encode_ms}};
-    if (header.since_input_ms) timing["sinceInputMs"] = *header.since_input_ms;
-    const Quality& quality = header.quality;
-    return dump({{"frame", header.frame},
-                 {"revision", header.revision},
-                 {"handled", header.handled},
-                 {"camera", std::move(camera)},
-                 {"width", header.width},
-                 {"height", header.height},
-                 {"view",
-                  {{"width", header.view.width},
-                   {"height", header.view.height},
-                   {"pixelRatio", header.view.pixel_ratio}}},
-                 {"renderer", {{"mode", "realistic"}, {"wireframe", false}, {"showSelection", false}}},
-                 {"quality",
-                  {{"level", quality.moving ? "moving" : "still"},
-                   {"scale", quality.scale},
-                   {"samples", quality.samples},
-                   {"detail", 0},
-                   {"jpegQuality", quality.jpeg_quality},
-                   {"subsampling", quality.subsampled ? "4:2:0" : "4:4:4"}}},
-                 {"timing", std::move(timing)}});
+    Json json = write_struct(header);
+    std::string text = dump(json);
+    if (text.size() <= kLongestComment) return text;
+    json["camera"].erase("name");  // the only member without a bound
+    return dump(json);
 }
 
 std::size_t comment_offset(std::span<const std::uint8_t> jpeg) {
@@ -44,8 +28,8 @@ std::size_t comment_offset(std::span<const std::uint8_t> jpeg) {
 }
 
 std::vector<std::uint8_t> comment_segment(const std::string& text) {
-    constexpr std::size_t kLongest = 65'533;
-    if (text.size() > kLongest) throw std::length_error("a frame header is longer than a COM segment can be");
+    if (text.size() > kLongestComment)
+        throw std::length_error("a frame header is longer than a COM segment can be");
     const std::size_t length = text.size() + 2;
     std::vector<std::uint8_t> segment(4 + text.size());
     segment[0] = 0xFF;

@@ -11,27 +11,31 @@
 
 namespace vrut::protocol {
 
-struct Quality {
-    bool moving = false;
-    double scale = 1;
-    int samples = 1;
-    int jpeg_quality = 90;
-    bool subsampled = false;  ///< 4:2:0, else 4:4:4
-    bool operator==(const Quality&) const = default;
-};
-
 /// What every frame says about itself.
 struct FrameHeader {
+    struct Camera {
+        CameraState pose;
+        glm::dmat4 view_matrix{1}, projection_matrix{1};
+    };
+    struct Renderer {
+        DrawMode mode = DrawMode::realistic;
+        bool wireframe = false, show_selection = true;
+    };
+    struct Timing {
+        double render_ms = 0, readback_ms = 0, encode_ms = 0;
+        std::optional<double> since_input_ms;
+    };
     std::int64_t frame = 0, revision = 0, handled = 0;
-    CameraState camera;
-    glm::dmat4 view_matrix{1}, projection_matrix{1};
+    std::optional<std::int64_t> snapshot;  ///< id of the message that asked for it
+    Camera camera;
     int width = 0, height = 0;  ///< of the picture
     Resize view;
+    Renderer renderer;
     Quality quality;
-    double render_ms = 0, readback_ms = 0, encode_ms = 0;
-    std::optional<double> since_input_ms;
+    Timing timing;
 };
 
+/// At most 65,533 bytes: a camera's name that is too long for that is left out.
 std::string encode(const FrameHeader& header);
 
 /// Where in a JPEG file a COM segment goes: behind SOI and the JFIF APP0.

@@ -1,5 +1,6 @@
 #include "json_reader.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -7,6 +8,9 @@
 namespace vrut::protocol {
 
 Json parse_strictly(std::string_view text, int max_depth) {
+    if (const auto nul = text.find('\0'); nul != std::string_view::npos)  // to the parser the end of the text
+        throw BadJson{error_code::bad_message,
+                      "the message is not JSON: error at byte " + std::to_string(nul + 1)};
     std::vector<std::set<std::string>> members;  // of the objects that are open
     int depth = 0;
     const auto look = [&](int, Json::parse_event_t event, Json& parsed) {
@@ -49,15 +53,10 @@ namespace {
     throw BadJson{error_code::out_of_range, "'" + std::string(what) + "' must be " + expected};
 }
 
-template <class Vector>
-Vector read_vector(const Json& value, std::string_view what, double min, double max) {
-    constexpr auto kLength = static_cast<std::size_t>(Vector::length());
+/// The length is out of range; another type than numbers is wrong.
+void read_numbers(const Json& value, std::string_view what, std::size_t count) {
     if (!value.is_array()) wrong_type(what, "an array of numbers");
-    if (value.size() != kLength) out_of_range(what, "an array of " + std::to_string(kLength) + " numbers");
-    Vector result{};
-    for (std::size_t i = 0; i < kLength; ++i)
-        result[static_cast<glm::length_t>(i)] = read_number(value[i], what, min, max);
-    return result;
+    if (value.size() != count) out_of_range(what, "an array of " + std::to_string(count) + " numbers");
 }
 
 }  // namespace
@@ -92,8 +91,7 @@ std::string read_string(const Json& value, std::string_view what, std::size_t ma
     return text;
 }
 
-std::size_t read_word(const Json& value, std::string_view what,
-                      std::initializer_list<std::string_view> words) {
+std::size_t read_word(const Json& value, std::string_view what, std::span<const std::string_view> words) {
     if (!value.is_string()) wrong_type(what, "a string");
     const auto& text = value.get_ref<const std::string&>();
     std::string list;
@@ -103,19 +101,36 @@ std::size_t read_word(const Json& value, std::string_view what,
         list += (place == 0 ? "" : ", ") + std::string(word);
         ++place;
     }
-    out_of_range(what, "one of " + list);
+    out_of_range(what, (words.size() > 1 ? "one of " : "") + list);
 }
 
-glm::dvec2 read_vec2(const Json& value, std::string_view what, double min, double max) {
-    return read_vector<glm::dvec2>(value, what, min, max);
+template <class Vector>
+Vector read_vector(const Json& value, std::string_view what, double min, double max) {
+    constexpr auto kLength = static_cast<std::size_t>(Vector::length());
+    read_numbers(value, what, kLength);
+    Vector result{};
+    for (std::size_t i = 0; i < kLength; ++i)
+        result[static_cast<glm::length_t>(i)] = read_number(value[i], what, min, max);
+    return result;
+}
+template glm::dvec2 read_vector(const Json&, std::string_view, double, double);
+template glm::dvec3 read_vector(const Json&, std::string_view, double, double);
+template glm::dvec4 read_vector(const Json&, std::string_view, double, double);
+
+glm::dmat4 read_matrix(const Json& value, std::string_view what, double max) {
+    read_numbers(value, what, 16);
+    glm::dmat4 matrix;
+    for (std::size_t i = 0; i < 16; ++i)
+        matrix[static_cast<glm::length_t>(i % 4)][static_cast<glm::length_t>(i / 4)] =
+            read_number(value[i], what, -max, max);
+    return matrix;
 }
 
-glm::dvec3 read_vec3(const Json& value, std::string_view what, double min, double max) {
-    return read_vector<glm::dvec3>(value, what, min, max);
-}
-
-glm::dvec4 read_vec4(const Json& value, std::string_view what, double min, double max) {
-    return read_vector<glm::dvec4>(value, what, min, max);
+const Json& read_array(const Json& value, std::string_view what, std::size_t min, std::size_t max) {
+    if (!value.is_array()) wrong_type(what, "an array");
+    if (value.size() < min || value.size() > max)
+        out_of_range(what, "an array of " + std::to_string(min) + " to " + std::to_string(max) + " elements");
+    return value;
 }
 
 const Json& read_object(const Json& value, std::string_view what) {
@@ -123,6 +138,7 @@ const Json& read_object(const Json& value, std::string_view what) {
     return value;
 }
 
+Json to_json(const glm::dvec2& v) { return {v.x, v.y}; }
 Json to_json(const glm::dvec3& v) { return {v.x, v.y, v.z}; }
 Json to_json(const glm::dvec4& v) { return {v.x, v.y, v.z, v.w}; }
 Json to_json(const glm::dmat4& matrix) {
@@ -134,11 +150,13 @@ Json to_json(const glm::dmat4& matrix) {
 
 std::string excerpt(std::string_view text) {
     constexpr std::size_t kLongest = 40;
-    if (text.size() <= kLongest) return std::string(text);
-    std::size_t end = kLongest;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
+    std::size_t end = std::min(text.size(), kLongest);
+    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80)
         --end;  // not inside a character
-    return std::string(text.substr(0, end)) + "…";
+    std::string result(text.substr(0, end));
+    for (char& c : result)
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = '?';
+    return end < text.size() ? result + "…" : result;
 }
 
 }  // namespace vrut::protocol

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <tl/expected.hpp>
 
 #include "messages.hpp"
 
@@ -20,6 +20,16 @@ struct BadJson {
     std::string message;
 };
 
+/// What `read` gives, or the BadJson that it throws as an Error.
+template <class Read>
+auto or_error(Read read) -> tl::expected<decltype(read()), Error> {
+    try {
+        return read();
+    } catch (const BadJson& bad) {
+        return tl::unexpected(Error{{}, bad.code, bad.message});
+    }
+}
+
 /// Text to JSON: valid UTF-8, at most `max_depth` levels (checked while parsing, so that depth costs no
 /// stack), no duplicate members, numbers within double. Throws BadJson.
 Json parse_strictly(std::string_view text, int max_depth = kMaxDepth);
@@ -33,19 +43,22 @@ std::int64_t read_integer(const Json& value, std::string_view what, std::int64_t
 bool read_bool(const Json& value, std::string_view what);
 std::string read_string(const Json& value, std::string_view what, std::size_t max_length);
 /// Position in `words` of the value.
-std::size_t read_word(const Json& value, std::string_view what,
-                      std::initializer_list<std::string_view> words);
-glm::dvec2 read_vec2(const Json& value, std::string_view what, double min, double max);
-glm::dvec3 read_vec3(const Json& value, std::string_view what, double min, double max);
-glm::dvec4 read_vec4(const Json& value, std::string_view what, double min, double max);
+std::size_t read_word(const Json& value, std::string_view what, std::span<const std::string_view> words);
+/// For glm::dvec2 to dvec4.
+template <class Vector>
+Vector read_vector(const Json& value, std::string_view what, double min, double max);
+/// 16 numbers row by row.
+glm::dmat4 read_matrix(const Json& value, std::string_view what, double max);
 const Json& read_object(const Json& value, std::string_view what);
+const Json& read_array(const Json& value, std::string_view what, std::size_t min, std::size_t max);
 
+Json to_json(const glm::dvec2& v);
 Json to_json(const glm::dvec3& v);
 Json to_json(const glm::dvec4& v);
 /// 16 numbers row by row.
 Json to_json(const glm::dmat4& matrix);
 
-/// An outside string as an error message may repeat it: short.
+/// An outside string as an error message may repeat it: short, and without control characters.
 std::string excerpt(std::string_view text);
 
 }  // namespace vrut::protocol

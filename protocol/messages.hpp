@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -11,7 +12,7 @@
 #include <vector>
 
 /// What travels between clients and the server. PROTOCOL.md tells what each message means; the structs here
-/// have its members under its names.
+/// have its members under its names, and descriptions.hpp their limits.
 namespace vrut::protocol {
 
 inline constexpr int kVersion = 1;
@@ -23,6 +24,8 @@ inline constexpr int kMaxGrants = 2;
 inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;
 
 enum class Role { control, view, host };
+enum class DrawMode { realistic, stylized };
+enum class ImageFormat { jpeg, png };
 
 // --- client to server
 
@@ -41,6 +44,7 @@ struct FrameGrant {};
 
 struct Modifiers {
     bool ctrl = false, shift = false, alt = false, meta = false;
+    bool operator==(const Modifiers&) const = default;
 };
 
 struct Pointer {
@@ -79,9 +83,9 @@ struct Patch {
 
 /// Moves for scripts, done in this order; navigation speeds do not apply.
 struct Navigate {
-    std::array<double, 2> rotate{0, 0};  ///< degrees as if dragged right and down
-    std::array<double, 2> pan{0, 0};     ///< fractions of the view's height, right and down
-    double zoom = 1;                     ///< divides the distance from eye to focus
+    glm::dvec2 rotate{0, 0};  ///< degrees as if dragged right and down
+    glm::dvec2 pan{0, 0};     ///< fractions of the view's height, right and down
+    double zoom = 1;          ///< divides the distance from eye to focus
 };
 
 struct Fit {
@@ -89,21 +93,81 @@ struct Fit {
 };
 
 struct Control {
-    bool take = true;  ///< and keep; else release
+    enum class Action { take, release };  ///< take, and keep
+    Action action = Action::take;
 };
 
 /// What is under a point of the view, as a frame showed it.
 struct Pick {
-    enum class Then { nothing, select, center, look_at };
+    enum class Then { select, center, look_at };
     double x = 0, y = 0;                ///< CSS pixels
     std::optional<std::int64_t> frame;  ///< none: the newest
-    Then then = Then::nothing;
+    std::optional<Then> then;
     bool through = false;  ///< transparent parts are passed
+};
+
+/// Members of a camera, to be laid over another; `node` first.
+struct CameraOverlay {
+    std::optional<std::int64_t> node;
+    std::optional<glm::dvec3> eye, focus, up, center;
+    std::optional<double> fov;
+    bool operator==(const CameraOverlay&) const = default;
+};
+
+struct RendererOverlay {
+    std::optional<DrawMode> mode;
+    std::optional<bool> wireframe, show_selection;
+    bool operator==(const RendererOverlay&) const = default;
+};
+
+/// One picture at full accuracy, of `width` by `height` pixels.
+struct Snapshot {
+    int width = 0, height = 0;
+    ImageFormat format = ImageFormat::jpeg;
+    int jpeg_quality = 90;
+    CameraOverlay camera;
+    RendererOverlay renderer;
+};
+
+struct Fly {
+    enum class Easing { smooth, linear };
+    struct Keyframe {
+        double at = 0;         ///< ms from the start, strictly rising
+        CameraOverlay camera;  ///< over the keyframe before, the first over where the camera is
+    };
+    std::vector<Keyframe> keyframes;
+    Easing easing = Easing::smooth;
+};
+
+/// A page of the scene's tree.
+struct Tree {
+    std::optional<std::int64_t> node;   ///< none: the root
+    std::optional<int> depth;           ///< none: 1, or where something is searched for, all
+    std::string search;                 ///< part of a name, in either case; empty: all
+    std::optional<std::int64_t> after;  ///< where the page before ended
+};
+
+struct Open {
+    std::string scene;
+};
+
+struct Record {
+    enum class Action { start, stop };
+    Action action = Action::start;
+    std::string name;  ///< empty: one is made
+};
+
+/// What a host's walls show now.
+struct Shown {
+    std::int64_t revision = 0;
 };
 
 struct ClientMessage {
     std::optional<std::int64_t> id;
-    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Patch, Navigate, Fit, Control, Pick> payload;
+    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Patch, Pick, Snapshot, Fly,
+                 Tree, Open, Record, Control, Shown>
+        payload;
+    std::string text = {};  ///< as it came over the wire; empty where it did not
 };
 
 // --- server to client
@@ -118,27 +182,58 @@ struct Limits {
 };
 
 struct Welcome {
+    int version = kVersion;
     std::string server;  ///< the program's version
     std::string client;
     Role role = Role::view;
     Limits limits;
+    std::optional<std::int64_t> id = {};  ///< of the `hello`, where it had one
 };
 
 struct Ok {
     std::int64_t id = 0;
     std::int64_t revision = 0;
+    std::optional<std::string> name;  ///< of the event log
 };
 
 struct Picked {
-    struct Hit {
-        std::int64_t node = 0;
-        std::string name;
-        std::vector<std::string> path;   ///< names from the root, the last 32
-        glm::dvec3 point{0}, normal{0};  ///< world; the normal is geometric, unit, towards the viewer
-        double distance = 0;             ///< from the eye
-    };
     std::int64_t id = 0;
-    std::optional<Hit> hit;
+    // Where something was hit:
+    std::optional<std::int64_t> node;
+    std::optional<std::string> name;
+    std::optional<std::vector<std::string>> path;  ///< names from the root, the last 32
+    std::optional<glm::dvec3> point, normal;       ///< world; the normal is geometric, towards the viewer
+    std::optional<double> distance;                ///< from the eye
+};
+
+struct Flown {
+    std::int64_t id = 0;
+    bool completed = false;
+};
+
+struct TreeNode {
+    std::int64_t id = 0;
+    std::string name, type;
+    std::optional<std::int64_t> parent;  ///< none: the root
+    bool active = true;
+    std::uint64_t children = 0;
+    std::uint64_t triangles = 0;  ///< of its own geometry
+    std::optional<std::int64_t> material;
+    std::optional<glm::dmat4> matrix = {};  ///< as it is now; none: the identity
+};
+
+struct TreePage {
+    std::int64_t id = 0;
+    std::vector<TreeNode> nodes;
+    std::optional<std::int64_t> next;  ///< `after` for the page that follows; none: this was the last
+};
+
+/// How far the loading of a scene is; once at the end either `done` or `refused`.
+struct Loading {
+    std::string scene;
+    double fraction = 0;
+    std::optional<bool> done;
+    std::optional<std::string> refused;  ///< a sentence
 };
 
 /// One sentence for a person that names the culprit, and a code for a program.
@@ -152,7 +247,42 @@ inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-o
                             *unknown_member = "unknown-member", *read_only = "read-only",
                             *unknown_node = "unknown-node", *unknown_frame = "unknown-frame",
                             *stale_revision = "stale-revision", *not_in_control = "not-in-control",
-                            *not_allowed = "not-allowed", *too_many = "too-many", *failed = "failed";
+                            *not_allowed = "not-allowed", *refused_scene = "refused-scene", *busy = "busy",
+                            *too_many = "too-many", *failed = "failed";
+inline constexpr std::array all{bad_message,   out_of_range,   unknown_member, read_only,   unknown_node,
+                                unknown_frame, stale_revision, not_in_control, not_allowed, refused_scene,
+                                busy,          too_many,       failed};
 }  // namespace error_code
+
+// --- of a picture, and what is measured of pictures
+
+struct Quality {
+    enum class Level { moving, still };
+    enum class Subsampling { yuv420, yuv444 };
+    Level level = Level::still;
+    double scale = 1;
+    int samples = 1;
+    double detail = 0;  ///< pixels of error allowed in the meshes
+    int jpeg_quality = 90;
+    Subsampling subsampling = Subsampling::yuv444;
+    bool operator==(const Quality&) const = default;
+};
+
+/// What the server measures.
+struct Stats {
+    struct Renderer {
+        double mean_render_ms = 0, median_render_ms = 0, p95_render_ms = 0;  ///< of the last 100 pictures
+    };
+    struct Host {
+        std::string name;
+        std::int64_t revision = 0;     ///< that it shows
+        std::optional<double> lag_ms;  ///< from that revision's making to its report
+    };
+    std::optional<Renderer> renderer;  ///< none before the first picture
+    std::optional<Quality> quality;    ///< of the newest picture
+    std::map<std::string, Host> hosts;
+    int clients = 0, watchers = 0;
+    double frames_per_second = 0, bytes_per_second = 0;
+};
 
 }  // namespace vrut::protocol

@@ -1,7 +1,6 @@
 #include "report.hpp"
 
-#include "json_reader.hpp"
-#include "state_json.hpp"
+#include "descriptions.hpp"
 
 namespace vrut::protocol {
 
@@ -17,6 +16,8 @@ std::string encode(const RenderReport& report) {
                  {"readbackMs", report.readback_ms}});
 }
 
+std::string encode(const CameraState& camera) { return dump(write_struct(camera)); }
+
 std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& nodes) {
     Json list = Json::array();
     for (const NodeReport& node : nodes)
@@ -26,7 +27,7 @@ std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& 
                         {"triangles", node.triangles},
                         {"active", node.active},
                         {"depth", node.depth}});
-    Json info = section_json(scene);
+    Json info = write_struct(scene);
     info["tree"] = std::move(list);
     return dump(info);
 }

@@ -26,6 +26,8 @@ struct NodeReport {
 };
 
 std::string encode(const RenderReport& report);
+/// What `replay` prints: the state's `camera`.
+std::string encode(const CameraState& camera);
 /// What `info --json` prints: the state's `scene` and the tree, root first.
 std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& nodes);
 

@@ -1,225 +1,42 @@
 #include "state.hpp"
 
-#include <functional>
-
-#include "json_reader.hpp"
-#include "state_json.hpp"
+#include "descriptions.hpp"
 
 namespace vrut::protocol {
 
-// --- values to JSON
-
-Json section_json(const SceneState& scene) {
-    return {{"name", scene.name},
-            {"nodes", scene.nodes},
-            {"materials", scene.materials},
-            {"geometries", scene.geometries},
-            {"triangles", scene.triangles},
-            {"bounds", {{"min", to_json(scene.min)}, {"max", to_json(scene.max)}}},
-            {"notices", scene.notices}};
-}
-
-Json section_json(const CameraState& camera) {
-    return {{"eye", to_json(camera.eye)}, {"focus", to_json(camera.focus)},
-            {"up", to_json(camera.up)},   {"center", to_json(camera.center)},
-            {"fov", camera.fov},          {"near", camera.near},
-            {"far", camera.far}};
-}
+Json nullable(Json schema) { return {{"anyOf", {{{"type", "null"}}, std::move(schema)}}}; }
 
 namespace {
 
-Json section_json(const NavigationState& navigation) {
-    return {{"keepUpright", navigation.keep_upright},
-            {"rotateSpeed", navigation.rotate_speed},
-            {"panSpeed", navigation.pan_speed},
-            {"zoomSpeed", navigation.zoom_speed}};
-}
-
-Json section_json(const LightsState& lights) {
-    Json items = Json::object();
-    for (const auto& [id, light] : lights.items)
-        items[id] = {{"name", light.name},
-                     {"type", light.type},
-                     {"color", to_json(light.color)},
-                     {"attenuation", to_json(light.attenuation)}};
-    return {{"active", lights.active}, {"items", std::move(items)}};
-}
-
-Json section_json(const BackgroundsState& backgrounds) {
-    Json items = Json::object();
-    for (const auto& [id, background] : backgrounds.items)
-        items[id] = {{"name", background.name}, {"color", to_json(background.color)}};
-    return {
-        {"active", backgrounds.active}, {"color", to_json(backgrounds.color)}, {"items", std::move(items)}};
-}
-
-Json section_json(const SelectionState& selection) {
-    if (!selection.node) return Json::object();
-    return {{"node", *selection.node}, {"name", selection.name}, {"path", selection.path}};
-}
-
-Json section_json(const ControlState& control) {
-    Json json = {{"kept", control.kept}};
-    if (control.holder) json["holder"] = *control.holder;
-    return json;
-}
-
-// --- merge patches to values
-
-struct Member {
-    const char* name;
-    /// Takes the new value, or null for the starting value; none: the member is read-only.
-    std::function<void(const Json& value, const std::string& path)> set;
-};
-
-void patch_members(const Json& patch, const std::string& path, std::initializer_list<Member> members) {
-    for (const auto& [name, value] : read_object(patch, path.empty() ? "patch" : path).items()) {
-        const std::string member_path = path.empty() ? name : path + "." + name;
-        const Member* found = nullptr;
-        for (const Member& member : members)
-            if (name == member.name) found = &member;
-        if (!found)
-            throw BadJson{error_code::unknown_member,
-                          "the state has no member '" + excerpt(member_path) + "'"};
-        if (!found->set) throw BadJson{error_code::read_only, "'" + member_path + "' is read-only"};
-        found->set(value, member_path);
-    }
-}
-
-/// A member that is one value: null gives back `start`, anything else goes through `read`.
-template <class Value, class Read>
-std::function<void(const Json&, const std::string&)> leaf(Value& target, const Value& start, Read read) {
-    return [&target, &start, read](const Json& value, const std::string& path) {
-        target = value.is_null() ? start : read(value, path);
-    };
-}
-
-constexpr double kHuge = 1e30;  // products of two coordinates stay finite
-
-glm::dvec3 read_position(const Json& value, const std::string& path) {
-    return read_vec3(value, path, -kHuge, kHuge);
-}
-glm::dvec4 read_color(const Json& value, const std::string& path) { return read_vec4(value, path, 0, 1); }
-glm::dvec3 read_attenuation(const Json& value, const std::string& path) {
-    return read_vec3(value, path, 0, kHuge);
-}
-double read_fov(const Json& value, const std::string& path) { return read_number(value, path, 1, 170); }
-double read_speed(const Json& value, const std::string& path) { return read_number(value, path, 0.01, 100); }
-bool read_flag(const Json& value, const std::string& path) { return read_bool(value, path); }
-
-/// A section that holds members: null resets all of it.
-template <class Section, class Patch>
-std::function<void(const Json&, const std::string&)> section(Section& target, const Section& start,
-                                                             Patch patch) {
-    return [&target, &start, patch](const Json& value, const std::string& path) {
-        if (value.is_null())
-            target = start;
-        else
-            patch(target, start, value, path);
-    };
-}
-
-void patch_camera(CameraState& camera, const CameraState& start, const Json& patch, const std::string& path) {
-    patch_members(patch, path,
-                  {{"eye", leaf(camera.eye, start.eye, read_position)},
-                   {"focus", leaf(camera.focus, start.focus, read_position)},
-                   {"up", leaf(camera.up, start.up, read_position)},
-                   {"center", leaf(camera.center, start.center, read_position)},
-                   {"fov", leaf(camera.fov, start.fov, read_fov)},
-                   {"near", {}},
-                   {"far", {}}});
-}
-
-void patch_navigation(NavigationState& navigation, const NavigationState& start, const Json& patch,
-                      const std::string& path) {
-    patch_members(patch, path,
-                  {{"keepUpright", leaf(navigation.keep_upright, start.keep_upright, read_flag)},
-                   {"rotateSpeed", leaf(navigation.rotate_speed, start.rotate_speed, read_speed)},
-                   {"panSpeed", leaf(navigation.pan_speed, start.pan_speed, read_speed)},
-                   {"zoomSpeed", leaf(navigation.zoom_speed, start.zoom_speed, read_speed)}});
-}
-
-void patch_light(LightState& light, const LightState& start, const Json& patch, const std::string& path) {
-    patch_members(patch, path,
-                  {{"name", {}},
-                   {"type", {}},
-                   {"color", leaf(light.color, start.color, read_color)},
-                   {"attenuation", leaf(light.attenuation, start.attenuation, read_attenuation)}});
-}
-
-void patch_background(BackgroundState& background, const BackgroundState& start, const Json& patch,
-                      const std::string& path) {
-    patch_members(patch, path, {{"name", {}}, {"color", leaf(background.color, start.color, read_color)}});
-}
-
-/// Items are those of the scene: they are neither added nor removed, and null resets one.
-template <class Item, class PatchItem>
-void patch_items(std::map<std::string, Item>& items, const std::map<std::string, Item>& start,
-                 const Json& patch, const std::string& path, PatchItem patch_item) {
-    for (const auto& [id, value] : read_object(patch, path).items()) {
-        const auto item = items.find(id);
-        if (item == items.end())
-            throw BadJson{error_code::unknown_node, "there is no '" + excerpt(id) + "' in '" + path + "'"};
-        section(item->second, start.at(id), patch_item)(value, path + "." + id);
-    }
-}
-
+/// An entry's key, or `other` where that is allowed.
 template <class Item>
-std::string read_key(const Json& value, const std::string& path, const std::map<std::string, Item>& items,
-                     const char* other) {
-    std::string key = read_string(value, path, kMaxMessageBytes);
-    if (key != other && !items.contains(key))
-        throw BadJson{error_code::unknown_node, "'" + path + "': there is no '" + excerpt(key) + "'"};
-    return key;
-}
-
-void patch_lights(LightsState& lights, const LightsState& start, const Json& patch, const std::string& path) {
-    patch_members(patch, path,
-                  {{"active", leaf(lights.active, start.active,
-                                   [&](const Json& value, const std::string& at) {
-                                       return read_key(value, at, lights.items, "headlight");
-                                   })},
-                   {"items", section(lights.items, start.items,
-                                     [](auto& items, const auto& from, const Json& value, const auto& at) {
-                                         patch_items(items, from, value, at, patch_light);
-                                     })}});
-}
-
-void patch_backgrounds(BackgroundsState& backgrounds, const BackgroundsState& start, const Json& patch,
-                       const std::string& path) {
-    patch_members(patch, path,
-                  {{"active", leaf(backgrounds.active, start.active,
-                                   [&](const Json& value, const std::string& at) {
-                                       return read_key(value, at, backgrounds.items, "color");
-                                   })},
-                   {"color", leaf(backgrounds.color, start.color, read_color)},
-                   {"items", section(backgrounds.items, start.items,
-                                     [](auto& items, const auto& from, const Json& value, const auto& at) {
-                                         patch_items(items, from, value, at, patch_background);
-                                     })}});
-}
-
-void patch_selection(SelectionState& selection, const SelectionState& start, const Json& patch,
-                     const std::string& path) {
-    patch_members(patch, path,
-                  {{"node", leaf(selection.node, start.node,
-                                 [](const Json& value, const std::string& at) {
-                                     return std::optional(read_integer(value, at, 0, kMaxInteger));
-                                 })},
-                   {"name", {}},
-                   {"path", {}}});
+void check_key(const std::string& key, const char* path, const std::map<std::string, Item>& items,
+               const char* other = nullptr) {
+    if ((!other || key != other) && !items.contains(key))
+        throw BadJson{error_code::unknown_node,
+                      "'" + std::string(path) + "': there is no '" + excerpt(key) + "'"};
 }
 
 State patched_or_throw(const State& state, const State& starting, const Json& patch) {
     State result = state;
-    patch_members(patch, "",
-                  {{"scene", {}},
-                   {"camera", section(result.camera, starting.camera, patch_camera)},
-                   {"navigation", section(result.navigation, starting.navigation, patch_navigation)},
-                   {"lights", section(result.lights, starting.lights, patch_lights)},
-                   {"backgrounds", section(result.backgrounds, starting.backgrounds, patch_backgrounds)},
-                   {"selection", section(result.selection, starting.selection, patch_selection)},
-                   {"control", {}}});
+    std::optional<State> start;
+    // What a view that is saved does not say, or gives as null, is the present camera's.
+    if (const auto views = patch.find("views"); views != patch.end() && views->is_object()) {
+        CameraState camera = state.camera;
+        if (const auto present = patch.find("camera"); present != patch.end() && present->is_object())
+            patch_struct(camera, starting.camera, *present, "camera");
+        const ViewState saved{camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+        start = starting;
+        for (const auto& [name, value] : views->items()) {
+            if (!value.is_object() || starting.views.contains(name)) continue;
+            if (name.empty() || start->views.size() > kMaxEntries) continue;  // to be refused
+            start->views[name] = saved;
+            result.views.try_emplace(name, saved);
+        }
+    }
+    patch_struct(result, start ? *start : starting, patch, "");
+    check_key(result.lights.active, "lights.active", result.lights.items);
+    check_key(result.backgrounds.active, "backgrounds.active", result.backgrounds.items, "color");
     return result;
 }
 
@@ -243,39 +60,39 @@ Json merge_diff(const Json& from, const Json& to) {
 }  // namespace
 
 tl::expected<State, Error> patched(const State& state, const State& starting, const Json& patch) {
-    try {
-        return patched_or_throw(state, starting, patch);
-    } catch (const BadJson& bad) {
-        return tl::unexpected(Error{{}, bad.code, bad.message});
-    }
+    return or_error([&] { return patched_or_throw(state, starting, patch); });
 }
 
-tl::expected<State, Error> patched_by_text(const State& state, const State& starting, std::string_view text) {
-    try {
-        return patched_or_throw(state, starting, parse_strictly(text));
-    } catch (const BadJson& bad) {
-        return tl::unexpected(Error{{}, bad.code, bad.message});
-    }
+tl::expected<Patch, Error> parse_patch(std::string_view text) {
+    return or_error([&] {
+        return Patch{std::make_shared<const Json>(read_object(parse_strictly(text), "patch")), {}};
+    });
 }
 
-tl::expected<CameraState, Error> parse_camera(std::string_view text, const CameraState& base) {
-    try {
-        Json json = parse_strictly(text);
-        Json writable = Json::object();
-        for (const char* name : {"eye", "focus", "up", "center", "fov"})
-            if (const auto found = read_object(json, "camera").find(name); found != json.end())
-                writable[name] = *found;
-        CameraState camera = base;
-        patch_camera(camera, base, writable, "camera");
-        return camera;
-    } catch (const BadJson& bad) {
-        return tl::unexpected(Error{{}, bad.code, bad.message});
-    }
+tl::expected<State, Error> restored(const State& starting, const Json& document) {
+    return or_error([&] {
+        State state = starting;
+        restore_struct(state, document, "");
+        check_key(state.lights.active, "lights.active", state.lights.items);
+        check_key(state.backgrounds.active, "backgrounds.active", state.backgrounds.items, "color");
+        if (const auto control = document.find("control"); control != document.end()) {
+            if (control->contains("holder"))
+                state.control.holder = kName.read((*control)["holder"], "holder");
+            state.control.kept = control->contains("kept") && Flag{}.read((*control)["kept"], "kept");
+        }
+        return state;
+    });
 }
 
-bool names_camera_up(const Json& patch) {
+tl::expected<CameraOverlay, Error> parse_camera(std::string_view text) {
+    return or_error([&] { return read_struct<CameraOverlay>(parse_strictly(text), "camera"); });
+}
+
+NamedCameraMembers named_camera_members(const Json& patch) {
     const auto camera = patch.find("camera");
-    return camera != patch.end() && (camera->is_null() || camera->contains("up"));
+    if (camera == patch.end()) return {};
+    const auto named = [&](const char* name) { return camera->is_null() || camera->contains(name); };
+    return {named("node"), named("eye"), named("focus"), named("up"), named("center"), named("fov")};
 }
 
 // --- the document
@@ -288,6 +105,8 @@ struct StateDocument::Section {
 
 namespace {
 
+constexpr const char* kGone = "";  // no member has an empty name
+
 /// `changed` brought up to date for a step from `from` to `to`.
 Json mark_changes(const Json& from, const Json& to, const Json& changed, std::int64_t revision) {
     if (!to.is_object()) return from == to && changed.is_number() ? changed : Json(revision);
@@ -295,10 +114,23 @@ Json mark_changes(const Json& from, const Json& to, const Json& changed, std::in
     for (const auto& [name, value] : to.items())
         result[name] = mark_changes(from.is_object() ? from.value(name, Json()) : Json(), value,
                                     changed.is_object() ? changed.value(name, Json()) : Json(), revision);
-    // What went leaves its mark, so that a patch that counts on it is found stale.
+    // What went leaves its mark, so that a patch that counts on it is found stale. Marks of what went long
+    // ago are kept as one, for all: names that come and go must not pile up.
+    constexpr std::size_t kMostGone = 1000;
+    std::int64_t gone = changed.is_object() ? changed.value(kGone, std::int64_t{0}) : 0;
+    std::map<std::string, Json> marks;
+    if (changed.is_object())
+        for (const auto& [name, mark] : changed.items())
+            if (!to.contains(name) && name != kGone) marks[name] = mark;
     if (from.is_object())
         for (const auto& [name, value] : from.items())
-            if (!to.contains(name)) result[name] = revision;
+            if (!to.contains(name)) marks[name] = revision;
+    if (marks.size() > kMostGone) {
+        marks.clear();
+        gone = revision;
+    }
+    for (auto& [name, mark] : marks) result[name] = std::move(mark);
+    if (gone > 0) result[kGone] = gone;
     return result;
 }
 
@@ -315,8 +147,35 @@ std::int64_t newest_named(const Json& changed, const Json& patch) {
     for (const auto& [name, value] : patch.items())
         if (const auto found = changed.find(name); found != changed.end())
             result = std::max(result, newest_named(*found, value));
+        else
+            result = std::max(result, changed.value(kGone, std::int64_t{0}));
     return result;
 }
+
+}  // namespace
+
+namespace {
+
+/// Tells `update` the name, both values and the writer of each section.
+template <class Update>
+struct SectionLister {
+    const State &state, &previous;
+    Update update;
+
+    template <class Member, class Kind>
+    void writable(const char* name, Member State::*member, const Kind& kind) {
+        update(name, state.*member == previous.*member, [&] {
+            if constexpr (!IsOptional<Member>::value)
+                return kind.write(state.*member);
+            else
+                return state.*member ? kind.write(*(state.*member)) : Json();
+        });
+    }
+    template <class Member, class Kind>
+    void fixed(const char* name, Member State::*member, const Kind& kind) {
+        writable(name, member, kind);
+    }
+};
 
 }  // namespace
 
@@ -326,10 +185,10 @@ std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& pr
     document->state_ = state;
     const bool first = previous.sections_.empty();
     std::size_t place = 0;
-    const auto update = [&](const char* name, const auto& value, const auto& old_value) {
+    const auto update = [&](const char* name, bool equal, const auto& write) {
         const std::size_t at = place++;
-        if (!first && value == old_value) return;
-        auto fresh = std::make_shared<Section>(Section{name, section_json(value), {}});
+        if (!first && equal) return;
+        auto fresh = std::make_shared<Section>(Section{name, write(), {}});
         fresh->changed = first ? mark_changes({}, fresh->json, {}, document->revision_)
                                : mark_changes(previous.sections_[at]->json, fresh->json,
                                               previous.sections_[at]->changed, document->revision_);
@@ -338,28 +197,36 @@ std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& pr
         else
             document->sections_[at] = std::move(fresh);
     };
-    update("scene", state.scene, previous.state_.scene);
-    update("camera", state.camera, previous.state_.camera);
-    update("navigation", state.navigation, previous.state_.navigation);
-    update("lights", state.lights, previous.state_.lights);
-    update("backgrounds", state.backgrounds, previous.state_.backgrounds);
-    update("selection", state.selection, previous.state_.selection);
-    update("control", state.control, previous.state_.control);
+    SectionLister<decltype(update)> lister{state, previous.state_, update};
+    describe(lister, static_cast<const State*>(nullptr));
     return document;
 }
 
-std::string StateDocument::encode() const {
+Json StateDocument::json() const {
     Json state = Json::object();
-    for (const auto& section : sections_) state[section->name] = section->json;
-    return dump({{"type", "state"}, {"revision", revision_}, {"state", std::move(state)}});
+    for (const auto& section : sections_)
+        if (!section->json.is_null()) state[section->name] = section->json;
+    return state;
+}
+
+std::shared_ptr<const Json> document_of(const State& state) {
+    return std::make_shared<const Json>(StateDocument::next({}, state)->json());
+}
+
+std::string StateDocument::encode() const {
+    return dump({{"type", "state"}, {"revision", revision_}, {"state", json()}});
 }
 
 std::string StateDocument::encode_patch_from(const StateDocument& earlier, const std::string& by) const {
     Json patch = Json::object();
     for (std::size_t i = 0; i < sections_.size(); ++i) {
         if (sections_[i] == earlier.sections_[i]) continue;
-        Json diff = merge_diff(earlier.sections_[i]->json, sections_[i]->json);
-        if (!diff.empty()) patch[sections_[i]->name] = std::move(diff);
+        const Json &from = earlier.sections_[i]->json, &to = sections_[i]->json;
+        if (!from.is_object() || !to.is_object()) {
+            if (from != to) patch[sections_[i]->name] = to;
+        } else if (Json diff = merge_diff(from, to); !diff.empty()) {
+            patch[sections_[i]->name] = std::move(diff);
+        }
     }
     Json message = {{"type", "patch"}, {"revision", revision_}, {"patch", std::move(patch)}};
     if (!by.empty()) message["by"] = by;

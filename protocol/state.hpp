@@ -16,27 +16,52 @@
 
 namespace vrut::protocol {
 
+/// Large, never changed, and compared by place.
+template <class T>
+struct Shared {
+    std::shared_ptr<const T> value = std::make_shared<const T>();
+    bool operator==(const Shared&) const = default;
+};
+
 // --- the state document's members, as values. Those marked r are read-only to clients.
 
 struct SceneState {  // r
     std::string name;
     std::uint64_t nodes = 0, materials = 0, geometries = 0, triangles = 0;
-    glm::dvec3 min{0}, max{0};
+    struct Bounds {
+        glm::dvec3 min{0}, max{0};
+    } bounds;
     std::vector<std::string> notices;
-    bool operator==(const SceneState&) const = default;
 };
 
 struct CameraState {
+    std::optional<std::int64_t> node;  ///< the camera node that it stands at
+    std::optional<std::string> name;   // r: of that node
     glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
     double fov = 40;
     double near = 0.1, far = 100;  // r
     bool operator==(const CameraState&) const = default;
 };
 
+/// Of a camera node or a material.
+struct Named {  // r
+    std::string name;
+};
+using Names = std::map<std::string, Named>;
+
 struct NavigationState {
+    enum class Style { vrut, maya, catia, cinema4d };
+    Style style = Style::vrut;
     bool keep_upright = true;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
     bool operator==(const NavigationState&) const = default;
+};
+
+struct RendererState {
+    DrawMode mode = DrawMode::realistic;
+    bool wireframe = false, show_selection = true;
+    std::uint64_t solid = 0, transparent = 0, reflective = 0;  // r: geometry nodes
+    bool operator==(const RendererState&) const = default;
 };
 
 struct LightState {
@@ -47,7 +72,7 @@ struct LightState {
 };
 
 struct LightsState {
-    std::string active = "headlight";
+    std::string active = "headlight";  ///< an item's id
     std::map<std::string, LightState> items;
     bool operator==(const LightsState&) const = default;
 };
@@ -55,6 +80,7 @@ struct LightsState {
 struct BackgroundState {
     std::string name;  // r
     glm::dvec4 color{0, 0, 0, 1};
+    std::optional<std::string> texture;  // r
     bool operator==(const BackgroundState&) const = default;
 };
 
@@ -67,9 +93,38 @@ struct BackgroundsState {
 
 struct SelectionState {
     std::optional<std::int64_t> node;
-    std::string name;               // r
-    std::vector<std::string> path;  // r: names from the root, the last 32
+    std::optional<std::string> name;               // r
+    std::optional<std::vector<std::string>> path;  // r: names from the root, the last 32
     bool operator==(const SelectionState&) const = default;
+};
+
+/// What of a node differs from its file.
+struct NodeOverride {
+    std::optional<bool> active;
+    std::optional<int> active_child;  ///< of a switch: -1 none, -2 all
+    std::optional<glm::dmat4> matrix;
+    std::optional<std::int64_t> material;
+    bool operator==(const NodeOverride&) const = default;
+};
+
+struct Marker {
+    glm::dvec3 point{0};
+    std::optional<std::int64_t> node;  ///< that it moves with; `point` is in that node's space then
+    std::string text;
+    bool operator==(const Marker&) const = default;
+};
+
+/// A saved camera.
+struct ViewState {
+    glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
+    double fov = 40;
+    bool operator==(const ViewState&) const = default;
+};
+
+struct QualityState {
+    double preference = 0.5;  ///< 0 speed, 1 accuracy
+    double latency_target_ms = 50;
+    bool operator==(const QualityState&) const = default;
 };
 
 struct ControlState {  // r
@@ -78,30 +133,55 @@ struct ControlState {  // r
     bool operator==(const ControlState&) const = default;
 };
 
+struct RecordingState {  // r
+    std::string name;
+    bool operator==(const RecordingState&) const = default;
+};
+
 /// What all clients share.
 struct State {
-    SceneState scene;
+    Shared<SceneState> scene;
     CameraState camera;
+    Shared<Names> cameras;
     NavigationState navigation;
+    RendererState renderer;
     LightsState lights;
+    Shared<Names> materials;
     BackgroundsState backgrounds;
     SelectionState selection;
+    std::map<std::string, NodeOverride> nodes;
+    std::map<std::string, Marker> markers;
+    std::map<std::string, ViewState> views;
+    QualityState quality;
     ControlState control;
+    std::optional<RecordingState> recording;
     bool operator==(const State&) const = default;
 };
 
-/// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
-/// gives a member back the value it has in `starting`. Checks types, ranges and names, not whether a camera's
-/// pose makes sense.
-tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
+/// Most markers, and most views.
+inline constexpr std::size_t kMaxEntries = 256;
 
-/// Whether the patch names `camera.up`.
-bool names_camera_up(const nlohmann::json& patch);
-/// A camera from the text of a JSON object with members of the state's `camera`; what is left out is as in
-/// `base`, read-only and unknown members are ignored.
-tl::expected<CameraState, Error> parse_camera(std::string_view text, const CameraState& base);
-/// patched() from text.
-tl::expected<State, Error> patched_by_text(const State& state, const State& starting, std::string_view text);
+/// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
+/// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers` and `views`
+/// that are not there. Checks types, ranges and names of members; what needs the scene is the caller's.
+tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
+/// A patch from the text of a JSON object.
+tl::expected<Patch, Error> parse_patch(std::string_view text);
+
+/// The document of a state, as clients see it.
+std::shared_ptr<const nlohmann::json> document_of(const State& state);
+/// `starting` with what clients may change, and who steers, from a whole document (StateDocument::json()).
+tl::expected<State, Error> restored(const State& starting, const nlohmann::json& document);
+
+/// Which members of `camera` a patch names; null names all.
+struct NamedCameraMembers {
+    bool node = false, eye = false, focus = false, up = false, center = false, fov = false;
+};
+NamedCameraMembers named_camera_members(const nlohmann::json& patch);
+
+/// A camera from the text of a JSON object with members of the state's `camera`; read-only and unknown
+/// members are ignored.
+tl::expected<CameraOverlay, Error> parse_camera(std::string_view text);
 
 /// One revision of the state as JSON, to be shared between threads. Sections that did not change are the same
 /// objects in both documents, which makes making and comparing documents cheap.
@@ -115,8 +195,12 @@ public:
     bool shows(const State& state) const { return state_ == state; }
     /// The `state` message.
     std::string encode() const;
+    /// The document alone.
+    nlohmann::json json() const;
     /// The `patch` message that leads from an earlier document to this one; `by` may be empty.
     std::string encode_patch_from(const StateDocument& earlier, const std::string& by) const;
+    /// Of the same scene: else the difference may be as large as the document, and that is sent.
+    bool has_scene_of(const StateDocument& other) const { return state_.scene == other.state_.scene; }
     /// Revision of the last change to anything that `patch` names.
     std::int64_t last_change(const nlohmann::json& patch) const;
 

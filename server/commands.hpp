@@ -17,6 +17,8 @@ struct ServeArguments {
     std::optional<int> device;
     std::size_t max_clients = 64;
     std::filesystem::path token_file;
+    std::filesystem::path scenes;  ///< what clients may open; empty: nothing
+    std::filesystem::path record;  ///< where recordings go; empty: nowhere
 };
 void serve_command(const ServeArguments& arguments);
 
@@ -29,10 +31,20 @@ struct RenderArguments {
     std::optional<glm::dvec3> eye, focus, up;
     std::optional<double> fov;
     std::string set;  ///< a merge patch on the state
+    std::vector<std::pair<std::string, std::string>>
+        patches;  ///< further ones, with the option that they are of
     std::optional<int> device;
     bool stats = false;
 };
 void render_command(const RenderArguments& arguments);
+
+struct ReplayArguments {
+    std::filesystem::path log;
+    std::filesystem::path scene;   ///< empty: the log's own, looked for beside it and among the program's
+    std::filesystem::path frames;  ///< folder for the frames; empty: none are drawn
+    std::optional<int> device;
+};
+void replay_command(const ReplayArguments& arguments);
 
 struct InfoArguments {
     std::filesystem::path scene;
@@ -40,6 +52,8 @@ struct InfoArguments {
 };
 void info_command(const InfoArguments& arguments);
 
+/// Where the program's scenes may lie: where it is installed, and beside its sources.
+std::vector<std::filesystem::path> scene_folders();
 /// The car: where the program is installed, or beside its sources. Throws where it is in neither place.
 std::filesystem::path default_scene();
 

@@ -4,15 +4,19 @@
 
 namespace vrut {
 
-std::filesystem::path default_scene() {
+std::vector<std::filesystem::path> scene_folders() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-    const std::filesystem::path installed = program.parent_path().parent_path() / "share/vrut-preview/scenes";
-    for (const std::filesystem::path& folder : {installed, std::filesystem::path(VRUT_SOURCE_SCENES)}) {
+    return {program.parent_path().parent_path() / "share/vrut-preview/scenes", VRUT_SOURCE_SCENES};
+}
+
+std::filesystem::path default_scene() {
+    std::string looked_in;
+    for (const std::filesystem::path& folder : scene_folders()) {
         std::filesystem::path car = folder / "car/car.vrut";
         if (std::filesystem::exists(car)) return car;
+        looked_in += (looked_in.empty() ? "" : " nor in ") + folder.string();
     }
-    throw std::runtime_error("the car is neither in " + installed.string() +
-                             " nor in " VRUT_SOURCE_SCENES "; name a scene to serve");
+    throw std::runtime_error("the car is neither in " + looked_in + "; name a scene to serve");
 }
 
 }  // namespace vrut

@@ -22,6 +22,12 @@ std::shared_ptr<EncodedPicture> counted_picture(Metrics& metrics) {
 
 }  // namespace
 
+std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header) {
+    const std::string text = protocol::encode(header);
+    return picture.format == protocol::ImageFormat::png ? png_text_chunk(text)
+                                                        : protocol::comment_segment(text);
+}
+
 Encoder::Encoder(Metrics& metrics, std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
                  std::function<void()> on_free, std::function<void(const std::string&)> on_failure)
     : metrics_(metrics),
@@ -84,10 +90,17 @@ void Encoder::run() {
         const Clock::time_point start = Clock::now();
         const std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
         const protocol::Quality& quality = picture.header.quality;
-        encoded->jpeg = jpeg.encode(image, quality.jpeg_quality, quality.subsampled);
-        encoded->comment_offset = protocol::comment_offset(encoded->jpeg);
+        if (picture.format == protocol::ImageFormat::png) {
+            encoded->file = encode_png(image);
+            encoded->header_offset = kPngTextOffset;
+        } else {
+            encoded->file = jpeg.encode(image, quality.jpeg_quality,
+                                        quality.subsampling == protocol::Quality::Subsampling::yuv420);
+            encoded->header_offset = protocol::comment_offset(encoded->file);
+        }
         static_cast<Picture&>(*encoded) = std::move(picture);
-        encoded->header.encode_ms = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        encoded->header.timing.encode_ms =
+            std::chrono::duration<double, std::milli>(Clock::now() - start).count();
         ++metrics_.frames_encoded;
         give_spare(std::move(image));
         on_encoded_(encoded);

@@ -22,12 +22,17 @@ struct Picture {
     std::map<std::string, std::int64_t>
         handled;  ///< for each client, its highest message id that the picture shows
     std::optional<Clock::time_point> newest_input;  ///< arrival of the newest input that it shows
+    protocol::ImageFormat format = protocol::ImageFormat::jpeg;
+    std::string client;  ///< of a snapshot: who asked for it
 };
 
 struct EncodedPicture : Picture {
-    std::vector<std::uint8_t> jpeg;
-    std::size_t comment_offset = 0;  ///< where the header of each client goes
+    std::vector<std::uint8_t> file;
+    std::size_t header_offset = 0;  ///< where the header of each client goes
 };
+
+/// `header` as it stands in the picture's file, at header_offset.
+std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header);
 
 /// The encode thread: one picture waits at most.
 class Encoder {

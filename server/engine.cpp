@@ -4,10 +4,27 @@
 
 #include <future>
 
+#include "codec.hpp"
 #include "renderer.hpp"
-#include "scene_state.hpp"
 
 namespace vrut {
+
+namespace code = protocol::error_code;
+
+namespace {
+
+constexpr int kMostSnapshots = 2;  // of a client, waiting
+constexpr std::chrono::milliseconds kFlightStep{
+    16};  // at most, for those who follow the camera without frames
+constexpr std::size_t kBegunRemembered = 16;
+
+/// The earlier of two times, where there are any.
+std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a,
+                                         std::optional<Clock::time_point> b) {
+    return !a ? b : !b ? a : std::min(*a, *b);
+}
+
+}  // namespace
 
 PainterFactory gl_painter(std::optional<int> device) {
     return [device] {
@@ -22,16 +39,21 @@ PainterFactory gl_painter(std::optional<int> device) {
     };
 }
 
-Engine::Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& factory, Metrics& metrics,
+Engine::Engine(EngineOptions options, const PainterFactory& factory, Metrics& metrics,
                EngineCallbacks callbacks)
-    : scene_(std::move(scene)),
+    : library_(std::move(options.library)),
+      record_folder_(std::move(options.record_folder)),
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
       encoder_(
-          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure) {
+          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
+      snapshot_encoder_(
+          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
+      loader_(mailbox_),
+      stats_(metrics) {
     std::promise<void> started;
     std::future<void> start = started.get_future();
-    thread_ = std::thread([this, &factory, &started] {
+    thread_ = std::thread([this, &factory, &started, scene = std::move(options.scene)]() mutable {
         Painter painter;
         try {
             painter = factory();
@@ -44,11 +66,12 @@ Engine::Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& f
         }
         try {
             painter_ = std::move(painter);
-            run();
+            run(std::move(scene));
         } catch (const std::exception& error) {
             callbacks_.on_failure(error.what());
         }
         painter_ = {};  // what belongs to GL ends on the thread that it began on
+        presentation_.reset();
     });
     try {
         start.get();
@@ -63,11 +86,17 @@ Engine::~Engine() {
     thread_.join();
 }
 
-void Engine::run() {
-    std::vector<std::string> notices = all_notices(*scene_->scene);
+LoadedScene Engine::with_notices(LoadedScene scene) const {
     if (painter_.software)
-        notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
-    presentation_.emplace(scene_, std::move(notices));
+        scene.notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
+    return scene;
+}
+
+void Engine::run(LoadedScene scene) {
+    PresentationOptions options;
+    options.record_folder = record_folder_;
+    options.load = [this](const std::string& name) { return load(name); };
+    presentation_.emplace(with_notices(std::move(scene)), std::move(options));
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
     Image image;
@@ -76,16 +105,37 @@ void Engine::run() {
     small.width = small.height = 64;
     painter_.paint(small, image, stats, {}, nullptr);
 
-    while (!mailbox_.closed()) {
-        serve_newest();
-        report();
-        const PacingDecision decision = pace();
-        if (decision.action != PacingDecision::Action::wait) {
-            draw(decision.action == PacingDecision::Action::draw_still);
-            continue;
-        }
-        handle_all(mailbox_.wait(decision.until));
+    while (!mailbox_.closed()) step();
+}
+
+void Engine::step() {
+    fly();
+    serve_newest();
+    report();
+    const PacingDecision decision = pace();
+    const bool draws = decision.action == PacingDecision::Action::draw;
+    const bool snapshot = !snapshots_.empty() && snapshot_encoder_.is_free();
+    if (snapshot && (!draws || snapshot_turn_)) {
+        snapshot_turn_ = false;
+        draw_snapshot();
+    } else if (draws) {
+        snapshot_turn_ = true;
+        draw(decision);
+    } else {
+        wait_for_event(decision.until);
     }
+}
+
+void Engine::wait_for_event(std::optional<Clock::time_point> until) {
+    until = earlier(until, stats_.due());
+    if (presentation_->flies()) until = earlier(until, Clock::now() + kFlightStep);
+    handle_all(mailbox_.wait(until));
+}
+
+void Engine::fly() {
+    if (!presentation_->flies()) return;
+    last_change_ = Clock::now();
+    presentation_->advance(time_of(last_change_));
 }
 
 // --- events
@@ -95,13 +145,18 @@ void Engine::handle_all(const std::vector<EngineEvent>& events) {
 }
 
 void Engine::handle(const ClientJoined& joined) {
-    clients_[joined.client];
-    presentation_->join(joined.client, joined.role);
+    clients_[joined.client].handled = joined.id;
+    const Clock::time_point now = Clock::now();
+    presentation_->join(joined.client, joined.role, time_of(now));
+    stats_.joined(joined.client, joined.role, joined.name, now);
 }
 
 void Engine::handle(const ClientLeft& left) {
     clients_.erase(left.client);
-    presentation_->leave(left.client);
+    std::erase_if(snapshots_, [&](const Snapshot& snapshot) { return snapshot.order.client == left.client; });
+    const Clock::time_point now = Clock::now();
+    presentation_->leave(left.client, time_of(now));
+    stats_.left(left.client, now);
 }
 
 void Engine::handle(const FrameSent& sent) {
@@ -110,6 +165,51 @@ void Engine::handle(const FrameSent& sent) {
     Client& client = found->second;
     client.last_frame = std::max(client.last_frame, sent.frame);
     client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
+    client.sent = sent;
+}
+
+void Engine::handle(const SnapshotSent& sent) {
+    if (const auto found = clients_.find(sent.client); found != clients_.end()) --found->second.snapshots;
+}
+
+void Engine::handle(const PictureAsked& asked) {
+    const PictureSize present =
+        picture_size(presentation_->view_size(),
+                     quality_of(kStillLevel, presentation_->view_size(), limits_, false).scale);
+    PictureOrder order = presentation_->order(asked.width > 0 ? asked.width : present.width,
+                                              asked.height > 0 ? asked.height : present.height);
+    order.client = asked.name;
+    snapshots_.push_back({std::move(order), {}, {}});
+}
+
+void Engine::handle(const SceneLoading& loading) {
+    output_.loading = std::make_shared<const std::string>(
+        protocol::encode(protocol::Loading{loading.name, loading.fraction, {}, {}}));
+}
+
+void Engine::handle(const SceneLoaded& loaded) {
+    loader_.finish();
+    protocol::Loading told{loaded.name, 1, {}, {}};
+    if (loaded.scene) {
+        presentation_->show(with_notices(*loaded.scene), time_of(Clock::now()));
+        last_change_ = Clock::now();
+        told.done = true;
+        spdlog::info("{}: {} triangles", loaded.name, loaded.scene->placed->scene->triangle_count());
+    } else {
+        told.refused = loaded.scene.error();
+        spdlog::warn("{}", loaded.scene.error());
+    }
+    output_.loading = std::make_shared<const std::string>(protocol::encode(told));
+}
+
+std::optional<protocol::Error> Engine::load(const std::string& name) {
+    const auto path = library_.find(name);
+    if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
+    if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
+    loader_.start(*path, name);
+    output_.loading =
+        std::make_shared<const std::string>(protocol::encode(protocol::Loading{name, 0, {}, {}}));
+    return std::nullopt;
 }
 
 void Engine::handle(const ClientSaid& said) {
@@ -118,32 +218,65 @@ void Engine::handle(const ClientSaid& said) {
     Client& client = found->second;
     output_.handled_bytes[said.client] += said.bytes;
     const auto id = said.message ? said.message->id : said.message.error().id;
-    if (!said.message) {
+    if (id && *id <= client.handled)
+        presentation_->refuse(said.client, {id, code::out_of_range,
+                                            "'id' must rise: " + std::to_string(client.handled) +
+                                                " came before " + std::to_string(*id)});
+    else if (!said.message)
         presentation_->refuse(said.client, said.message.error());
-    } else if (std::holds_alternative<protocol::FrameGrant>(said.message->payload)) {
-        ++metrics_.frames_granted;
-        client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
-    } else {
-        const View before = presentation_->visible();
-        const protocol::Resize size_before = presentation_->view_size();
-        presentation_->say(said.client, *said.message, said.arrival);
-        if (presentation_->visible() != before || presentation_->view_size() != size_before) {
-            last_change_ = Clock::now();
-            newest_input_ = said.arrival;
-        }
-    }
+    else if (std::holds_alternative<protocol::FrameGrant>(said.message->payload))
+        grant(client, said);
+    else
+        say(said, *said.message, client);
     if (id) client.handled = std::max(client.handled, *id);
+}
+
+void Engine::grant(Client& client, const ClientSaid& said) {
+    ++metrics_.frames_granted;
+    client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
+    if (presentation_->holder() == said.client) measure(client, said.arrival);
+    client.sent.reset();
+}
+
+void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client) {
+    if (std::holds_alternative<protocol::Snapshot>(message.payload) && client.snapshots >= kMostSnapshots)
+        return presentation_->refuse(
+            said.client, {message.id, code::busy,
+                          std::to_string(kMostSnapshots) + " snapshots of this client are waiting already"});
+    if (const auto* snapshot = std::get_if<protocol::Snapshot>(&message.payload))
+        if (!fits(snapshot->width, snapshot->height, limits_))
+            return presentation_->refuse(
+                said.client, {message.id, code::out_of_range,
+                              "'width' x 'height' must be at most " + std::to_string(limits_.max_pixels) +
+                                  " pixels, each side at most " + std::to_string(limits_.max_side)});
+    const View before = presentation_->visible();
+    const protocol::Resize size_before = presentation_->view_size();
+    const bool accepted = presentation_->say(said.client, message, time_of(said.arrival));
+    if (presentation_->visible() != before || presentation_->view_size() != size_before) {
+        last_change_ = Clock::now();
+        newest_input_ = said.arrival;
+    }
+    if (const auto* shown = std::get_if<protocol::Shown>(&message.payload); shown && accepted)
+        stats_.shown(said.client, shown->revision, said.arrival);
+    for (PictureOrder& order : presentation_->take_orders()) {
+        ++client.snapshots;
+        snapshots_.push_back({std::move(order), {}, {}});
+    }
 }
 
 /// Hands over what there is to tell.
 void Engine::report() {
+    const Clock::time_point now = Clock::now();
     if (const auto& document = presentation_->document(); document != reported_) {
         reported_ = output_.document = document;
         output_.by = presentation_->changed_by();
         output_.by_since = presentation_->changed_by_since();
+        stats_.made(document->revision(), now);
     }
     output_.answers = presentation_->take_answers();
-    for (const Answer& answer : output_.answers) metrics_.messages_refused += answer.refusal;
+    for (const Answer& answer : output_.answers) metrics_.messages_refused += !answer.refusal.empty();
+    if (const auto stats = stats_.take(now))
+        output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));
     if (!output_.empty()) callbacks_.on_output(std::exchange(output_, {}));
 }
 
@@ -156,7 +289,14 @@ bool Engine::shows_present() const {
 
 bool Engine::waits_for_newer(const Client& client) const {
     if (client.grants == 0) return false;
-    return !shows_present() || client.last_frame != drawn_.frame || !drawn_.still;
+    return !shows_present() || client.last_frame != drawn_.frame ||
+           drawn_.still_samples < kStillSamples.back();
+}
+
+bool Engine::thin_lines() const {
+    const protocol::State& state = presentation_->state();
+    return state.renderer.wireframe || state.renderer.mode == protocol::DrawMode::stylized ||
+           (state.renderer.show_selection && state.selection.node);
 }
 
 /// Clients that have not got the newest picture, which shows what is to be seen, get that; no drawing is
@@ -176,37 +316,64 @@ PacingDecision Engine::pace() {
     for (const auto& [name, client] : clients_)
         input.somebody_waits = input.somebody_waits || waits_for_newer(client);
     input.changed = !shows_present();
-    input.newest_is_still = drawn_.still;
+    input.newest_samples = drawn_.still_samples;
     input.encoder_free = encoder_.is_free();
     input.last_change = last_change_;
     input.now = Clock::now();
+    input.level = level_;
+    for (int level = 0; level < kStillLevel; ++level) {
+        const protocol::Resize& view = presentation_->view_size();
+        const PictureSize size = picture_size(view, quality_of(level, view, limits_, false).scale);
+        input.expected_ms[static_cast<std::size_t>(level)] =
+            times_.expected(level, static_cast<double>(size.width) * size.height, level_, input.now);
+    }
+    input.target_ms = presentation_->state().quality.latency_target_ms;
+    input.preference = presentation_->state().quality.preference;
     return decide(input);
 }
 
-void Engine::draw(bool still) {
+/// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
+void Engine::measure(const Client& client, Clock::time_point asked) {
+    constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
+    if (!client.sent) return;
+    for (const Begun& begun : begun_)
+        if (begun.frame == client.sent->frame && asked > begun.at && asked - begun.at < kAsleep)
+            times_.add(begun.level, std::chrono::duration<double, std::milli>(asked - begun.at).count(),
+                       begun.pixels, asked);
+}
+
+void Engine::promise(std::int64_t frame) {
+    for (auto& [name, client] : clients_) {
+        if (client.grants == 0) continue;
+        --client.grants;
+        client.last_frame = frame;
+        output_.owed.push_back({name, frame});
+    }
+}
+
+void Engine::draw(const PacingDecision& decision) {
     // What is drawn is what stands here now, whatever comes in meanwhile.
+    const Clock::time_point begin = Clock::now();
     const View visible = presentation_->visible();
     const protocol::Resize view_size = presentation_->view_size();
-    Picture picture;
-    protocol::FrameHeader& header = picture.header;
-    header.quality = still ? still_quality(view_size, limits_) : moving_quality(view_size, limits_);
-    const PictureSize size = picture_size(view_size, header.quality.scale);
-    header.frame = drawn_.frame + 1;
-    header.revision = presentation_->document()->revision();
-    header.camera = presentation_->state().camera;
-    header.view_matrix = view_from_world(visible.camera);
-    header.projection_matrix = clip_from_view(visible.camera, static_cast<double>(size.width) / size.height,
-                                              {header.camera.near, header.camera.far});
-    header.width = size.width;
-    header.height = size.height;
-    header.view = view_size;
-    picture.newest_input = newest_input_;
-    for (const auto& [name, client] : clients_) picture.handled[name] = client.handled;
-
+    const bool still = decision.level == kStillLevel;
+    protocol::Quality quality = quality_of(decision.level, view_size, limits_, thin_lines());
+    quality.samples = decision.samples;
+    const PictureSize size = picture_size(view_size, quality.scale);
     View view = visible;
     view.width = size.width;
     view.height = size.height;
-    view.samples = header.quality.samples;
+    view.samples = quality.samples;
+
+    Picture picture;
+    protocol::FrameHeader& header = picture.header;
+    header = header_of(presentation_->state(), view, view_size);
+    header.frame = next_frame_;
+    header.revision = presentation_->document()->revision();
+    header.quality = quality;
+    picture.newest_input = newest_input_;
+    for (const auto& [name, client] : clients_) picture.handled[name] = client.handled;
+
     Image image = encoder_.take_spare();
     FrameStats stats;
     const auto interrupted = [&] {
@@ -220,18 +387,60 @@ void Engine::draw(bool still) {
         encoder_.give_spare(std::move(image));
         return;
     }
+    ++next_frame_;
     ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
-    drawn_ = {header.frame, visible, view_size, still};
-    presentation_->remember(drawn_.frame);
-    header.render_ms = stats.render_ms;
-    header.readback_ms = stats.readback_ms;
-    for (auto& [name, client] : clients_) {
-        if (client.grants == 0) continue;
-        --client.grants;
-        client.last_frame = drawn_.frame;
-        output_.owed.push_back({name, drawn_.frame});
+    stats_.drawn(quality, stats.render_ms, Clock::now());
+    drawn_ = {header.frame, visible, view_size, still ? quality.samples : 0};
+    if (!still) {
+        level_ = decision.level;
+        begun_.push_back({header.frame, level_, static_cast<double>(size.width) * size.height, begin});
+        if (begun_.size() > kBegunRemembered) begun_.pop_front();
+        const auto holder = clients_.find(presentation_->holder().value_or(""));
+        if (holder == clients_.end() || !holder->second.sent)  // nobody tells when it has arrived
+            times_.add(level_, stats.render_ms + stats.readback_ms, begun_.back().pixels, Clock::now());
     }
+    presentation_->remember(drawn_.frame);
+    header.timing.render_ms = stats.render_ms;
+    header.timing.readback_ms = stats.readback_ms;
+    promise(drawn_.frame);
     encoder_.offer(std::move(picture), std::move(image));
+}
+
+/// Draws on the first snapshot that waits, a sample at least; it gives way to the live picture.
+void Engine::draw_snapshot() {
+    const std::string client = snapshots_.front().order.client;
+    Snapshot snapshot = std::move(snapshots_.front());  // while it is drawn, its client may leave
+    snapshots_.pop_front();
+    View& view = snapshot.order.view;
+    protocol::FrameHeader& header = snapshot.order.header;
+    header.quality = quality_of(kStillLevel, {}, limits_, true);
+    header.quality.scale = 1;
+    header.quality.jpeg_quality = snapshot.order.jpeg_quality;
+    view.samples = header.quality.samples;
+
+    FrameStats stats;
+    const auto interrupted = [&] {
+        handle_all(mailbox_.wait(Clock::now()));
+        fly();
+        report();
+        return mailbox_.closed() || pace().action == PacingDecision::Action::draw;
+    };
+    const bool whole = painter_.paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
+    header.timing.render_ms += stats.render_ms;
+    header.timing.readback_ms += stats.readback_ms;
+    const bool is_client = header.snapshot.has_value();
+    if (is_client && !clients_.contains(client)) return;  // it has left
+    if (!whole) {
+        snapshots_.push_front(std::move(snapshot));
+        return;
+    }
+    ++metrics_.snapshots_rendered;
+    Picture picture;
+    picture.header = header;
+    picture.header.frame = next_frame_++;
+    picture.format = snapshot.order.format;
+    picture.client = client;
+    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.image));
 }
 
 }  // namespace vrut

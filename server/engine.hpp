@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -8,11 +10,13 @@
 #include <vector>
 
 #include "encoder.hpp"
+#include "live_stats.hpp"
 #include "mailbox.hpp"
 #include "metrics.hpp"
 #include "pacing.hpp"
 #include "presentation.hpp"
-#include "scene.hpp"
+#include "scene_library.hpp"
+#include "scene_loader.hpp"
 #include "state.hpp"
 #include "view.hpp"
 
@@ -45,15 +49,25 @@ struct EngineOutput {
     std::int64_t by_since = 0;
     std::vector<Answer> answers;
     std::vector<Owed> owed;
-    std::map<std::string, std::size_t> handled_bytes;  ///< of messages, for each client
+    std::map<std::string, std::size_t> handled_bytes;   ///< of messages, for each client
+    std::shared_ptr<const std::string> stats, loading;  ///< messages for all; null if there is nothing new
 
-    bool empty() const { return !document && answers.empty() && owed.empty() && handled_bytes.empty(); }
+    bool empty() const {
+        return !document && answers.empty() && owed.empty() && handled_bytes.empty() && !stats && !loading;
+    }
 };
 
 struct EngineCallbacks {
-    std::function<void(EngineOutput)> on_output;                            ///< on the render thread
-    std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded;  ///< on the encode thread
-    std::function<void(const std::string& why)> on_failure;  ///< on either: nothing more will be drawn
+    std::function<void(EngineOutput)> on_output;  ///< on the render thread
+    /// Frames and snapshots (which have a `client`), on an encode thread.
+    std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded;
+    std::function<void(const std::string& why)> on_failure;  ///< on any of them: nothing more will be drawn
+};
+
+struct EngineOptions {
+    LoadedScene scene;
+    SceneLibrary library;
+    std::filesystem::path record_folder;
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
@@ -61,8 +75,7 @@ struct EngineCallbacks {
 class Engine {
 public:
     /// Starts the thread; throws what `factory` throws. The first output holds the first document.
-    Engine(std::shared_ptr<const PlacedScene> scene, const PainterFactory& factory, Metrics& metrics,
-           EngineCallbacks callbacks);
+    Engine(EngineOptions options, const PainterFactory& factory, Metrics& metrics, EngineCallbacks callbacks);
     ~Engine();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
@@ -74,40 +87,69 @@ public:
 private:
     struct Client {
         int grants = 0;
-        std::int64_t last_frame = 0;  ///< newest that it has been promised
-        std::int64_t handled = 0;     ///< highest message id
+        std::int64_t last_frame = 0;    ///< newest that it has been promised
+        std::int64_t handled = 0;       ///< highest message id
+        int snapshots = 0;              ///< asked for and not sent yet
+        std::optional<FrameSent> sent;  ///< the newest, until it asks for the next
+    };
+    struct Snapshot {
+        PictureOrder order;
+        Image image;
+        Accumulation kept;
     };
 
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
     void handle(const ClientSaid& said);
     void handle(const FrameSent& sent);
+    void handle(const SnapshotSent& sent);
+    void handle(const PictureAsked& asked);
+    void handle(const SceneLoading& loading);
+    void handle(const SceneLoaded& loaded);
     void handle_all(const std::vector<EngineEvent>& events);
+    void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
+    void grant(Client& client, const ClientSaid& said);
     void report();
+    std::optional<protocol::Error> load(const std::string& name);
+    Time time_of(Clock::time_point when) const { return std::chrono::duration_cast<Time>(when - start_); }
 
     // --- pictures
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
     bool waits_for_newer(const Client& client) const;
+    bool thin_lines() const;
     void serve_newest();
     PacingDecision pace();
-    void draw(bool still);
+    void step();
+    void fly();
+    void wait_for_event(std::optional<Clock::time_point> until);
+    void draw(const PacingDecision& decision);
+    void draw_snapshot();
+    void promise(std::int64_t frame);
+    void measure(const Client& client, Clock::time_point asked);
 
-    void run();
+    void run(LoadedScene scene);
+    LoadedScene with_notices(LoadedScene scene) const;
 
-    std::shared_ptr<const PlacedScene> scene_;
+    SceneLibrary library_;
+    std::filesystem::path record_folder_;
     Metrics& metrics_;
     EngineCallbacks callbacks_;
     PictureLimits limits_;
     std::string description_;
+    const Clock::time_point start_ = Clock::now();
     Mailbox mailbox_;
-    Encoder encoder_;
+    Encoder encoder_, snapshot_encoder_;
+    SceneLoader loader_;
     Painter painter_;
 
     std::optional<Presentation> presentation_;
     std::map<std::string, Client> clients_;
+    std::deque<Snapshot> snapshots_;  ///< in the order of asking; the first may have been begun
+    bool snapshot_turn_ = false;      ///< the live picture had its turn
     EngineOutput output_;
     std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output told of
+    LiveStats stats_;
 
     Clock::time_point last_change_;                  ///< of what is to be seen; long ago at the start
     std::optional<Clock::time_point> newest_input_;  ///< arrival of the last message that changed it
@@ -115,8 +157,18 @@ private:
         std::int64_t frame = 0;
         View visible;
         protocol::Resize view_size;
-        bool still = false;
+        int still_samples = 0;  ///< 0: a moving one
     } drawn_;
+    std::int64_t next_frame_ = 1;
+    struct Begun {
+        std::int64_t frame = 0;
+        int level = 0;
+        double pixels = 0;
+        Clock::time_point at;
+    };
+    std::deque<Begun> begun_;  ///< the last moving frames
+    MeasuredTimes times_;
+    int level_ = kFirstLevel;
 
     std::thread thread_;  // last: it uses all of the above
 };

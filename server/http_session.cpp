@@ -3,8 +3,11 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
+#include <charconv>
 #include <memory>
+#include <optional>
 
+#include "codec.hpp"
 #include "page_files.hpp"
 #include "session.hpp"
 
@@ -74,6 +77,26 @@ bool speaks_our_subprotocol(const Request& request) {
     return false;
 }
 
+/// A whole number of the query, 0 where it is not there; none where it is something else.
+std::optional<std::int64_t> query_number(const Request& request, std::string_view name) {
+    std::string_view target = view(request.target());
+    target.remove_prefix(std::min(target.find('?'), target.size()));
+    while (!target.empty()) {
+        target.remove_prefix(1);  // ? or &
+        const std::string_view pair = target.substr(0, target.find('&'));
+        target.remove_prefix(pair.size());
+        if (pair.substr(0, pair.find('=')) != name) continue;
+        const std::string_view value = pair.substr(std::min(pair.find('=') + 1, pair.size()));
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+        constexpr std::int64_t kLargest = 1 << 20;
+        if (error != std::errc() || end != value.data() + value.size() || number < 1 || number > kLargest)
+            return std::nullopt;
+        return number;
+    }
+    return 0;
+}
+
 Response respond(const Request& request, const Hub& hub) {
     const std::string_view path = path_of(request);
     if (!hub.access.accepts_host(view(request[http::field::host])))
@@ -91,12 +114,16 @@ Response respond(const Request& request, const Hub& hub) {
         return make_response(request, http::status::ok, "text/plain; charset=utf-8", body);
     };
     if (path == "/healthz") return text("ok\n");
-    if (path == "/readyz" || path == "/metrics") {
+    if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
         if (!has_token(request, hub)) {
             Response response = refuse(request, http::status::unauthorized, "this route asks for a token");
             response.set(http::field::www_authenticate, "Bearer");
             return response;
         }
+        if (path == "/protocol.schema.json")
+            return make_response(request, http::status::ok, "application/schema+json",
+                                 protocol::json_schema());
+        if (path == "/frame.jpg") return text({});  // the session's, who can wait for it
         // The engine hands over its first document when a first picture has been drawn.
         if (path == "/readyz")
             return hub.document ? text("ready\n")
@@ -139,7 +166,55 @@ private:
         Request request = parser_->release();
         if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request))
             return open_websocket(request);
-        send(respond(request, hub_));
+        Response response = respond(request, hub_);
+        if (path_of(request) == "/frame.jpg" && response.result() == http::status::ok)
+            return send_picture(std::move(request));
+        send(std::move(response));
+    }
+
+    /// The present view, in the size asked for or the view's own. Its ETag tells revision and size.
+    void send_picture(Request request) {
+        constexpr std::size_t kMostWaiting = 8;
+        const PictureLimits& limits = hub_.engine->limits();
+        const auto width = query_number(request, "width"), height = query_number(request, "height");
+        if (!width || !height || (*width == 0) != (*height == 0) || !fits(*width, *height, limits))
+            return send(refuse(request, http::status::bad_request,
+                               "'width' and 'height' must be given together, as numbers from 1, of at most " +
+                                   std::to_string(limits.max_pixels) + " pixels"));
+        const auto tag = [width = *width, height = *height](std::int64_t revision) {
+            return "\"" + std::to_string(revision) + "-" + std::to_string(width) + "x" +
+                   std::to_string(height) + "\"";
+        };
+        if (hub_.document && view(request[http::field::if_none_match]) == tag(hub_.document->revision())) {
+            Response response = make_response(request, http::status::not_modified, "image/jpeg", {});
+            response.set(http::field::etag, tag(hub_.document->revision()));
+            return send(std::move(response));
+        }
+        if (request.method() == http::verb::head) {
+            Response response = make_response(request, http::status::ok, "image/jpeg", {});
+            response.erase(http::field::content_length);
+            if (hub_.document) response.set(http::field::etag, tag(hub_.document->revision()));
+            return send(std::move(response));
+        }
+        if (hub_.picture_waiters.size() >= kMostWaiting) {
+            Response response =
+                refuse(request, http::status::service_unavailable, "too many pictures are being drawn");
+            response.set(http::field::retry_after, "1");
+            return send(std::move(response));
+        }
+        const std::string name = "picture " + std::to_string(hub_.next_picture++);
+        hub_.picture_waiters[name] = [self = shared_from_this(), request = std::move(request),
+                                      tag](const std::shared_ptr<const EncodedPicture>& picture) {
+            const std::vector<std::uint8_t> header = header_of_file(*picture, picture->header);
+            const auto& file = picture->file;
+            const auto cut = file.begin() + static_cast<std::ptrdiff_t>(picture->header_offset);
+            std::string body(file.begin(), cut);
+            body.append(header.begin(), header.end()).append(cut, file.end());
+            Response response = make_response(request, http::status::ok, "image/jpeg", std::move(body));
+            response.set(http::field::etag, tag(picture->header.revision));
+            self->send(std::move(response));
+        };
+        hub_.engine->mailbox().push(PictureAsked{name, static_cast<int>(*width), static_cast<int>(*height)});
     }
 
     void open_websocket(const Request& request) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -24,6 +25,10 @@ struct Hub {
     std::string document_by;  ///< who made it and the revisions before it, down to document_by_since
     std::int64_t document_by_since = 0;
     std::shared_ptr<const EncodedPicture> newest;
+    std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
+    /// Who asked for a picture without being a client, and waits, by the picture's `client`.
+    std::map<std::string, std::function<void(std::shared_ptr<const EncodedPicture>)>> picture_waiters;
+    std::int64_t next_picture = 1;
     std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
     std::set<Session*> connections;                            ///< those, and those that did not yet
     std::int64_t next_client = 1;

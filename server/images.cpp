@@ -2,6 +2,7 @@
 
 #include <png.h>
 #include <turbojpeg.h>
+#include <zlib.h>
 
 #include <cerrno>
 #include <cstring>
@@ -53,6 +54,20 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
         throw std::runtime_error(std::string("a picture cannot be encoded as PNG: ") + header.message);
     png.resize(size);
     return png;
+}
+
+std::vector<std::uint8_t> png_text_chunk(const std::string& text) {
+    // Keyword, its end, no compression, the method of none, and empty language and translated keyword.
+    const std::string body = std::string("iTXtvrut-preview") + std::string(5, '\0') + text;
+    const auto* bytes = reinterpret_cast<const Bytef*>(body.data());
+    const auto big_endian = [](std::size_t value) {
+        std::string four(4, '\0');
+        for (std::size_t i = 0; i < 4; ++i) four[i] = static_cast<char>(value >> (24 - 8 * i) & 0xFF);
+        return four;
+    };
+    const std::string chunk =
+        big_endian(body.size() - 4) + body + big_endian(crc32(0, bytes, static_cast<uInt>(body.size())));
+    return {chunk.begin(), chunk.end()};
 }
 
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "image.hpp"
@@ -29,6 +30,11 @@ private:
 
 /// An opaque RGB PNG. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// Where in a PNG file a text chunk may go: behind its signature and IHDR.
+inline constexpr std::size_t kPngTextOffset = 33;
+/// An uncompressed iTXt chunk with keyword `vrut-preview` that holds `text`.
+std::vector<std::uint8_t> png_text_chunk(const std::string& text);
 
 /// Writes a whole file. Throws std::runtime_error with a sentence that names it.
 void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);

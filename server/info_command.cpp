@@ -39,8 +39,9 @@ std::vector<protocol::NodeReport> list_nodes(const PlacedScene& placed) {
 void print(const protocol::SceneState& scene, const std::vector<protocol::NodeReport>& nodes) {
     std::cout << scene.name << ": " << scene.nodes << " nodes, " << scene.materials << " materials, "
               << scene.geometries << " geometries, " << scene.triangles << " triangles\n"
-              << "bounds " << scene.min.x << " " << scene.min.y << " " << scene.min.z << " to " << scene.max.x
-              << " " << scene.max.y << " " << scene.max.z << "\n";
+              << "bounds " << scene.bounds.min.x << " " << scene.bounds.min.y << " " << scene.bounds.min.z
+              << " to " << scene.bounds.max.x << " " << scene.bounds.max.y << " " << scene.bounds.max.z
+              << "\n";
     for (const std::string& notice : scene.notices) std::cout << "notice: " << notice << "\n";
     for (const protocol::NodeReport& node : nodes) {
         // Deep trees keep to the width of a terminal.
@@ -58,7 +59,7 @@ void info_command(const InfoArguments& arguments) {
     auto scene = read_scene(arguments.scene);
     if (!scene) throw std::runtime_error(scene.error());
     const PlacedScene placed = place(*std::move(scene));
-    const protocol::SceneState state = starting_state(placed, 1, all_notices(*placed.scene)).scene;
+    const protocol::SceneState state = *starting_state(placed, 1, all_notices(*placed.scene)).scene.value;
     const auto nodes = list_nodes(placed);
     if (arguments.json)
         std::cout << protocol::encode_info(state, nodes) << std::endl;

@@ -10,12 +10,15 @@
 
 #include "messages.hpp"
 #include "pacing.hpp"
+#include "scene_state.hpp"
 
 namespace vrut {
 
 struct ClientJoined {
     std::string client;
     protocol::Role role = protocol::Role::view;
+    std::string name;
+    std::int64_t id = 0;  ///< of its `hello`; 0: it had none
 };
 
 struct ClientLeft {
@@ -30,14 +33,35 @@ struct ClientSaid {
     bool may_steer = true;  ///< else its moves are not merged: each is answered as wrong
 };
 
-/// A newer frame than the promised one was sent, or one frame for two grants.
+/// A frame was handed to its client's socket: the promised one, or a newer one.
 struct FrameSent {
     std::string client;
     std::int64_t frame = 0;
-    int unused_grants = 0;
+    int unused_grants = 0;  ///< where it is one frame for two grants
 };
 
-using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent>;
+struct SnapshotSent {
+    std::string client;
+};
+
+/// Somebody who is no client wants the present picture.
+struct PictureAsked {
+    std::string name;           ///< that the picture shall have as its `client`
+    int width = 0, height = 0;  ///< 0: the view's
+};
+
+struct SceneLoading {
+    std::string name;
+    double fraction = 0;
+};
+
+struct SceneLoaded {
+    std::string name;
+    tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
+};
+
+using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent, SnapshotSent, PictureAsked,
+                                 SceneLoading, SceneLoaded>;
 
 /// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or
 /// dropped.

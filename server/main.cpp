@@ -56,12 +56,56 @@ void add_serve(CLI::App& app, vrut::ServeArguments& arguments) {
         ->check(CLI::Range(1, 10000))
         ->capture_default_str();
     command->add_option("--token-file", arguments.token_file, R"(JSON file {"control": …, "view": …})");
+    command->add_option("--scenes", arguments.scenes, "Folder of scenes that clients may open");
+    command->add_option("--record", arguments.record, "Folder for recorded sessions");
     add_device(*command, arguments.device);
     auto* level = command->add_option_function<std::string>(
         "--log-level", [](const std::string& text) { spdlog::set_level(spdlog::level::from_str(text)); },
         "debug, info, warning, error or off (default: info)");
     level->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}));
     command->callback([&arguments] { vrut::serve_command(arguments); });
+}
+
+/// Options that stand for patches of the state.
+void add_patches(CLI::App& command, vrut::RenderArguments& arguments) {
+    const auto add = [&](const std::string& name, const std::string& text) {
+        arguments.patches.emplace_back(name, text);
+    };
+    command
+        .add_option_function<std::string>(
+            "--mode",
+            [add](const std::string& mode) { add("--mode", R"({"renderer":{"mode":")" + mode + "\"}}"); },
+            "realistic or stylized")
+        ->check(CLI::IsMember({"realistic", "stylized"}));
+    command.add_flag_callback(
+        "--wireframe", [add] { add("--wireframe", R"({"renderer":{"wireframe":true}})"); }, "Edges only");
+    command.add_option_function<std::int64_t>(
+        "--select",
+        [add](std::int64_t node) {
+            add("--select", R"({"selection":{"node":)" + std::to_string(node) + "}}");
+        },
+        "Node to mark");
+    const auto is_id = [](const std::string& other) {
+        return [other](const std::string& text) {
+            const bool digits = !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+            return digits || text == other ? std::string() : "expected a node's id or " + other;
+        };
+    };
+    command
+        .add_option_function<std::string>(
+            "--light",
+            [add](const std::string& light) { add("--light", R"({"lights":{"active":")" + light + "\"}}"); },
+            "Id of the light node that shines, or headlight")
+        ->check(is_id("headlight"));
+    command
+        .add_option_function<std::string>(
+            "--background",
+            [add](const std::string& background) {
+                add("--background",
+                    R"({"backgrounds":{"active":")" + (background == "none" ? "color" : background) + "\"}}");
+            },
+            "Id of a background node, or none for the plain colour")
+        ->check(is_id("none"));
 }
 
 void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
@@ -88,12 +132,23 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
     command->add_option("--fov", arguments.fov, "Vertical field of view in degrees")
         ->check(CLI::Range(1.0, 170.0));
     command->add_option("--set", arguments.set, "JSON merge patch on the state document");
+    add_patches(*command, arguments);
     command->add_option("--jpeg-quality", arguments.jpeg_quality, "1 to 100")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     command->add_flag("--stats", arguments.stats, "Print what the picture took, as JSON");
     add_device(*command, arguments.device);
     command->callback([&arguments] { vrut::render_command(arguments); });
+}
+
+void add_replay(CLI::App& app, vrut::ReplayArguments& arguments) {
+    CLI::App* command =
+        app.add_subcommand("replay", "Play a recorded session again; prints its final camera");
+    command->add_option("log", arguments.log, "Recorded session (.jsonl)")->required();
+    command->add_option("--scene", arguments.scene, "Scene file (default: the one that was recorded)");
+    command->add_option("--out", arguments.frames, "Folder to write the session's frames to");
+    add_device(*command, arguments.device);
+    command->callback([&arguments] { vrut::replay_command(arguments); });
 }
 
 void add_info(CLI::App& app, vrut::InfoArguments& arguments) {
@@ -116,9 +171,11 @@ int main(int argc, char** argv) try {
     app.require_subcommand(1);
     vrut::ServeArguments serve;
     vrut::RenderArguments render;
+    vrut::ReplayArguments replay;
     vrut::InfoArguments info;
     add_serve(app, serve);
     add_render(app, render);
+    add_replay(app, replay);
     add_info(app, info);
     try {
         app.parse(argc, argv);

@@ -24,6 +24,8 @@ std::string Metrics::text() const {
     add("pictures_held", "Encoded pictures in memory.", pictures_held, "gauge");
     add("pictures_held_most", "The most encoded pictures that were ever in memory.", pictures_held_most,
         "gauge");
+    add("snapshots_rendered_total", "Snapshots drawn.", snapshots_rendered);
+    add("snapshots_sent_total", "Snapshots handed to sockets.", snapshots_sent);
     add("bytes_sent_total", "Bytes of messages handed to sockets.", bytes_sent);
     return out;
 }

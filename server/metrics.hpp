@@ -16,6 +16,7 @@ struct Metrics {
     Counter frames_encoded{0}, frames_sent{0};
     Counter frames_replaced{0};  ///< a newer picture took the place of one that waited for its client
     Counter pictures_held{0}, pictures_held_most{0};  ///< encoded pictures in memory, now and at most so far
+    Counter snapshots_rendered{0}, snapshots_sent{0};
     Counter bytes_sent{0};
 
     std::uint64_t frames_rendered() const { return frames_rendered_moving + frames_rendered_still; }

@@ -6,10 +6,10 @@
 
 #include "commands.hpp"
 #include "images.hpp"
-#include "read_scene.hpp"
+#include "presentation.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
-#include "scene_state.hpp"
+#include "scene_library.hpp"
 
 namespace vrut {
 
@@ -22,35 +22,37 @@ std::string read_text(const std::filesystem::path& path) {
     return text;
 }
 
-/// The state that the scene starts with, changed by --set, --camera and the camera's own options, in this
-/// order.
-protocol::State wanted_state(const RenderArguments& arguments, const PlacedScene& placed) {
-    const protocol::State starting =
-        starting_state(placed, static_cast<double>(arguments.width) / arguments.height, {});
-    protocol::State state = starting;
-    if (!arguments.set.empty()) {
-        auto patched = protocol::patched_by_text(state, starting, arguments.set);
-        if (!patched) throw std::runtime_error("--set: " + patched.error().message);
-        state = *std::move(patched);
-    }
+/// What one client of a server would do to change the state. Throws std::runtime_error.
+void say(Presentation& presentation, const std::string& option,
+         decltype(protocol::ClientMessage::payload) payload) {
+    presentation.say("render", {1, std::move(payload)}, Time(0));
+    for (const Answer& answer : presentation.take_answers())
+        if (!answer.refusal.empty()) throw std::runtime_error(option + ": " + answer.refusal);
+}
+
+void patch(Presentation& presentation, const std::string& option, const std::string& text) {
+    auto patch = protocol::parse_patch(text);
+    if (!patch) throw std::runtime_error(option + ": " + patch.error().message);
+    say(presentation, option, *std::move(patch));
+}
+
+/// The camera that the options give: the file's members, then the single ones.
+Camera wanted_camera(const RenderArguments& arguments, const Presentation& presentation) {
+    protocol::CameraOverlay overlay;
     if (!arguments.camera_file.empty()) {
-        auto camera = protocol::parse_camera(read_text(arguments.camera_file), state.camera);
+        auto camera = protocol::parse_camera(read_text(arguments.camera_file));
         if (!camera) throw std::runtime_error(arguments.camera_file.string() + ": " + camera.error().message);
-        state.camera = *std::move(camera);
+        overlay = *camera;
+        if (overlay.eye && overlay.focus) overlay.node.reset();  // a whole pose, maybe of another scene
     }
-    if (arguments.eye) state.camera.eye = *arguments.eye;
-    if (arguments.focus) state.camera.focus = *arguments.focus;
-    if (arguments.up) state.camera.up = *arguments.up;
-    if (arguments.fov) state.camera.fov = *arguments.fov;
-    Camera camera = camera_of(state.camera);
-    const bool up_is_given = camera.up != starting.camera.up ||
-                             std::abs(glm::dot(camera.up, glm::normalize(camera.focus - camera.eye))) < 1e-9;
-    if (!up_is_given) camera = with_roll_of(camera_of(starting.camera), camera);
-    if (!is_valid_pose(camera, placed.bounds.radius()))
-        throw std::runtime_error(
-            "the camera sees nothing: eye and focus must be apart, up neither zero nor along the view");
-    state.camera = state_of(with_orthogonal_up(camera), placed.bounds);
-    return state;
+    if (arguments.eye) overlay.eye = arguments.eye;
+    if (arguments.focus) overlay.focus = arguments.focus;
+    if (arguments.up) overlay.up = arguments.up;
+    if (arguments.fov) overlay.fov = arguments.fov;
+    const auto camera =
+        overlaid(camera_of(presentation.state().camera), overlay, presentation.scene(), "the camera");
+    if (!camera) throw std::runtime_error(camera.error().message);
+    return *camera;
 }
 
 }  // namespace
@@ -60,11 +62,18 @@ void render_command(const RenderArguments& arguments) {
     const bool jpeg = extension == ".jpg" || extension == ".jpeg";
     if (!jpeg && extension != ".png")
         throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
-    auto scene = read_scene(arguments.scene);
+    auto scene = load_scene(arguments.scene, arguments.scene.filename().string());
     if (!scene) throw std::runtime_error(scene.error());
-    const auto placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    Presentation presentation(*std::move(scene));
+    presentation.join("render", protocol::Role::control, Time(0));
+    const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),
+                                1};
+    say(presentation, "--size", size);
+    patch(presentation, "--set", arguments.set.empty() ? "{}" : arguments.set);
+    for (const auto& [option, text] : arguments.patches) patch(presentation, option, text);
 
-    View view = view_of(wanted_state(arguments, *placed), placed);
+    View view = presentation.visible();
+    view.camera = wanted_camera(arguments, presentation);
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;

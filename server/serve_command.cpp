@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "commands.hpp"
-#include "read_scene.hpp"
+#include "scene_library.hpp"
 #include "server.hpp"
 
 namespace vrut {
@@ -30,6 +30,13 @@ std::string url(const std::string& host, std::uint16_t port, const std::string& 
     const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
     return "http://" + name + ":" + std::to_string(port) + "/" +
            (token.empty() ? "" : "#token=" + percent_encoded(token));
+}
+
+/// An empty path stays one. Throws std::runtime_error where there is no such folder.
+std::filesystem::path existing_folder(const std::string& option, const std::filesystem::path& path) {
+    if (!path.empty() && !std::filesystem::is_directory(path))
+        throw std::runtime_error(option + ": there is no folder " + path.string());
+    return path;
 }
 
 void announce(const ListenAddress& listen, std::uint16_t port, const Access& access) {
@@ -61,12 +68,14 @@ void serve_command(const ServeArguments& arguments) {
     }
 
     const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
-    auto scene = read_scene(path);
+    auto scene = load_scene(path, path.filename().string());
     if (!scene) throw std::runtime_error(scene.error());
-    spdlog::info("{}: {} nodes, {} triangles", path.string(), scene->nodes().size(), scene->triangle_count());
+    const Scene& read = *scene->placed->scene;
+    spdlog::info("{}: {} nodes, {} triangles", path.string(), read.nodes().size(), read.triangle_count());
+    options.library = SceneLibrary(existing_folder("--scenes", arguments.scenes));
+    options.record_folder = existing_folder("--record", arguments.record);
 
-    Server server(options, std::make_shared<const PlacedScene>(place(*std::move(scene))),
-                  gl_painter(arguments.device));
+    Server server(options, *std::move(scene), gl_painter(arguments.device));
     announce(options.listen, server.port(), options.access);
     server.run(true);
     spdlog::info("shut down");

@@ -20,8 +20,7 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 struct Server::Impl {
-    Impl(ServerOptions server_options, std::shared_ptr<const PlacedScene> scene,
-         const PainterFactory& painter)
+    Impl(ServerOptions server_options, LoadedScene scene, const PainterFactory& painter)
         : options(std::move(server_options)),
           acceptor(context),
           accept_pause(context),
@@ -44,12 +43,14 @@ struct Server::Impl {
                 stop();
             });
         };
-        engine = std::make_unique<Engine>(std::move(scene), painter, metrics, std::move(callbacks));
+        EngineOptions engine_options{std::move(scene), options.library, options.record_folder};
+        engine = std::make_unique<Engine>(std::move(engine_options), painter, metrics, std::move(callbacks));
         hub.engine = engine.get();
     }
 
     ~Impl() {
         hub.newest.reset();
+        hub.picture_waiters.clear();
         hub.sessions.clear();
     }
 
@@ -95,6 +96,8 @@ struct Server::Impl {
             hub.document_by = std::move(output.by);
             hub.document_by_since = output.by_since;
         }
+        if (output.stats) hub.stats = std::move(output.stats);
+        if (output.loading) hub.loading = std::move(output.loading);
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
         for (const auto& owed : output.owed)
@@ -105,9 +108,21 @@ struct Server::Impl {
     }
 
     void take(std::shared_ptr<const EncodedPicture> picture) {
+        if (!picture->client.empty()) return take_ordered(std::move(picture));
         const std::int64_t before = hub.newest ? hub.newest->header.frame : 0;
         hub.newest = std::move(picture);
         for_each_session([&](Session& session) { session.newest_changed(before); });
+    }
+
+    void take_ordered(std::shared_ptr<const EncodedPicture> picture) {
+        const std::string client = picture->client;
+        if (const auto waiter = hub.picture_waiters.find(client); waiter != hub.picture_waiters.end()) {
+            const auto tell = std::move(waiter->second);
+            hub.picture_waiters.erase(waiter);
+            tell(std::move(picture));
+        } else if (Session* session = find(client)) {
+            session->take_snapshot(std::move(picture));
+        }
     }
 
     template <class Function>
@@ -148,7 +163,7 @@ struct Server::Impl {
     std::unique_ptr<Engine> engine;
 };
 
-Server::Server(ServerOptions options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter)
+Server::Server(ServerOptions options, LoadedScene scene, const PainterFactory& painter)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), painter)) {}
 Server::~Server() = default;
 

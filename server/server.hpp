@@ -15,6 +15,8 @@ struct ServerOptions {
     ListenAddress listen{"127.0.0.1", 8080};
     Access access;
     std::size_t max_clients = 64;
+    SceneLibrary library{};
+    std::filesystem::path record_folder{};  ///< empty: nothing is recorded
 };
 
 /// The preview server: an engine, and clients that reach it over HTTP and WebSocket.
@@ -22,7 +24,7 @@ class Server {
 public:
     /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port
     /// is taken or nothing can draw.
-    Server(ServerOptions options, std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter);
+    Server(ServerOptions options, LoadedScene scene, const PainterFactory& painter);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

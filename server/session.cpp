@@ -8,6 +8,7 @@
 #include <sys/socket.h>
 
 #include "codec.hpp"
+#include "images.hpp"
 
 namespace vrut {
 
@@ -151,23 +152,21 @@ void Session::on_text(std::string_view text) {
         return refuse_and_close(
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
-    if (hello) return on_hello(*hello);
+    if (hello) return on_hello(*hello, message->id);
     unhandled_bytes_ += text.size();
     hub_.engine->mailbox().push(
         ClientSaid{client_, std::move(message), Clock::now(), text.size(), may_steer_});
 }
 
-void Session::on_hello(const protocol::Hello& hello) {
+void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
     const std::optional<protocol::Role> role = hub_.access.role_for(hello.role, hello.token);
     if (!role)
-        return refuse_and_close({{},
-                                 protocol::error_code::not_allowed,
+        return refuse_and_close({id, protocol::error_code::not_allowed,
                                  hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
                                 close_code::policy_error);
     if (hub_.sessions.size() >= hub_.max_clients)
         return refuse_and_close(
-            {{},
-             protocol::error_code::too_many,
+            {id, protocol::error_code::too_many,
              "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
             close_code::try_again_later);
     if (hub_.stopping) return;  // the close is on its way
@@ -177,21 +176,22 @@ void Session::on_hello(const protocol::Hello& hello) {
     hub_.sessions[client_] = shared_from_this();
     ++hub_.metrics->clients_joined;
     spdlog::info("client {} joined as {} from {}", client_, name_of(*role), peer_);
-    hub_.engine->mailbox().push(ClientJoined{client_, *role});
+    hub_.engine->mailbox().push(ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
+    welcome.id = id;
     welcome.server = VRUT_VERSION;
     welcome.client = client_;
     welcome.role = *role;
     welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = 10'000;
     welcome.limits.max_server_message = std::size_t{64} << 20;
-    answer({client_, protocol::encode(welcome), 0, false});
+    answer({client_, protocol::encode(welcome), 0});
 }
 
 void Session::refuse_and_close(const protocol::Error& error, close_code code) {
     ++hub_.metrics->messages_refused;
-    answer({client_, protocol::encode(error), 0, true});
+    answer({client_, protocol::encode(error), 0, error.message});
     close(code, error.message);
 }
 
@@ -210,6 +210,11 @@ void Session::owe(std::int64_t frame) {
         return;
     }
     owed_.push_back(frame);
+    pump();
+}
+
+void Session::take_snapshot(std::shared_ptr<const EncodedPicture> picture) {
+    snapshots_.push_back(std::move(picture));
     pump();
 }
 
@@ -240,11 +245,22 @@ void Session::pump() {
     // A frame or answer goes when the client knows the revision that it speaks of.
     if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
-    if (client_.empty() || !hub_.document || document_ == hub_.document) return;
+    if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
+    if (client_.empty() || !hub_.document) return;
+    if (document_ == hub_.document) return send_news();
     const auto before = std::exchange(document_, hub_.document);
-    if (!before) return send_text(document_->encode());
+    if (!before || !document_->has_scene_of(*before)) return send_text(document_->encode());
     const bool one_author = before->revision() + 1 >= hub_.document_by_since;
     send_text(document_->encode_patch_from(*before, one_author ? hub_.document_by : ""));
+}
+
+/// What is told to all, and of which only the newest counts.
+void Session::send_news() {
+    for (const auto& [newest, sent] : {std::pair(&hub_.loading, &loading_), std::pair(&hub_.stats, &stats_)})
+        if (*newest != *sent) {
+            *sent = *newest;
+            return send_text(**sent);
+        }
 }
 
 void Session::send_answer() {
@@ -258,28 +274,39 @@ void Session::send_frame() {
     picture_ = hub_.newest;
     last_frame_ = picture_->header.frame;
     int grants = 0;
-    std::int64_t promised = 0;
-    for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front(), ++grants)
-        promised = owed_.front();
+    for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
-    if (grants > 1 || promised != last_frame_)
-        hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1});
+    hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);
-    header.handled = handled == picture_->handled.end() ? 0 : handled->second;
+    // A snapshot may have told of more.
+    if (handled != picture_->handled.end()) handled_ = std::max(handled_, handled->second);
+    header.handled = handled_;
     if (picture_->newest_input)
-        header.since_input_ms =
+        header.timing.since_input_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - *picture_->newest_input).count();
-    comment_ = protocol::comment_segment(protocol::encode(header));
     ++hub_.metrics->frames_sent;
+    send_picture(header);
+}
 
-    const auto& jpeg = picture_->jpeg;
-    const std::size_t cut = picture_->comment_offset;
+void Session::send_snapshot() {
+    picture_ = std::move(snapshots_.front());
+    snapshots_.pop_front();
+    ++hub_.metrics->snapshots_sent;
+    hub_.engine->mailbox().push(SnapshotSent{client_});
+    handled_ = std::max(handled_, picture_->header.handled);
+    send_picture(picture_->header);
+}
+
+void Session::send_picture(const protocol::FrameHeader& header) {
+    header_ = header_of_file(*picture_, header);
+    const auto& file = picture_->file;
+    const std::size_t cut = picture_->header_offset;
     socket_.binary(true);
     write(std::array<boost::asio::const_buffer, 3>{
-        boost::asio::buffer(jpeg.data(), cut), boost::asio::buffer(comment_),
-        boost::asio::buffer(jpeg.data() + cut, jpeg.size() - cut)});
+        boost::asio::buffer(file.data(), cut), boost::asio::buffer(header_),
+        boost::asio::buffer(file.data() + cut, file.size() - cut)});
 }
 
 void Session::send_text(std::string text) {

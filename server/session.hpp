@@ -34,6 +34,8 @@ public:
     void handled(std::size_t bytes);
     /// The hub has a newer picture than `before`.
     void newest_changed(std::int64_t before);
+    /// A picture that this client asked for.
+    void take_snapshot(std::shared_ptr<const EncodedPicture> picture);
     /// Sends what there is to send, if nothing is being sent.
     void pump();
     /// Ends the connection after what is being sent.
@@ -42,11 +44,14 @@ public:
 private:
     void read();
     void on_text(std::string_view text);
-    void on_hello(const protocol::Hello& hello);
+    void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
     void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
     bool frame_is_due() const;
     void send_frame();
+    void send_snapshot();
+    void send_picture(const protocol::FrameHeader& header);
+    void send_news();
     void send_answer();
     void send_text(std::string text);
     template <class Buffers>
@@ -70,11 +75,14 @@ private:
     std::size_t answer_bytes_ = 0;  // of answers_
     std::deque<std::int64_t> owed_;
     std::int64_t last_frame_ = 0;
+    std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
+    std::deque<std::shared_ptr<const EncodedPicture>> snapshots_;
+    std::shared_ptr<const std::string> stats_, loading_;  // that it last got
 
     // --- what is being sent
     bool writing_ = false;
     std::string text_;
-    std::vector<std::uint8_t> comment_;
+    std::vector<std::uint8_t> header_;
     std::shared_ptr<const EncodedPicture> picture_;
     bool watching_ = false;
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look

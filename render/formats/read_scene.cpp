@@ -13,7 +13,7 @@ namespace {
 
 struct Format {
     const char* extension;
-    ReadResult (*read)(std::string_view bytes, const std::string& file);
+    ReadResult (*read)(std::string_view bytes, const std::string& file, const ReadProgress& progress);
 };
 
 constexpr Format kFormats[] = {
@@ -28,7 +28,7 @@ std::string known_extensions() {
 
 }  // namespace
 
-ReadResult read_scene(const std::filesystem::path& path) {
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
@@ -51,7 +51,7 @@ ReadResult read_scene(const std::filesystem::path& path) {
     std::string bytes(static_cast<std::size_t>(size), '\0');
     if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
         return tl::unexpected(file + ": cannot be read to its end");
-    return format->read(bytes, file);
+    return format->read(bytes, file, progress);
 }
 
 }  // namespace vrut

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <tl/expected.hpp>
 
@@ -11,7 +12,10 @@ namespace vrut {
 /// A scene, or one sentence that names the file, where it can the line, and what was expected.
 using ReadResult = tl::expected<Scene, std::string>;
 
+/// Is told now and then which part, 0 to 1, has been read.
+using ReadProgress = std::function<void(double)>;
+
 /// Reads a scene file in any known format, chosen by the file's ending.
-ReadResult read_scene(const std::filesystem::path& path);
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 }  // namespace vrut

@@ -45,7 +45,8 @@ struct References {
 
 class VrutTextReader {
 public:
-    VrutTextReader(std::string_view text, const std::string& file) : tokens_(text), file_(file) {}
+    VrutTextReader(std::string_view text, const std::string& file, const ReadProgress& progress)
+        : tokens_(text), text_(text), file_(file), progress_(progress) {}
 
     Scene read() {
         if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text != "vrut-text")
@@ -54,7 +55,11 @@ public:
         if (tokens_.peek().kind != Token::Kind::number || tokens_.peek().number != 1)
             tokens_.fail_expected("version 1 of vrut-text");
         tokens_.take();
-        while (tokens_.peek().kind != Token::Kind::end_of_file) read_block();
+        while (tokens_.peek().kind != Token::Kind::end_of_file) {
+            const auto read = tokens_.peek().text.data() - text_.data();
+            if (progress_) progress_(static_cast<double>(read) / static_cast<double>(text_.size()));
+            read_block();
+        }
         resolve_references();
         if (skipped_notices_ > 0)
             parts_.notices.push_back("… and " + std::to_string(skipped_notices_) +
@@ -376,7 +381,9 @@ private:
     }
 
     Tokenizer tokens_;
+    std::string_view text_;
     const std::string& file_;
+    const ReadProgress& progress_;
     SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
     std::unordered_map<Id, Index> material_ids_, geometry_ids_;
@@ -385,7 +392,7 @@ private:
 
 }  // namespace
 
-ReadResult read_vrut_text(std::string_view text, const std::string& file) {
+ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {
     const auto at_line = [&](std::size_t line, const std::string& what) {
         return tl::unexpected(file + ":" + std::to_string(line) + ": " + what);
     };
@@ -394,7 +401,7 @@ ReadResult read_vrut_text(std::string_view text, const std::string& file) {
                                text.begin(), text.begin() + static_cast<std::ptrdiff_t>(invalid), '\n')),
                        "expected UTF-8, found another byte");
     try {
-        return VrutTextReader(text, file).read();
+        return VrutTextReader(text, file, progress).read();
     } catch (const ParseError& error) {
         return at_line(error.line, error.what());
     }

@@ -7,6 +7,6 @@
 namespace vrut {
 
 /// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
-ReadResult read_vrut_text(std::string_view text, const std::string& file);
+ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
 
 }  // namespace vrut

@@ -149,16 +149,10 @@ Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
     return result;
 }
 
-std::optional<Camera> first_camera_node(const PlacedScene& placed) {
-    const auto& nodes = placed.scene->nodes();
-    std::size_t first = nodes.size();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id))
-            first = i;
-    if (first == nodes.size()) return std::nullopt;
-
-    const auto& data = std::get<CameraData>(nodes[first].data);
-    const glm::dmat4& world = placed.world[first];
+std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node) {
+    const auto place = static_cast<std::size_t>(camera_node);
+    const auto& data = std::get<CameraData>(placed.scene->nodes()[place].data);
+    const glm::dmat4& world = placed.world[place];
     Camera camera;
     camera.eye = glm::dvec3(world * glm::dvec4(data.eye, 1));
     camera.focus = camera.center = glm::dvec3(world * glm::dvec4(data.focus, 1));
@@ -166,6 +160,16 @@ std::optional<Camera> first_camera_node(const PlacedScene& placed) {
     camera.fov = data.fov;
     if (!is_valid_pose(camera, placed.bounds.radius())) return std::nullopt;
     return with_orthogonal_up(camera);
+}
+
+Index first_camera_node(const PlacedScene& placed) {
+    const auto& nodes = placed.scene->nodes();
+    std::size_t first = nodes.size();
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id))
+            first = i;
+    if (first == nodes.size() || !camera_at(placed, static_cast<Index>(first))) return kNone;
+    return static_cast<Index>(first);
 }
 
 Camera home_camera(const Bounds& bounds, double aspect) {

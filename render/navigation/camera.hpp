@@ -56,8 +56,11 @@ glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dve
 /// The camera, looking along the same direction, from where the sphere around `bounds` just fits into a view
 /// of `aspect`: distance r / sin(half of the smaller fov). Empty bounds count as a unit sphere at the origin.
 Camera fitted(const Camera& camera, const Bounds& bounds, double aspect);
-/// The camera that the scene starts with: its first camera node by id, if there is one and its pose is valid.
-std::optional<Camera> first_camera_node(const PlacedScene& placed);
+/// Where a camera node stands and looks now; none where its pose is no valid one.
+std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
+/// What the scene starts with: its first camera node by id, if there is one and its pose is valid; else
+/// kNone.
+Index first_camera_node(const PlacedScene& placed);
 /// The view of a scene without a camera node: three quarters from the front and above, fitted.
 Camera home_camera(const Bounds& bounds, double aspect);
 

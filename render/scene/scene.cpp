@@ -236,6 +236,20 @@ std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm
     return shown;
 }
 
+bool is_shown(const PlacedScene& placed, Index node) {
+    const auto& nodes = placed.scene->nodes();
+    if (node == kNone) return false;
+    for (Index parent; placed.nodes[static_cast<std::size_t>(node)].active; node = parent) {
+        parent = nodes[static_cast<std::size_t>(node)].parent;
+        if (parent == kNone) return true;
+        const auto& children = nodes[static_cast<std::size_t>(parent)].children;
+        const auto place =
+            static_cast<std::size_t>(std::find(children.begin(), children.end(), node) - children.begin());
+        if (!chooses(placed, static_cast<std::size_t>(parent), place, std::nullopt)) return false;
+    }
+    return false;
+}
+
 std::vector<bool> subtree(const Scene& scene, Index top) {
     std::vector<bool> below(scene.nodes().size());
     below[static_cast<std::size_t>(top)] = true;

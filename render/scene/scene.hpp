@@ -183,6 +183,8 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<Nod
 /// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs
 /// choose by the distance of `eye` (world space); without one all their children count.
 std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye);
+/// The same for one node, with all children of LODs; false for kNone.
+bool is_shown(const PlacedScene& placed, Index node);
 
 /// For each node, whether it is `top` or hangs below it.
 std::vector<bool> subtree(const Scene& scene, Index top);

@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "read_scene.hpp"
+#include "scene_library.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -29,9 +29,9 @@ struct Series {
 
 TEST_CASE("latency of isolated inputs") {
     constexpr int kInputs = 100;
-    auto scene = read_scene(VRUT_SCENES "/car/car.vrut");
+    auto scene = load_scene(VRUT_SCENES "/car/car.vrut", "car.vrut");
     REQUIRE(scene.has_value());
-    TestServer server(std::make_shared<const PlacedScene>(place(*std::move(scene))), gl_painter({}));
+    TestServer server(*std::move(scene), gl_painter({}));
     TestClient client(server.port());
     client.join();
     client.send({{"type", "resize"}, {"id", 1}, {"width", 1280}, {"height", 720}, {"pixelRatio", 1}});

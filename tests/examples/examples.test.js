@@ -12,8 +12,6 @@ const { VRUT_PREVIEW, VRUT_SCENES, VRUT_EXAMPLE_HOST, PYTHON } = process.env;
 const EXAMPLES = path.join(__dirname, '../../protocol/examples');
 const TOKEN = 'a-token-of-the-tests';
 const DOOR = '3'; // the front left door of the car
-// To be taken away once the server has tree, nodes, snapshot and /frame.jpg.
-const SKIP = { skip: 'needs tree, nodes, snapshot, /frame.jpg' };
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
 const file = (name) => path.join(folder, name);
 
@@ -212,7 +210,7 @@ test('example_host leads the camera once around, back to where it was', async ()
   host.kill('SIGTERM');
 });
 
-test('door.py opens a door and closes it', SKIP, async () => {
+test('door.py opens a door and closes it', async () => {
   watcher.patches.length = 0;
   await succeeds(python('door.py', '--hold', '0.1'));
   const matrices = watcher.patches.map((patch) => patch.nodes?.[DOOR]?.matrix).filter(Boolean);
@@ -224,7 +222,7 @@ test('door.py opens a door and closes it', SKIP, async () => {
   assert.match((await python('door.py', '--door', 'Nose')).stderr, /^door\.py: .*'Nose'\n$/);
 });
 
-test('snapshot.mjs saves pictures of the size and from where it is asked to', SKIP, async () => {
+test('snapshot.mjs saves pictures of the size and from where it is asked to', async () => {
   const before = JSON.stringify(watcher.state.camera);
   await succeeds(snapshot('view.jpg', '--size', '300x170', '--quality', '80'));
   const shared = jpeg('view.jpg');
@@ -246,7 +244,7 @@ test('snapshot.mjs saves pictures of the size and from where it is asked to', SK
   assert.ok(!fs.existsSync(file('x.png')));
 });
 
-test('picture.sh fetches the picture, and again only when it has changed', SKIP, async () => {
+test('picture.sh fetches the picture, and again only when it has changed', async () => {
   assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: saved\n[^]*vrut_preview_clients \d/);
   const first = jpeg('p.jpg');
   assert.deepEqual([first.width, first.height], [200, 100]);

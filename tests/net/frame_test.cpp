@@ -23,25 +23,34 @@ Json eye(int id, double x) {
 
 }  // namespace
 
-TEST_CASE("after a change come moving frames, then one still frame, then none") {
+TEST_CASE("after a change come moving frames, then still ones of rising samples, then none") {
     TestServer server;
     TestClient client(server.port());
     client.join();
-    CHECK(client.wait_for_still()["frame"] == 1);  // at rest since long: in full at once
+    client.send({{"type", "frame"}});
+    Json first = client.wait_for("frame");  // at rest since long: still at once
+    CHECK(first["frame"] == 1);
+    CHECK(first["quality"]["level"] == "still");
+    CHECK(first["quality"]["samples"] == 4);
+    CHECK(client.wait_for_still()["frame"] == 2);
     client.send(eye(1, 1));
     client.send({{"type", "frame"}});
     const Json moving = client.wait_for("frame");
     CHECK(moving["quality"]["level"] == "moving");
     CHECK(moving["camera"]["eye"][0] == 1.0);
     const auto start = std::chrono::steady_clock::now();
-    const Json still = client.wait_for_still();
+    client.send({{"type", "frame"}});
+    const Json coarse = client.wait_for("frame");
     CHECK(std::chrono::steady_clock::now() - start > 100ms);
-    CHECK(still["quality"]["samples"] > 1);
+    CHECK(coarse["quality"]["level"] == "still");
+    CHECK(coarse["quality"]["samples"] == 4);
+    const Json still = client.wait_for_still();
+    CHECK(still["quality"]["samples"] == 16);
     CHECK(still["quality"]["scale"] == 1.0);
     CHECK(still["quality"]["subsampling"] == "4:4:4");
     client.send({{"type", "frame"}});
     CHECK_FALSE(client.receive(400ms).has_value());
-    CHECK(server.metrics().frames_rendered() == 3);
+    CHECK(server.metrics().frames_rendered() == 5);
 }
 
 TEST_CASE("the header tells the highest id of this client that the picture shows") {
@@ -98,7 +107,7 @@ TEST_CASE("one rendering and one encoding serve everybody") {
     c.join("view");
     Json frames[3];
     for (TestClient* client : {&a, &b, &c}) client->send({{"type", "frame"}});
-    frames[0] = a.wait_for_still();
+    frames[0] = a.wait_for("frame");
     frames[1] = b.wait_for("frame");
     frames[2] = c.wait_for("frame");
     CHECK(frames[0]["frame"] == frames[1]["frame"]);
@@ -107,10 +116,11 @@ TEST_CASE("one rendering and one encoding serve everybody") {
     CHECK(server.metrics().frames_encoded == 1);
     CHECK(server.metrics().frames_sent == 3);
     // Who comes later gets the same one without any work.
+    const Json refined = a.wait_for_still();
     TestClient d(server.port());
     d.join("view");
-    CHECK(d.wait_for_still()["frame"] == frames[0]["frame"]);
-    CHECK(server.metrics().frames_rendered() == 1);
+    CHECK(d.wait_for_still()["frame"] == refined["frame"]);
+    CHECK(server.metrics().frames_rendered() == 2);
 }
 
 TEST_CASE("five seconds without change cost nothing") {
@@ -265,7 +275,7 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
         };
         return painter;
     };
-    Server server(options, std::make_shared<const PlacedScene>(place(Scene())), broken);
+    Server server(options, scene_of("vrut-text 1"), broken);
     std::string sentence;
     std::thread thread([&] {
         try {
@@ -286,7 +296,7 @@ TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
     const PainterFactory none = []() -> Painter { throw std::runtime_error("nothing here draws"); };
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
-    const auto scene = std::make_shared<const PlacedScene>(place(Scene()));
+    const LoadedScene scene = scene_of("vrut-text 1");
     CHECK_THROWS_WITH(Server(options, scene, none), "nothing here draws");
     TestServer other;
     options.listen.port = other.port();

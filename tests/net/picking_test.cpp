@@ -13,7 +13,7 @@ namespace {
 const Json kCamera = {
     {"eye", {0, 0, 10}}, {"focus", {0, 0, 0}}, {"center", {0, 0, 0}}, {"up", {0, 1, 0}}, {"fov", 40}};
 
-Json pick(int id, double x, double y) { return {{"type", "pick"}, {"id", id}, {"x", x}, {"y", y}}; }
+Json pick(std::int64_t id, double x, double y) { return {{"type", "pick"}, {"id", id}, {"x", x}, {"y", y}}; }
 
 }  // namespace
 
@@ -50,12 +50,15 @@ TEST_CASE("a pick sees what its frame showed, not what has come since") {
     client.send(message);  // the newest frame is still that one
     CHECK(client.wait_for("picked")["node"] == 1);
     client.wait_for_still();
+    message["id"] = client.next_id();
     client.send(message);
     CHECK_FALSE(client.wait_for("picked").contains("node"));
     message["frame"] = frame;
+    message["id"] = client.next_id();
     client.send(message);
     CHECK(client.wait_for("picked")["node"] == 1);
     message["frame"] = 12345;
+    message["id"] = client.next_id();
     client.send(message);
     CHECK(client.wait_for("error")["code"] == "unknown-frame");
 }
@@ -65,10 +68,10 @@ TEST_CASE("a pick may select, set the centre of rotation, and look at the point"
     TestClient client(server.port()), view(server.port());
     client.join();
     view.join("view");
-    client.send({{"type", "patch"}, {"id", 1}, {"patch", {{"camera", kCamera}}}});
+    client.send({{"type", "patch"}, {"id", client.next_id()}, {"patch", {{"camera", kCamera}}}});
     client.wait_for("ok");
     const auto picked = [&](double x, const char* then) {
-        Json message = pick(2, x, 360);
+        Json message = pick(client.next_id(), x, 360);
         message["then"] = then;
         client.send(message);
         return client.wait_for("picked");
@@ -101,7 +104,8 @@ TEST_CASE("the selection is a node of the scene; f fits it, Escape clears it") {
     TestClient client(server.port());
     client.join();
     const auto patch = [&](const Json& node) {
-        client.send({{"type", "patch"}, {"id", 1}, {"patch", {{"selection", {{"node", node}}}}}});
+        client.send(
+            {{"type", "patch"}, {"id", client.next_id()}, {"patch", {{"selection", {{"node", node}}}}}});
     };
     patch(99);
     CHECK(client.wait_for("error")["code"] == "unknown-node");
@@ -109,7 +113,7 @@ TEST_CASE("the selection is a node of the scene; f fits it, Escape clears it") {
     client.wait_for("ok");
     CHECK(client.state["selection"]["name"] == "Triangle");
     const Json before = client.state["camera"]["eye"];
-    client.send({{"type", "navigate"}, {"id", 2}, {"zoom", 3}});
+    client.send({{"type", "navigate"}, {"id", client.next_id()}, {"zoom", 3}});
     client.wait_for("ok");
     client.send({{"type", "keydown"}, {"key", "f"}, {"code", "KeyF"}});
     client.wait_for("patch");

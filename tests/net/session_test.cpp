@@ -129,7 +129,7 @@ TEST_CASE("a camera that stands upright stays upright where no up is given") {
     TestClient client(server.port());
     client.join();
     const auto up_after = [&](const Json& camera) {
-        client.send({{"type", "patch"}, {"id", 1}, {"patch", {{"camera", camera}}}});
+        client.send({{"type", "patch"}, {"id", client.next_id()}, {"patch", {{"camera", camera}}}});
         client.wait_for("ok");
         const Json& state = client.state["camera"];
         const auto eye = state["eye"], focus = state["focus"], up = state["up"];

@@ -30,12 +30,6 @@ node 1 "Triangle" geometry geometry 1 end
 node 2 "Studio" background active 0 end
 )";
 
-std::shared_ptr<const PlacedScene> triangle() {
-    auto scene = read_vrut_text(kScene, "triangle.vrut");
-    REQUIRE(scene.has_value());
-    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
-}
-
 Json header_of(const std::string& jpeg) {
     const std::span bytes(reinterpret_cast<const std::uint8_t*>(jpeg.data()), jpeg.size());
     const std::size_t at = protocol::comment_offset(bytes);
@@ -46,6 +40,12 @@ Json header_of(const std::string& jpeg) {
 }
 
 }  // namespace
+
+LoadedScene scene_of(const std::string& text, const std::string& name) {
+    auto scene = read_vrut_text(text, name);
+    REQUIRE_MESSAGE(scene.has_value(), scene.error());
+    return {name, "", std::make_shared<const PlacedScene>(place(*std::move(scene))), {}};
+}
 
 PainterFactory FakePainter::factory() const {
     return [*this] {
@@ -71,10 +71,9 @@ PainterFactory FakePainter::factory() const {
 }
 
 TestServer::TestServer(const FakePainter& painter, const ServerOptions& options)
-    : TestServer(triangle(), painter.factory(), options) {}
+    : TestServer(scene_of(kScene, "triangle.vrut"), painter.factory(), options) {}
 
-TestServer::TestServer(std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter,
-                       ServerOptions options) {
+TestServer::TestServer(LoadedScene scene, const PainterFactory& painter, ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
     options.listen = {"127.0.0.1", 0};
     server_ = std::make_unique<Server>(std::move(options), std::move(scene), painter);
@@ -127,6 +126,12 @@ std::string TestClient::subprotocol() const {
     return std::string(impl_->response[beast::http::field::sec_websocket_protocol]);
 }
 
+void TestClient::send(const Json& message) {
+    if (message.contains("id") && message["id"].is_number_integer())
+        last_id_ = std::max(last_id_, message["id"].get<std::int64_t>());
+    send_text(message.dump());
+}
+
 void TestClient::send_text(const std::string& text) {
     impl_->socket.text(true);
     beast::error_code ignored;  // the server may have closed; the test sees that when it reads
@@ -167,12 +172,18 @@ std::optional<TestClient::Message> TestClient::receive(std::chrono::milliseconds
     impl.buffer.consume(impl.buffer.size());
     if (message.binary) return message;
     const Json json = message.json();
+    if (json["type"] == "stats" && !takes_stats) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+        return receive(std::max(left, 0ms));
+    }
     if (json["type"] == "state") state = json["state"];
     if (json["type"] == "patch") state.merge_patch(json["patch"]);
     return message;
 }
 
 Json TestClient::wait_for(const std::string& type, std::chrono::milliseconds timeout) {
+    takes_stats = takes_stats || type == "stats";
     const auto end = std::chrono::steady_clock::now() + timeout;
     for (;;) {
         const auto left =
@@ -207,7 +218,7 @@ Json TestClient::wait_for_still() {
     for (;;) {
         send({{"type", "frame"}});
         Json header = wait_for("frame");
-        if (header["quality"]["level"] == "still") return header;
+        if (header["quality"]["samples"] == kStillSamples.back()) return header;
     }
 }
 

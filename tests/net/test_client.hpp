@@ -22,12 +22,14 @@ struct FakePainter {
     PainterFactory factory() const;
 };
 
+/// A scene as read from its text.
+LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
+
 /// A server in this process, on a port of its own. It serves one triangle if nothing else is said.
 class TestServer {
 public:
     explicit TestServer(const FakePainter& painter = {}, const ServerOptions& options = {});
-    TestServer(std::shared_ptr<const PlacedScene> scene, const PainterFactory& painter,
-               ServerOptions options = {});
+    TestServer(LoadedScene scene, const PainterFactory& painter, ServerOptions options = {});
     ~TestServer();
     std::uint16_t port() const { return server_->port(); }
     const Metrics& metrics() const { return server_->metrics(); }
@@ -57,7 +59,9 @@ public:
 
     int status() const;               ///< of the handshake: 101, 400 …
     std::string subprotocol() const;  ///< that the server chose
-    void send(const Json& message) { send_text(message.dump()); }
+    void send(const Json& message);
+    /// One more than any id that it sent.
+    std::int64_t next_id() const { return last_id_ + 1; }
     void send_text(const std::string& text);
     void send_binary(const std::string& bytes);
 
@@ -67,8 +71,10 @@ public:
         /// A text's, or a frame's header.
         Json json() const;
     };
-    /// The next message; none when `timeout` passes or the connection has ended.
+    /// The next message, `stats` left out, which come when they like; none when `timeout` passes or the
+    /// connection has ended.
     std::optional<Message> receive(std::chrono::milliseconds timeout = 5s);
+    bool takes_stats = false;  ///< they are not left out
     /// Reads on until a text of this `type`, or "frame"; fails the test when none comes.
     Json wait_for(const std::string& type, std::chrono::milliseconds timeout = 5s);
     /// Reads on until the end; its close code, 1006 where there was none.
@@ -76,11 +82,13 @@ public:
 
     /// hello; returns the state document.
     Json join(const std::string& role = "control", const std::string& token = {});
-    /// Frame, and the state as patches leave it, up to the next still frame; grants as it reads.
+    /// Frame, and the state as patches leave it, up to the last refinement of a still frame; grants as it
+    /// reads.
     Json wait_for_still();
     Json state;  ///< kept by every read
 
 private:
+    std::int64_t last_id_ = 0;
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

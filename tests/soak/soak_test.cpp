@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "read_scene.hpp"
+#include "scene_library.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -46,9 +46,9 @@ void one_round(TestServer& server, TestClient& presenter, int round) {
 }  // namespace
 
 TEST_CASE("a minute of work leaves no more behind than a few seconds") {
-    auto scene = read_scene(VRUT_SCENES "/car/car.vrut");
+    auto scene = load_scene(VRUT_SCENES "/car/car.vrut", "car.vrut");
     REQUIRE(scene.has_value());
-    TestServer server(std::make_shared<const PlacedScene>(place(*std::move(scene))), gl_painter({}));
+    TestServer server(*std::move(scene), gl_painter({}));
     TestClient presenter(server.port());
     presenter.join();
     int round = 0;

@@ -473,7 +473,9 @@ TEST_CASE("the scene's first camera node by id, in the world, active or not") {
                                      glm::dvec4(10, 20, 30, 1)),
                           {}},
                      0});
-    const auto camera = first_camera_node(scene_of(nodes));
+    const PlacedScene placed = scene_of(nodes);
+    REQUIRE(first_camera_node(placed) != kNone);
+    const auto camera = camera_at(placed, first_camera_node(placed));
     REQUIRE(camera);
     CHECK(near(camera->eye, {18, 20, 30}));
     CHECK(near(camera->focus, {10, 20, 30}));
@@ -481,10 +483,10 @@ TEST_CASE("the scene's first camera node by id, in the world, active or not") {
     CHECK(near(camera->up, {0, 1, 0}));
     CHECK(camera->fov == 33);
 
-    CHECK_FALSE(first_camera_node(scene_of({})));
+    CHECK(first_camera_node(scene_of({})) == kNone);
     data.focus = data.eye;
-    CHECK_FALSE(first_camera_node(scene_of({camera_part(1, 0, data)})));
-    CHECK_FALSE(first_camera_node(scene_of({camera_part(1, 0, data), camera_part(2, 0, other)})));
+    CHECK(first_camera_node(scene_of({camera_part(1, 0, data)})) == kNone);
+    CHECK(first_camera_node(scene_of({camera_part(1, 0, data), camera_part(2, 0, other)})) == kNone);
 }
 
 TEST_CASE("home looks from three quarters and above, and fits") {

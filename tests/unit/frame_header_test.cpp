@@ -9,9 +9,9 @@ using namespace vrut::protocol;
 TEST_CASE("the header says what the contract asks for") {
     FrameHeader header;
     header.frame = 3;
-    header.camera.eye = {0.1, 1.0 / 3, 1e-17};
-    header.view_matrix[3][0] = 5;  // a translation: the end of the first row
-    header.quality = {.moving = true, .scale = 0.5, .samples = 1, .jpeg_quality = 75, .subsampled = true};
+    header.camera.pose.eye = {0.1, 1.0 / 3, 1e-17};
+    header.camera.view_matrix[3][0] = 5;  // a translation: the end of the first row
+    header.quality = {Quality::Level::moving, 0.5, 1, 2, 75, Quality::Subsampling::yuv420};
     auto json = nlohmann::json::parse(encode(header));
     CHECK(json["frame"] == 3);
     CHECK(json["camera"]["eye"][1].get<double>() == 1.0 / 3);
@@ -24,8 +24,47 @@ TEST_CASE("the header says what the contract asks for") {
     for (const char* member : {"revision", "handled", "width", "height", "view", "renderer"})
         CHECK(json.contains(member));
 
-    header.since_input_ms = 2.5;
-    CHECK(nlohmann::json::parse(encode(header))["timing"]["sinceInputMs"] == 2.5);
+    CHECK_FALSE(json.contains("snapshot"));
+    CHECK_FALSE(json["camera"].contains("node"));
+
+    header.timing.since_input_ms = 2.5;
+    header.snapshot = 17;
+    header.camera.pose.node = 4;
+    header.camera.pose.name = "Driver";
+    json = nlohmann::json::parse(encode(header));
+    CHECK(json["timing"]["sinceInputMs"] == 2.5);
+    CHECK(json["snapshot"] == 17);
+    CHECK(json["camera"]["node"] == 4);
+    CHECK(json["camera"]["name"] == "Driver");
+}
+
+TEST_CASE("a header's members, as they are written") {
+    FrameHeader header;
+    header.frame = 3, header.revision = 7, header.handled = 12;
+    header.width = 640, header.height = 360;
+    header.view = {1280, 720, 0.5};
+    header.renderer = {DrawMode::stylized, true, false};
+    header.quality = {Quality::Level::still, 1, 16, 0, 90, Quality::Subsampling::yuv444};
+    header.timing = {1, 2, 3, {}};
+    auto json = nlohmann::json::parse(encode(header));
+    json.erase("camera");
+    CHECK(json == nlohmann::json::parse(R"({
+        "frame": 3, "revision": 7, "handled": 12, "width": 640, "height": 360,
+        "view": {"width": 1280, "height": 720, "pixelRatio": 0.5},
+        "renderer": {"mode": "stylized", "wireframe": true, "showSelection": false},
+        "quality": {"level": "still", "scale": 1, "samples": 16, "detail": 0, "jpegQuality": 90,
+                    "subsampling": "4:4:4"},
+        "timing": {"renderMs": 1, "readbackMs": 2, "encodeMs": 3}})"));
+}
+
+TEST_CASE("a header is never longer than a comment can be") {
+    FrameHeader header;
+    header.camera.pose.name = std::string(64'000, 'x');
+    CHECK(nlohmann::json::parse(encode(header))["camera"]["name"].get<std::string>().size() == 64'000);
+    header.camera.pose.name = std::string(70'000, 'x');
+    const std::string text = encode(header);
+    CHECK(text.size() <= 65'533);
+    CHECK_FALSE(nlohmann::json::parse(text)["camera"].contains("name"));
 }
 
 TEST_CASE("the comment goes behind the JFIF segment") {

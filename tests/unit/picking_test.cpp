@@ -493,7 +493,7 @@ TEST_CASE("the car, against the reference") {
 }
 
 TEST_CASE("a picked point lies under its pixel") {
-    const auto camera = first_camera_node(car()).value_or(home_camera(car().bounds, 1.5));
+    const Camera camera = home_camera(car().bounds, 1.5);
     const glm::ivec2 size(48, 32);
     const glm::dmat4 clip_from_world =
         clip_from_view(camera, 1.5, fit_clip_range(camera, car().bounds)) * view_from_world(camera);

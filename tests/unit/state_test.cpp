@@ -2,8 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <random>
 
+#include "codec.hpp"
+#include "examples.hpp"
 #include "tokens.hpp"
 
 using namespace vrut::protocol;
@@ -11,14 +16,7 @@ using nlohmann::json;
 
 namespace {
 
-State start() {
-    State state;
-    state.scene.name = "car";
-    state.scene.notices = {"one"};
-    state.lights.items["headlight"] = {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}};
-    state.backgrounds.items["11"] = {"Studio", {0.5, 0.5, 0.5, 1}};
-    return state;
-}
+using examples::start;
 
 State after(const State& state, const char* patch) {
     auto result = patched(state, start(), json::parse(patch));
@@ -69,6 +67,26 @@ TEST_CASE("every writable member can be patched and given back") {
         R"({"navigation":{"rotateSpeed":0.01}})",
         R"({"navigation":{"panSpeed":100}})",
         R"({"navigation":{"zoomSpeed":2}})",
+        R"({"navigation":{"style":"maya"}})",
+        R"({"navigation":{"style":"catia"}})",
+        R"({"navigation":{"style":"cinema4d"}})",
+        R"({"renderer":{"mode":"stylized"}})",
+        R"({"renderer":{"wireframe":true}})",
+        R"({"renderer":{"showSelection":false}})",
+        R"({"camera":{"node":0}})",
+        R"({"lights":{"active":"7"}})",
+        R"({"lights":{"items":{"7":{"color":[0,0,0,0]}}}})",
+        R"({"nodes":{"5":{"active":false}}})",
+        R"({"nodes":{"5":{"activeChild":-2}}})",
+        R"({"nodes":{"5":{"matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]}}})",
+        R"({"nodes":{"5":{"material":3}}})",
+        R"({"views":{"home":{"eye":[1,2,3]}}})",
+        R"({"views":{"home":{"focus":[1,2,3]}}})",
+        R"({"views":{"home":{"up":[1,2,3]}}})",
+        R"({"views":{"home":{"center":[1,2,3]}}})",
+        R"({"views":{"home":{"fov":1}}})",
+        R"({"quality":{"preference":0}})",
+        R"({"quality":{"latencyTargetMs":10000}})",
         R"({"lights":{"items":{"headlight":{"color":[1,0.5,0,1]}}}})",
         R"({"lights":{"items":{"headlight":{"attenuation":[1,0.5,0]}}}})",
         R"({"backgrounds":{"active":"11"}})",
@@ -77,18 +95,327 @@ TEST_CASE("every writable member can be patched and given back") {
         R"({"selection":{"node":5}})",
     };
     for (const char* patch : patches) {
-        INFO(patch);
+        INFO(std::string(patch));
         const State changed = after(start(), patch);
         CHECK(changed != start());
-        // The innermost value becomes null; then its section; then each section alone.
+        // null in place of the innermost value, then of each level above it up to the section.
         json reset = json::parse(patch);
-        json* innermost = &reset;
-        while (innermost->is_object()) innermost = &innermost->begin().value();
-        *innermost = nullptr;
-        CHECK(after(changed, reset.dump().c_str()) == start());
-        reset.begin().value() = nullptr;
-        CHECK(after(changed, reset.dump().c_str()) == start());
+        const std::string pointer = reset.flatten().begin().key();
+        for (json::json_pointer at(pointer); !at.empty(); at = at.parent_pointer()) {
+            if (reset.at(at.parent_pointer()).is_array()) continue;
+            reset[at] = nullptr;
+            INFO(reset.dump());
+            State given_back = after(changed, reset.dump().c_str());
+            if (given_back.nodes == std::map<std::string, NodeOverride>{{"5", {}}}) given_back.nodes.clear();
+            CHECK(given_back == start());
+        }
     }
+}
+
+TEST_CASE("what is patched has the value that was given") {
+    const State state = after(start(), R"({
+        "camera": {"node": 4, "eye": [1,2,3], "focus": [4,5,6], "up": [0,0,1], "center": [7,8,9], "fov": 1},
+        "navigation": {"style": "cinema4d", "keepUpright": false, "rotateSpeed": 0.01, "panSpeed": 100, "zoomSpeed": 2},
+        "renderer": {"mode": "stylized", "wireframe": true, "showSelection": false},
+        "lights": {"active": "7", "items": {"7": {"color": [0,0.25,0.5,1], "attenuation": [0,1,2]}}},
+        "backgrounds": {"active": "11", "color": [0,0,0,1], "items": {"11": {"color": [1,1,1,0.5]}}},
+        "selection": {"node": 5},
+        "nodes": {"5": {"active": false, "activeChild": -1, "matrix": [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16],
+                        "material": 3}},
+        "markers": {"Scratch": {"point": [1,2,3], "node": 5, "text": "here"}},
+        "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60}},
+        "quality": {"preference": 0.25, "latencyTargetMs": 20}})");
+    State expected = start();
+    expected.camera.node = 4;
+    expected.camera.eye = {1, 2, 3}, expected.camera.focus = {4, 5, 6}, expected.camera.up = {0, 0, 1};
+    expected.camera.center = {7, 8, 9}, expected.camera.fov = 1;
+    expected.navigation = {NavigationState::Style::cinema4d, false, 0.01, 100, 2};
+    expected.renderer = {DrawMode::stylized, true, false, 0, 0, 0};
+    expected.lights.active = "7";
+    expected.lights.items["7"].color = {0, 0.25, 0.5, 1};
+    expected.lights.items["7"].attenuation = {0, 1, 2};
+    expected.backgrounds.active = "11";
+    expected.backgrounds.color = {0, 0, 0, 1};
+    expected.backgrounds.items["11"].color = {1, 1, 1, 0.5};
+    expected.selection.node = 5;
+    // Row by row: the second number is in the first row's second column.
+    const glm::dmat4 matrix{{1, 5, 9, 13}, {2, 6, 10, 14}, {3, 7, 11, 15}, {4, 8, 12, 16}};
+    expected.nodes["5"] = {false, -1, matrix, 3};
+    expected.markers["Scratch"] = {{1, 2, 3}, 5, "here"};
+    expected.views["side"] = {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60};
+    expected.quality = {0.25, 20};
+    CHECK(state == expected);
+}
+
+namespace {
+
+/// A member of the state: its place in a patch, and texts of what it may be, may not be by type, and may not
+/// be by value.
+struct Member {
+    const char* path;
+    std::vector<const char*> good, wrong_type, out_of_range;
+};
+
+const std::vector<const char*> kNoVector = {"5",          "true",        "\"x\"",    "{}",
+                                            "[0,1,null]", "[0,1,\"1\"]", "[0,1,[1]]"};
+const std::vector<const char*> kNoPosition = {"[]", "[1,2]", "[1,2,3,4]", "[1,2,1.1e30]", "[-1.1e30,2,3]"};
+const std::vector<const char*> kNoNumber = {"true", "\"1\"", "[]", "{}"};
+const std::vector<const char*> kNoFlag = {"0", "1", "\"true\"", "[]", "{}"};
+const std::vector<const char*> kNoText = {"0", "true", "[]", "{}"};
+const std::vector<const char*> kNoId = {"-1", "1.5", "9007199254740992"};
+const std::vector<const char*> kNoColorType = {"5", "{}", "[0,1,1,null]", "[0,1,1,\"1\"]", "[0,1,1,true]"};
+const std::vector<const char*> kNoColor = {"[]", "[1,1,1]", "[1,1,1,1,1]", "[1,1,1,1.01]", "[-0.01,0,0,0]"};
+const std::vector<const char*> kNoSpeed = {"0", "0.0099", "100.1", "-1"};
+const std::vector<const char*> kNoFov = {"0.999", "170.001", "-5"};
+
+const std::vector<Member> kMembers = {
+    {"/camera/node", {"0", "9007199254740991"}, kNoNumber, kNoId},
+    {"/camera/eye", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/camera/focus", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/camera/up", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/camera/center", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/camera/fov", {"1", "170"}, kNoNumber, kNoFov},
+    {"/navigation/style",
+     {"\"vrut\"", "\"maya\"", "\"catia\"", "\"cinema4d\""},
+     kNoText,
+     {"\"\"", "\"Maya\""}},
+    {"/navigation/keepUpright", {"true", "false"}, kNoFlag, {}},
+    {"/navigation/rotateSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
+    {"/navigation/panSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
+    {"/navigation/zoomSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
+    {"/renderer/mode", {"\"realistic\"", "\"stylized\""}, kNoText, {"\"\"", "\"fast\""}},
+    {"/renderer/wireframe", {"true", "false"}, kNoFlag, {}},
+    {"/renderer/showSelection", {"true", "false"}, kNoFlag, {}},
+    {"/lights/active", {"\"7\"", "\"headlight\""}, kNoText, {}},
+    {"/lights/items/7/color", {"[0,0,0,0]", "[1,1,1,1]"}, kNoColorType, kNoColor},
+    {"/lights/items/7/attenuation",
+     {"[0,0,1e30]"},
+     kNoVector,
+     {"[]", "[1,1]", "[1,1,1,1]", "[-0.1,0,0]", "[0,0,1.1e30]"}},
+    {"/backgrounds/active", {"\"11\"", "\"color\""}, kNoText, {}},
+    {"/backgrounds/color", {"[0,0,0,0]", "[1,1,1,1]"}, kNoColorType, kNoColor},
+    {"/backgrounds/items/11/color", {"[0,0,0,0]", "[1,1,1,1]"}, kNoColorType, kNoColor},
+    {"/selection/node", {"0", "9007199254740991"}, kNoNumber, kNoId},
+    {"/nodes/5/active", {"true", "false"}, kNoFlag, {}},
+    {"/nodes/5/activeChild", {"-2", "2147483647"}, kNoNumber, {"-3", "0.5", "2147483648"}},
+    {"/nodes/5/matrix",
+     {"[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1e30]"},
+     {"5", "true", "\"x\"", "{}", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,null]"},
+     {"[]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0]", "[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1.1e30]"}},
+    {"/nodes/5/material", {"0", "9007199254740991"}, kNoNumber, kNoId},
+    {"/markers/here/point", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/markers/here/node", {"0", "9007199254740991"}, kNoNumber, kNoId},
+    {"/markers/here/text", {"\"\"", "\"Žluťoučký kůň\""}, kNoText, {}},
+    {"/views/home/eye", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/views/home/focus", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/views/home/up", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/views/home/center", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
+    {"/views/home/fov", {"1", "170"}, kNoNumber, kNoFov},
+    {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
+    {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
+};
+
+const std::vector<const char*> kReadOnly = {"/scene",
+                                            "/cameras",
+                                            "/materials",
+                                            "/control",
+                                            "/recording",
+                                            "/camera/name",
+                                            "/camera/near",
+                                            "/camera/far",
+                                            "/renderer/solid",
+                                            "/lights/items/7/name",
+                                            "/lights/items/7/type",
+                                            "/backgrounds/items/11/name",
+                                            "/backgrounds/items/11/texture",
+                                            "/selection/name",
+                                            "/selection/path",
+                                            "/renderer/transparent",
+                                            "/renderer/reflective"};
+
+State with_marker() { return after(start(), R"({"markers":{"here":{"point":[1,2,3]}}})"); }
+
+json patch_at(const std::string& path, const json& value) {
+    json patch = json::object();
+    json* place = &patch;
+    std::size_t begin = 1;  // keys, not array indices, though they be digits
+    for (std::size_t end = path.find('/', begin); end != std::string::npos; end = path.find('/', begin)) {
+        place = &(*place)[path.substr(begin, end - begin)];
+        begin = end + 1;
+    }
+    (*place)[path.substr(begin)] = value;
+    return patch;
+}
+
+std::string dotted(std::string path) {
+    path.erase(0, 1);
+    std::replace(path.begin(), path.end(), '/', '.');
+    return "'" + path + "'";
+}
+
+void check_refused(const json& patch, const char* code, const std::string& culprit) {
+    INFO(patch.dump());
+    const auto result = patched(with_marker(), start(), patch);
+    REQUIRE_FALSE(result.has_value());
+    CHECK(result.error().code == code);
+    CHECK_MESSAGE(result.error().message.find(culprit) != std::string::npos, result.error().message);
+}
+
+}  // namespace
+
+TEST_CASE("each member of the state: types and ranges") {
+    for (const Member& member : kMembers) {
+        const std::string name = dotted(member.path);
+        for (const char* value : member.wrong_type)
+            check_refused(patch_at(member.path, json::parse(value)), "bad-message", name);
+        for (const char* value : member.out_of_range)
+            check_refused(patch_at(member.path, json::parse(value)), "out-of-range", name);
+        for (const char* value : member.good) {
+            const json patch = patch_at(member.path, json::parse(value));
+            INFO(patch.dump());
+            const auto result = patched(with_marker(), start(), patch);
+            REQUIRE(result.has_value());
+            // The document has it as it was given.
+            const json document = StateDocument::next({}, *result)->json();
+            CHECK(merged(document, patch) == document);
+        }
+        const std::string parent = member.path;
+        const std::string sibling = parent.substr(0, parent.rfind('/')) + "/nose";
+        check_refused(patch_at(sibling, 1), "unknown-member", dotted(sibling));
+        check_refused(patch_at(sibling, nullptr), "unknown-member", dotted(sibling));
+    }
+}
+
+TEST_CASE("what is read-only is refused, whatever it is given") {
+    for (const char* path : kReadOnly)
+        for (const json& value : {json(), json(1), json("x"), json::object(), json::array()})
+            check_refused(patch_at(path, value), "read-only", dotted(path));
+}
+
+TEST_CASE("the state has the members that are tested here, and no others") {
+    const json schema = json::parse(json_schema())["$defs"]["statePatch"]["properties"];
+    std::size_t leaves = 0;
+    std::function<void(const json&)> count = [&](const json& properties) {
+        for (const json& property : properties) {
+            const json& value = property["anyOf"][1];
+            if (value.contains("properties"))
+                count(value["properties"]);
+            else if (value.contains("additionalProperties"))
+                count(value["additionalProperties"]["anyOf"][1]["properties"]);
+            else
+                ++leaves;
+        }
+    };
+    count(schema);
+    CHECK(leaves == kMembers.size());
+}
+
+TEST_CASE("sections and entries are objects") {
+    for (const char* path :
+         {"/camera", "/navigation", "/renderer", "/lights", "/lights/items", "/lights/items/7",
+          "/backgrounds", "/backgrounds/items", "/backgrounds/items/11", "/selection", "/nodes", "/nodes/5",
+          "/markers", "/markers/here", "/markers/new", "/views", "/views/home", "/views/new", "/quality"})
+        for (const json& value : {json(1), json(true), json("x"), json::array()})
+            check_refused(patch_at(path, value), "bad-message", dotted(path));
+    for (const json& patch : {json(), json(1), json("x"), json::array()})
+        check_refused(patch, "bad-message", "'patch'");
+}
+
+TEST_CASE("the scene's own items neither come nor go") {
+    check_refused(json::parse(R"({"lights":{"items":{"8":{}}}})"), "unknown-node", "'8'");
+    check_refused(json::parse(R"({"lights":{"items":{"8":null}}})"), "unknown-node", "'8'");
+    check_refused(json::parse(R"({"backgrounds":{"items":{"7":{}}}})"), "unknown-node", "'7'");
+    check_refused(json::parse(R"({"lights":{"active":"color"}})"), "unknown-node", "'color'");
+    check_refused(json::parse(R"({"backgrounds":{"active":"headlight"}})"), "unknown-node", "'headlight'");
+    State changed =
+        after(start(), R"({"lights":{"items":{"7":{"color":[0,0,0,1]},"headlight":{"color":[0,0,0,1]}}}})");
+    changed = after(changed, R"({"lights":{"items":{"7":null}}})");
+    CHECK(changed.lights.items["7"] == start().lights.items.at("7"));
+    CHECK(changed.lights.items["headlight"].color == glm::dvec4(0, 0, 0, 1));
+    CHECK(after(changed, R"({"lights":{"items":null}})") == start());
+    CHECK(after(changed, R"({"lights":{"items":{"7":{}}}})") == changed);
+}
+
+TEST_CASE("markers are added, changed and removed") {
+    State state =
+        after(start(), R"({"markers":{"a":{"point":[1,2,3]},"b":{"point":[4,5,6],"node":5,"text":"x"}}})");
+    CHECK(state.markers["a"] == Marker{{1, 2, 3}, {}, ""});
+    CHECK(state.markers["b"] == Marker{{4, 5, 6}, 5, "x"});
+    state = after(state, R"({"markers":{"a":{"text":"y"},"b":{"node":null}}})");
+    CHECK(state.markers["a"] == Marker{{1, 2, 3}, {}, "y"});
+    CHECK(state.markers["b"] == Marker{{4, 5, 6}, {}, "x"});
+    state = after(state, R"({"markers":{"a":null,"never":null}})");
+    CHECK(state.markers.size() == 1);
+    CHECK(after(state, R"({"markers":null})").markers.empty());
+    check_refused(json::parse(R"({"markers":{"new":{}}})"), "bad-message", "'markers.new.point'");
+    check_refused(json::parse(R"({"markers":{"new":{"text":"x"}}})"), "bad-message", "'markers.new.point'");
+    // One that is gone is new again.
+    CHECK_FALSE(patched(state, start(), json::parse(R"({"markers":{"a":{"text":"x"}}})")).has_value());
+}
+
+TEST_CASE("views are added, changed and removed; those of the start come back") {
+    State state = after(start(), R"({"camera":{"eye":[7,8,9],"up":[0,0,1],"fov":55}})");
+    state = after(state, R"({"views":{"here":{},"low":{"eye":[1,1,1]}}})");
+    CHECK(state.views["here"] == ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
+    CHECK(state.views["low"] == ViewState{{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
+    CHECK(after(state, R"({"views":{"b":{"eye":null,"fov":5}}})").views["b"] ==
+          ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 5});
+    CHECK(after(state, R"({"views":{"low":{"eye":null}}})").views["low"] == state.views["here"]);
+    // It was saved: where the camera goes does not move it, nor does a patch of nothing.
+    state = after(state, R"({"camera":{"eye":[0,0,1]},"views":{"here":{}}})");
+    CHECK(state.views["here"].eye == glm::dvec3(7, 8, 9));
+    // With the camera in the same patch it is that one that is saved.
+    state = after(state, R"({"camera":{"eye":[0,0,2]},"views":{"both":{}}})");
+    CHECK(state.views["both"].eye == glm::dvec3(0, 0, 2));
+    state = after(state, R"({"views":{"home":{"fov":20},"low":null}})");
+    CHECK(state.views["home"].fov == 20);
+    CHECK_FALSE(state.views.contains("low"));
+    CHECK(after(state, R"({"views":{"home":null}})").views["home"] == start().views.at("home"));
+    CHECK(after(state, R"({"views":null})").views == start().views);
+}
+
+TEST_CASE("names and numbers of entries are bounded") {
+    const auto markers = [](int first, int count) {
+        json patch = {{"markers", json::object()}};
+        for (int i = first; i < first + count; ++i)
+            patch["markers"]["m" + std::to_string(i)] = {{"point", {0, 0, 0}}};
+        return patch;
+    };
+    CHECK(kMaxEntries == 256);
+    const State full = after(start(), markers(0, 256).dump().c_str());
+    CHECK(full.markers.size() == 256);
+    check_refused(markers(0, 257), "too-many", "'markers'");
+    const auto more = patched(full, start(), markers(256, 1));
+    REQUIRE_FALSE(more.has_value());
+    CHECK(more.error().code == std::string("too-many"));
+    // In place of another one may come; a full table may be changed.
+    json exchange = markers(256, 1);
+    exchange["markers"]["m0"] = nullptr;
+    CHECK(patched(full, start(), exchange).has_value());
+    CHECK(patched(full, start(), markers(0, 256)).has_value());
+
+    json views = {{"views", json::object()}};
+    for (int i = 0; i < 255; ++i) views["views"]["v" + std::to_string(i)] = json::object();
+    CHECK(after(start(), views.dump().c_str()).views.size() == 256);  // with home
+    views["views"]["v255"] = json::object();
+    check_refused(views, "too-many", "'views'");
+
+    const std::string longest(100, 'n'), longer(101, 'n'),
+        accents = "žžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžžž";
+    CHECK(accents.size() == 100);
+    for (const char* section : {"markers", "views", "nodes"}) {
+        const json value = section == std::string("markers") ? json{{"point", {0, 0, 0}}} : json::object();
+        CHECK(patched(start(), start(), {{section, {{longest, value}}}}).has_value());
+        CHECK(patched(start(), start(), {{section, {{accents, value}}}}).has_value());
+        for (const std::string& name : {std::string(), longer, accents + "x"}) {
+            check_refused({{section, {{name, value}}}}, "out-of-range", section);
+            check_refused({{section, {{name, nullptr}}}}, "out-of-range", section);
+        }
+    }
+    const json text = {{"markers", {{"a", {{"point", {0, 0, 0}}, {"text", std::string(1000, 'x')}}}}}};
+    CHECK(patched(start(), start(), text).has_value());
+    check_refused(patch_at("/markers/here/text", std::string(1001, 'x')), "out-of-range",
+                  "'markers.here.text'");
 }
 
 TEST_CASE("what is wrong with a patch is named, and nothing is changed") {
@@ -123,7 +450,7 @@ TEST_CASE("what is wrong with a patch is named, and nothing is changed") {
         {R"({"camera":{"fov":50},"navigation":{"zoomSpeed":0}})", "out-of-range", "'navigation.zoomSpeed'"},
     };
     for (const Case& c : cases) {
-        INFO(c.patch);
+        INFO(std::string(c.patch));
         const Error error = refusal(c.patch);
         CHECK(error.code == c.code);
         CHECK_MESSAGE(error.message.find(c.culprit) != std::string::npos, error.message);
@@ -174,17 +501,243 @@ TEST_CASE("a document knows when what a patch names changed last") {
     CHECK(last("{}") == 0);
 }
 
+namespace {
+
+/// Random patches that a State takes: all kinds of change, and of members that are absent and come.
+class RandomSteps {
+public:
+    explicit RandomSteps(unsigned seed) : random_(seed) {}
+
+    State next(const State& state) {
+        State result = state;
+        for (std::size_t i = 0; i <= below(3); ++i) {
+            const auto taken = patched(result, start(), patch());
+            REQUIRE_MESSAGE(taken.has_value(), taken.error().message);
+            result = *taken;
+        }
+        // What the server itself changes.
+        switch (below(8)) {
+            case 0:
+                result.recording = RecordingState{"log" + std::to_string(below(3))};
+                break;
+            case 1:
+                result.recording.reset();
+                break;
+            case 2:
+                result.control = {"c" + std::to_string(below(3)), below(2) == 0};
+                break;
+            case 3:
+                result.control.holder.reset();
+                break;
+            case 4:
+                result.selection = {5, "Door", {{"Car", "Door"}}};
+                break;
+            case 5:
+                result.camera.name = "Driver";
+                break;
+            case 6:
+                change_scene(result);
+                break;
+            default:
+                break;
+        }
+        return result;
+    }
+
+private:
+    std::size_t below(std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random_); }
+
+    json patch() {
+        const Member& member = kMembers[below(kMembers.size())];
+        std::string path = member.path;
+        const std::string value = member.good[below(member.good.size())];
+        if (below(4) == 0) {  // null at some level
+            for (std::size_t up = below(3); up > 0 && path.rfind('/') != 0; --up) path.erase(path.rfind('/'));
+            return path.starts_with("/markers/here/") ? json::object() : patch_at(path, nullptr);
+        }
+        const std::string name = "n" + std::to_string(below(4));
+        if (path.starts_with("/markers/"))
+            return {{"markers", {{name, {{"point", {1, 2, below(3)}}, {"text", name}}}}}};
+        if (path.starts_with("/views/") && below(2) == 0) return {{"views", {{name, json::object()}}}};
+        if (path.starts_with("/nodes/")) path.replace(7, 1, std::to_string(below(3)));
+        return patch_at(path, json::parse(value));
+    }
+
+    void change_scene(State& state) {
+        auto names = std::make_shared<Names>();
+        for (std::size_t i = 0; i < below(4); ++i)
+            (*names)[std::to_string(below(5))] = {"name" + std::to_string(i)};
+        (below(2) == 0 ? state.cameras : state.materials).value = names;
+    }
+
+    std::mt19937 random_;
+};
+
+}  // namespace
+
+TEST_CASE("the patch from any document to any later one leads there") {
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        RandomSteps steps(seed);
+        State state = start();
+        std::vector<std::shared_ptr<const StateDocument>> documents = {StateDocument::next({}, state)};
+        for (int i = 0; i < 40; ++i) {
+            state = steps.next(state);
+            documents.push_back(StateDocument::next(*documents.back(), state));
+        }
+        for (std::size_t to = 0; to < documents.size(); ++to)
+            for (std::size_t from = 0; from <= to; ++from) {
+                const json message = json::parse(documents[to]->encode_patch_from(*documents[from], ""));
+                INFO(message.dump());
+                const json result = merged(documents[from]->json(), message["patch"]);
+                if (result != documents[to]->json()) FAIL("not what it should be: " << result.dump());
+                if (from == to) CHECK(message["patch"].empty());
+            }
+    }
+}
+
+TEST_CASE("a document has no null, and its unchanged parts are those before") {
+    RandomSteps steps(99);
+    State state = start();
+    for (int i = 0; i < 200; ++i) {
+        state = steps.next(state);
+        const auto document = StateDocument::next({}, state);
+        const std::string text = document->encode();
+        CHECK_MESSAGE(text.find("null") == std::string::npos, text);
+        // Made step by step or at once, it is the same.
+        CHECK(StateDocument::next(*document, state)->json() == document->json());
+        CHECK(document->shows(state));
+    }
+}
+
+TEST_CASE("a state comes back from its document") {
+    for (unsigned seed = 1; seed <= 5; ++seed) {
+        RandomSteps steps(seed);
+        State state = start();
+        for (int i = 0; i < 60; ++i) {
+            state = steps.next(state);
+            // What is only told is not taken from the document; the server finds it anew.
+            State starting = start();
+            starting.scene = state.scene, starting.cameras = state.cameras,
+            starting.materials = state.materials;
+            starting.camera.name = state.camera.name;
+            starting.selection.name = state.selection.name, starting.selection.path = state.selection.path;
+            starting.recording = state.recording;
+            const json document = json::parse(StateDocument::next({}, state)->json().dump());
+            const auto back = restored(starting, document);
+            REQUIRE_MESSAGE(back.has_value(), back.error().message);
+            CHECK(*back == state);
+        }
+    }
+}
+
+TEST_CASE("a document that is none is not restored") {
+    for (const char* text :
+         {"[]", "null", R"({"camera":5})", R"({"camera":{"eye":[1,2]}})", R"({"camera":{"fov":171}})",
+          R"({"navigation":{"style":5}})", R"({"lights":{"active":"99"}})", R"({"lights":{"items":[]}})",
+          R"({"markers":{"a":{"text":5}}})", R"({"views":[]})", R"({"control":{"holder":5}})",
+          R"({"control":{"kept":5}})", R"({"nodes":{"5":{"matrix":[1]}}})"}) {
+        INFO(std::string(text));
+        const auto result = restored(start(), json::parse(text));
+        REQUIRE_FALSE(result.has_value());
+        CHECK_FALSE(result.error().message.empty());
+    }
+    // What is not there is as it starts.
+    CHECK(restored(start(), json::object()).value() == start());
+}
+
+TEST_CASE("what came and went is stale, each by its own revision") {
+    State state = start();
+    auto document = StateDocument::next({}, state);
+    const auto step = [&](const char* patch) {
+        state = after(state, patch);
+        document = StateDocument::next(*document, state);
+    };
+    const auto last = [&](const char* patch) { return document->last_change(json::parse(patch)); };
+    step(R"({"markers":{"a":{"point":[1,2,3]}}})");  // 2
+    step(R"({"markers":{"b":{"point":[1,2,3]}}})");  // 3
+    step(R"({"markers":{"a":{"text":"x"}}})");       // 4
+    step(R"({"camera":{"fov":20}})");                // 5
+    CHECK(last(R"({"markers":{"a":{"point":[0,0,0]}}})") == 2);
+    CHECK(last(R"({"markers":{"a":{"text":""}}})") == 4);
+    CHECK(last(R"({"markers":{"a":null}})") == 4);
+    CHECK(last(R"({"markers":{"b":null}})") == 3);
+    CHECK(last(R"({"markers":null})") == 4);
+    CHECK(last(R"({"markers":{"c":{"point":[0,0,0]}}})") == 0);
+    step(R"({"markers":{"b":null}})");  // 6
+    CHECK(last(R"({"markers":{"b":{"point":[0,0,0]}}})") == 6);
+    CHECK(last(R"({"markers":{"b":null}})") == 6);
+    CHECK(last(R"({"markers":{"a":null}})") == 4);
+    CHECK(last(R"({"markers":null})") == 6);
+    step(R"({"markers":{"b":{"point":[1,2,3]}}})");  // 7
+    CHECK(last(R"({"markers":{"b":{"text":"y"}}})") == 7);
+    // Members of entries come and go as well.
+    step(R"({"nodes":{"5":{"active":false,"material":3}}})");  // 8
+    step(R"({"nodes":{"5":{"material":null}}})");              // 9
+    CHECK(last(R"({"nodes":{"5":{"active":true}}})") == 8);
+    CHECK(last(R"({"nodes":{"5":{"material":4}}})") == 9);
+    CHECK(last(R"({"nodes":{"6":{"material":4}}})") == 0);
+    state.recording = RecordingState{"log"};
+    document = StateDocument::next(*document, state);  // 10
+    CHECK(last(R"({"recording":null})") == 10);
+    state.recording.reset();
+    document = StateDocument::next(*document, state);  // 11
+    CHECK(last(R"({"recording":{"name":"x"}})") == 11);
+}
+
+TEST_CASE("names that come and go by the thousand are forgotten, on the safe side") {
+    State state = start();
+    state = after(state, R"({"markers":{"stays":{"point":[0,0,0]}}})");
+    auto document = StateDocument::next({}, state);
+    for (int i = 0; i < 5000; ++i) {
+        const std::string name = "m" + std::to_string(i);
+        State with = state;
+        with.markers[name] = {{1, 2, 3}, {}, ""};
+        document = StateDocument::next(*StateDocument::next(*document, with), state);
+    }
+    CHECK(document->revision() == 10'001);
+    const auto last = [&](const std::string& name) {
+        return document->last_change({{"markers", {{name, {{"point", {0, 0, 0}}}}}}});
+    };
+    CHECK(last("stays") == 1);
+    CHECK(last("m4999") == 10'001);
+    // Never earlier than it was: m0 went with revision 3.
+    for (const int i : {0, 1, 500, 999, 1000, 1001, 2500, 4998}) {
+        INFO(i);
+        CHECK(last("m" + std::to_string(i)) >= 2 * i + 3);
+    }
+    // The document itself holds nothing of them.
+    CHECK(document->json()["markers"].size() == 1);
+}
+
+TEST_CASE("which members of the camera a patch names") {
+    using Flags = std::array<bool, 6>;
+    const auto named = [](const json& patch) {
+        const NamedCameraMembers n = named_camera_members(patch);
+        return Flags{n.node, n.eye, n.focus, n.up, n.center, n.fov};
+    };
+    const char* members[] = {"node", "eye", "focus", "up", "center", "fov"};
+    for (std::size_t i = 0; i < 6; ++i) {
+        Flags expected{};
+        expected[i] = true;
+        CHECK(named({{"camera", {{members[i], 1}}}}) == expected);
+        CHECK(named({{"camera", {{members[i], nullptr}}}}) == expected);
+    }
+    CHECK(named({{"camera", nullptr}}) == Flags{true, true, true, true, true, true});
+    for (const char* patch : {"{}", R"({"camera":{}})", R"({"camera":5})", "[]", R"({"views":{"eye":1}})"})
+        CHECK(named(json::parse(patch)) == Flags{});
+}
+
 TEST_CASE("a camera file is the state's camera, or part of it") {
-    const CameraState base = start().camera;
-    const auto camera = parse_camera(R"({"eye":[1,2,3],"near":5,"viewMatrix":[1],"fov":20})", base);
+    const auto camera = parse_camera(R"({"eye":[1,2,3],"near":5,"viewMatrix":[1],"fov":20})");
     REQUIRE(camera.has_value());
     CHECK(camera->eye == glm::dvec3(1, 2, 3));
-    CHECK(camera->focus == base.focus);
-    CHECK(camera->near == base.near);
+    CHECK_FALSE(camera->focus.has_value());
+    CHECK_FALSE(camera->node.has_value());
     CHECK(camera->fov == 20);
-    CHECK_FALSE(parse_camera(R"({"eye":1})", base).has_value());
-    CHECK_FALSE(parse_camera("[]", base).has_value());
-    CHECK_FALSE(parse_camera("", base).has_value());
+    CHECK_FALSE(parse_camera(R"({"eye":1})").has_value());
+    CHECK_FALSE(parse_camera(R"({"fov":0})").has_value());
+    CHECK_FALSE(parse_camera("[]").has_value());
+    CHECK_FALSE(parse_camera("").has_value());
 }
 
 TEST_CASE("a token file holds a token of some length") {

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+#include <variant>
+#include <vector>
+
+#include "messages.hpp"
+#include "state.hpp"
+
+/// Recorded sessions: JSON Lines, first a header, then what happened in the order in which it was applied.
+/// Times are whole microseconds, written as milliseconds, so that reading gives back what was written.
+namespace vrut::protocol {
+
+using LogTime = std::chrono::microseconds;  ///< since the recording began; before that negative
+
+/// A frame that clients may still name when recording begins.
+struct LoggedFrame {
+    std::int64_t frame = 0;
+    CameraState camera;
+    Resize view;
+};
+
+struct LogHeader {
+    std::string scene, scene_sha256;
+    std::string started;                          ///< ISO 8601
+    std::shared_ptr<const nlohmann::json> state;  ///< the document
+    struct Client {
+        std::string client;
+        Role role = Role::view;
+        std::optional<Resize> wanted;
+    };
+    std::vector<Client> clients;
+    // What else the camera depends on:
+    Resize view;           ///< in force
+    bool at_home = false;  ///< nobody has moved the camera yet
+    std::vector<LoggedFrame> frames;
+    struct Flight {
+        std::string client;
+        std::int64_t id = 0;
+        double since = 0;  ///< ms that it has lasted
+        CameraState from;
+        Fly fly;
+    };
+    std::optional<Flight> flight;  ///< that was going on
+};
+
+struct LogLine {
+    struct Connected {
+        Role role = Role::view;
+    };
+    struct Disconnected {};
+    /// A scene that was being loaded is shown from here on.
+    struct Opened {
+        std::string scene, sha256;
+    };
+    /// A picture of this number was drawn of what is to be seen now.
+    struct Drawn {
+        std::int64_t frame = 0;
+    };
+    LogTime at{0};
+    std::string client;  ///< empty where it was none's doing
+    std::variant<ClientMessage, Connected, Disconnected, Opened, Drawn> what;
+};
+
+/// Without the line's end.
+std::string encode(const LogHeader& header);
+std::string encode(const LogLine& line);
+/// The error's message tells what is wrong with the line.
+tl::expected<LogHeader, Error> decode_log_header(std::string_view text);
+tl::expected<LogLine, Error> decode_log_line(std::string_view text);
+
+}  // namespace vrut::protocol

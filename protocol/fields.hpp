@@ -1,0 +1,317 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "json_reader.hpp"
+
+/// The members of what travels, each described once: `describe(visitor, const T*)` names a struct's members
+/// with the kind of each; readers, writers and the JSON Schema are visitors. For protocol's own .cpp files.
+namespace vrut::protocol {
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+
+/// What a kind has read, as the member's own type.
+template <class Member, class Value>
+void assign(Member& member, Value&& value) {
+    if constexpr (IsOptional<Member>::value)
+        member = static_cast<typename Member::value_type>(std::forward<Value>(value));
+    else
+        member = static_cast<Member>(std::forward<Value>(value));
+}
+
+template <class T>
+T read_struct(const Json& json, const std::string& path);
+template <class T>
+Json write_struct(const T& value);
+template <class T>
+Json schema_of_struct();
+
+// --- kinds: what a value may be. Each reads itself (and throws BadJson), writes itself, and has a schema.
+
+struct Number {
+    double min, max;
+    double read(const Json& json, const std::string& path) const { return read_number(json, path, min, max); }
+    Json write(double value) const { return value; }
+    Json schema() const { return {{"type", "number"}, {"minimum", min}, {"maximum", max}}; }
+};
+
+struct Integer {
+    std::int64_t min = 0, max = kMaxInteger;
+    std::int64_t read(const Json& json, const std::string& path) const {
+        return read_integer(json, path, min, max);
+    }
+    template <class T>
+    Json write(T value) const {
+        return value;
+    }
+    Json schema() const { return {{"type", "integer"}, {"minimum", min}, {"maximum", max}}; }
+};
+
+struct Flag {
+    bool read(const Json& json, const std::string& path) const { return read_bool(json, path); }
+    Json write(bool value) const { return value; }
+    Json schema() const { return {{"type", "boolean"}}; }
+};
+
+/// At most `max` bytes of UTF-8.
+struct Text {
+    std::size_t max;
+    std::string read(const Json& json, const std::string& path) const { return read_string(json, path, max); }
+    Json write(const std::string& value) const { return value; }
+    Json schema() const { return {{"type", "string"}, {"maxLength", max}}; }
+};
+
+/// An enumerator by its name: words[0] is that of value 0.
+template <std::size_t N>
+struct Word {
+    std::array<std::string_view, N> words;
+    std::size_t read(const Json& json, const std::string& path) const { return read_word(json, path, words); }
+    template <class Enum>
+    Json write(Enum value) const {
+        return words[static_cast<std::size_t>(value)];
+    }
+    Json schema() const { return {{"enum", words}}; }
+};
+template <class... Words>
+constexpr Word<sizeof...(Words)> word(Words... words) {
+    return {{words...}};
+}
+
+template <class V>
+struct Vector {
+    double min, max;
+    V read(const Json& json, const std::string& path) const { return read_vector<V>(json, path, min, max); }
+    Json write(const V& value) const { return to_json(value); }
+    Json schema() const {
+        return {{"type", "array"},
+                {"items", Number{min, max}.schema()},
+                {"minItems", V::length()},
+                {"maxItems", V::length()}};
+    }
+};
+
+/// 16 numbers row by row.
+struct Matrix {
+    double max;  ///< of each number's size
+    glm::dmat4 read(const Json& json, const std::string& path) const { return read_matrix(json, path, max); }
+    Json write(const glm::dmat4& value) const { return to_json(value); }
+    Json schema() const {
+        return {{"type", "array"}, {"items", Number{-max, max}.schema()}, {"minItems", 16}, {"maxItems", 16}};
+    }
+};
+
+template <class Element>
+struct List {
+    Element element;
+    std::size_t min, max;
+    auto read(const Json& json, const std::string& path) const {
+        read_array(json, path, min, max);
+        std::vector<decltype(element.read(json, path))> values;
+        for (std::size_t i = 0; i < json.size(); ++i)
+            values.push_back(element.read(json[i], path + "[" + std::to_string(i) + "]"));
+        return values;
+    }
+    template <class T>
+    Json write(const std::vector<T>& values) const {
+        Json json = Json::array();
+        for (const T& value : values) json.push_back(element.write(value));
+        return json;
+    }
+    Json schema() const {
+        return {{"type", "array"}, {"items", element.schema()}, {"minItems", min}, {"maxItems", max}};
+    }
+};
+
+template <class T>
+struct Object {
+    T read(const Json& json, const std::string& path) const { return read_struct<T>(json, path); }
+    Json write(const T& value) const { return write_struct(value); }
+    Json schema() const { return schema_of_struct<T>(); }
+};
+
+/// {"ID or NAME": {…}}, to be written only.
+template <class T>
+struct Table {
+    Json write(const std::map<std::string, T>& values) const {
+        Json json = Json::object();
+        for (const auto& [key, value] : values) json[key] = write_struct(value);
+        return json;
+    }
+    Json schema() const { return {{"type", "object"}, {"additionalProperties", schema_of_struct<T>()}}; }
+};
+
+/// What is shared because it is large and seldom changes.
+template <class Kind>
+struct SharedKind {
+    Kind kind;
+    template <class T>
+    Json write(const T& shared) const {
+        return kind.write(*shared.value);
+    }
+    Json schema() const { return kind.schema(); }
+};
+
+/// Any object, kept as it is.
+struct AnyObject {
+    Json schema_value;
+    std::shared_ptr<const Json> read(const Json& json, const std::string& path) const {
+        return std::make_shared<const Json>(read_object(json, path));
+    }
+    Json write(const std::shared_ptr<const Json>& value) const { return *value; }
+    Json schema() const { return schema_value; }
+};
+
+// --- visitors
+
+/// Fills a struct from an object; what is not described is ignored.
+template <class T>
+class Reader {
+public:
+    Reader(const Json& object, T& target, const std::string& path)
+        : object_(object), target_(target), path_(path) {}
+
+    template <class Member, class Kind>
+    void required(const char* name, Member T::*member, const Kind& kind) {
+        if (!object_.contains(name))
+            throw BadJson{error_code::bad_message, "member '" + path_to(name) + "' is missing"};
+        optional(name, member, kind);
+    }
+    template <class Member, class Kind>
+    void optional(const char* name, Member T::*member, const Kind& kind) {
+        if (const auto found = object_.find(name); found != object_.end())
+            assign(target_.*member, kind.read(*found, path_to(name)));
+    }
+    /// Members that stand in the same object.
+    template <class Member>
+    void inlined(Member T::*member) {
+        Reader<Member> part(object_, target_.*member, path_);
+        describe(part, static_cast<const Member*>(nullptr));
+    }
+    // A whole section of the state: what clients may not change is read, too.
+    template <class Member, class Kind>
+    void writable(const char* name, Member T::*member, const Kind& kind) {
+        optional(name, member, kind);
+    }
+    template <class Member, class Kind>
+    void fixed(const char* name, Member T::*member, const Kind& kind) {
+        optional(name, member, kind);
+    }
+
+private:
+    std::string path_to(const char* name) const { return path_.empty() ? name : path_ + "." + name; }
+
+    const Json& object_;
+    T& target_;
+    const std::string& path_;
+};
+
+template <class T>
+class Writer {
+public:
+    Writer(const T& value, Json& object) : value_(value), object_(object) {}
+
+    template <class Member, class Kind>
+    void required(const char* name, Member T::*member, const Kind& kind) {
+        if constexpr (!IsOptional<Member>::value)
+            object_[name] = kind.write(value_.*member);
+        else if (value_.*member)
+            object_[name] = kind.write(*(value_.*member));
+    }
+    /// What has its default is left out.
+    template <class Member, class Kind>
+    void optional(const char* name, Member T::*member, const Kind& kind) {
+        if constexpr (requires { (value_.*member).empty(); }) {
+            if ((value_.*member).empty()) return;
+        } else if constexpr (requires { value_.*member == value_.*member; }) {
+            const T defaults{};
+            if (value_.*member == defaults.*member) return;
+        }
+        required(name, member, kind);
+    }
+    template <class Member>
+    void inlined(Member T::*member) {
+        Writer<Member> part(value_.*member, object_);
+        describe(part, static_cast<const Member*>(nullptr));
+    }
+    template <class Member, class Kind>
+    void writable(const char* name, Member T::*member, const Kind& kind) {
+        required(name, member, kind);
+    }
+    template <class Member, class Kind>
+    void fixed(const char* name, Member T::*member, const Kind& kind) {
+        required(name, member, kind);
+    }
+
+private:
+    const T& value_;
+    Json& object_;
+};
+
+/// The JSON Schema of an object.
+template <class T>
+class SchemaWriter {
+public:
+    explicit SchemaWriter(Json& schema) : schema_(schema) {}
+
+    template <class Member, class Kind>
+    void required(const char* name, Member T::*member, const Kind& kind) {
+        optional(name, member, kind);
+        if (!IsOptional<Member>::value) schema_["required"].push_back(name);
+    }
+    template <class Member, class Kind>
+    void optional(const char* name, Member T::*, const Kind& kind) {
+        schema_["properties"][name] = kind.schema();
+    }
+    template <class Member>
+    void inlined(Member T::*) {
+        SchemaWriter<Member> part(schema_);
+        describe(part, static_cast<const Member*>(nullptr));
+    }
+    template <class Member, class Kind>
+    void writable(const char* name, Member T::*member, const Kind& kind) {
+        required(name, member, kind);
+    }
+    template <class Member, class Kind>
+    void fixed(const char* name, Member T::*member, const Kind& kind) {
+        required(name, member, kind);
+        schema_["properties"][name]["readOnly"] = true;
+    }
+
+private:
+    Json& schema_;
+};
+
+template <class T>
+T read_struct(const Json& json, const std::string& path) {
+    read_object(json, path.empty() ? "message" : path);
+    T value{};
+    Reader<T> reader(json, value, path);
+    describe(reader, static_cast<const T*>(nullptr));
+    return value;
+}
+
+template <class T>
+Json write_struct(const T& value) {
+    Json json = Json::object();
+    Writer<T> writer(value, json);
+    describe(writer, static_cast<const T*>(nullptr));
+    return json;
+}
+
+template <class T>
+Json schema_of_struct() {
+    Json schema = {{"type", "object"}, {"properties", Json::object()}, {"required", Json::array()}};
+    SchemaWriter<T> writer(schema);
+    describe(writer, static_cast<const T*>(nullptr));
+    return schema;
+}
+
+}  // namespace vrut::protocol

@@ -1,0 +1,55 @@
+#include "recorder.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+
+namespace vrut {
+
+namespace {
+
+std::string formatted_now(const char* format) {
+    const std::time_t now = std::time(nullptr);
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[40];
+    return {text, std::strftime(text, sizeof text, format, &utc)};
+}
+
+}  // namespace
+
+std::string iso_time_now() { return formatted_now("%Y-%m-%dT%H:%M:%SZ"); }
+
+tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
+    const std::string wanted = name.empty() ? formatted_now("session-%Y%m%d-%H%M%S") : name;
+    std::string chosen = wanted;
+    const auto taken = [&] { return std::filesystem::exists(folder_ / (chosen + ".jsonl")); };
+    for (int n = 2; name.empty() && taken(); ++n) chosen = wanted + "-" + std::to_string(n);
+    if (taken()) return tl::unexpected("there is a recording '" + name + "' already");
+    path_ = folder_ / (chosen + ".jsonl");
+    file_.open(path_, std::ios::binary);
+    if (!file_)
+        return tl::unexpected(path_.filename().string() + " cannot be written: " + std::strerror(errno));
+    size_ = 0;
+    spdlog::info("recording to {}", path_.string());
+    return chosen;
+}
+
+void Recorder::write(const std::string& line) {
+    size_ += line.size() + 1;
+    // Whole lines reach the file at once: a log whose end is missing is still a log.
+    file_ << line << '\n' << std::flush;
+    if (file_ && size_ < kLargest) return;
+    spdlog::warn("recording to {} ends: {}", path_.string(),
+                 file_ ? "it has grown too large" : "it cannot be written any more");
+    close();
+}
+
+void Recorder::close() {
+    file_.close();
+    file_.clear();
+}
+
+}  // namespace vrut

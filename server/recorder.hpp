@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "event_log.hpp"
+
+namespace vrut {
+
+/// Writes event logs into a folder, one at a time. A log that cannot be written any more, or has grown to
+/// kLargest, ends.
+class Recorder {
+public:
+    static constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 30;
+
+    /// An empty folder: there is nowhere to record to.
+    explicit Recorder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+    bool has_folder() const { return !folder_.empty(); }
+    bool active() const { return file_.is_open(); }
+    /// Begins NAME.jsonl, or where `name` is empty one that is named after the time; the name, or why not.
+    tl::expected<std::string, std::string> open(const std::string& name);
+    void write(const std::string& line);
+    void close();
+
+private:
+    std::filesystem::path folder_, path_;
+    std::ofstream file_;
+    std::uintmax_t size_ = 0;
+};
+
+/// Now, as in "2026-01-31T12:34:56Z".
+std::string iso_time_now();
+
+}  // namespace vrut

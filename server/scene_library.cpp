@@ -1,0 +1,69 @@
+#include "scene_library.hpp"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "read_scene.hpp"
+
+namespace vrut {
+
+namespace fs = std::filesystem;
+
+tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
+                                                  const std::function<void(double)>& progress) {
+    auto scene = read_scene(path, progress);
+    if (!scene) return tl::unexpected(scene.error());
+    LoadedScene loaded;
+    loaded.name = name;
+    loaded.sha256 = sha256_of(path);
+    loaded.notices = all_notices(*scene);
+    loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    return loaded;
+}
+
+tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) const {
+    if (folder_.empty()) return tl::unexpected(std::string("this server has no folder of scenes to open"));
+    const std::string sentence = "there is no scene '" + name.substr(0, 100) + "'";
+    const fs::path relative(name);
+    const bool leaves = std::find(relative.begin(), relative.end(), "..") != relative.end();
+    if (name.empty() || name.find('\0') != std::string::npos || relative.is_absolute() || leaves)
+        return tl::unexpected(sentence);
+    // Links are followed first: what counts is where the file lies.
+    std::error_code error;
+    const fs::path folder = fs::canonical(folder_, error);
+    if (error) return tl::unexpected("the folder of scenes cannot be read: " + error.message());
+    const fs::path file = fs::canonical(folder / relative, error);
+    if (error) return tl::unexpected(sentence);
+    const bool below =
+        std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
+    if (!below || !fs::is_regular_file(file, error)) return tl::unexpected(sentence);
+    return file;
+}
+
+std::string sha256_of(const fs::path& path) {
+    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
+    std::ifstream stream(path, std::ios::binary);
+    std::vector<char> block(1 << 20);
+    bool good = context && stream && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
+    while (good && stream) {
+        stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+        good = EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(stream.gcount())) == 1;
+    }
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned length = 0;
+    if (!good || stream.bad() || EVP_DigestFinal_ex(context.get(), digest, &length) != 1)
+        throw std::runtime_error(path.string() + " cannot be read");
+    std::string text;
+    for (unsigned i = 0; i < length; ++i) {
+        constexpr char kDigits[] = "0123456789abcdef";
+        text += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
+    }
+    return text;
+}
+
+}  // namespace vrut

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <atomic>
+#include <filesystem>
+#include <thread>
+
+#include "mailbox.hpp"
+
+namespace vrut {
+
+/// Reads one scene at a time in a thread of its own, and tells the mailbox how far it is.
+class SceneLoader {
+public:
+    explicit SceneLoader(Mailbox& mailbox) : mailbox_(mailbox) {}
+    ~SceneLoader();
+
+    /// From start() until finish().
+    bool busy() const { return busy_; }
+    void start(const std::filesystem::path& path, const std::string& name);
+    /// To be called when SceneLoaded has come.
+    void finish();
+
+private:
+    Mailbox& mailbox_;
+    bool busy_ = false;
+    std::atomic<bool> closing_{false};
+    std::thread thread_;
+};
+
+}  // namespace vrut
