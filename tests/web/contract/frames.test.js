@@ -1,0 +1,261 @@
+// Contract: `frame`, "One view", "The frame header", and that nothing is sent while nothing changes.
+import assert from 'node:assert/strict';
+import { after, describe, test } from 'node:test';
+import { setTimeout as sleep } from 'node:timers/promises';
+import { ContractClient } from './contract-client.js';
+import { near, nearCamera } from './numbers.js';
+import { schemaTest } from './schema.js';
+import { Server } from './server.js';
+import { pixelsNow, POSE, steering, VIEW } from './stage.js';
+
+const server = await Server.start();
+after(() => server.stop());
+
+const isStill = (header) => header.quality.level === 'still';
+
+/** Grants until nothing more comes for half a second. @returns the headers that came */
+async function settled(client) {
+  const from = client.frames.length;
+  let seen = from;
+  let quietSince = Date.now();
+  client.send({ type: 'frame' });
+  while (Date.now() - quietSince < 600) {
+    await sleep(20);
+    for (; seen < client.frames.length; ++seen) {
+      client.send({ type: 'frame' });
+      quietSince = Date.now();
+    }
+  }
+  return client.frames.slice(from).map((frame) => frame.header);
+}
+
+describe('grants', () => {
+  test('one grant brings one frame', async (t) => {
+    const client = await steering(t, server);
+    const count = client.frames.length;
+    await sleep(400);
+    assert.equal(client.frames.length, count, 'none without a grant');
+    client.send({ type: 'frame' });
+    await client.until('a frame', () => client.frames.length > count);
+    await client.ask({ type: 'navigate', rotate: [5, 0] });
+    await sleep(400);
+    assert.equal(client.frames.length, count + 1, 'no more than granted');
+  });
+
+  test('at most 2 are kept', async (t) => {
+    const client = await steering(t, server);
+    await settled(client); // one grant is left over
+    const count = client.frames.length;
+    for (let i = 0; i < 5; ++i) client.send({ type: 'frame' });
+    for (let i = 0; i < 8; ++i) {
+      await client.ask({ type: 'navigate', rotate: [5, 0] });
+      await sleep(80);
+    }
+    await sleep(300);
+    assert.equal(client.frames.length, count + 2);
+  });
+
+  test('while nothing changes, nothing is sent; one change ends the wait', async (t) => {
+    const client = await steering(t, server);
+    await settled(client);
+    const count = client.frames.length;
+    await client.barrier();
+    await client.patch({});
+    client.send({ type: 'pointermove', pointerId: 1, pointerType: 'mouse', x: 9, y: 9, button: -1, buttons: 0 });
+    await sleep(500);
+    assert.equal(client.frames.length, count);
+    await client.ask({ type: 'navigate', rotate: [5, 0] });
+    await client.until('a frame', () => client.frames.length > count);
+  });
+
+  test('a change of the document that cannot be seen brings no frame', async (t) => {
+    const client = await steering(t, server);
+    await settled(client);
+    const count = client.frames.length;
+    await client.patch({ navigation: { panSpeed: 3 } });
+    await client.patch({ navigation: null });
+    await sleep(400);
+    assert.equal(client.frames.length, count);
+  });
+
+  for (const [what, patch, back] of [
+    ['camera', { camera: { fov: 44 } }, {}],
+    ['the plain colour', { backgrounds: { active: 'color', color: [0.2, 0.4, 0.1, 1] } }, { backgrounds: { active: null, color: null } }],
+    ['selection', { selection: { node: 4 } }, { selection: { node: null } }],
+    ['renderer', { renderer: { mode: 'stylized' } }, { renderer: null }],
+    ['wireframe', { renderer: { wireframe: true } }, { renderer: null }],
+    ['light', { lights: { active: '9' } }, { lights: { active: null } }],
+    ["a light's colour", { lights: { items: { headlight: { color: [1, 0, 0, 1] } } } }, { lights: { items: { headlight: null } } }],
+    ['background', { backgrounds: { active: '17' } }, { backgrounds: { active: null } }],
+    ['nodes', { nodes: { 4: { active: false } } }, { nodes: null }],
+    ['a paint', { nodes: { 4: { material: 1 } } }, { nodes: null }],
+    ['a switch', { nodes: { 6: { activeChild: 1 } } }, { nodes: null }],
+  ]) {
+    test(`a change of ${what} can be seen`, async (t) => {
+      const client = await steering(t, server);
+      const still = (header) => header.revision >= client.revision && isStill(header) && header.quality.scale === 1;
+      const fov = client.revision % 2 ? 41 : 42; // a change that is sure to be drawn
+      await client.patch({ ...back, camera: { fov } });
+      await client.frame(still, 'a still frame');
+      const before = await pixelsNow(client);
+      await client.patch(patch);
+      await client.frame(still, 'a still frame of the change');
+      assert.notEqual(await pixelsNow(client), before, 'the picture differs');
+      await client.patch(back);
+    });
+  }
+});
+
+describe('the header', () => {
+  test('has every member', async (t) => {
+    const client = await steering(t, server);
+    const { header, width, height, subsampling } = await client.frameOfNow();
+    assert.ok(Number.isSafeInteger(header.frame) && header.frame > 0);
+    assert.ok(header.revision <= client.revision);
+    assert.ok(header.handled >= 0);
+    assert.equal(header.snapshot, undefined);
+    nearCamera(header.camera, POSE, 'camera');
+    assert.ok(header.camera.near > 0 && header.camera.far > header.camera.near);
+    assert.equal(header.camera.viewMatrix.length, 16);
+    assert.equal(header.camera.projectionMatrix.length, 16);
+    assert.deepEqual([header.width, header.height], [width, height]);
+    assert.deepEqual(header.view, VIEW);
+    assert.deepEqual([header.renderer.mode, header.renderer.wireframe, typeof header.renderer.showSelection], ['realistic', false, 'boolean']);
+    const { quality } = header;
+    assert.ok(['moving', 'still'].includes(quality.level));
+    assert.ok(quality.scale > 0 && quality.scale <= 1);
+    assert.ok(quality.samples >= 1);
+    assert.ok(quality.detail >= 0);
+    assert.ok(quality.jpegQuality >= 1 && quality.jpegQuality <= 100);
+    assert.equal(quality.subsampling, subsampling, 'as the file says');
+    for (const member of ['renderMs', 'readbackMs', 'encodeMs']) assert.ok(header.timing[member] >= 0, member);
+  });
+
+  test('handled is 0 before the first id, then the highest that was handled', async (t) => {
+    const client = await ContractClient.join(t, server);
+    client.send({ type: 'frame' }, { id: null });
+    await client.until('a frame', () => client.frames.length > 0);
+    assert.equal(client.frames[0].header.handled, 0);
+    await client.ask({ type: 'control', action: 'take' });
+    const id = client.send({ type: 'navigate', rotate: [7, 0] });
+    await client.answer(id);
+    assert.ok((await client.frameOfNow()).header.handled >= id);
+  });
+
+  test('sinceInputMs is the time since the newest input that it shows', async (t) => {
+    const client = await steering(t, server);
+    await settled(client);
+    const before = Date.now();
+    client.input.send({ type: 'wheel', x: 200, y: 150, deltaX: 0, deltaY: -100, deltaMode: 0 });
+    const frame = await client.frame((header) => header.camera.eye[2] < 8);
+    const { sinceInputMs } = frame.header.timing;
+    assert.ok(sinceInputMs > 0 && sinceInputMs <= frame.at - before + 5, `${sinceInputMs} ms in ${frame.at - before}`);
+  });
+
+  test('numbers are those of the state, to the bit', async (t) => {
+    const client = await steering(t, server, { eye: [0.1 + 0.2, 1 / 3, 7.1], fov: 33.3 });
+    const { camera } = (await client.frameOfNow()).header;
+    for (const member of ['eye', 'focus', 'up', 'center', 'fov', 'near', 'far']) assert.deepEqual(camera[member], client.state.camera[member], member);
+  });
+});
+
+describe('sizes', () => {
+  for (const [width, height, pixelRatio] of [[400, 300, 1], [333.3, 222.2, 1.5], [100, 75, 4], [401, 299, 0.25], [1, 1, 0.25], [2, 2, 0.25]]) {
+    test(`a still frame of ${width} x ${height} at ${pixelRatio} has round(size x ratio x scale) pixels`, async (t) => {
+      const client = await steering(t, server);
+      await client.ask({ type: 'resize', width, height, pixelRatio });
+      const shows = (header) => header.view.width === width && header.view.pixelRatio === pixelRatio;
+      const { header } = await client.frame((h) => shows(h) && isStill(h) && h.quality.scale === 1, 'a still frame');
+      assert.deepEqual(header.view, { width, height, pixelRatio });
+      assert.deepEqual([header.width, header.height], [Math.max(1, Math.round(width * pixelRatio)), Math.max(1, Math.round(height * pixelRatio))]);
+      for (const { header: any } of client.frames.filter((f) => shows(f.header))) {
+        const { scale } = any.quality;
+        near(any.width, Math.max(1, Math.round(any.view.width * pixelRatio * scale)), 'width at its scale', 1 / any.width);
+      }
+    });
+  }
+
+  test('more than maxPixels is drawn smaller', async (t) => {
+    const client = await steering(t, server);
+    const { maxPixels } = client.welcome.limits;
+    await client.ask({ type: 'resize', width: 8192, height: 8192, pixelRatio: 4 });
+    const { header } = await client.frame((h) => h.view.width === 8192);
+    assert.deepEqual(header.view, { width: 8192, height: 8192, pixelRatio: 4 });
+    assert.ok(header.width * header.height <= maxPixels, `${header.width} x ${header.height}`);
+    assert.ok(header.quality.scale < 1);
+    await client.ask({ type: 'resize', ...VIEW });
+  });
+});
+
+describe('levels of accuracy', () => {
+  test('after a change: moving, then still of rising samples, the first after 150 ms, the last at scale 1', async (t) => {
+    const client = await steering(t, server);
+    await settled(client);
+    await client.ask({ type: 'navigate', rotate: [3, 0] });
+    const changed = Date.now();
+    const { revision } = client;
+    const headers = (await settled(client)).filter((header) => header.revision >= revision);
+    const firstStill = headers.findIndex(isStill);
+    assert.ok(firstStill >= 0, 'a still one came');
+    assert.ok(headers.slice(firstStill).every(isStill), 'none is moving behind a still one');
+    const samples = headers.slice(firstStill).map((header) => header.quality.samples);
+    assert.ok(samples.every((n, i) => i === 0 || n > samples[i - 1]), `${samples} rise`);
+    assert.equal(headers.at(-1).quality.scale, 1);
+    const at = client.frames.find((frame) => frame.header.frame === headers[firstStill].frame).at;
+    assert.ok(at - changed >= 140, `after ${at - changed} ms`);
+  });
+
+  test('while it moves, all frames are moving', async (t) => {
+    const client = await steering(t, server);
+    const count = client.frames.length;
+    let seen = count;
+    client.send({ type: 'frame' });
+    let last = Date.now();
+    let slowest = 0;
+    for (let i = 0; i < 25; ++i) {
+      await client.ask({ type: 'navigate', rotate: [1, 0] });
+      slowest = Math.max(slowest, Date.now() - last);
+      last = Date.now();
+      for (; seen < client.frames.length; ++seen) client.send({ type: 'frame' });
+      await sleep(20);
+    }
+    if (slowest > 120) return t.skip(`the machine stalled for ${slowest} ms`);
+    const levels = client.frames.slice(count + 1).map((frame) => frame.header.quality.level);
+    assert.ok(levels.length >= 3);
+    assert.deepEqual([...new Set(levels)], ['moving']);
+    return undefined;
+  });
+
+  test('every client sees the same picture', async (t) => {
+    const client = await steering(t, server);
+    const watcher = await ContractClient.join(t, server, { role: 'view' });
+    const done = (header) => isStill(header) && header.quality.scale === 1 && header.camera.fov === 43;
+    await client.patch({ camera: { fov: 43 } });
+    const [mine, its] = await Promise.all([client.frame(done), watcher.frame(done)]);
+    if (mine.header.frame !== its.header.frame) return; // of other samples
+    assert.deepEqual(its.bytes.subarray(-500), mine.bytes.subarray(-500));
+  });
+});
+
+describe('a slow client', () => {
+  test('never delays another, and gets the newest when it takes again', async (t) => {
+    const client = await steering(t, server);
+    const slow = await ContractClient.join(t, server, { role: 'view' });
+    slow.send({ type: 'frame' });
+    slow.socket.pause();
+    const start = Date.now();
+    for (let i = 0; i < 30; ++i) {
+      await client.ask({ type: 'navigate', rotate: [1, 0] });
+      slow.send({ type: 'frame' });
+      await client.frameOfNow();
+    }
+    assert.ok(Date.now() - start < 5000, `${Date.now() - start} ms for 30 frames of another`);
+    slow.socket.resume();
+    await slow.until('the newest state', () => slow.revision === client.revision);
+    assert.deepEqual(slow.state, client.state);
+    const { header } = await slow.frameOfNow();
+    assert.deepEqual(header.camera.eye, client.state.camera.eye);
+  });
+});
+
+schemaTest(server);
