@@ -1,5 +1,6 @@
 const KEYS = new Set([
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-', 'f', 'Home', 'w', 's', 'Escape',
+  '1', '2', '3', // held in a drag, in one of the navigation styles
 ]);
 /** Those that may go on while they are held; a held `w` must not flicker. */
 const REPEATING_KEYS = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']);

@@ -221,7 +221,7 @@ test('there is no context menu', () => {
 describe('keys', () => {
   test('of the table are passed on and kept from the page', () => {
     const page = setUp();
-    for (const key of ['ArrowLeft', '+', 'f', 'Home', 'w', 's', 'Escape']) {
+    for (const key of ['ArrowLeft', '+', 'f', 'Home', 'w', 's', 'Escape', '1', '3']) {
       const down = page.key('keydown', key);
       assert.ok(down.defaultPrevented, key);
       page.key('keyup', key);
