@@ -128,7 +128,7 @@ void Presentation::apply(const Said& said, const protocol::Control& control) {
 void Presentation::apply(const Said& said, const protocol::Shown& shown) {
     if (clients_[said.client].role != Role::host)
         return refuse(said, code::not_allowed, "only the role 'host' reports what its walls show");
-    if (shown.revision > document()->revision())
+    if (!options_.replaying && shown.revision > document()->revision())
         return refuse(said, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
     answer(said);
