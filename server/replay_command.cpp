@@ -17,13 +17,13 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Scenes of a log: the one that was named, else files of their names beside the log, in the folder above
-/// it, among the program's scenes or here, with the same content.
+/// Scenes of a log: the one that was named, else files of their names beside that, beside the log, in the
+/// folder above it, among the program's scenes or here, with the same content.
 class Scenes {
 public:
     Scenes(const ReplayArguments& arguments) : given_(arguments.scene) {
         const fs::path beside = arguments.log.parent_path();
-        folders_ = {beside, beside / "..", fs::path()};
+        folders_ = {given_.parent_path(), beside, beside / "..", fs::path()};
         for (const fs::path& own : scene_folders()) {
             folders_.push_back(own);
             folders_.push_back(own / "car");
