@@ -1,0 +1,73 @@
+// A recorded session ends at the picture that was looked at when it was kept. VRUT_RENEW=1 keeps a new one.
+#include <doctest/doctest.h>
+#include <png.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "images.hpp"
+#include "recorded_session.hpp"
+#include "renderer.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+
+namespace {
+
+constexpr int kWidth = 320, kHeight = 200;
+
+Image drawn_end() {
+    auto presentation = replay(read_session(), find_scene);
+    REQUIRE_MESSAGE(presentation, presentation.error());
+    View view = presentation->visible();
+    view.width = kWidth;
+    view.height = kHeight;
+    view.samples = 4;
+    Renderer renderer;
+    Image image;
+    FrameStats stats;
+    REQUIRE(renderer.render(view, image, stats));
+    return image;
+}
+
+/// Rows from the bottom up, as the renderer's.
+Image read_picture(const std::filesystem::path& file) {
+    png_image png{};
+    png.version = PNG_IMAGE_VERSION;
+    REQUIRE_MESSAGE(png_image_begin_read_from_file(&png, file.c_str()), png.message);
+    png.format = PNG_FORMAT_RGBA;
+    Image image;
+    image.resize(static_cast<int>(png.width), static_cast<int>(png.height));
+    const auto bottom_up = -static_cast<png_int_32>(png.width * 4);
+    REQUIRE_MESSAGE(png_image_finish_read(&png, nullptr, image.rgba.data(), bottom_up, nullptr), png.message);
+    return image;
+}
+
+}  // namespace
+
+TEST_CASE("the session ends at its picture") {
+    const Image image = drawn_end();
+    const std::filesystem::path file = session_file(".png");
+    if (std::getenv("VRUT_RENEW")) {
+        write_file(file, encode_png(image));
+        MESSAGE("look at " << file.string());
+        return;
+    }
+    const Image expected = read_picture(file);
+    REQUIRE(expected.width == kWidth);
+    REQUIRE(expected.height == kHeight);
+    int far_off = 0;
+    double sum = 0;
+    for (std::size_t pixel = 0; pixel < image.rgba.size(); pixel += 4) {
+        int worst = 0;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const int off = std::abs(image.rgba[pixel + channel] - expected.rgba[pixel + channel]);
+            worst = std::max(worst, off);
+            sum += off;
+        }
+        far_off += worst > 8;
+    }
+    // Drivers differ in which side of an edge a sample falls on.
+    CHECK(far_off <= kWidth * kHeight / 200);
+    CHECK(sum / (3.0 * kWidth * kHeight) < 0.1);
+}

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "replay.hpp"
+
+namespace vrut::test {
+
+/// The session that VRUT_LOG names, of tests/data/logs.
+std::string session_name();
+/// NAME and `ending` in the folder of the logs.
+std::filesystem::path session_file(const std::string& ending);
+EventLog read_session();
+/// The scenes that the logs were recorded with, of tests/data/scenes.
+tl::expected<LoadedScene, std::string> find_scene(const std::string& name, const std::string& sha256);
+
+}  // namespace vrut::test

@@ -1,0 +1,195 @@
+// A recorded session leads to the camera that its clients saw at the end: to the last bit however often it is
+// played, however its moves were merged, and whenever frames were drawn.
+#include "replay.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <random>
+#include <set>
+
+#include "mailbox.hpp"
+#include "recorded_session.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+using nlohmann::json;
+using protocol::ClientMessage;
+using protocol::LogLine;
+using protocol::Pointer;
+
+namespace {
+
+std::array<double, 15> numbers(const protocol::CameraState& camera) {
+    const auto& [eye, focus, up, center] = std::tie(camera.eye, camera.focus, camera.up, camera.center);
+    return {eye.x, eye.y,    eye.z,    focus.x,  focus.y,    focus.z,     up.x,      up.y,
+            up.z,  center.x, center.y, center.z, camera.fov, camera.near, camera.far};
+}
+
+using Bits = std::array<std::uint64_t, 15>;
+
+Bits bits(const protocol::CameraState& camera) { return std::bit_cast<Bits>(numbers(camera)); }
+
+Presentation played(const EventLog& log) {
+    auto presentation = replay(log, find_scene);
+    REQUIRE_MESSAGE(presentation, presentation.error());
+    return *std::move(presentation);
+}
+
+/// As numbers() gives them, from the camera that the recording client knew.
+std::array<double, 15> seen_live(const json& camera) {
+    std::array<double, 15> result{};
+    std::size_t next = 0;
+    for (const char* member : {"eye", "focus", "up", "center"})
+        for (const json& coordinate : camera.at(member)) result.at(next++) = coordinate;
+    for (const char* member : {"fov", "near", "far"}) result.at(next++) = camera.at(member);
+    return result;
+}
+
+/// Whether what this message points at depends on which frame is the newest.
+bool looks_at_newest(const ClientMessage& message) {
+    if (const auto* pick = std::get_if<protocol::Pick>(&message.payload)) return !pick->frame;
+    const auto* pointer = std::get_if<Pointer>(&message.payload);
+    return pointer && pointer->event == Pointer::Event::up && !pointer->frame;
+}
+
+/// Without the frames that nobody names: more moves stand side by side then.
+EventLog without_unnamed_frames(const EventLog& log) {
+    EventLog result{log.header, {}};
+    std::set<std::int64_t> named;
+    bool newest_named = false;
+    for (auto line = log.lines.rbegin(); line != log.lines.rend(); ++line) {
+        if (const auto* message = std::get_if<ClientMessage>(&line->what)) {
+            if (const auto* pick = std::get_if<protocol::Pick>(&message->payload); pick && pick->frame)
+                named.insert(*pick->frame);
+            if (const auto* pointer = std::get_if<Pointer>(&message->payload); pointer && pointer->frame)
+                named.insert(*pointer->frame);
+            newest_named |= looks_at_newest(*message);
+        }
+        if (const auto* drawn = std::get_if<LogLine::Drawn>(&line->what)) {
+            if (!newest_named && !named.contains(drawn->frame)) continue;
+            newest_named = false;
+        }
+        result.lines.push_back(*line);
+    }
+    std::reverse(result.lines.begin(), result.lines.end());
+    return result;
+}
+
+/// As a slow server would have got it: all that clients said between two other things waits in the mailbox at
+/// once.
+EventLog merged(const EventLog& log) {
+    EventLog result{log.header, {}};
+    Mailbox mailbox;
+    const auto take = [&] {
+        for (const EngineEvent& event : mailbox.wait(Clock::now())) {
+            const auto& said = std::get<ClientSaid>(event);
+            const auto at = std::chrono::duration_cast<Time>(said.arrival.time_since_epoch());
+            result.lines.push_back({at, said.client, *said.message});
+        }
+    };
+    for (const LogLine& line : log.lines) {
+        if (const auto* message = std::get_if<ClientMessage>(&line.what)) {
+            mailbox.push(ClientSaid{line.client, *message, Clock::time_point(line.at)});
+            continue;
+        }
+        take();
+        result.lines.push_back(line);
+    }
+    take();
+    return result;
+}
+
+std::ptrdiff_t moves_of(const EventLog& log) {
+    return std::count_if(log.lines.begin(), log.lines.end(), [](const LogLine& line) {
+        const auto* message = std::get_if<ClientMessage>(&line.what);
+        const auto* pointer = message ? std::get_if<Pointer>(&message->payload) : nullptr;
+        return pointer && pointer->event == Pointer::Event::move;
+    });
+}
+
+/// One line, as replay() does it.
+struct Play {
+    Presentation& presentation;
+    const LogLine& line;
+
+    void operator()(const ClientMessage& message) const {
+        CHECK(presentation.say(line.client, message, line.at));
+    }
+    void operator()(const LogLine::Connected& connected) const {
+        presentation.join(line.client, connected.role, line.at);
+    }
+    void operator()(const LogLine::Disconnected&) const { presentation.leave(line.client, line.at); }
+    void operator()(const LogLine::Opened& opened) const {
+        presentation.show(*find_scene(opened.scene, opened.sha256), line.at);
+    }
+    void operator()(const LogLine::Drawn& drawn) const {
+        presentation.advance(line.at);
+        presentation.remember(drawn.frame);
+    }
+};
+
+/// Played by a server that looks at the time, and tells its clients of it, at whatever moments it likes.
+protocol::CameraState played_restlessly(const EventLog& log, std::mt19937& dice) {
+    PresentationOptions options;
+    options.replaying = true;
+    Presentation presentation(*find_scene(log.header.scene, log.header.scene_sha256), options);
+    REQUIRE(presentation.restore(log.header));
+    Time now{0};
+    for (const LogLine& line : log.lines) {
+        for (int looks = static_cast<int>(dice() % 4); looks > 0 && now < line.at; --looks) {
+            now += Time(static_cast<std::int64_t>(dice()) % ((line.at - now).count() + 1));
+            presentation.advance(now);
+            if (dice() % 2 == 0) presentation.document();
+        }
+        std::visit(Play{presentation, line}, line.what);
+        now = std::max(now, line.at);
+    }
+    return presentation.state().camera;
+}
+
+}  // namespace
+
+TEST_CASE("a session ends at the camera that its clients saw, each time to the last bit") {
+    const EventLog log = read_session();
+    const protocol::CameraState camera = played(log).state().camera;
+    CHECK(bits(played(log).state().camera) == bits(camera));
+
+    const json live = json::parse(std::ifstream(session_file(".camera.json")));
+    const std::array<double, 15> is = numbers(camera), should = seen_live(live);
+    for (std::size_t i = 0; i < is.size(); ++i) {
+        INFO("number " << i);
+        CHECK(std::abs(is[i] - should[i]) <= 1e-12 * std::max(1.0, std::abs(should[i])));
+    }
+    CHECK(camera.node.value_or(-1) == live.value("node", std::int64_t{-1}));
+}
+
+TEST_CASE("merged moves and other frames lead to the same camera, to the last bit") {
+    const EventLog log = read_session();
+    const Bits expected = bits(played(log).state().camera);
+    const EventLog fewer_frames = without_unnamed_frames(log);
+    CHECK(bits(played(fewer_frames).state().camera) == expected);
+    CHECK(bits(played(merged(log)).state().camera) == expected);
+    const EventLog few_moves = merged(fewer_frames);
+    CHECK(bits(played(few_moves).state().camera) == expected);
+    CHECK(moves_of(few_moves) < moves_of(log));
+    if (session_name() == "orbit") {
+        CHECK(moves_of(log) >= 60);
+        // One of each of its three drags, two where the release names a frame that was drawn in between.
+        CHECK(moves_of(few_moves) <= 6);
+    }
+}
+
+TEST_CASE("at any speed, however often the time is looked at, the camera is the same to the last bit") {
+    const EventLog log = read_session();
+    const Bits expected = bits(played(log).state().camera);
+    std::mt19937 dice(5);
+    for (int run = 0; run < 20; ++run) {
+        INFO("run " << run);
+        CHECK(bits(played_restlessly(log, dice)) == expected);
+    }
+}
