@@ -1,0 +1,310 @@
+// What patches, keys and other scenes do to the state.
+#include <algorithm>
+
+#include "presentation.hpp"
+#include "stage.hpp"
+
+using namespace stage;
+
+namespace {
+
+std::string patch(const std::string& members) { return R"({"type":"patch","patch":)" + members + "}"; }
+
+std::string key(const std::string& name, bool shift = false) {
+    return json{{"type", "keydown"}, {"key", name}, {"code", name}, {"shiftKey", shift}}.dump();
+}
+
+}  // namespace
+
+TEST_CASE("a camera at its node goes along with it, until it is moved otherwise") {
+    Stage stage("a");
+    CHECK(stage.state()["camera"]["node"] == 6);
+    CHECK(stage.state()["camera"]["name"] == "Driver");
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 8));
+    CHECK(stage.say("a", kMoveHinge));
+    CHECK(stage.camera().eye == glm::dvec3(3, 0, 8));
+    CHECK(stage.camera().focus == glm::dvec3(3, 0, 0));
+    CHECK(stage.camera().node == 6);
+
+    stage.say("a", R"({"type":"navigate","zoom":2})");
+    CHECK(stage.camera().eye == glm::dvec3(3, 0, 4));
+    CHECK_FALSE(stage.state()["camera"].contains("node"));
+    CHECK_FALSE(stage.state()["camera"].contains("name"));
+    stage.say("a", patch(R"({"nodes":null})"));
+    CHECK(stage.camera().eye == glm::dvec3(3, 0, 4));
+    stage.say("a", patch(R"({"camera":{"node":6}})"));
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 8));
+    CHECK(stage.camera().node == 6);
+    stage.say("a", patch(R"({"camera":{"node":null}})"));  // the starting value: that node
+    CHECK(stage.camera().node == 6);
+}
+
+TEST_CASE("a patch of another node's camera or of none is refused") {
+    Stage stage("a");
+    const std::int64_t revision = stage.revision();
+    CHECK(stage.refusal("a", patch(R"({"camera":{"node":2}})")) == "unknown-node");
+    CHECK(stage.refusal("a", patch(R"({"camera":{"node":77}})")) == "unknown-node");
+    CHECK(stage.refusal("a", patch(R"({"camera":{"eye":[1,0,0]}})")) == "out-of-range");  // in the focus
+    CHECK(stage.refusal("a", patch(R"({"camera":{"up":[0,0,1]}})")) == "out-of-range");   // along the view
+    CHECK(stage.revision() == revision);
+    CHECK(stage.holder() == "");
+}
+
+TEST_CASE("what equals the file's value disappears from nodes") {
+    Stage stage("a");
+    stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"2":{"active":false,"material":2}}})"));
+    CHECK(stage.state()["nodes"] ==
+          json::parse(R"({"2":{"active":false,"material":2},"3":{"activeChild":1}})"));
+    stage.say("a", patch(R"({"nodes":{"2":{"active":true}}})"));
+    CHECK(stage.state()["nodes"]["2"] == json::parse(R"({"material":2})"));
+    stage.say("a", patch(R"({"nodes":{"2":{"material":1},"3":{"activeChild":null}}})"));
+    CHECK(stage.state()["nodes"] == json::object());
+    stage.say("a", patch(R"({"nodes":{"1":{"matrix":[1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1]}}})"));
+    CHECK(stage.state()["nodes"] == json::object());
+}
+
+TEST_CASE("unknown nodes, materials and children are refused, and nothing has changed") {
+    struct Wrong {
+        const char *code, *patch, *culprit;
+    };
+    for (const auto& [code, wrong, culprit] :
+         {Wrong{"unknown-node", R"({"nodes":{"99":{"active":false}}})", "99"},
+          {"unknown-node", R"({"nodes":{"02":{"active":false}}})", "02"},
+          {"unknown-node", R"({"nodes":{"2":{"material":9}}})", "nodes.2.material"},
+          {"out-of-range", R"({"nodes":{"1":{"material":1}}})", "nodes.1.material"},
+          {"out-of-range", R"({"nodes":{"3":{"activeChild":2}}})", "nodes.3.activeChild"},
+          {"out-of-range", R"({"nodes":{"2":{"activeChild":0}}})", "nodes.2.activeChild"},
+          {"out-of-range", R"({"nodes":{"1":{"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1]}}})", "matrix"},
+          {"unknown-node", R"({"selection":{"node":99}})", "selection.node"},
+          {"unknown-node", R"({"markers":{"a":{"point":[1,2,3],"node":99}}})", "markers.a.node"},
+          {"unknown-node", R"({"lights":{"active":"99"}})", "lights.active"},
+          {"unknown-node", R"({"backgrounds":{"active":"2"}})", "backgrounds.active"},
+          {"read-only", R"({"scene":{"name":"x"}})", "scene"},
+          {"out-of-range", R"({"views":{"v":{"eye":[0,0,0],"focus":[0,0,0]}}})", "views.v"}}) {
+        INFO(wrong);
+        Stage stage("a");
+        const json before = stage.state();
+        // Something right with it: all or nothing.
+        json all = json::parse(wrong);
+        all["quality"] = {{"preference", 1}};
+        all["nodes"]["4"] = {{"active", false}};
+        stage.told();
+        CHECK_FALSE(stage.say("a", patch(all.dump())));
+        const std::vector<json> told = stage.told();
+        REQUIRE(told.size() == 1);
+        CHECK(told[0]["code"] == code);
+        CHECK(std::string(told[0]["message"]).find(culprit) != std::string::npos);
+        CHECK(stage.state() == before);
+        CHECK(stage.holder() == "");
+    }
+}
+
+TEST_CASE("the children of a switch may be all or none") {
+    Stage stage("a");
+    CHECK(stage.refusal("a", patch(R"({"nodes":{"3":{"activeChild":-1}}})")) == "");
+    CHECK(stage.refusal("a", patch(R"({"nodes":{"3":{"activeChild":-2}}})")) == "");
+    CHECK(stage.state()["nodes"]["3"]["activeChild"] == -2);
+}
+
+TEST_CASE("null gives starting values") {
+    Stage stage("a");
+    const json start = stage.state();
+    stage.say("a", patch(R"({"navigation":{"style":"maya","rotateSpeed":2},"renderer":{"wireframe":true},
+        "quality":{"preference":1},"camera":{"eye":[0,3,3],"fov":60},"selection":{"node":2},
+        "nodes":{"2":{"active":false}},"markers":{"m":{"point":[1,2,3]}},"views":{"v":{},"home":{"fov":20}}})"));
+    stage.say("a", patch(R"({"navigation":{"rotateSpeed":null}})"));
+    CHECK(stage.state()["navigation"]["rotateSpeed"] == 1);
+    CHECK(stage.state()["navigation"]["style"] == "maya");
+    CHECK(stage.refusal("a", patch(R"({"navigation":null,"renderer":null,"quality":null,"camera":null,
+        "selection":{"node":null},"nodes":null,"markers":{"m":null},"views":{"v":null,"home":null}})")) ==
+          "");
+    json end = stage.state();
+    CHECK(end["control"]["holder"] == "a");
+    end["control"] = start["control"];
+    CHECK(end == start);
+}
+
+TEST_CASE("ifRevision refuses what has changed since, and only that") {
+    Stage stage("a");
+    const std::string before = std::to_string(stage.revision());
+    stage.say("a", patch(R"({"camera":{"fov":50}})"));
+    const auto conditional = [&](const std::string& members) {
+        return R"({"type":"patch","ifRevision":)" + before + R"(,"patch":)" + members + "}";
+    };
+    CHECK(stage.refusal("a", conditional(R"({"camera":{"fov":60}})")) == "stale-revision");
+    CHECK(stage.camera().fov == 50);
+    CHECK(stage.refusal("a", conditional(R"({"quality":{"preference":0}})")) == "");
+}
+
+TEST_CASE("f fits what is selected, or the scene") {
+    Stage stage("a");
+    const double sine = std::sin(20 * kRadiansPerDegree);  // of half the view
+    stage.say("a", patch(R"({"selection":{"node":2}})"));
+    CHECK(stage.say("a", key("f")));
+    CHECK(near_to(stage.camera().focus, {1, 0, 0}));
+    CHECK(near_to(stage.camera().eye, {1, 0, std::sqrt(0.5) / sine}));
+    stage.say("a", patch(R"({"nodes":{"2":{"active":false}}})"));  // nothing of it shows: the scene
+    stage.say("a", key("f"));
+    CHECK(near_to(stage.camera().focus, {-1, 0, 0}));
+    stage.say("a", patch(R"({"nodes":null,"selection":{"node":null}})"));
+    stage.say("a", key("f"));
+    CHECK(near_to(stage.camera().focus, {0, 0, 0}));
+    CHECK(near_to(stage.camera().eye, {0, 0, std::sqrt(2.5) / sine}));
+}
+
+TEST_CASE("Home goes to the view of that name, whatever it is now") {
+    Stage stage("a");
+    const auto home = [&] { return stage.presentation.state().views.at("home"); };
+    stage.say("a", key("Home"));
+    CHECK(stage.camera().eye == home().eye);
+    stage.say("a", patch(R"({"views":{"home":{"eye":[0,0,3]}}})"));
+    stage.say("a", key("Home"));
+    CHECK(stage.camera().eye == glm::dvec3(0, 0, 3));
+}
+
+TEST_CASE("keys turn, pan, zoom, and toggle the ways of drawing") {
+    Stage stage("a");
+    stage.say("a", key("w"));
+    CHECK(stage.presentation.state().renderer.wireframe);
+    stage.say("a", key("s"));
+    CHECK(stage.state()["renderer"]["mode"] == "stylized");
+    stage.say("a", key("w"));
+    stage.say("a", key("s"));
+    CHECK_FALSE(stage.presentation.state().renderer.wireframe);
+    CHECK(stage.state()["renderer"]["mode"] == "realistic");
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 8));
+
+    stage.say("a", key("+"));
+    CHECK(near_to(stage.camera().eye, {1, 0, 8 / 1.1}));
+    stage.say("a", key("-"));
+    CHECK(near_to(stage.camera().eye, {1, 0, 8}));
+    // The picture moves right by 5 % of the view's height, which is 2 · 8 · tan 20° there.
+    stage.say("a", key("ArrowRight", true));
+    CHECK(near_to(stage.camera().eye, {1 - 0.8 * std::tan(20 * kRadiansPerDegree), 0, 8}));
+    stage.say("a", key("ArrowLeft", true));
+    stage.say("a", key("ArrowRight"));  // the scene turns right: the eye goes left, about (1, 0, 0)
+    const double angle = 5 * kRadiansPerDegree;
+    CHECK(near_to(stage.camera().eye, {1 - 8 * std::sin(angle), 0, 8 * std::cos(angle)}));
+}
+
+TEST_CASE("Escape stops a flight, or else clears the selection") {
+    Stage stage("a");
+    stage.say("a", patch(R"({"selection":{"node":2}})"));
+    stage.say("a", R"({"type":"fly","keyframes":[{"at":1000,"camera":{"fov":60}}]})");
+    stage.say("a", key("Escape"));
+    CHECK_FALSE(stage.presentation.flies());
+    CHECK(stage.presentation.state().selection.node == 2);
+    stage.say("a", key("Escape"));
+    CHECK(stage.state()["selection"] == json::object());
+}
+
+TEST_CASE("a selection has its node's name and path") {
+    Stage stage("a");
+    stage.say("a", patch(R"({"selection":{"node":2}})"));
+    CHECK(stage.state()["selection"] ==
+          json::parse(R"({"node":2,"name":"Door","path":["Stage","Hinge","Door"]})"));
+    CHECK(stage.presentation.visible().selected != kNone);
+}
+
+TEST_CASE("a view is saved by {}, as the camera stands then") {
+    Stage stage("a");
+    stage.say("a", patch(R"({"camera":{"eye":[1,3,4],"fov":55}})"));
+    stage.say("a", patch(R"({"views":{"a":{},"b":{"fov":20}}})"));
+    const json views = stage.state()["views"];
+    CHECK(views["a"]["eye"] == json::parse("[1,3,4]"));
+    CHECK(views["a"]["fov"] == 55);
+    CHECK(views["b"]["eye"] == json::parse("[1,3,4]"));
+    CHECK(views["b"]["fov"] == 20);
+    stage.say("a", patch(R"({"camera":{"eye":[1,0,4]}})"));
+    CHECK(stage.state()["views"] == views);
+    stage.say("a", patch(json{{"camera", views["a"]}}.dump()));
+    CHECK(stage.camera().eye == glm::dvec3(1, 3, 4));
+}
+
+TEST_CASE("home is fitted to the view until somebody moves the camera") {
+    Stage stage("a", other_scene());
+    stage.say("a", patch("{}"));
+    const auto distance = [&] { return glm::distance(stage.camera().eye, stage.camera().focus); };
+    // A sphere of radius √½ in the smaller of both fields of view, of which the higher one has 40°.
+    const double tangent = std::tan(20 * kRadiansPerDegree);
+    CHECK(distance() == doctest::Approx(std::sqrt(0.5) / std::sin(20 * kRadiansPerDegree)));
+    stage.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
+    const double tall = std::sqrt(0.5) / std::sin(std::atan(tangent / 2));
+    CHECK(distance() == doctest::Approx(tall));
+    CHECK(stage.camera().eye == stage.presentation.state().views.at("home").eye);
+    stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
+    stage.say("a", R"({"type":"resize","width":200,"height":200,"pixelRatio":1})");
+    CHECK(distance() == doctest::Approx(tall));
+}
+
+TEST_CASE("another scene starts anew, but for control, navigation, the way of drawing and quality") {
+    Stage stage("a");
+    stage.say("a", R"({"type":"control","action":"take"})");
+    stage.say("a",
+              patch(R"({"navigation":{"style":"maya"},"renderer":{"wireframe":true,"showSelection":false},
+        "quality":{"preference":1},"selection":{"node":2},"nodes":{"2":{"active":false}},
+        "markers":{"m":{"point":[1,2,3]}},"views":{"v":{}}})"));
+    stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":1000,"camera":{"fov":60}}]})");
+    stage.told();
+    stage.at(500ms);
+    const json before = stage.state();
+    const std::int64_t revision = stage.revision();
+    stage.presentation.show(other_scene(), 500ms);
+    const json after = stage.state();
+    for (const char* kept : {"navigation", "quality", "control"}) CHECK(after[kept] == before[kept]);
+    CHECK(after["renderer"]["wireframe"] == true);
+    CHECK(after["renderer"]["showSelection"] == false);
+    CHECK(after["renderer"]["solid"] == 1);
+    CHECK(after["scene"]["nodes"] == 2);
+    CHECK(after["selection"] == json::object());
+    CHECK(after["nodes"] == json::object());
+    CHECK(after["markers"] == json::object());
+    CHECK(after["views"].size() == 1);
+    CHECK_FALSE(after["camera"].contains("node"));
+    CHECK(after["camera"]["eye"] == after["views"]["home"]["eye"]);
+    CHECK(stage.revision() == revision + 1);
+    const std::vector<json> told = stage.told();
+    REQUIRE(told.size() == 1);
+    CHECK(told[0]["type"] == "flown");
+    CHECK(told[0]["completed"] == false);
+    CHECK(stage.presentation.scene_name() == "other.vrut");
+    CHECK(stage.refusal("a", patch(R"({"selection":{"node":2}})")) == "unknown-node");
+}
+
+TEST_CASE("a pick names one of the last 64 frames") {
+    Stage stage("a");
+    stage.presentation.remember(1);
+    stage.say("a", R"({"type":"navigate","rotate":[180,0]})");  // behind it all
+    for (int frame = 2; frame <= 64; ++frame) stage.presentation.remember(frame);
+    const auto pick = [&](const char* frame) {
+        stage.told();
+        stage.say("a", std::string(R"({"type":"pick","id":3,"x":640,"y":360)") + frame + "}");
+        return stage.told().at(0);
+    };
+    const json first = pick(R"(,"frame":1)");
+    CHECK(first["node"] == 2);
+    CHECK(first["distance"] == 8);
+    CHECK(first["path"] == json::parse(R"(["Stage","Hinge","Door"])"));
+    stage.presentation.remember(65);
+    CHECK(pick(R"(,"frame":1)")["code"] == "unknown-frame");
+    CHECK(pick(R"(,"frame":66)")["code"] == "unknown-frame");
+    CHECK_FALSE(pick("").contains("code"));
+}
+
+TEST_CASE("a snapshot overlays the shared view and leaves it alone") {
+    Stage stage("a");
+    const json before = stage.state();
+    CHECK(stage.say("a", R"({"type":"snapshot","id":5,"width":30,"height":20,"format":"png",
+        "camera":{"eye":[1,0,4]},"renderer":{"wireframe":true}})"));
+    CHECK(stage.state() == before);
+    const auto orders = stage.presentation.take_orders();
+    REQUIRE(orders.size() == 1);
+    CHECK(orders[0].view.camera.eye == glm::dvec3(1, 0, 4));
+    CHECK(orders[0].view.wireframe);
+    CHECK(orders[0].view.width == 30);
+    CHECK(orders[0].header.snapshot == 5);
+    CHECK(orders[0].header.revision == stage.revision());
+    CHECK(stage.presentation.visible().camera.eye == glm::dvec3(1, 0, 8));
+    CHECK(stage.refusal("a", R"({"type":"snapshot","id":6,"width":3,"height":2,"camera":{"node":77}})") ==
+          "unknown-node");
+}

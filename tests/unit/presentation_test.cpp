@@ -1,0 +1,314 @@
+// Who steers, and what flies: to the microsecond.
+#include "presentation.hpp"
+
+#include "stage.hpp"
+
+using namespace stage;
+
+namespace {
+
+const std::string kNavigate = R"({"type":"navigate","id":1,"zoom":1})";
+const std::string kFly =
+    R"({"type":"fly","id":9,"easing":"linear","keyframes":[{"at":1000,"camera":{"eye":[1,0,4]}}]})";
+const std::string kTake = R"({"type":"control","action":"take"})";
+const std::string kRelease = R"({"type":"control","action":"release"})";
+const std::string kWheel = R"({"type":"wheel","x":1,"y":1,"deltaX":0,"deltaY":-100,"deltaMode":0})";
+
+std::string finger(const std::string& what, double x, double y, int pointer = 1) {
+    return json{{"type", "pointer" + what},
+                {"pointerId", pointer},
+                {"pointerType", "touch"},
+                {"x", x},
+                {"y", y},
+                {"button", what == "move" ? -1 : 0},
+                {"buttons", what == "up" ? 0 : 1}}
+        .dump();
+}
+
+/// The `flown` among what was told: completed or not, in order.
+std::vector<bool> flown(const std::vector<json>& told) {
+    std::vector<bool> result;
+    for (const json& answer : told)
+        if (answer["type"] == "flown") {
+            CHECK(answer["id"] == 9);
+            CHECK(answer["to"] == "a");
+            result.push_back(answer["completed"]);
+        }
+    return result;
+}
+
+using Flown = std::vector<bool>;
+
+}  // namespace
+
+TEST_CASE("a holder who has been quiet for a second gives way, not a millisecond before") {
+    Stage stage("ab");
+    stage.at(5s);
+    CHECK(stage.say("a", kNavigate));
+    CHECK(stage.holder() == "a");
+    stage.at(5999ms);
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.holder() == "a");
+    stage.at(6s);
+    CHECK(stage.refusal("b", kNavigate) == "");
+    CHECK(stage.holder() == "b");
+}
+
+TEST_CASE("a watcher's input is refused silently, but for one with an id") {
+    Stage stage("ab");
+    stage.say("a", kNavigate);
+    stage.told();
+    CHECK_FALSE(stage.say("b", kWheel));
+    CHECK_FALSE(stage.say("b", finger("down", 1, 1)));
+    CHECK_FALSE(stage.say("b", R"({"type":"keydown","key":"f","code":"KeyF"})"));
+    CHECK(stage.told().empty());
+    CHECK(stage.refusal("b", R"({"type":"keydown","id":7,"key":"f","code":"KeyF"})") == "not-in-control");
+    CHECK(stage.refusal("b", R"({"type":"navigate","zoom":2})") == "not-in-control");  // no input event
+}
+
+TEST_CASE("a pressed pointer is not quiet; the second counts from its release") {
+    Stage stage("ab");
+    stage.say("a", finger("down", 100, 100));
+    stage.at(1h);
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    stage.say("a", finger("up", 100, 100));
+    stage.at(1h + 999ms);
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    stage.at(1h + 1s);
+    CHECK(stage.refusal("b", kNavigate) == "");
+}
+
+TEST_CASE("a move of a pointer that is not pressed steers nothing") {
+    Stage stage("ab");
+    CHECK_FALSE(stage.say("a", finger("move", 100, 100)));
+    CHECK(stage.holder() == "");
+    CHECK(stage.told().empty());
+}
+
+TEST_CASE("who takes control keeps it until he releases it or another takes it") {
+    Stage stage("ab");
+    stage.say("a", kTake);
+    CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", true}}));
+    stage.at(1h);
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.refusal("b", kTake) == "");
+    CHECK(stage.holder() == "b");
+    CHECK(stage.refusal("a", kRelease) == "");  // which is not his to give
+    CHECK(stage.holder() == "b");
+    stage.say("b", kRelease);
+    CHECK(stage.state()["control"] == json({{"kept", false}}));
+    CHECK(stage.refusal("a", kNavigate) == "");
+    CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", false}}));
+}
+
+TEST_CASE("a flight does not keep its client in control; who takes over by steering stops it") {
+    Stage stage("ab");
+    stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":5000,"camera":{"eye":[1,0,4]}}]})");
+    stage.at(999ms);
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.presentation.flies());
+    stage.at(1s);
+    CHECK(stage.say("b", kNavigate));
+    CHECK(flown(stage.told()) == Flown{false});
+    CHECK_FALSE(stage.presentation.flies());
+}
+
+TEST_CASE("a flight ends exactly at its end and is told once") {
+    Stage stage("a");
+    stage.at(10s);
+    stage.say("a", kFly);
+    CHECK(stage.told().at(0)["type"] == "ok");
+    stage.at(10'500ms);  // from 8 to 4 by equal factors
+    CHECK(near_to(stage.camera().eye, {1, 0, 8 / std::sqrt(2.0)}));
+    stage.at(10'999'999us);
+    CHECK(stage.presentation.flies());
+    CHECK(flown(stage.told()).empty());
+    stage.at(11s);
+    CHECK_FALSE(stage.presentation.flies());
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 4));
+    CHECK(flown(stage.told()) == Flown{true});
+    stage.at(12s);
+    stage.say("a", kNavigate);
+    CHECK(flown(stage.told()).empty());
+}
+
+TEST_CASE("a flight of no time is flown at once; one without id is told to nobody") {
+    Stage stage("a");
+    stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":0,"camera":{"eye":[1,0,2]}}]})");
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 2));
+    CHECK(flown(stage.told()) == Flown{true});
+    stage.say("a", R"({"type":"fly","keyframes":[{"at":10,"camera":{"eye":[1,0,3]}}]})");
+    stage.at(1s);
+    CHECK(stage.camera().eye == glm::dvec3(1, 0, 3));
+    CHECK(stage.told().empty());
+}
+
+TEST_CASE("any later steering message stops a flight where it is") {
+    for (const std::string& message :
+         {kNavigate, kWheel, kFly, finger("down", 5, 5), std::string(R"({"type":"fit"})"),
+          std::string(R"({"type":"patch","patch":{}})"), std::string(R"({"type":"open","scene":"other"})"),
+          std::string(R"({"type":"pick","x":1,"y":1,"then":"select"})"),
+          std::string(R"({"type":"keydown","key":"x","code":"KeyX"})")}) {
+        INFO(message);
+        Stage stage("a");
+        stage.say("a", kFly);
+        stage.at(500ms);
+        stage.told();
+        CHECK(stage.say("a", message));
+        CHECK(flown(stage.told()) == Flown{false});
+        CHECK(stage.presentation.flies() == (message == kFly));
+    }
+}
+
+TEST_CASE("nothing else stops a flight") {
+    for (const std::string& message :
+         {kTake, finger("move", 5, 5),
+          std::string(R"({"type":"resize","width":10,"height":10,"pixelRatio":1})"),
+          std::string(R"({"type":"pick","x":1,"y":1})"), std::string(R"({"type":"tree"})"),
+          std::string(R"({"type":"snapshot","id":12,"width":10,"height":10})"),
+          std::string(R"({"type":"keyup","key":"x","code":"KeyX"})"),
+          std::string(R"({"type":"fit","node":99})"),                       // refused
+          std::string(R"({"type":"patch","patch":{"nodes":{"99":{}}}})")})  // refused
+    {
+        INFO(message);
+        Stage stage("a");
+        stage.say("a", kFly);
+        stage.at(500ms);
+        stage.say("a", message);
+        CHECK(stage.presentation.flies());
+        stage.at(1s);
+        CHECK(flown(stage.told()) == Flown{true});
+    }
+}
+
+TEST_CASE("another client's take does not stop a flight, which belongs to control") {
+    Stage stage("ab");
+    stage.say("a", kFly);
+    stage.at(100ms);
+    stage.say("b", kTake);
+    CHECK(stage.presentation.flies());
+    SUBCASE("its own client's release is not his to give any more") {
+        stage.say("a", kRelease);
+        CHECK(stage.presentation.flies());
+        stage.at(1s);
+        CHECK(flown(stage.told()) == Flown{true});
+    }
+    SUBCASE("the new holder's release stops it") {
+        stage.say("b", kRelease);
+        CHECK(flown(stage.told()) == Flown{false});
+    }
+    SUBCASE("when the new holder leaves, it stops") {
+        stage.presentation.leave("b", 200ms);
+        CHECK(flown(stage.told()) == Flown{false});
+    }
+}
+
+TEST_CASE("a message that is refused does not change who steers") {
+    Stage stage("ab");
+    CHECK(stage.refusal("a", R"({"type":"fit","node":99})") == "unknown-node");
+    CHECK(stage.refusal("a", R"({"type":"record","action":"start"})") == "not-allowed");
+    CHECK(stage.holder() == "");
+    stage.say("a", kNavigate);
+    stage.at(1s);
+    CHECK(stage.refusal("b", R"({"type":"fly","keyframes":[{"at":1,"camera":{"node":2}}]})") ==
+          "unknown-node");
+    CHECK(stage.holder() == "a");
+}
+
+TEST_CASE("hosts patch camera, nodes and selection; nobody but control clients does the rest") {
+    Stage stage("hva");
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "");
+    CHECK(stage.holder() == "h");
+    CHECK(stage.refusal("h", kMoveHinge) == "");
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"selection":{"node":2}}})") == "");
+    const std::int64_t revision = stage.revision();
+    CHECK(stage.refusal("h",
+                        R"({"type":"patch","patch":{"camera":{"fov":60},"renderer":{"wireframe":true}}})") ==
+          "not-allowed");
+    CHECK(stage.refusal("h", kNavigate) == "not-allowed");
+    CHECK(stage.refusal("h", kTake) == "not-allowed");
+    CHECK(stage.refusal("v", kNavigate) == "not-allowed");
+    CHECK(stage.refusal("v", R"({"type":"patch","patch":{}})") == "not-allowed");
+    CHECK(stage.refusal("v", kTake) == "not-allowed");
+    CHECK(stage.refusal("v", R"({"type":"pick","x":1,"y":1,"then":"select"})") == "not-allowed");
+    CHECK(stage.revision() == revision);
+    CHECK(stage.refusal("v", R"({"type":"pick","x":1,"y":1})") == "");
+    // The same rule for hosts: the holder who is quiet gives way.
+    stage.say("a", kTake);
+    stage.say("a", kRelease);
+    stage.say("a", kNavigate);
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
+}
+
+TEST_CASE("a host tells what its walls show, up to the newest revision") {
+    Stage stage("ha");
+    const std::int64_t revision = stage.revision();
+    const auto shown = [](std::int64_t number) {
+        return R"({"type":"shown","revision":)" + std::to_string(number) + "}";
+    };
+    CHECK(stage.refusal("h", shown(revision)) == "");
+    CHECK(stage.refusal("h", shown(revision + 1)) == "out-of-range");
+    CHECK(stage.refusal("a", shown(revision)) == "not-allowed");
+}
+
+TEST_CASE("who leaves in mid-drag leaves control free at once, and the camera where it is") {
+    Stage stage("ab");
+    stage.say("a", finger("down", 100, 100));
+    stage.say("a", finger("move", 200, 100));
+    const glm::dvec3 eye = stage.camera().eye;
+    CHECK(eye != glm::dvec3(1, 0, 8));
+    stage.presentation.leave("a", stage.now);
+    CHECK(stage.holder() == "");
+    CHECK(stage.camera().eye == eye);
+    CHECK_FALSE(stage.say("a", finger("move", 300, 100)));
+    CHECK(stage.told().empty());
+    CHECK(stage.refusal("b", kNavigate) == "");
+}
+
+TEST_CASE("whose control is taken in mid-drag moves nothing any more") {
+    Stage stage("ab");
+    stage.say("a", finger("down", 100, 100));
+    stage.say("b", kTake);
+    stage.say("b", kRelease);
+    const glm::dvec3 eye = stage.camera().eye;
+    CHECK_FALSE(stage.say("a", finger("move", 300, 100)));  // lifted: nothing that follows a press
+    CHECK(stage.camera().eye == eye);
+    CHECK(stage.holder() == "");
+}
+
+TEST_CASE("a press that takes control is measured in the view that it began in") {
+    Stage stage("ab");
+    stage.say("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
+    stage.say("b", R"({"type":"resize","width":100,"height":100,"pixelRatio":2})");
+    stage.say("a", kNavigate);
+    CHECK(stage.presentation.view_size() == protocol::Resize{400, 200, 1});
+    stage.at(1s);
+    stage.say("b", finger("down", 50, 50));
+    CHECK(stage.holder() == "b");
+    CHECK(stage.presentation.view_size() == protocol::Resize{400, 200, 1});
+    stage.say("b", finger("up", 50, 50));
+    CHECK(stage.presentation.view_size() == protocol::Resize{100, 100, 2});
+}
+
+TEST_CASE("an earlier time counts as the latest before") {
+    Stage stage("ab");
+    stage.at(10s);
+    stage.say("a", kNavigate);
+    stage.now = 3s;
+    stage.say("a", kNavigate);
+    stage.now = 10'999ms;
+    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+}
+
+TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
+    Stage stage("ab");
+    stage.say("a", R"({"type":"patch","patch":{"camera":{"fov":50}}})");
+    stage.revision();
+    CHECK(stage.presentation.changed_by() == "a");
+    stage.at(1s);
+    stage.say("b", kFly);
+    stage.revision();
+    stage.at(1500ms);
+    stage.revision();
+    CHECK(stage.presentation.changed_by() == "");
+}
