@@ -41,7 +41,7 @@ void Recorder::write(const std::string& line) {
     size_ += line.size() + 1;
     // Whole lines reach the file at once: a log whose end is missing is still a log.
     file_ << line << '\n' << std::flush;
-    if (file_ && size_ < kLargest) return;
+    if (file_ && size_ < largest_) return;
     spdlog::warn("recording to {} ends: {}", path_.string(),
                  file_ ? "it has grown too large" : "it cannot be written any more");
     close();

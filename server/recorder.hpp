@@ -11,13 +11,14 @@
 namespace vrut {
 
 /// Writes event logs into a folder, one at a time. A log that cannot be written any more, or has grown to
-/// kLargest, ends.
+/// `largest` bytes, ends.
 class Recorder {
 public:
     static constexpr std::uintmax_t kLargest = std::uintmax_t{1} << 30;
 
     /// An empty folder: there is nowhere to record to.
-    explicit Recorder(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit Recorder(std::filesystem::path folder, std::uintmax_t largest = kLargest)
+        : folder_(std::move(folder)), largest_(largest) {}
 
     bool has_folder() const { return !folder_.empty(); }
     bool active() const { return file_.is_open(); }
@@ -29,7 +30,7 @@ public:
 private:
     std::filesystem::path folder_, path_;
     std::ofstream file_;
-    std::uintmax_t size_ = 0;
+    std::uintmax_t largest_, size_ = 0;
 };
 
 /// Now, as in "2026-01-31T12:34:56Z".
