@@ -1,0 +1,391 @@
+// What begins in the middle of something, ends in it, or is no log at all.
+#include "replay.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <bit>
+#include <random>
+
+#include "stage.hpp"
+#include "temporary_folder.hpp"
+
+using namespace stage;
+
+namespace {
+
+tl::expected<LoadedScene, std::string> find_scene(const std::string& name, const std::string& sha256) {
+    LoadedScene found = name == "other.vrut" ? other_scene() : scene();
+    if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
+    return found;
+}
+
+std::string pointer(const std::string& what, double x, double y, int id = 1, const char* device = "touch") {
+    return json{{"type", "pointer" + what},
+                {"pointerId", id},
+                {"pointerType", device},
+                {"x", x},
+                {"y", y},
+                {"button", what == "move" ? -1 : 0},
+                {"buttons", what == "up" ? 0 : 1}}
+        .dump();
+}
+
+/// A stage whose session is recorded from some point on.
+class Recorded {
+public:
+    explicit Recorded(const std::string& clients, LoadedScene shown = scene())
+        : stage(clients, std::move(shown), options(folder.path())) {
+        spdlog::set_level(spdlog::level::warn);
+    }
+    void start(const std::string& client = "a") {
+        REQUIRE(stage.refusal(client, R"({"type":"record","action":"start","name":"log"})") == "");
+    }
+    EventLog log() const {
+        auto log = read_event_log(folder.path() / "log.jsonl");
+        REQUIRE_MESSAGE(log, log.error());
+        return *std::move(log);
+    }
+    /// The replay ends in the state that the session has now, to the last bit.
+    void check() {
+        auto replayed = replay(log(), find_scene);
+        REQUIRE_MESSAGE(replayed, replayed.error());
+        json live = stage.state(), again = replayed->document()->json();
+        live.erase("recording");
+        CHECK(again == live);
+        const auto &is = replayed->state().camera, &should = stage.camera();
+        CHECK(std::bit_cast<std::array<std::uint64_t, 3>>(is.eye) ==
+              std::bit_cast<std::array<std::uint64_t, 3>>(should.eye));
+        CHECK(is == should);
+        CHECK(replayed->view_size() == stage.presentation.view_size());
+        CHECK(replayed->flies() == stage.presentation.flies());
+    }
+
+    TemporaryFolder folder;
+    Stage stage;
+
+private:
+    static PresentationOptions options(const std::filesystem::path& folder) {
+        PresentationOptions result;
+        result.record_folder = folder;
+        return result;
+    }
+};
+
+/// Two clients who do anything at any time; the recording begins somewhere in it.
+class RandomSession {
+public:
+    explicit RandomSession(unsigned seed)
+        : dice_(seed), recorded("ab", number(0, 1) == 0 ? scene() : other_scene()), begins_(number(0, 30)) {}
+
+    void play() {
+        for (int step = 0; step < 80; ++step) {
+            recorded.stage.at(recorded.stage.now + Time(number(0, 9) > 0 ? number(0, 40'000) : 1'200'000));
+            if (step == begins_) {
+                recorded.stage.say("a", R"({"type":"control","action":"take"})");
+                recorded.start();
+            }
+            happen();
+        }
+        recorded.stage.join('v');  // a line of the last time
+    }
+
+private:
+    int number(int from, int to) {
+        return from + static_cast<int>(dice_() % static_cast<unsigned>(to - from + 1));
+    }
+    std::string one_of(std::initializer_list<const char*> texts) {
+        return texts.begin()[dice_() % texts.size()];
+    }
+
+    void happen() {
+        Stage& stage = recorded.stage;
+        const int what = number(0, 19);
+        if (what < 4) {
+            stage.presentation.remember(++frame_);
+        } else if (what == 4) {
+            stage.presentation.leave("b", stage.now);
+            stage.join('b');
+        } else if (what == 5 && number(0, 3) == 0) {
+            stage.presentation.show(number(0, 1) == 0 ? scene() : other_scene(), stage.now);
+        } else {
+            stage.say(one_of({"a", "a", "b"}), number(0, 1) == 0 ? input() : request());
+        }
+    }
+
+    std::string input() {
+        const int x = number(0, 1280), y = number(0, 720), id = number(1, 3);
+        const std::string device = one_of({"touch", "touch", "mouse"});
+        switch (number(0, 9)) {
+            case 0:
+            case 1:
+                return pointer("down", x, y, id, device.c_str());
+            case 2:
+                return pointer("up", x, y, id, device.c_str());
+            case 3:
+                return json{{"type", "wheel"}, {"x", x},         {"y", y},
+                            {"deltaX", 0},     {"deltaMode", 0}, {"deltaY", y - 360}}
+                    .dump();
+            case 4:
+                return one_of({R"({"type":"keydown","key":"1","code":"Digit1"})",
+                               R"({"type":"keyup","key":"1","code":"Digit1"})",
+                               R"({"type":"keydown","key":"ArrowUp","code":"ArrowUp"})",
+                               R"({"type":"keydown","key":"f","code":"KeyF"})",
+                               R"({"type":"keydown","key":"Home","code":"Home"})"});
+            default:
+                return pointer("move", x, y, id, device.c_str());
+        }
+    }
+
+    std::string request() {
+        const int x = number(0, 1280), y = number(0, 720);
+        const json pick{{"type", "pick"},
+                        {"x", x},
+                        {"y", y},
+                        {"then", one_of({"center", "lookAt", "select"})},
+                        {"frame", std::max(1, frame_ - number(0, 5))}};
+        const json resize{{"type", "resize"}, {"width", x + 1}, {"height", y + 1}, {"pixelRatio", 1}};
+        switch (number(0, 5)) {
+            case 0:
+                return pick.dump();
+            case 1:
+                return resize.dump();
+            case 2:
+                return one_of({R"({"type":"fly","keyframes":[{"at":700,"camera":{"eye":[3,2,4]}}]})",
+                               R"({"type":"fly","keyframes":[{"at":50,"camera":{"fov":50}},
+                                   {"at":900,"camera":{"eye":[2,5,1]}}]})"});
+            case 3:
+                return one_of({R"({"type":"control","action":"take"})",
+                               R"({"type":"control","action":"release"})",
+                               R"({"type":"navigate","rotate":[7,3],"pan":[0.1,0],"zoom":1.1})"});
+            default:
+                return one_of({R"({"type":"patch","patch":{"navigation":{"style":"cinema4d"}}})",
+                               R"({"type":"patch","patch":{"navigation":{"keepUpright":false}}})",
+                               R"({"type":"patch","patch":{"navigation":null,"views":{"v":{}}}})",
+                               R"({"type":"patch","patch":{"camera":{"eye":[1,2,9]}}})",
+                               R"({"type":"patch","patch":{"camera":null}})",
+                               R"({"type":"patch","patch":{"nodes":null}})", kMoveHinge});
+        }
+    }
+
+    std::mt19937 dice_;
+
+public:
+    Recorded recorded;
+
+private:
+    int begins_ = 0, frame_ = 0;
+};
+
+/// The sentence with which a log of these lines behind a good header fails.
+std::string failure(const std::string& lines) {
+    Recorded recorded("a");
+    recorded.start();
+    const std::string header = recorded.folder.read("log.jsonl");
+    const auto log = read_event_log(recorded.folder.write("wrong.jsonl", header + lines));
+    if (!log) return log.error();
+    const auto replayed = replay(*log, find_scene);
+    return replayed ? "" : replayed.error();
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("begun in a view of the holder's size") {
+    Recorded recorded("ab");
+    recorded.stage.say("a", R"({"type":"resize","width":300,"height":500,"pixelRatio":2})");
+    recorded.stage.say("b", R"({"type":"resize","width":640,"height":200,"pixelRatio":0.5})");
+    recorded.start();
+    recorded.stage.say("a", pointer("down", 100, 100));
+    recorded.stage.say("a", pointer("move", 130, 140));
+    recorded.check();
+    recorded.stage.say("b", R"({"type":"control","action":"take"})");  // brings his size
+    recorded.stage.say("b", R"({"type":"fit"})");
+    recorded.check();
+}
+
+TEST_CASE("begun before anybody moved the camera: home goes on to fit the view") {
+    Recorded recorded("a", other_scene());
+    recorded.start();
+    const glm::dvec3 eye = recorded.stage.camera().eye;
+    recorded.stage.say("a", R"({"type":"resize","width":100,"height":300,"pixelRatio":1})");
+    CHECK(recorded.stage.camera().eye != eye);
+    recorded.check();
+}
+
+TEST_CASE("begun at a camera node that is moved later, with a door open and a selection") {
+    Recorded recorded("a");
+    recorded.stage.say("a", R"({"type":"patch","patch":{"nodes":{"2":{"active":false},"3":{"activeChild":1}},
+        "selection":{"node":5},"markers":{"m":{"point":[1,2,3],"node":2}},"views":{"v":{}}}})");
+    recorded.start();
+    recorded.check();
+    recorded.stage.say("a", kMoveHinge);
+    CHECK(recorded.stage.camera().eye == glm::dvec3(3, 0, 8));
+    recorded.check();
+    recorded.stage.say("a", R"({"type":"patch","patch":{"nodes":null}})");
+    recorded.check();
+}
+
+TEST_CASE("a pick that names a frame of before the recording sees what that showed") {
+    Recorded recorded("a");
+    recorded.stage.presentation.remember(4);
+    recorded.stage.say("a", R"({"type":"navigate","rotate":[180,0]})");
+    recorded.stage.presentation.remember(5);
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"pick","x":640,"y":360,"frame":4,"then":"select"})");
+    CHECK(recorded.stage.presentation.state().selection.node == 2);
+    recorded.check();
+}
+
+TEST_CASE("begun in a flight, which goes on where it was") {
+    Recorded recorded("a");
+    recorded.stage.at(10s);
+    recorded.stage.say("a", R"({"type":"fly","keyframes":[{"at":333,"camera":{"eye":[2,3,4]}},
+        {"at":1000,"camera":{"eye":[-3,1,2],"fov":70}}]})");
+    recorded.stage.at(10'123'457us);
+    recorded.start();
+    CHECK(recorded.stage.presentation.flies());
+    recorded.stage.at(10'654'321us);
+    recorded.stage.join('v');
+    recorded.check();  // unfinished: where it was at the last line
+    SUBCASE("and ends") {
+        recorded.stage.at(11s);
+        recorded.stage.join('b');
+        CHECK_FALSE(recorded.stage.presentation.flies());
+        CHECK(recorded.stage.camera().eye == glm::dvec3(-3, 1, 2));
+        recorded.check();
+    }
+    SUBCASE("and is stopped") {
+        recorded.stage.at(10'777'777us);
+        recorded.stage.say("a", R"({"type":"navigate","zoom":1.25})");
+        recorded.check();
+    }
+}
+
+TEST_CASE("begun in a drag, with a key held that makes it one") {
+    Recorded recorded("a");
+    recorded.stage.say("a", R"({"type":"patch","patch":{"navigation":{"style":"cinema4d"}}})");
+    recorded.stage.say("a", R"({"type":"keydown","key":"1","code":"Digit1"})");
+    recorded.stage.say("a", pointer("down", 300, 300, 1, "mouse"));
+    recorded.stage.say("a", pointer("move", 340, 310, 1, "mouse"));
+    recorded.start();
+    recorded.stage.say("a", pointer("move", 400, 330, 1, "mouse"));
+    recorded.check();
+    recorded.stage.say("a", R"({"type":"keyup","key":"1","code":"Digit1"})");
+    recorded.stage.say("a", pointer("move", 410, 380, 1, "mouse"));
+    recorded.check();
+}
+
+TEST_CASE("begun in a pinch") {
+    Recorded recorded("a");
+    recorded.stage.say("a", pointer("down", 300, 300, 1));
+    recorded.stage.say("a", pointer("down", 400, 300, 2));
+    recorded.stage.say("a", pointer("move", 450, 310, 2));
+    recorded.start();
+    recorded.stage.say("a", pointer("move", 470, 250, 2));
+    recorded.stage.say("a", pointer("move", 310, 280, 1));
+    recorded.check();
+    recorded.stage.say("a", pointer("up", 470, 250, 2));
+    recorded.stage.say("a", pointer("move", 330, 280, 1));
+    recorded.check();
+}
+
+TEST_CASE("whatever happens, before and in a recording, the replay ends in the same state") {
+    for (unsigned seed = 0; seed < 150; ++seed) {
+        INFO("seed " << seed);
+        RandomSession session(seed);
+        session.play();
+        session.recorded.check();
+    }
+}
+
+// --- what is no good log
+
+TEST_CASE("an unfinished last line is left out, one in the middle is told") {
+    Recorded recorded("a");
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
+    const glm::dvec3 eye = recorded.stage.camera().eye;
+    recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
+    const std::string text = recorded.folder.read("log.jsonl");
+    for (const std::size_t missing : {2U, 20U, 60U}) {
+        const auto log =
+            read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, text.size() - missing)));
+        REQUIRE_MESSAGE(log, log.error());
+        CHECK(log->lines.size() == 1);
+        CHECK(replay(*log, find_scene)->state().camera.eye == eye);
+    }
+    // Only the line's end is missing: it is whole.
+    CHECK(
+        read_event_log(recorded.folder.write("whole.jsonl", text.substr(0, text.size() - 1)))->lines.size() ==
+        2);
+    CHECK(holds(failure("{\"at\":1,\"cli\n{\"at\":2,\"event\":\"drawn\",\"frame\":1}\n"), "wrong.jsonl:2: "));
+}
+
+TEST_CASE("what is no log is told with file and line") {
+    const TemporaryFolder folder;
+    const auto error = [&](const std::string& text) {
+        const auto log = read_event_log(folder.write("x.jsonl", text));
+        REQUIRE_FALSE(log);
+        return log.error();
+    };
+    CHECK(holds(error(""), "x.jsonl: the file is empty"));
+    CHECK(holds(error("\n"), "x.jsonl:1: "));
+    CHECK(holds(error("{\"log\":\"vrut-prev"), "x.jsonl:1: "));
+    CHECK(holds(error("{\"log\":\"another\",\"version\":1}\n"), "'log'"));
+    CHECK(holds(read_event_log(folder.path() / "none.jsonl").error(), "none.jsonl: cannot be opened"));
+}
+
+TEST_CASE("a scene that is another one now is told") {
+    Recorded recorded("a");
+    recorded.start();
+    recorded.stage.presentation.show(other_scene(), 1s);
+    EventLog log = recorded.log();
+    REQUIRE(log.lines.size() == 1);
+    std::get<protocol::LogLine::Opened>(log.lines[0].what).sha256 = "ab12";
+    CHECK(replay(log, find_scene).error() == "line 2: other.vrut is another one now");
+    log.header.scene_sha256 = "ab12";
+    CHECK(replay(log, find_scene).error() == "stage.vrut is another one now");
+}
+
+TEST_CASE("a message that cannot be played is told with its line and why") {
+    const std::string good = R"({"at":1,"client":"a","message":{"type":"navigate","zoom":2}})"
+                             "\n";
+    CHECK(failure(good) == "");
+    CHECK(failure(good + R"({"at":2,"client":"nobody","message":{"type":"navigate","zoom":2}})" + "\n") ==
+          "line 3: a message that was accepted is refused now: client 'nobody' is not there");
+    CHECK(failure(good + R"({"at":2,"client":"a","message":{"type":"fit","node":99}})" + "\n") ==
+          "line 3: a message that was accepted is refused now: there is no node 99");
+    CHECK(holds(failure(R"({"at":1,"client":"v","event":"connected","role":"view"})"
+                        "\n"
+                        R"({"at":1,"client":"v","message":{"type":"fit"}})"
+                        "\n"),
+                "line 3: "));
+}
+
+TEST_CASE("a header that does not fit its scene is told") {
+    Recorded recorded("a");
+    recorded.start();
+    EventLog log = recorded.log();
+    json state = *log.header.state;
+    state["nodes"]["99"] = {{"active", false}};
+    log.header.state = std::make_shared<const json>(state);
+    CHECK(replay(log, find_scene).error() == "line 1: 'nodes': there is no node 99");
+}
+
+TEST_CASE("whoever watches a replay is told of each frame where it was drawn") {
+    Recorded recorded("a");
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"fly","keyframes":[{"at":100,"camera":{"eye":[1,0,4]}}]})");
+    recorded.stage.at(100ms);
+    recorded.stage.presentation.remember(7);
+    recorded.stage.say("a", R"({"type":"navigate","zoom":2})");
+    recorded.stage.presentation.remember(8);
+    std::vector<std::pair<std::int64_t, double>> seen;
+    ReplayWatcher watcher;
+    watcher.on_drawn = [&](std::int64_t frame, const Presentation& presentation) {
+        seen.emplace_back(frame, presentation.visible().camera.eye.z);
+    };
+    REQUIRE(replay(recorded.log(), find_scene, watcher));
+    CHECK(seen == std::vector<std::pair<std::int64_t, double>>{{7, 4.0}, {8, 2.0}});
+}
