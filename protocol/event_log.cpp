@@ -32,6 +32,7 @@ void describe(V& v, const LogHeader*) {
     v.required("state", &LogHeader::state, AnyObject{});
     v.required("view", &LogHeader::view, Object<Resize>{});
     v.optional("atHome", &LogHeader::at_home, Flag{});
+    v.optional("home", &LogHeader::home, Object<ViewState>{});
     v.optional("frames", &LogHeader::frames, List<Object<LoggedFrame>>{{}, 0, 1000});
     v.optional("flight", &LogHeader::flight, Object<LogHeader::Flight>{});
 }

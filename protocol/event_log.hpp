@@ -38,6 +38,9 @@ struct LogHeader {
     // What else the camera depends on:
     Resize view;           ///< in force
     bool at_home = false;  ///< nobody has moved the camera yet
+    /// The view "home" as it was at loading, which depends on the view's size then: null gives it back. None:
+    /// as loading for 16:9 gives it.
+    std::optional<ViewState> home;
     std::vector<LoggedFrame> frames;
     struct Flight {
         std::string client;

@@ -209,6 +209,7 @@ protocol::LogHeader Presentation::log_header() const {
     for (const auto& [name, client] : clients_) header.clients.push_back({name, client.role, client.wanted});
     header.view = view_size_;
     header.at_home = at_home_;
+    header.home = starting_.views.at("home");
     for (const Frame& frame : frames_)
         header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
     if (flight_)
@@ -219,6 +220,10 @@ protocol::LogHeader Presentation::log_header() const {
 }
 
 tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& header) {
+    if (header.home) {
+        starting_.views["home"] = *header.home;
+        if (!starting_.camera.node) starting_.camera = state_of(camera_of(*header.home), scene_->bounds);
+    }
     auto state = protocol::restored(starting_, *header.state);
     if (!state) return tl::unexpected(state.error());
     auto nodes = node_states(*scene_->scene, state->nodes);

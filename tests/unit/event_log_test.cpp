@@ -50,7 +50,8 @@ const std::string kFlight =
     R"(,"fly":{"keyframes":[{"at":0,"camera":{"eye":[1,2,3]}},{"at":1000.5,"camera":{}}],"easing":"linear"}})";
 
 std::string full_header() {
-    return kHeader.substr(0, kHeader.size() - 1) + R"(,"atHome":true,"frames":[{"frame":17,"camera":)" +
+    return kHeader.substr(0, kHeader.size() - 1) +
+           R"(,"atHome":true,"home":{"eye":[1,2,3],"focus":[4,5,6],"up":[0,1,0],"center":[7,8,9],"fov":33},"frames":[{"frame":17,"camera":)" +
            kCamera + R"(,"view":{"width":640,"height":480,"pixelRatio":0.5}}],"flight":)" + kFlight + "}";
 }
 
@@ -83,6 +84,7 @@ TEST_CASE("every member of a log's header is read") {
     CHECK_FALSE(read.clients[1].wanted.has_value());
     CHECK(read.view == Resize{1280, 720, 1});
     CHECK(read.at_home);
+    CHECK(read.home == ViewState{{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {7, 8, 9}, 33});
     REQUIRE(read.frames.size() == 1);
     CHECK(read.frames[0].frame == 17);
     CHECK(read.frames[0].view == Resize{640, 480, 0.5});
@@ -100,6 +102,7 @@ TEST_CASE("every member of a log's header is read") {
 
     const LogHeader plain = header(kHeader);
     CHECK_FALSE(plain.at_home);
+    CHECK_FALSE(plain.home.has_value());
     CHECK(plain.frames.empty());
     CHECK_FALSE(plain.flight.has_value());
 }

@@ -228,6 +228,7 @@ TEST_CASE("PROTOCOL.md names the event log's members") {
     LogHeader header;
     header.state = std::make_shared<const json>(json::object());
     header.at_home = true;
+    header.home.emplace();
     header.clients = {{"c1", Role::view, Resize{}}};
     header.frames = {{}};
     LogHeader::Flight flight;

@@ -213,6 +213,19 @@ TEST_CASE("begun before anybody moved the camera: home goes on to fit the view")
     recorded.check();
 }
 
+TEST_CASE("begun in a scene that was opened in another view: null gives back its home") {
+    Recorded recorded("a");
+    recorded.stage.say("a", R"({"type":"resize","width":100,"height":300,"pixelRatio":1})");
+    recorded.stage.say("a", R"({"type":"patch","patch":{}})");
+    recorded.stage.presentation.show(other_scene(), 1s);
+    const glm::dvec3 eye = recorded.stage.camera().eye;
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"patch","patch":{"camera":{"fov":60},"views":{"home":{"fov":60}}}})");
+    recorded.stage.say("a", R"({"type":"patch","patch":{"camera":null,"views":{"home":null}}})");
+    CHECK(recorded.stage.camera().eye == eye);
+    recorded.check();
+}
+
 TEST_CASE("begun at a camera node that is moved later, with a door open and a selection") {
     Recorded recorded("a");
     recorded.stage.say("a", R"({"type":"patch","patch":{"nodes":{"2":{"active":false},"3":{"activeChild":1}},
