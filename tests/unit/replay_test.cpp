@@ -131,9 +131,30 @@ private:
                                R"({"type":"keydown","key":"ArrowUp","code":"ArrowUp"})",
                                R"({"type":"keydown","key":"f","code":"KeyF"})",
                                R"({"type":"keydown","key":"Home","code":"Home"})"});
+            case 5:
+                return chord(x, y, id);
+            case 6:
+                return tap(x % 12, y % 12);
             default:
                 return pointer("move", x, y, id, device.c_str());
         }
+    }
+
+    /// Another button of a mouse goes down or up, or all are let go unseen.
+    std::string chord(int x, int y, int id) {
+        json move = json::parse(pointer("move", x, y, id, "mouse"));
+        move["button"] = number(-1, 2);
+        move["buttons"] = number(0, 7);
+        move["altKey"] = number(0, 1) == 0;
+        if (number(0, 9) == 0) move["type"] = "pointercancel";
+        return move.dump();
+    }
+    /// So near to each other that two may make a double one.
+    std::string tap(int x, int y) {
+        json event = json::parse(pointer(one_of({"down", "up"}), x + 630, y + 350, 7));
+        event["frame"] = std::max(1, frame_ - number(0, 2));
+        if (number(0, 1) == 0) event["timeStamp"] = recorded.stage.now.count() / 1000 - number(0, 30);
+        return event.dump();
     }
 
     std::string request() {
