@@ -1,0 +1,103 @@
+#include "scene_library.hpp"
+
+#include <doctest/doctest.h>
+
+#include "temporary_folder.hpp"
+
+using namespace vrut;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kScene = "vrut-text 1\nnode 0 \"Room\" root end\n";
+
+}  // namespace
+
+TEST_CASE("SHA-256 is that of the known texts") {
+    const TemporaryFolder folder;
+    CHECK(sha256_of(folder.write("empty", "")) ==
+          "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+    CHECK(sha256_of(folder.write("abc", "abc")) ==
+          "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    CHECK(sha256_of(folder.write("a", std::string(1'000'000, 'a'))) ==
+          "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+    CHECK_THROWS(sha256_of(folder.path() / "none"));
+    CHECK_THROWS(sha256_of(folder.path()));
+}
+
+TEST_CASE("a long file is read in blocks") {
+    const TemporaryFolder folder;  // sha256sum of 3 MiB and one byte of zeros
+    CHECK(sha256_of(folder.write("long", std::string((3U << 20) + 1, '\0'))) ==
+          "5983281b51c767c831104f52c95e4075f27e6f4fa8dd0526e3929f79176a1217");
+}
+
+TEST_CASE("scenes are found by name, in folders below, too") {
+    const TemporaryFolder folder;
+    const fs::path room = folder.write("room.vrut", kScene), deep = folder.write("a/b/deep.vrut", kScene);
+    const SceneLibrary library(folder.path());
+    CHECK(library.find("room.vrut") == fs::canonical(room));
+    CHECK(library.find("a/b/deep.vrut") == fs::canonical(deep));
+    CHECK(library.find("a/../room.vrut") == fs::canonical(room));  // which stays inside
+    CHECK(library.find("./room.vrut") == fs::canonical(room));
+}
+
+TEST_CASE("nothing outside of the folder is found, however it is named") {
+    const TemporaryFolder outer;
+    outer.write("secret.vrut", kScene);
+    outer.write("scenes/room.vrut", kScene);
+    outer.write("scenes-not/near.vrut", kScene);
+    const fs::path folder = outer.path() / "scenes";
+    fs::create_symlink(outer.path() / "secret.vrut", folder / "link.vrut");
+    fs::create_directory_symlink(outer.path(), folder / "up");
+    fs::create_symlink(folder / "room.vrut", folder / "inside.vrut");
+    const SceneLibrary library(folder);
+    for (const std::string& name :
+         {std::string("../secret.vrut"), std::string("x/../../secret.vrut"), std::string(".."),
+          std::string("../scenes-not/near.vrut"), (outer.path() / "secret.vrut").string(),
+          (folder / "room.vrut").string(), std::string("link.vrut"), std::string("up/secret.vrut"),
+          std::string("none.vrut"), std::string("."), std::string(), std::string("room.vrut/"),
+          std::string("room.vrut\0.png", 14)}) {
+        INFO(name);
+        const auto found = library.find(name);
+        REQUIRE_FALSE(found);
+        CHECK(found.error().starts_with("there is no scene '"));
+    }
+    CHECK(library.find("inside.vrut") == fs::canonical(folder / "room.vrut"));
+    CHECK(library.find("up/scenes/room.vrut") == fs::canonical(folder / "room.vrut"));
+}
+
+TEST_CASE("the folder itself may be behind a link, and may go") {
+    const TemporaryFolder outer;
+    const fs::path room = outer.write("real/room.vrut", kScene);
+    fs::create_directory_symlink(outer.path() / "real", outer.path() / "link");
+    const SceneLibrary library(outer.path() / "link");
+    CHECK(library.find("room.vrut") == fs::canonical(room));
+    fs::remove_all(outer.path() / "real");
+    REQUIRE_FALSE(library.find("room.vrut"));
+    CHECK(library.find("room.vrut").error().find("cannot be read") != std::string::npos);
+}
+
+TEST_CASE("without a folder there is nothing to open") {
+    REQUIRE_FALSE(SceneLibrary().find("room.vrut"));
+    CHECK(SceneLibrary().find("room.vrut").error() == "this server has no folder of scenes to open");
+}
+
+TEST_CASE("a name that is too long for the sentence is cut, and for the system refused") {
+    const TemporaryFolder folder;
+    const auto found = SceneLibrary(folder.path()).find(std::string(900, 'n'));
+    REQUIRE_FALSE(found);
+    CHECK(found.error().size() < 150);
+}
+
+TEST_CASE("a scene is loaded with its name, its digest and what is to be said of it") {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("room.vrut", kScene);
+    const auto scene = load_scene(file, "as it was asked for");
+    REQUIRE(scene);
+    CHECK(scene->name == "as it was asked for");
+    CHECK(scene->sha256 == sha256_of(file));
+    CHECK(scene->placed->scene->nodes().size() == 1);
+    const auto wrong = load_scene(folder.write("wrong.vrut", "vrut-text 1\nnode x\n"), "wrong");
+    REQUIRE_FALSE(wrong);
+    CHECK(wrong.error().find("wrong.vrut:2") != std::string::npos);
+}
