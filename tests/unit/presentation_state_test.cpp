@@ -67,7 +67,7 @@ TEST_CASE("unknown nodes, materials and children are refused, and nothing has ch
     struct Wrong {
         const char *code, *patch, *culprit;
     };
-    for (const auto& [code, wrong, culprit] :
+    for (const Wrong& wrong :
          {Wrong{"unknown-node", R"({"nodes":{"99":{"active":false}}})", "99"},
           {"unknown-node", R"({"nodes":{"02":{"active":false}}})", "02"},
           {"unknown-node", R"({"nodes":{"2":{"material":9}}})", "nodes.2.material"},
@@ -81,19 +81,19 @@ TEST_CASE("unknown nodes, materials and children are refused, and nothing has ch
           {"unknown-node", R"({"backgrounds":{"active":"2"}})", "backgrounds.active"},
           {"read-only", R"({"scene":{"name":"x"}})", "scene"},
           {"out-of-range", R"({"views":{"v":{"eye":[0,0,0],"focus":[0,0,0]}}})", "views.v"}}) {
-        INFO(wrong);
+        INFO(wrong.patch);
         Stage stage("a");
         const json before = stage.state();
         // Something right with it: all or nothing.
-        json all = json::parse(wrong);
+        json all = json::parse(wrong.patch);
         all["quality"] = {{"preference", 1}};
         all["nodes"]["4"] = {{"active", false}};
         stage.told();
         CHECK_FALSE(stage.say("a", patch(all.dump())));
         const std::vector<json> told = stage.told();
         REQUIRE(told.size() == 1);
-        CHECK(told[0]["code"] == code);
-        CHECK(std::string(told[0]["message"]).find(culprit) != std::string::npos);
+        CHECK(told[0]["code"] == wrong.code);
+        CHECK(std::string(told[0]["message"]).find(wrong.culprit) != std::string::npos);
         CHECK(stage.state() == before);
         CHECK(stage.holder() == "");
     }
