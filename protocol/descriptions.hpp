@@ -20,7 +20,7 @@ inline constexpr Number kDelta{-1e9, 1e9};
 inline constexpr Number kTimeStamp{-1e15, 1e15};
 inline constexpr Number kAny{-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
 inline constexpr Number kDuration{0, std::numeric_limits<double>::max()};
-inline constexpr double kHuge = 1e30;  // products of two coordinates stay finite
+inline constexpr double kHuge = kFarthest;
 inline constexpr Vector<glm::dvec3> kPosition{-kHuge, kHuge};
 inline constexpr Vector<glm::dvec4> kColor{0, 1};
 inline constexpr Vector<glm::dvec3> kAttenuation{0, kHuge};
@@ -451,7 +451,7 @@ void describe(V& v, const State*) {
     v.fixed("materials", &State::materials, SharedKind<Table<Named>>{});
     v.writable("backgrounds", &State::backgrounds, Section<BackgroundsState>{});
     v.writable("selection", &State::selection, Section<SelectionState>{});
-    v.writable("nodes", &State::nodes, Entries<NodeOverride>{});
+    v.writable("nodes", &State::nodes, Entries<NodeOverride>{{}, kMaxNodes, nullptr});
     v.writable("markers", &State::markers, Entries<Marker>{{}, kMaxEntries, "point"});
     v.writable("views", &State::views, Entries<ViewState>{{}, kMaxEntries, nullptr});
     v.writable("quality", &State::quality, Section<QualityState>{});

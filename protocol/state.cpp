@@ -88,6 +88,12 @@ tl::expected<CameraOverlay, Error> parse_camera(std::string_view text) {
     return or_error([&] { return read_struct<CameraOverlay>(parse_strictly(text), "camera"); });
 }
 
+bool names_only(const Json& patch, std::initializer_list<std::string_view> sections) {
+    for (const auto& [name, value] : patch.items())
+        if (std::find(sections.begin(), sections.end(), name) == sections.end()) return false;
+    return true;
+}
+
 NamedCameraMembers named_camera_members(const Json& patch) {
     const auto camera = patch.find("camera");
     if (camera == patch.end()) return {};

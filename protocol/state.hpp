@@ -160,6 +160,10 @@ struct State {
 
 /// Most markers, and most views.
 inline constexpr std::size_t kMaxEntries = 256;
+/// Most nodes that differ from the file.
+inline constexpr std::size_t kMaxNodes = 10'000;
+/// Coordinates of positions go so far either way: products of two stay finite.
+inline constexpr double kFarthest = 1e30;
 
 /// `state` after a merge patch (RFC 7396) of its members, or what is wrong with it: all or nothing. null
 /// gives a member back the value it has in `starting`, and removes entries of `nodes`, `markers` and `views`
@@ -172,6 +176,9 @@ tl::expected<Patch, Error> parse_patch(std::string_view text);
 std::shared_ptr<const nlohmann::json> document_of(const State& state);
 /// `starting` with what clients may change, and who steers, from a whole document (StateDocument::json()).
 tl::expected<State, Error> restored(const State& starting, const nlohmann::json& document);
+
+/// Whether the patch names no other sections than these.
+bool names_only(const nlohmann::json& patch, std::initializer_list<std::string_view> sections);
 
 /// Which members of `camera` a patch names; null names all.
 struct NamedCameraMembers {

@@ -188,7 +188,8 @@ struct Entries : Table<T> {
                 continue;
             }
             const std::string entry_path = path + "." + excerpt(key);
-            if (required && !entries.contains(key) && !read_object(value, entry_path).contains(required))
+            if (required && !entries.contains(key) &&
+                read_object(value, entry_path).value(required, Json()).is_null())
                 throw BadJson{error_code::bad_message,
                               "member '" + entry_path + "." + required + "' is missing"};
             patch_struct(entries[key], at_start != start.end() ? at_start->second : T{}, value, entry_path);

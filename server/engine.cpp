@@ -18,6 +18,18 @@ constexpr std::chrono::milliseconds kFlightStep{
     16};  // at most, for those who follow the camera without frames
 constexpr std::size_t kBegunRemembered = 16;
 
+/// "" where it is of none.
+std::string client_of(const EngineEvent& event) {
+    return std::visit(
+        [](const auto& what) {
+            if constexpr (requires { what.client; })
+                return what.client;
+            else
+                return std::string();
+        },
+        event);
+}
+
 /// The earlier of two times, where there are any.
 std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a,
                                          std::optional<Clock::time_point> b) {
@@ -109,27 +121,33 @@ void Engine::run(LoadedScene scene) {
 }
 
 void Engine::step() {
+    if (!waiting_.empty()) handle_waiting();
     fly();
     serve_newest();
     report();
     const PacingDecision decision = pace();
     const bool draws = decision.action == PacingDecision::Action::draw;
+    // While things move, snapshots get a fifth of the time: a sample of theirs may take longer than a
+    // picture.
+    const Clock::time_point begin = Clock::now();
+    const bool moves = begin < last_change_ + kQuiet;
     const bool snapshot = !snapshots_.empty() && snapshot_encoder_.is_free();
-    if (snapshot && (!draws || snapshot_turn_)) {
-        snapshot_turn_ = false;
+    if (snapshot && (moves ? begin >= snapshot_turn_ : !draws)) {
         draw_snapshot();
+        const Clock::time_point end = Clock::now();
+        snapshot_turn_ = end + 4 * (end - begin);
     } else if (draws) {
-        snapshot_turn_ = true;
         draw(decision);
     } else {
-        wait_for_event(decision.until);
+        wait_for_event(snapshot && moves ? earlier(decision.until, snapshot_turn_) : decision.until);
     }
 }
 
 void Engine::wait_for_event(std::optional<Clock::time_point> until) {
     until = earlier(until, stats_.due());
     if (presentation_->flies()) until = earlier(until, Clock::now() + kFlightStep);
-    handle_all(mailbox_.wait(until));
+    receive(waiting_.empty() ? until : Clock::now());
+    handle_waiting();
 }
 
 void Engine::fly() {
@@ -140,8 +158,26 @@ void Engine::fly() {
 
 // --- events
 
-void Engine::handle_all(const std::vector<EngineEvent>& events) {
-    for (const EngineEvent& event : events) std::visit([&](const auto& what) { handle(what); }, event);
+void Engine::receive(std::optional<Clock::time_point> until) {
+    for (EngineEvent& event : mailbox_.wait(until)) {
+        const std::string client = client_of(event);
+        if (std::holds_alternative<ClientLeft>(event)) waiting_[client].clear();
+        waiting_[client].push_back(std::move(event));
+    }
+}
+
+void Engine::handle_waiting() {
+    constexpr std::chrono::milliseconds kSlice{4};  // then it is time for pictures and answers
+    const Clock::time_point end = Clock::now() + kSlice;
+    while (!waiting_.empty() && !mailbox_.closed() && Clock::now() < end) {
+        auto next = waiting_.upper_bound(last_handled_);
+        if (next == waiting_.end()) next = waiting_.begin();
+        last_handled_ = next->first;
+        const EngineEvent event = std::move(next->second.front());
+        next->second.pop_front();
+        if (next->second.empty()) waiting_.erase(next);
+        std::visit([&](const auto& what) { handle(what); }, event);
+    }
 }
 
 void Engine::handle(const ClientJoined& joined) {
@@ -173,18 +209,18 @@ void Engine::handle(const SnapshotSent& sent) {
 }
 
 void Engine::handle(const PictureAsked& asked) {
-    const PictureSize present =
-        picture_size(presentation_->view_size(),
-                     quality_of(kStillLevel, presentation_->view_size(), limits_, false).scale);
+    const PictureSize present = present_size();
     PictureOrder order = presentation_->order(asked.width > 0 ? asked.width : present.width,
                                               asked.height > 0 ? asked.height : present.height);
     order.client = asked.name;
     snapshots_.push_back({std::move(order), {}, {}});
 }
 
-void Engine::handle(const SceneLoading& loading) {
-    output_.loading = std::make_shared<const std::string>(
-        protocol::encode(protocol::Loading{loading.name, loading.fraction, {}, {}}));
+void Engine::handle(const SceneLoading& loading) { tell({loading.name, loading.fraction, {}, {}}); }
+
+void Engine::tell(const protocol::Loading& loading) {
+    output_.loading = std::make_shared<const std::string>(protocol::encode(loading));
+    output_.loads = !loading.done && !loading.refused;
 }
 
 void Engine::handle(const SceneLoaded& loaded) {
@@ -199,7 +235,7 @@ void Engine::handle(const SceneLoaded& loaded) {
         told.refused = loaded.scene.error();
         spdlog::warn("{}", loaded.scene.error());
     }
-    output_.loading = std::make_shared<const std::string>(protocol::encode(told));
+    tell(told);
 }
 
 std::optional<protocol::Error> Engine::load(const std::string& name) {
@@ -207,8 +243,7 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     loader_.start(*path, name);
-    output_.loading =
-        std::make_shared<const std::string>(protocol::encode(protocol::Loading{name, 0, {}, {}}));
+    tell({name, 0, {}, {}});
     return std::nullopt;
 }
 
@@ -216,7 +251,8 @@ void Engine::handle(const ClientSaid& said) {
     const auto found = clients_.find(said.client);
     if (found == clients_.end()) return;  // it has left
     Client& client = found->second;
-    output_.handled_bytes[said.client] += said.bytes;
+    output_.handled[said.client].bytes += said.bytes;
+    output_.handled[said.client].requests += said.is_request();
     const auto id = said.message ? said.message->id : said.message.error().id;
     if (id && *id <= client.handled)
         presentation_->refuse(said.client, {id, code::out_of_range,
@@ -264,6 +300,11 @@ void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message,
     }
 }
 
+PictureSize Engine::present_size() const {
+    const protocol::Resize& view = presentation_->view_size();
+    return picture_size(view, quality_of(kStillLevel, view, limits_, false).scale);
+}
+
 /// Hands over what there is to tell.
 void Engine::report() {
     const Clock::time_point now = Clock::now();
@@ -273,6 +314,7 @@ void Engine::report() {
         output_.by_since = presentation_->changed_by_since();
         stats_.made(document->revision(), now);
     }
+    if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     output_.answers = presentation_->take_answers();
     for (const Answer& answer : output_.answers) metrics_.messages_refused += !answer.refusal.empty();
     if (const auto stats = stats_.take(now))
@@ -377,7 +419,9 @@ void Engine::draw(const PacingDecision& decision) {
     Image image = encoder_.take_spare();
     FrameStats stats;
     const auto interrupted = [&] {
-        handle_all(mailbox_.wait(Clock::now()));
+        receive(Clock::now());
+        handle_waiting();
+        fly();
         report();
         return mailbox_.closed() || presentation_->visible() != visible ||
                presentation_->view_size() != view_size;
@@ -418,9 +462,11 @@ void Engine::draw_snapshot() {
     header.quality.jpeg_quality = snapshot.order.jpeg_quality;
     view.samples = header.quality.samples;
 
+    if (snapshot.image.rgba.empty()) snapshot.image = snapshot_encoder_.take_spare();
     FrameStats stats;
     const auto interrupted = [&] {
-        handle_all(mailbox_.wait(Clock::now()));
+        receive(Clock::now());
+        handle_waiting();
         fly();
         report();
         return mailbox_.closed() || pace().action == PacingDecision::Action::draw;

@@ -49,11 +49,16 @@ struct EngineOutput {
     std::int64_t by_since = 0;
     std::vector<Answer> answers;
     std::vector<Owed> owed;
-    std::map<std::string, std::size_t> handled_bytes;   ///< of messages, for each client
+    struct Handled {
+        std::size_t bytes = 0, requests = 0;
+    };
+    std::map<std::string, Handled> handled;             ///< of messages, for each client
+    std::optional<PictureSize> size;                    ///< of a picture of the view; none if unchanged
     std::shared_ptr<const std::string> stats, loading;  ///< messages for all; null if there is nothing new
+    bool loads = false;                                 ///< with `loading`: it goes on
 
     bool empty() const {
-        return !document && answers.empty() && owed.empty() && handled_bytes.empty() && !stats && !loading;
+        return !document && answers.empty() && owed.empty() && handled.empty() && !size && !stats && !loading;
     }
 };
 
@@ -106,7 +111,10 @@ private:
     void handle(const PictureAsked& asked);
     void handle(const SceneLoading& loading);
     void handle(const SceneLoaded& loaded);
-    void handle_all(const std::vector<EngineEvent>& events);
+    /// Takes what has come, after waiting for something until then.
+    void receive(std::optional<Clock::time_point> until);
+    /// Handles some of it: the clients in turn, so that none waits behind another's thousand.
+    void handle_waiting();
     void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
     void grant(Client& client, const ClientSaid& said);
     void report();
@@ -122,6 +130,8 @@ private:
     PacingDecision pace();
     void step();
     void fly();
+    PictureSize present_size() const;
+    void tell(const protocol::Loading& loading);
     void wait_for_event(std::optional<Clock::time_point> until);
     void draw(const PacingDecision& decision);
     void draw_snapshot();
@@ -139,16 +149,19 @@ private:
     std::string description_;
     const Clock::time_point start_ = Clock::now();
     Mailbox mailbox_;
+    std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
+    std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
     SceneLoader loader_;
     Painter painter_;
 
     std::optional<Presentation> presentation_;
     std::map<std::string, Client> clients_;
-    std::deque<Snapshot> snapshots_;  ///< in the order of asking; the first may have been begun
-    bool snapshot_turn_ = false;      ///< the live picture had its turn
+    std::deque<Snapshot> snapshots_;   ///< in the order of asking; the first may have been begun
+    Clock::time_point snapshot_turn_;  ///< while things move: not before
     EngineOutput output_;
     std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output told of
+    PictureSize reported_size_;
     LiveStats stats_;
 
     Clock::time_point last_change_;                  ///< of what is to be seen; long ago at the start

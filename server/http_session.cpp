@@ -181,7 +181,9 @@ private:
             return send(refuse(request, http::status::bad_request,
                                "'width' and 'height' must be given together, as numbers from 1, of at most " +
                                    std::to_string(limits.max_pixels) + " pixels"));
-        const auto tag = [width = *width, height = *height](std::int64_t revision) {
+        const std::int64_t pixels_wide = *width > 0 ? *width : hub_.size.width;
+        const std::int64_t pixels_high = *height > 0 ? *height : hub_.size.height;
+        const auto tag = [width = pixels_wide, height = pixels_high](std::int64_t revision) {
             return "\"" + std::to_string(revision) + "-" + std::to_string(width) + "x" +
                    std::to_string(height) + "\"";
         };
@@ -214,7 +216,8 @@ private:
             response.set(http::field::etag, tag(picture->header.revision));
             self->send(std::move(response));
         };
-        hub_.engine->mailbox().push(PictureAsked{name, static_cast<int>(*width), static_cast<int>(*height)});
+        hub_.engine->mailbox().push(
+            PictureAsked{name, static_cast<int>(pixels_wide), static_cast<int>(pixels_high)});
     }
 
     void open_websocket(const Request& request) {

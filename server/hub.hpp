@@ -26,6 +26,8 @@ struct Hub {
     std::int64_t document_by_since = 0;
     std::shared_ptr<const EncodedPicture> newest;
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
+    bool loads = false;                                 ///< a scene is being loaded
+    PictureSize size;                                   ///< of a picture of the view
     /// Who asked for a picture without being a client, and waits, by the picture's `client`.
     std::map<std::string, std::function<void(std::shared_ptr<const EncodedPicture>)>> picture_waiters;
     std::int64_t next_picture = 1;

@@ -48,7 +48,8 @@ void LiveStats::shown(const std::string& client, std::int64_t revision, Clock::t
                          [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
     host->second.shown = revision;
     host->second.lag_ms.reset();
-    if (made != made_.end() && made->first == revision)
+    // Between two that were told, the later one.
+    if (made != made_.end() && made_.front().first <= revision)
         host->second.lag_ms = std::max(0.0, milliseconds(now - made->second));
     happened(now);
 }

@@ -20,6 +20,8 @@ bool merge(EngineEvent& last, const EngineEvent& next) {
     if (!before || !after || before->client != after->client) return false;
     const Pointer *a = plain_move(*before), *b = plain_move(*after);
     if (!a || !b || a->pointer_id != b->pointer_id || a->buttons != b->buttons) return false;
+    if (before->message->id && after->message->id && *after->message->id <= *before->message->id)
+        return false;
     const std::size_t bytes = before->bytes;
     const auto id = before->message->id;
     *before = *after;

@@ -31,6 +31,14 @@ struct ClientSaid {
     Clock::time_point arrival;
     std::size_t bytes = 0;  ///< on the wire, merged ones summed
     bool may_steer = true;  ///< else its moves are not merged: each is answered as wrong
+
+    /// Anything but input and grants, of which there may be thousands a second.
+    bool is_request() const {
+        return !message || !(std::holds_alternative<protocol::Pointer>(message->payload) ||
+                             std::holds_alternative<protocol::Wheel>(message->payload) ||
+                             std::holds_alternative<protocol::Key>(message->payload) ||
+                             std::holds_alternative<protocol::FrameGrant>(message->payload));
+    }
 };
 
 /// A frame was handed to its client's socket: the promised one, or a newer one.

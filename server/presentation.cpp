@@ -1,6 +1,7 @@
 #include "presentation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "codec.hpp"
 
@@ -61,7 +62,13 @@ void Presentation::advance(Time at) {
     state_.camera = state_of(flight_->path.at(ms), scene_->bounds);
     at_home_ = false;
     visible_ = view_of(state_, scene_);
-    if (ms >= flight_->path.duration()) end_flight(true);
+    if (ms < flight_->path.duration()) return;
+    // Where it was to end at a camera node, the camera stands there now.
+    const std::optional<Id> node = flight_->asked.keyframes.back().camera.node;
+    const Index index = node ? scene_->scene->find_node(*node) : kNone;
+    if (index != kNone && camera_at(*scene_, index) == camera())
+        state_.camera = state_at_node(camera(), *scene_, index);
+    end_flight(true);
 }
 
 void Presentation::show(LoadedScene scene, Time at) {
@@ -228,8 +235,12 @@ NavigationContext Presentation::navigation_context() const {
 }
 
 void Presentation::drag_camera(const Camera& moved) {
-    // A move that would leave the range of double is not made.
+    // A move beyond what a patch may say, or double hold, is not made.
+    const auto is_far = [](const glm::dvec3& point) {
+        return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > protocol::kFarthest;
+    };
     if (moved == camera() || !is_valid_pose(moved, 0)) return;
+    if (is_far(moved.eye) || is_far(moved.focus) || is_far(moved.center)) return;
     state_.camera = state_of(moved, scene_->bounds);
     at_home_ = false;
 }

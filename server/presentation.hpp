@@ -160,7 +160,6 @@ private:
     std::vector<std::string> path_of(Index node) const;
 
     // --- patches
-    std::optional<protocol::Error> check_role(const Said& said, const protocol::State& next) const;
     std::optional<protocol::Error> use_nodes(protocol::State& next,
                                              std::shared_ptr<const PlacedScene>& placed);
     std::optional<protocol::Error> use_camera(protocol::State& next, const PlacedScene& placed,

@@ -10,6 +10,10 @@ using protocol::Role;
 namespace code = protocol::error_code;
 
 void Presentation::apply(const Said& said, const protocol::Patch& patch) {
+    if (clients_[said.client].role == Role::host &&
+        !protocol::names_only(*patch.patch, {"camera", "nodes", "selection"}))
+        return refuse(said, code::not_allowed,
+                      "a host may patch nothing but 'camera', 'nodes' and 'selection'");
     if (!may_steer(said)) return;
     if (patch.if_revision && !options_.replaying &&
         document()->last_change(*patch.patch) > *patch.if_revision)
@@ -19,16 +23,15 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     auto next = protocol::patched(state_, starting_, *patch.patch);
     if (!next) return refuse(said, next.error().code.c_str(), next.error().message);
     std::shared_ptr<const PlacedScene> placed = scene_;
-    auto error = check_role(said, *next);
-    if (!error) error = use_nodes(*next, placed);
+    auto error = use_nodes(*next, placed);
     if (!error) error = use_camera(*next, *placed, *patch.patch);
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
     if (error) return refuse(said, error->code.c_str(), error->message);
 
-    if (camera_of(next->camera) != camera()) at_home_ = false;
-    const std::optional<Id> selected = next->selection.node;
     const protocol::ViewState home = state_.views.at("home");
+    if (camera_of(next->camera) != camera() || next->views.at("home") != home) at_home_ = false;
+    const std::optional<Id> selected = next->selection.node;
     steer(said);  // which may bring another size, and so another home
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views.at("home") == home) next->views["home"] = state_.views.at("home");
@@ -40,16 +43,6 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     answer(said);
 }
 
-std::optional<Error> Presentation::check_role(const Said& said, const protocol::State& next) const {
-    if (clients_.at(said.client).role != Role::host) return std::nullopt;
-    protocol::State allowed = state_;
-    allowed.camera = next.camera;
-    allowed.nodes = next.nodes;
-    allowed.selection = next.selection;
-    if (allowed == next) return std::nullopt;
-    return Error{{}, code::not_allowed, "a host may patch nothing but 'camera', 'nodes' and 'selection'"};
-}
-
 std::optional<Error> Presentation::use_nodes(protocol::State& next,
                                              std::shared_ptr<const PlacedScene>& placed) {
     if (next.nodes == state_.nodes) return std::nullopt;
@@ -57,6 +50,7 @@ std::optional<Error> Presentation::use_nodes(protocol::State& next,
     if (!states) return states.error();
     if (*states != scene_->nodes)
         placed = std::make_shared<const PlacedScene>(place(scene_->scene, *std::move(states)));
+    count_classes(next, *placed);
     return std::nullopt;
 }
 

@@ -67,9 +67,12 @@ tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly
 
 void Presentation::apply(const Said& said, const protocol::Fly& fly) {
     if (!may_steer(said)) return;
-    const auto keyframes = keyframes_of(fly, camera(), *scene_);
+    auto keyframes = keyframes_of(fly, camera(), *scene_);
     if (!keyframes) return refuse(said, keyframes.error().code.c_str(), keyframes.error().message);
-    steer(said);
+    const Camera before = camera();
+    steer(said);  // which may bring another size, and so another home
+    if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
+    if (!keyframes) return answer(said);  // whose poses do not fit to that: it stays there
     flight_.emplace(InFlight{{camera(), *keyframes, static_cast<Easing>(fly.easing)},
                              said.client,
                              said.message.id.value_or(0),
@@ -159,6 +162,10 @@ void Presentation::start_recording(const Said& said, const std::string& name) {
     state_.recording = protocol::RecordingState{*opened};
     recording_since_ = time_;
     recorder_.write(protocol::encode(log_header()));
+    if (!recorder_.active()) {
+        state_.recording.reset();
+        return refuse(said, code::failed, "the recording cannot be written");
+    }
     press_anew(said.client);
     answer(said, *opened);
 }
@@ -232,6 +239,7 @@ tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& heade
     view_size_ = header.view;
     at_home_ = header.at_home;
     state_ = *std::move(state);
+    count_classes(state_, *scene_);
     const std::optional<Id> node = state_.camera.node, selected = state_.selection.node;
     const Index at = node ? scene_->scene->find_node(*node) : kNone;
     state_.camera = at != kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);

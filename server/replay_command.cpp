@@ -23,7 +23,7 @@ class Scenes {
 public:
     Scenes(const ReplayArguments& arguments) : given_(arguments.scene) {
         const fs::path beside = arguments.log.parent_path();
-        folders_ = {given_.parent_path(), beside, beside / "..", fs::path()};
+        folders_ = {given_.parent_path(), given_.parent_path() / "..", beside, beside / "..", fs::path()};
         for (const fs::path& own : scene_folders()) {
             folders_.push_back(own);
             folders_.push_back(own / "car");

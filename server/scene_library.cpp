@@ -18,9 +18,11 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
                                                   const std::function<void(double)>& progress) {
     auto scene = read_scene(path, progress);
     if (!scene) return tl::unexpected(scene.error());
+    if (progress) progress(1);
     LoadedScene loaded;
     loaded.name = name;
     loaded.sha256 = sha256_of(path);
+    if (progress) progress(1);
     loaded.notices = all_notices(*scene);
     loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
     return loaded;

@@ -151,11 +151,15 @@ protocol::State starting_state(const PlacedScene& placed, double aspect, std::ve
                                  : state_of(camera_of(state.views["home"]), placed.bounds);
     add_lights(scene, state.lights);
     add_backgrounds(placed, state.backgrounds);
+    count_classes(state, placed);
+    return state;
+}
+
+void count_classes(protocol::State& state, const PlacedScene& placed) {
     const ClassCounts counts = count_classes(placed);
     state.renderer.solid = counts.solid;
     state.renderer.transparent = counts.transparent;
     state.renderer.reflective = counts.reflective;
-    return state;
 }
 
 protocol::ViewState home_view(const PlacedScene& placed, double aspect) {

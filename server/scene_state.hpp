@@ -41,6 +41,9 @@ tl::expected<Camera, protocol::Error> node_camera(const PlacedScene& placed, Id 
 tl::expected<Camera, protocol::Error> overlaid(const Camera& base, const protocol::CameraOverlay& overlay,
                                                const PlacedScene& placed, const std::string& what);
 
+/// How many of its nodes are solid, transparent and reflective, into the state.
+void count_classes(protocol::State& state, const PlacedScene& placed);
+
 /// The states of a scene's nodes with `overrides`, or what is wrong with those. What equals the file's
 /// disappears from `overrides`.
 tl::expected<std::vector<NodeState>, protocol::Error> node_states(

@@ -7,8 +7,8 @@ namespace vrut {
 
 namespace {
 
-constexpr std::size_t kMostNodes = 500, kMostBytes = 128 * 1024;  // of a page
-constexpr int kMostVisited = 20'000;
+constexpr std::size_t kMostNodes = 500, kMostBytes = 64 * 1024;  // of a page
+constexpr int kMostVisited = 5'000;
 
 const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_cast<std::size_t>(index)]; }
 
@@ -94,7 +94,8 @@ tl::expected<protocol::TreePage, protocol::Error> tree_page(const PlacedScene& p
     if (tree.after) {
         const Index after = scene.find_node(*tree.after);
         const auto depth = after == kNone ? std::nullopt : depth_below(scene, top, after);
-        if (!depth) return tl::unexpected(unknown(*tree.after, "'after': there is no such node below:"));
+        if (!depth || *depth > walk.max_depth)
+            return tl::unexpected(unknown(*tree.after, "'after': there is no such node below:"));
         walk.node = after;
         walk.depth = *depth;
         walk.next();

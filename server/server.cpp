@@ -97,13 +97,17 @@ struct Server::Impl {
             hub.document_by_since = output.by_since;
         }
         if (output.stats) hub.stats = std::move(output.stats);
-        if (output.loading) hub.loading = std::move(output.loading);
+        if (output.loading) {
+            hub.loading = std::move(output.loading);
+            hub.loads = output.loads;
+        }
+        if (output.size) hub.size = *output.size;
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
         for (const auto& owed : output.owed)
             if (Session* session = find(owed.client)) session->owe(owed.frame);
-        for (const auto& [client, bytes] : output.handled_bytes)
-            if (Session* session = find(client)) session->handled(bytes);
+        for (const auto& [client, handled] : output.handled)
+            if (Session* session = find(client)) session->handled(handled);
         for_each_session([](Session& session) { session.pump(); });
     }
 

@@ -23,7 +23,7 @@ constexpr auto kHelloDeadline = 5s;
 constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
 // Who has sent so much that is not handled, or has not taken so much of its answers, is not read until that
 // is done.
-constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxAnswers = 1 << 18;
+constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers = 1 << 18;
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20;
@@ -111,7 +111,9 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
 // --- reading
 
 void Session::read() {
-    if (reading_ || dropped_ || closing_ || unhandled_bytes_ >= kMaxUnhandled || answer_bytes_ >= kMaxAnswers)
+    if (reading_ || dropped_ || closing_) return;
+    if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
+        answer_bytes_ >= kMaxAnswers)
         return;
     reading_ = true;
     socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
@@ -153,9 +155,10 @@ void Session::on_text(std::string_view text) {
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
-    unhandled_bytes_ += text.size();
-    hub_.engine->mailbox().push(
-        ClientSaid{client_, std::move(message), Clock::now(), text.size(), may_steer_});
+    ClientSaid said{client_, std::move(message), Clock::now(), text.size(), may_steer_};
+    unhandled_bytes_ += said.bytes;
+    unhandled_requests_ += said.is_request();
+    hub_.engine->mailbox().push(std::move(said));
 }
 
 void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
@@ -174,6 +177,7 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
     may_steer_ = *role == protocol::Role::control;
     client_ = "c" + std::to_string(hub_.next_client++);
     hub_.sessions[client_] = shared_from_this();
+    if (!hub_.loads) loading_ = hub_.loading;  // is no news any more
     ++hub_.metrics->clients_joined;
     spdlog::info("client {} joined as {} from {}", client_, name_of(*role), peer_);
     hub_.engine->mailbox().push(ClientJoined{client_, *role, hello.name, id.value_or(0)});
@@ -218,8 +222,9 @@ void Session::take_snapshot(std::shared_ptr<const EncodedPicture> picture) {
     pump();
 }
 
-void Session::handled(std::size_t bytes) {
-    unhandled_bytes_ -= std::min(bytes, unhandled_bytes_);
+void Session::handled(const EngineOutput::Handled& handled) {
+    unhandled_bytes_ -= std::min(handled.bytes, unhandled_bytes_);
+    unhandled_requests_ -= std::min(handled.requests, unhandled_requests_);
     read();
 }
 
@@ -295,8 +300,9 @@ void Session::send_snapshot() {
     snapshots_.pop_front();
     ++hub_.metrics->snapshots_sent;
     hub_.engine->mailbox().push(SnapshotSent{client_});
-    handled_ = std::max(handled_, picture_->header.handled);
-    send_picture(picture_->header);
+    protocol::FrameHeader header = picture_->header;
+    header.handled = handled_ = std::max(handled_, header.handled);
+    send_picture(header);
 }
 
 void Session::send_picture(const protocol::FrameHeader& header) {

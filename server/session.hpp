@@ -31,7 +31,7 @@ public:
     // What the engine says.
     void answer(Answer answer);
     void owe(std::int64_t frame);
-    void handled(std::size_t bytes);
+    void handled(const EngineOutput::Handled& handled);
     /// The hub has a newer picture than `before`.
     void newest_changed(std::int64_t before);
     /// A picture that this client asked for.
@@ -90,7 +90,7 @@ private:
     std::optional<boost::beast::websocket::close_reason> closing_;
 
     // --- what has come and is not handled yet
-    std::size_t unhandled_bytes_ = 0;
+    std::size_t unhandled_bytes_ = 0, unhandled_requests_ = 0;
     bool reading_ = false;
 };
 

@@ -37,7 +37,7 @@ TEST_CASE("scenes are found by name, in folders below, too") {
     const SceneLibrary library(folder.path());
     CHECK(library.find("room.vrut") == fs::canonical(room));
     CHECK(library.find("a/b/deep.vrut") == fs::canonical(deep));
-    CHECK(library.find("a/../room.vrut") == fs::canonical(room));  // which stays inside
+    CHECK_FALSE(library.find("a/../room.vrut").has_value());  // which stays inside
     CHECK(library.find("./room.vrut") == fs::canonical(room));
 }
 
