@@ -1,6 +1,7 @@
 #include "live_stats.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -68,7 +69,7 @@ std::optional<protocol::Stats::Renderer> LiveStats::renderer() const {
     std::vector<double> sorted(render_ms_.begin(), render_ms_.end());
     std::sort(sorted.begin(), sorted.end());
     const auto at = [&](double part) {
-        return sorted[static_cast<std::size_t>(part * static_cast<double>(sorted.size() - 1) + 0.5)];
+        return sorted[static_cast<std::size_t>(std::lround(part * static_cast<double>(sorted.size() - 1)))];
     };
     const double sum = std::accumulate(sorted.begin(), sorted.end(), 0.0);
     return protocol::Stats::Renderer{sum / static_cast<double>(sorted.size()), at(0.5), at(0.95)};

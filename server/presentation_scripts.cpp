@@ -164,6 +164,7 @@ void Presentation::start_recording(const Said& said, const std::string& name) {
     recorder_.write(protocol::encode(log_header()));
     if (!recorder_.active()) {
         state_.recording.reset();
+        accepted_ = false;
         return refuse(said, code::failed, "the recording cannot be written");
     }
     press_anew(said.client);

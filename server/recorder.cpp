@@ -10,6 +10,8 @@ namespace vrut {
 
 namespace {
 
+constexpr std::size_t kRoom = 64 * 1024;
+
 std::string formatted_now(const char* format) {
     const std::time_t now = std::time(nullptr);
     std::tm utc{};
@@ -30,8 +32,17 @@ tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
     if (taken()) return tl::unexpected("there is a recording '" + name + "' already");
     path_ = folder_ / (chosen + ".jsonl");
     file_.open(path_, std::ios::binary);
-    if (!file_)
-        return tl::unexpected(path_.filename().string() + " cannot be written: " + std::strerror(errno));
+    // Whether there is room is better known before anything is told of a recording.
+    file_ << std::string(kRoom, ' ') << std::flush;
+    if (!file_) {
+        const std::string why = std::strerror(errno);
+        close();
+        std::error_code ignored;
+        std::filesystem::remove(path_, ignored);
+        return tl::unexpected(path_.filename().string() + " cannot be written: " + why);
+    }
+    file_.close();
+    file_.open(path_, std::ios::binary | std::ios::trunc);
     size_ = 0;
     spdlog::info("recording to {}", path_.string());
     return chosen;

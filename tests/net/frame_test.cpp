@@ -303,3 +303,27 @@ TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
     CHECK_THROWS_WITH(Server(options, scene, FakePainter{}.factory()),
                       doctest::Contains("cannot listen at 127.0.0.1:"));
 }
+
+TEST_CASE("what a snapshot says was handled does not fall behind the frames before it") {
+    TestServer server({.takes = 5ms});
+    TestClient client(server.port());
+    client.join();
+    client.send({{"type", "frame"}});
+    client.wait_for("frame");
+    client.send({{"type", "snapshot"}, {"id", 1}, {"width", 64}, {"height", 48}, {"format", "png"}});
+    client.send({{"type", "navigate"}, {"id", 2}, {"rotate", {5, 0}}});
+    client.send({{"type", "frame"}});
+    client.send({{"type", "frame"}});
+    std::int64_t handled = 0;
+    for (bool snapshot = false; !snapshot || handled < 2;) {
+        const auto message = client.receive();
+        REQUIRE(message.has_value());
+        if (!message->binary || message->data[0] == '\x89') {
+            snapshot = snapshot || message->binary;
+            continue;
+        }
+        const Json header = message->json();
+        CHECK(header["handled"] >= handled);
+        handled = header["handled"];
+    }
+}

@@ -86,3 +86,28 @@ TEST_CASE("requests that are none, and too large ones, end") {
     CHECK(http(server.port(), "GE T", "/").status == 400);
     CHECK(http(server.port(), "GET", "/healthz").status == 200);
 }
+
+TEST_CASE("the picture's ETag tells revision and size") {
+    TestServer server;
+    TestClient client(server.port());
+    client.join();
+    client.send({{"type", "navigate"}, {"id", 1}, {"rotate", {5, 0}}});
+    client.wait_for("ok");
+    client.send({{"type", "resize"}, {"id", 2}, {"width", 400}, {"height", 300}, {"pixelRatio", 1}});
+    client.wait_for("ok");
+    const auto tag_of = [&](const HttpAnswer& answer) {
+        const std::size_t at = answer.headers.find("ETag: ") + 6;
+        return answer.headers.substr(at, answer.headers.find("\r\n", at) - at);
+    };
+    const auto get = [&](const std::string& tag) {
+        return http(server.port(), "GET", "/frame.jpg", "Host: 127.0.0.1\r\nIf-None-Match: " + tag + "\r\n");
+    };
+    const HttpAnswer first = get("\"none\"");
+    CHECK(first.status == 200);
+    CHECK(get(tag_of(first)).status == 304);
+    client.send({{"type", "resize"}, {"id", 3}, {"width", 200}, {"height", 600}, {"pixelRatio", 1}});
+    client.wait_for("ok");
+    const HttpAnswer second = get(tag_of(first));
+    CHECK(second.status == 200);
+    CHECK(get(tag_of(second)).status == 304);
+}

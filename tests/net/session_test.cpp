@@ -297,3 +297,38 @@ TEST_CASE("the end is told to clients and comes soon, even to one that does not 
     closer.join();
     CHECK(took < 5s);
 }
+
+TEST_CASE("nobody waits behind another's thousand requests") {
+    std::string text = "vrut-text 1\n";
+    for (int id = 1; id <= 20'000; ++id) text += "node " + std::to_string(id) + " \"Part\" assembly end\n";
+    TestServer server(scene_of(text), FakePainter{}.factory());
+    TestClient flood(server.port()), presenter(server.port());
+    flood.join("view");
+    presenter.join();
+    // More work than the wait below allows, from one who does not even take the answers.
+    for (int id = 1; id <= 20'000; ++id)
+        flood.send({{"type", "tree"}, {"id", id}, {"depth", 99}, {"search", "zzz"}});
+    presenter.send({{"type", "navigate"}, {"id", 1}, {"rotate", {5, 0}}});
+    CHECK(presenter.wait_for("ok", 2s)["id"] == 1);
+}
+
+TEST_CASE("who comes later hears nothing of a scene that was loaded before") {
+    ServerOptions options;
+    options.library = SceneLibrary(VRUT_SCENES);
+    TestServer server(FakePainter{}, options);
+    TestClient first(server.port());
+    first.join();
+    first.send({{"type", "open"}, {"id", 1}, {"scene", "car/car.vrut"}});
+    first.wait_for("ok");
+    while (!first.wait_for("loading").contains("done")) {
+    }
+    TestClient second(server.port());
+    CHECK(second.join("view")["scene"]["name"] == "car");
+    second.send({{"type", "pick"}, {"id", 1}, {"x", 0}, {"y", 0}});
+    for (;;) {
+        const auto message = second.receive();
+        REQUIRE(message.has_value());
+        CHECK(message->json()["type"] != "loading");
+        if (message->json()["type"] == "picked") break;
+    }
+}

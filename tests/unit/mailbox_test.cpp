@@ -92,3 +92,19 @@ TEST_CASE("a wait ends by an event, a wake, its time and the end") {
     CHECK(mailbox.closed());
     CHECK(mailbox.wait(std::nullopt).empty());
 }
+
+TEST_CASE("moves whose ids do not rise are not merged: the second is wrong") {
+    Mailbox mailbox;
+    const auto said = [](std::int64_t id) {
+        protocol::Pointer move;
+        move.event = protocol::Pointer::Event::move;
+        move.buttons = 1;
+        return ClientSaid{"a", protocol::ClientMessage{id, move}, {}, 1};
+    };
+    mailbox.push(said(6));
+    mailbox.push(said(5));
+    CHECK(mailbox.wait(std::nullopt).size() == 2);
+    mailbox.push(said(7));
+    mailbox.push(said(8));
+    CHECK(mailbox.wait(std::nullopt).size() == 1);
+}

@@ -308,3 +308,43 @@ TEST_CASE("a snapshot overlays the shared view and leaves it alone") {
     CHECK(stage.refusal("a", R"({"type":"snapshot","id":6,"width":3,"height":2,"camera":{"node":77}})") ==
           "unknown-node");
 }
+
+TEST_CASE("a home that was saved stays, and the camera, whatever size the view takes") {
+    Stage stage("a", other_scene());
+    stage.say("a", R"({"type":"patch","patch":{"views":{"home":{"eye":[1,2,30],"focus":[0,0,0]}}}})");
+    const json before = stage.state();
+    stage.say("a", R"({"type":"resize","width":300,"height":700,"pixelRatio":1})");
+    CHECK(stage.state()["views"]["home"] == before["views"]["home"]);
+    CHECK(stage.state()["camera"] == before["camera"]);
+}
+
+TEST_CASE("parts are counted with the materials that they have now") {
+    Stage stage("a", scene_of(R"(vrut-text 1
+material 1 "Red" end
+material 2 "Glass" diffuse 1 1 1 0.5 end
+geometry 1 vertices 3 0 0 0 1 0 0 0 1 0 triangles 1 0 1 2 end
+node 1 "Pane" geometry geometry 1 material 1 end
+)",
+                              "pane.vrut"));
+    CHECK(stage.state()["renderer"]["solid"] == 1);
+    stage.say("a", R"({"type":"patch","patch":{"nodes":{"1":{"material":2}}}})");
+    CHECK(stage.state()["renderer"]["solid"] == 0);
+    CHECK(stage.state()["renderer"]["transparent"] == 1);
+    stage.say("a", R"({"type":"patch","patch":{"nodes":null}})");
+    CHECK(stage.state()["renderer"]["solid"] == 1);
+}
+
+TEST_CASE("no move leaves what a patch may say") {
+    Stage stage("a");
+    stage.say("a",
+              R"({"type":"patch","patch":{"camera":{"eye":[1e30,0,0],"focus":[-1e30,0,0],"up":[0,1,0]}}})");
+    stage.say("a", R"({"type":"navigate","pan":[1000000,0]})");
+    CHECK(stage.camera().eye == glm::dvec3(1e30, 0, 0));
+}
+
+TEST_CASE("a marker without a point is refused, null or not there") {
+    Stage stage("a");
+    CHECK(stage.refusal("a", R"({"type":"patch","patch":{"markers":{"A":{}}}})") == "bad-message");
+    CHECK(stage.refusal("a", R"({"type":"patch","patch":{"markers":{"A":{"point":null}}}})") ==
+          "bad-message");
+}

@@ -312,3 +312,37 @@ TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
     stage.revision();
     CHECK(stage.presentation.changed_by() == "");
 }
+
+TEST_CASE("a new holder's flight begins at the home of his size, live and replayed") {
+    Stage stage("ab", other_scene());
+    stage.say("a", R"({"type":"resize","width":300,"height":900,"pixelRatio":1})");
+    stage.say("b", R"({"type":"resize","width":1280,"height":720,"pixelRatio":1})");
+    stage.say("b", R"({"type":"patch","patch":{}})");
+    stage.at(2s);
+    stage.say("a", R"({"type":"fly","id":1,"keyframes":[{"at":1000,"camera":{"fov":41}}]})");
+    const glm::dvec3 home = stage.camera().eye;
+    CHECK(home == stage.presentation.state().views.at("home").eye);
+    stage.at(4s);
+    CHECK(stage.camera().fov == 41);
+    CHECK(stage.camera().eye == home);
+}
+
+TEST_CASE("a flight to a camera node ends at that node") {
+    Stage stage("a");
+    stage.say("a", R"({"type":"navigate","rotate":[30,0]})");
+    CHECK_FALSE(stage.camera().node.has_value());
+    stage.say("a", R"({"type":"fly","id":1,"keyframes":[{"at":1000,"camera":{"node":6}}]})");
+    stage.at(500ms);
+    CHECK_FALSE(stage.camera().node.has_value());
+    stage.at(1s);
+    CHECK(stage.camera().node == 6);
+    CHECK(stage.camera().name == "Driver");
+}
+
+TEST_CASE("what a host may never do is not-allowed, whoever is in control") {
+    Stage stage("ha");
+    stage.say("a", kTake);
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"renderer":{"wireframe":true}}})") == "not-allowed");
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"lights":{"active":"nothing"}}})") == "not-allowed");
+    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
+}

@@ -208,3 +208,16 @@ TEST_CASE("a log has what was accepted, who came and went, and nothing that was 
         json::parse(R"({"at":500,"event":"opened","scene":"other.vrut","sceneSha256":"sha of other.vrut"})"));
     CHECK(lines[7]["message"] == json::parse(R"({"type":"record","id":2,"action":"stop"})"));
 }
+
+TEST_CASE("a recording whose first line cannot be written is refused, and is not in the state") {
+    const Quiet quiet;
+    const TemporaryFolder folder;
+    Stage stage("a", scene(), recording_to(folder.path()));
+    {
+        const FullDisk full(10);
+        CHECK(stage.refusal("a", kStart) == "failed");
+    }
+    CHECK_FALSE(stage.state().contains("recording"));
+    CHECK(stage.refusal("a", R"({"type":"record","id":5,"action":"start","name":"take-2"})") == "");
+    CHECK(stage.state()["recording"]["name"] == "take-2");
+}
