@@ -217,7 +217,7 @@ tl::expected<Camera, Error> overlaid(const Camera& base, const protocol::CameraO
                                      const PlacedScene& placed, const std::string& what) {
     Camera camera = base;
     if (overlay.node) {
-        const auto at_node = node_camera(placed, *overlay.node, what + ".node");
+        auto at_node = node_camera(placed, *overlay.node, what + ".node");
         if (!at_node) return at_node;
         camera = *at_node;
     }

@@ -7,7 +7,7 @@ namespace vrut {
 
 namespace {
 
-constexpr std::size_t kMostNodes = 500, kMostBytes = 64 * 1024;  // of a page
+constexpr std::size_t kMostNodes = 500, kMostBytes = std::size_t{64} * 1024;  // of a page
 constexpr int kMostVisited = 5'000;
 
 const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_cast<std::size_t>(index)]; }
@@ -15,9 +15,9 @@ const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_ca
 /// A place in the walk below `top`, depth first, children by rising id.
 struct Walk {
     const Scene& scene;
-    Index top;
-    int max_depth;
-    Index node;  // kNone: at the end
+    Index top = kNone;
+    int max_depth = 0;
+    Index node = kNone;  // kNone: at the end
     int depth = 0;
 
     void next() {
