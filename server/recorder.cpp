@@ -10,7 +10,7 @@ namespace vrut {
 
 namespace {
 
-constexpr std::size_t kRoom = 64 * 1024;
+constexpr std::size_t kRoom = std::size_t{64} * 1024;
 
 std::string formatted_now(const char* format) {
     const std::time_t now = std::time(nullptr);
