@@ -14,8 +14,8 @@ namespace code = protocol::error_code;
 namespace {
 
 constexpr int kMostSnapshots = 2;  // of a client, waiting
-constexpr std::chrono::milliseconds kFlightStep{
-    16};  // at most, for those who follow the camera without frames
+/// At most, for those who follow the camera without frames.
+constexpr std::chrono::milliseconds kFlightStep{16};
 constexpr std::size_t kBegunRemembered = 16;
 
 /// "" where it is of none.
@@ -164,6 +164,14 @@ void Engine::receive(std::optional<Clock::time_point> until) {
         if (std::holds_alternative<ClientLeft>(event)) waiting_[client].clear();
         waiting_[client].push_back(std::move(event));
     }
+}
+
+/// What must not wait for the whole of a long picture; between two of its samples.
+void Engine::attend() {
+    receive(Clock::now());
+    handle_waiting();
+    fly();
+    report();
 }
 
 void Engine::handle_waiting() {
@@ -419,10 +427,7 @@ void Engine::draw(const PacingDecision& decision) {
     Image image = encoder_.take_spare();
     FrameStats stats;
     const auto interrupted = [&] {
-        receive(Clock::now());
-        handle_waiting();
-        fly();
-        report();
+        attend();
         return mailbox_.closed() || presentation_->visible() != visible ||
                presentation_->view_size() != view_size;
     };
@@ -465,10 +470,7 @@ void Engine::draw_snapshot() {
     if (snapshot.image.rgba.empty()) snapshot.image = snapshot_encoder_.take_spare();
     FrameStats stats;
     const auto interrupted = [&] {
-        receive(Clock::now());
-        handle_waiting();
-        fly();
-        report();
+        attend();
         return mailbox_.closed() || pace().action == PacingDecision::Action::draw;
     };
     const bool whole = painter_.paint(view, snapshot.image, stats, interrupted, &snapshot.kept);

@@ -115,6 +115,7 @@ private:
     void receive(std::optional<Clock::time_point> until);
     /// Handles some of it: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
+    void attend();
     void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
     void grant(Client& client, const ClientSaid& said);
     void report();

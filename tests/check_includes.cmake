@@ -1,24 +1,18 @@
 # Fails where a folder includes a library that is none of its business. Libraries of headers alone would compile
 # anywhere; the project's own are kept apart by what each CMake target links.
-function(check folder pattern why)
-    file(GLOB_RECURSE files ${SOURCE}/${folder}/*.cpp ${SOURCE}/${folder}/*.hpp)
-    list(FILTER files EXCLUDE REGEX "/protocol/client/")  # for other programs; nothing of ours links it
-    foreach(file IN LISTS files)
-        file(STRINGS ${file} lines REGEX "^#include [<\"](${pattern})")
-        if(lines)
-            message(SEND_ERROR "${file}: ${lines}: ${why}")
-        endif()
-    endforeach()
-endfunction()
-
 function(check_text folder pattern why)
     file(GLOB_RECURSE files ${SOURCE}/${folder}/*.cpp ${SOURCE}/${folder}/*.hpp)
+    list(FILTER files EXCLUDE REGEX "/protocol/client/")  # for other programs; nothing of ours links it
     foreach(file IN LISTS files)
         file(STRINGS ${file} lines REGEX "${pattern}")
         if(lines)
             message(SEND_ERROR "${file}: ${lines}: ${why}")
         endif()
     endforeach()
+endfunction()
+
+function(check folder pattern why)
+    check_text(${folder} "^#include [<\"](${pattern})" "${why}")
 endfunction()
 
 check(protocol "boost/|GL/|EGL/|spdlog/|turbojpeg|png" "protocol/ knows JSON, and no GL and no sockets")
