@@ -63,9 +63,9 @@ ClassCounts count_classes(const PlacedScene& placed) {
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
         if (!std::holds_alternative<GeometryData>(placed.scene->nodes()[i].data)) continue;
         const Material& material = placed.scene->material(placed.nodes[i].material);
-        ++(material.diffuse.a < 1      ? counts.transparent
-           : material.reflectivity > 0 ? counts.reflective
-                                       : counts.solid);
+        ++(placed.scene->is_transparent(material) ? counts.transparent
+           : material.reflectivity > 0            ? counts.reflective
+                                                  : counts.solid);
     }
     return counts;
 }

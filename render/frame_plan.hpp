@@ -31,7 +31,7 @@ FramePlan plan_frame(const View& view);
 /// Geometry nodes of a scene by what their material is.
 struct ClassCounts {
     std::uint64_t solid = 0;
-    std::uint64_t transparent = 0;  ///< diffuse alpha below 1
+    std::uint64_t transparent = 0;  ///< as Scene::is_transparent()
     std::uint64_t reflective = 0;   ///< opaque, with reflectivity above 0
 
     bool operator==(const ClassCounts&) const = default;

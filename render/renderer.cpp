@@ -83,8 +83,8 @@ struct Renderer::Impl {
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
               FrameStats& stats) {
         target->bind();
-        glClearColor(static_cast<float>(view.background.r), static_cast<float>(view.background.g),
-                     static_cast<float>(view.background.b), 1);
+        glClearColor(static_cast<float>(view.background.color.r), static_cast<float>(view.background.color.g),
+                     static_cast<float>(view.background.color.b), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
         if (!plan.opaque.empty()) opaque.draw(plan.opaque, *scene, view, clip, stats);

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera.hpp"
@@ -13,6 +15,23 @@ namespace vrut {
 
 /// The plain background: 230/255, 235/255, 242/255.
 inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+
+/// What stands behind everything: a cube map, else a picture stretched over the view, else a colour. Textures
+/// are the scene's.
+struct Background {
+    glm::dvec3 color = kDefaultBackground;
+    Index texture = kNone;
+    std::optional<std::array<Index, 6>> cube_map;  ///< px nx py ny pz nz
+
+    bool operator==(const Background&) const = default;
+};
+
+/// A sign on a surface, in world space.
+struct Mark {
+    glm::dvec3 point{0};
+
+    bool operator==(const Mark&) const = default;
+};
 
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
 enum class DrawMode { realistic, stylized };
@@ -27,7 +46,8 @@ struct View {
     DrawMode mode = DrawMode::realistic;
     bool wireframe = false;  ///< the edges of all triangles, and no faces
     Index selected = kNone;  ///< a node whose subtree is marked: by an outline, in a wireframe by its edges
-    glm::dvec3 background = kDefaultBackground;
+    Background background;
+    std::vector<Mark> marks;
 
     bool operator==(const View&) const = default;
 };

@@ -252,6 +252,34 @@ tl::expected<std::vector<NodeState>, Error> node_states(
     return states;
 }
 
+namespace {
+
+/// The active one, if its subtree is; its colour is the state's.
+Background background_of(const protocol::BackgroundsState& backgrounds, const PlacedScene& placed) {
+    const Index node = find_node(*placed.scene, backgrounds.active);
+    if (!is_shown(placed, node)) return {glm::dvec3(backgrounds.color), kNone, {}};
+    const auto& data = std::get<BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
+    return {glm::dvec3(backgrounds.items.at(backgrounds.active).color),
+            placed.scene->material(data.material).texture, data.cube_textures};
+}
+
+/// In world space, those whose node shows.
+std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers,
+                           const PlacedScene& placed) {
+    std::vector<Mark> marks;
+    for (const auto& [name, marker] : markers) {
+        if (!marker.node) {
+            marks.push_back({marker.point});
+        } else if (const Index node = placed.scene->find_node(*marker.node); is_shown(placed, node)) {
+            const glm::dmat4& world = placed.world[static_cast<std::size_t>(node)];
+            marks.push_back({glm::dvec3(world * glm::dvec4(marker.point, 1))});
+        }
+    }
+    return marks;
+}
+
+}  // namespace
+
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
     View view;
     view.camera = camera_of(state.camera);
@@ -264,9 +292,8 @@ View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> pl
     view.wireframe = state.renderer.wireframe;
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
-    const std::string& active = state.backgrounds.active;
-    const bool plain = active == "color" || !is_shown(*placed, find_node(*placed->scene, active));
-    view.background = glm::dvec3(plain ? state.backgrounds.color : state.backgrounds.items.at(active).color);
+    view.background = background_of(state.backgrounds, *placed);
+    view.marks = marks_of(state.markers, *placed);
     view.scene = std::move(placed);
     return view;
 }

@@ -186,7 +186,7 @@ std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_
         const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const Material& material = placed.scene->material(placed.nodes[i].material);
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
-        if (through_transparent && material.diffuse.a < 1) continue;
+        if (through_transparent && placed.scene->is_transparent(material)) continue;
 
         const Part part(geometry, placed.world[i], ray.origin);
         const std::optional<double> from = entry(part, ray.direction);

@@ -22,8 +22,8 @@ struct Hit {
 
 /// The nearest triangle along the ray among what a picture from `ray.origin` shows: nodes that are active and
 /// chosen by their switches and LODs, front faces, and back faces where they are drawn. At exactly equal
-/// distance the node of higher id is hit. With `through_transparent` materials whose diffuse alpha is below 1
-/// are passed; their images are not looked at. Edges and corners belong to their triangles, so that a closed
+/// distance the node of higher id is hit. With `through_transparent` transparent materials are passed,
+/// whatever their picture's alpha is there. Edges and corners belong to their triangles, so that a closed
 /// surface has no gaps; a triangle without area, or seen exactly along its plane, is missed. Nothing is hit
 /// by a ray that is not finite or has no direction. Edge test: Woop, Benthin, Wald, "Watertight Ray/Triangle
 /// Intersection", JCGT 2(1), 2013.

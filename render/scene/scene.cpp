@@ -128,9 +128,12 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     Scene scene(Unlinked{});
     scene.name_ = std::move(parts.name);
     scene.unit_ = parts.unit;
+    scene.textures_ = std::move(parts.textures);
     scene.materials_ = std::move(parts.materials);
     scene.geometries_ = std::move(parts.geometries);
     scene.notices_ = std::move(parts.notices);
+    scene.planes_.reserve(scene.geometries_.size());
+    for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(plane_of(geometry));
     std::vector<Index> new_place(in.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         new_place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
@@ -150,6 +153,11 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
 const Material& Scene::material(Index index) const {
     static const Material default_material;
     return index == kNone ? default_material : materials_[static_cast<std::size_t>(index)];
+}
+
+bool Scene::is_transparent(const Material& material) const {
+    return material.diffuse.a < 1 ||
+           (material.texture != kNone && textures_[static_cast<std::size_t>(material.texture)].transparent);
 }
 
 Index Scene::find_node(Id id) const {

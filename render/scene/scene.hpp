@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "bounds.hpp"
+#include "image.hpp"
+#include "plane.hpp"
 
 namespace vrut {
 
@@ -23,6 +25,13 @@ inline constexpr Id kMaxId = (Id{1} << 53) - 1;
 /// Position in one of the scene's arrays; kNone where nothing is meant.
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
+
+/// A picture file that materials and backgrounds show.
+struct Texture {
+    std::string file;  ///< relative to the scene's
+    Image image;
+    bool transparent = false;  ///< some alpha is below 255
+};
 
 /// RGBA 0 to 1 as displayed: no gamma anywhere.
 struct Material {
@@ -35,7 +44,8 @@ struct Material {
     double shininess = 0;
     double reflectivity = 0;
     bool two_sided = false;
-    std::string image;  ///< relative to the scene's file; empty for none
+    std::string image;      ///< relative to the scene's file; empty for none
+    Index texture = kNone;  ///< what was read from there; kNone where nothing could be
 };
 
 struct Geometry {
@@ -85,6 +95,8 @@ struct LodData {
 struct BackgroundData {
     Index material = kNone;
     std::optional<std::array<std::string, 6>> cube_map;  ///< px nx py ny pz nz
+    /// What was read from there: squares of one size, or none.
+    std::optional<std::array<Index, 6>> cube_textures;
 };
 
 struct Node {
@@ -106,6 +118,7 @@ struct SceneParts {
     };
     std::string name;
     double unit = 1;  ///< metres per unit: information for hosts
+    std::vector<Texture> textures;
     std::vector<Material> materials;
     std::vector<Geometry> geometries;
     std::vector<PartNode> nodes;
@@ -129,11 +142,18 @@ public:
 
     const std::string& name() const { return name_; }
     double unit() const { return unit_; }
+    const std::vector<Texture>& textures() const { return textures_; }
     const std::vector<Material>& materials() const { return materials_; }
     const std::vector<Geometry>& geometries() const { return geometries_; }
     const std::vector<Node>& nodes() const { return nodes_; }
     const std::vector<std::string>& notices() const { return notices_; }
     const Material& material(Index index) const;
+    /// The plane in which a geometry lies, in its own space (plane_of()).
+    const std::optional<Plane>& plane(Index geometry) const {
+        return planes_[static_cast<std::size_t>(geometry)];
+    }
+    /// Whether something can be seen through it: its diffuse alpha or one of its texture's is below 1.
+    bool is_transparent(const Material& material) const;
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;
@@ -144,8 +164,10 @@ private:
 
     std::string name_;
     double unit_ = 1;
+    std::vector<Texture> textures_;
     std::vector<Material> materials_;
     std::vector<Geometry> geometries_;
+    std::vector<std::optional<Plane>> planes_;
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
     std::unordered_map<Id, Index> index_of_;

@@ -93,7 +93,7 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
     const glm::dvec3 ray =
         view + right * ((x - view_.width / 2.0) * pixel) + up * ((view_.height / 2.0 - y) * pixel);
 
-    Seen seen{-1, view_.background};
+    Seen seen{-1, view_.background.color};
     double nearest = std::numeric_limits<double>::infinity();
     for (const Triangle& triangle : triangles_) {
         const auto& [a, b, c] = triangle.corners;

@@ -153,7 +153,7 @@ TEST_CASE("many samples of one colour are that colour") {
     for (const int samples : {1, 2, 3, 7, 16, 61}) {
         view.samples = samples;
         for (const int level : {0, 1, 100, 254, 255}) {
-            view.background = glm::dvec3(level / 255.0);
+            view.background.color = glm::dvec3(level / 255.0);
             const Image image = studio.draw(scene_of({}), view);
             CHECK(pixel_of(image, 11, 13) == glm::ivec3(level));
             CHECK(average(image) == doctest::Approx((level * 3 + 255) / 4.0));
@@ -225,7 +225,7 @@ TEST_CASE("a picture that had to give way goes on where it was, to the same byte
 TEST_CASE("a view without a scene shows the background, with its samples or without") {
     Studio studio;
     View view = view_from({0, 0, 5});
-    view.background = {1, 0.5, 0};
+    view.background.color = {1, 0.5, 0};
     for (const int samples : {1, 3}) {
         view.samples = samples;
         studio.draw(scene_of({{1, quad(9), kPaint, glm::dmat4(1)}}), view);

@@ -61,7 +61,7 @@ inline View pixel_view(int width, int height) {
     view.camera.focus = {0, 0, 0};
     view.width = width;
     view.height = height;
-    view.background = {1, 1, 1};
+    view.background.color = {1, 1, 1};
     return view;
 }
 

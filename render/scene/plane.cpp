@@ -1,0 +1,63 @@
+#include "plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene.hpp"
+
+namespace vrut {
+
+std::optional<Plane> plane_of(const Geometry& geometry) {
+    const glm::dvec3 center = geometry.bounds.empty() ? glm::dvec3(0) : geometry.bounds.center();
+    const auto corner = [&](const glm::uvec3& triangle, int k) {
+        return geometry.positions[triangle[k]] - center;
+    };
+    const auto doubled_area = [&](const glm::uvec3& triangle) {
+        const glm::dvec3 a = corner(triangle, 0);
+        return glm::cross(corner(triangle, 1) - a, corner(triangle, 2) - a);
+    };
+    // All turned like the largest, so that a sheet with two faces has a plane too.
+    glm::dvec3 largest(0);
+    for (const glm::uvec3& triangle : geometry.triangles)
+        if (const glm::dvec3 area = doubled_area(triangle); glm::length(area) > glm::length(largest))
+            largest = area;
+    glm::dvec3 normal(0), weighted(0);
+    double total = 0;
+    for (const glm::uvec3& triangle : geometry.triangles) {
+        const glm::dvec3 area = doubled_area(triangle);
+        normal += glm::dot(area, largest) < 0 ? -area : area;
+        const double weight = glm::length(area);
+        weighted += weight / 3 * (corner(triangle, 0) + corner(triangle, 1) + corner(triangle, 2));
+        total += weight;
+    }
+    const double length = glm::length(normal);
+    if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
+    const Plane plane{normal / length, center + weighted / total};
+    const double limit = 1e-4 * geometry.bounds.radius();
+    for (const glm::uvec3& triangle : geometry.triangles)
+        for (int k = 0; k < 3; ++k)
+            if (!(std::abs(plane.distance(geometry.positions[triangle[k]])) <= limit)) return std::nullopt;
+    return plane;
+}
+
+std::optional<Plane> transformed(const glm::dmat4& matrix, const Plane& plane) {
+    // Two directions in the plane keep their plane under any matrix that does not collapse it.
+    const glm::dvec3& n = plane.normal;
+    const glm::dvec3 across =
+        glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dmat3 linear(matrix);
+    const glm::dvec3 u = linear * across, v = linear * glm::cross(n, across);
+    const glm::dvec3 normal = glm::cross(u, v);
+    const double length = glm::length(normal);
+    if (!(length > 1e-12 * glm::length(u) * glm::length(v)) || !std::isfinite(length)) return std::nullopt;
+    return Plane{normal / length, glm::dvec3(matrix * glm::dvec4(plane.point, 1))};
+}
+
+glm::dmat4 reflection_about(const Plane& plane) {
+    const glm::dvec3& n = plane.normal;
+    glm::dmat4 matrix(glm::dmat3(1) - 2.0 * glm::outerProduct(n, n));
+    matrix[3] = glm::dvec4(2 * glm::dot(n, plane.point) * n, 1);
+    return matrix;
+}
+
+}  // namespace vrut
