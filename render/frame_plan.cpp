@@ -54,7 +54,7 @@ FramePlan plan_frame(const View& view) {
             if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
     }
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
-    if (!view.wireframe) plan.opaque = std::move(items);
+    if (!view.wireframe) plan.scene.opaque = std::move(items);
     return plan;
 }
 

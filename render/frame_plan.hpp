@@ -18,9 +18,14 @@ struct DrawItem {
     bool mirrored = false;  ///< the matrix turns counter-clockwise triangles clockwise
 };
 
+/// Faces that are drawn from one sight, in this order.
+struct Layers {
+    std::vector<DrawItem> opaque;  ///< by rising id
+};
+
 /// What a frame needs, and no more: a pass without items does not run. Each by rising id.
 struct FramePlan {
-    std::vector<DrawItem> opaque;    ///< with faces
+    Layers scene;
     std::vector<DrawItem> edges;     ///< with edges
     std::vector<DrawItem> selected;  ///< to be marked
 };

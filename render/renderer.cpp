@@ -80,6 +80,11 @@ struct Renderer::Impl {
         scene.emplace(wanted);
     }
 
+    void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
+        programs.begin(sight, view);
+        if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
+    }
+
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
               FrameStats& stats) {
         target->bind();
@@ -87,8 +92,8 @@ struct Renderer::Impl {
                      static_cast<float>(view.background.color.b), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
-        if (!plan.opaque.empty()) opaque.draw(plan.opaque, *scene, view, clip, stats);
-        if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view, clip, stats);
+        draw_layers(plan.scene, view, {clip, view_from_world(view.camera)}, stats);
+        if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view.mode, clip, programs, stats);
         if (plan.selected.empty()) return;
         if (view.wireframe)
             edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
@@ -99,6 +104,7 @@ struct Renderer::Impl {
     GlContext context;  // first: destroyed after everything below
     std::optional<GpuScene> scene;
     std::optional<Framebuffer> target;
+    SurfacePrograms programs;
     OpaquePass opaque;
     EdgePass edges;
     OutlinePass outline;

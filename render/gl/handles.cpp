@@ -29,6 +29,14 @@ GlBuffer make_buffer(const void* data, std::size_t bytes) {
     return buffer;
 }
 
+GlBuffer make_changing_buffer(std::size_t bytes) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    GlBuffer buffer(name);
+    glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    return buffer;
+}
+
 GlVertexArray make_vertex_array() {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);

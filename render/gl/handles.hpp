@@ -56,6 +56,8 @@ using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
 
 GlBuffer make_buffer(const void* data, std::size_t bytes);
+/// Without contents, to be written again and again.
+GlBuffer make_changing_buffer(std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel.

@@ -16,22 +16,20 @@ void draw_lines(const GpuEdges& edges, FrameStats& stats) {
 
 }  // namespace
 
-void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, const View& view,
-                    const glm::dmat4& clip_from_view, FrameStats& stats) {
+void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
+                    const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
-    const bool stylized = view.mode == DrawMode::stylized;
-    if (stylized)
-        plain_.use(kStylizedEdges, clip_from_view);
-    else
-        surfaces_.use(view, clip_from_view);
+    const bool stylized = mode == DrawMode::stylized;
+    if (stylized) plain_.use(kStylizedEdges, clip_from_view);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
         if (stylized)
             set_place(item, geometry);
         else
-            set_surface(item, geometry, scene.scene()->material(item.material));
+            programs.use(SurfacePrograms::Shape::edges, item, geometry,
+                         scene.scene()->material(item.material));
         draw_lines(scene.edges(item.geometry), stats);
     }
     ++stats.passes;

@@ -11,14 +11,13 @@ class EdgePass {
 public:
     /// Realistic ones in their materials under the view's light, stylized ones in one colour; hidden where a
     /// face stands before them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
-    void draw(std::span<const DrawItem> items, GpuScene& scene, const View& view,
-              const glm::dmat4& clip_from_view, FrameStats& stats);
+    void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
+              const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats);
     /// In one colour, over everything.
     void draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
                    const glm::dmat4& clip_from_view, FrameStats& stats);
 
 private:
-    SurfacePrograms surfaces_{SurfacePrograms::Shape::edges};
     PlainProgram plain_;
 };
 

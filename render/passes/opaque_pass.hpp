@@ -11,11 +11,8 @@ namespace vrut {
 class OpaquePass {
 public:
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
-    void draw(std::span<const DrawItem> items, GpuScene& scene, const View& view,
-              const glm::dmat4& clip_from_view, FrameStats& stats);
-
-private:
-    SurfacePrograms programs_{SurfacePrograms::Shape::faces};
+    void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode, SurfacePrograms& programs,
+              FrameStats& stats);
 };
 
 }  // namespace vrut

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "passes/colors.hpp"
+#include "passes/drawing.hpp"
 
 namespace vrut {
 
@@ -164,10 +165,7 @@ void OutlinePass::cover(std::span<const DrawItem> items, std::span<const PixelBo
     for (std::size_t i = 0; i < items.size(); ++i) {
         const GpuGeometry& geometry = scene.geometry(items[i].geometry);
         set_place(items[i], geometry);
-        glBindVertexArray(geometry.vertex_array.get());
-        glDrawElements(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT, nullptr);
-        ++stats.draws;
-        stats.triangles += static_cast<std::uint64_t>(geometry.index_count) / 3;
+        draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
         if (boxes[i].size().x > 2 || boxes[i].size().y > 2) continue;
         scissor(boxes[i]);

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <array>
+#include <compare>
+#include <map>
 
 #include "frame_plan.hpp"
 #include "gpu_scene.hpp"
@@ -9,20 +10,40 @@
 
 namespace vrut {
 
-/// Phong light per pixel (Macků 2016, eq. 6.4–6.9 in their robust form), compiled for a kind of light when
-/// that first shines.
+/// From where a target's contents are seen.
+struct Sight {
+    glm::dmat4 clip_from_view{1};
+    glm::dmat4 view_from_world{1};
+};
+
+/// Phong light per pixel (Macků 2016, eq. 6.4–6.9 in their robust form). A program is compiled for what
+/// surfaces and lights ask of it, when they first do.
 class SurfacePrograms {
 public:
-    enum class Shape { faces, edges };
-    /// Edges have no side: their normals are turned to the viewer.
-    explicit SurfacePrograms(Shape shape) : shape_(shape) {}
+    enum class Shape {
+        faces,
+        edges,  ///< without sides: their normals are turned to the viewer
+    };
 
-    /// Makes the program for the view's light the current one and gives it all that holds for the picture.
-    void use(const View& view, const glm::dmat4& clip_from_view);
+    /// What is drawn from here on is seen so.
+    void begin(const Sight& sight, const View& view);
+    /// Makes the program for this item the current one and gives it all that it needs.
+    void use(Shape shape, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
 
 private:
-    Shape shape_;
-    std::array<GlProgram, 4> programs_;
+    enum class LightKind { headlight, point, directional, spot };
+    struct Variant {
+        Shape shape = Shape::faces;
+        LightKind light = LightKind::headlight;
+
+        auto operator<=>(const Variant&) const = default;
+    };
+    static LightKind kind_of(const Light& light);
+    static GlProgram make(const Variant& variant);
+
+    LightKind light_ = LightKind::headlight;
+    std::map<Variant, GlProgram> programs_;
+    GlBuffer sight_;
 };
 
 /// One colour everywhere.
@@ -36,7 +57,5 @@ private:
 
 /// Where the next draw of the current program lies.
 void set_place(const DrawItem& item, const GpuGeometry& geometry);
-/// That and how it looks, for SurfacePrograms.
-void set_surface(const DrawItem& item, const GpuGeometry& geometry, const Material& material);
 
 }  // namespace vrut

@@ -35,11 +35,11 @@ TEST_CASE("geometry nodes are counted by what their material is now") {
 
 TEST_CASE("a plan holds what the view needs and no more") {
     View view = view_from({0, 0, 5});
-    CHECK(plan_frame(view).opaque.empty());
+    CHECK(plan_frame(view).scene.opaque.empty());
     view.scene = std::make_shared<const PlacedScene>(showroom());
     const auto sizes = [&] {
         const FramePlan plan = plan_frame(view);
-        return std::array{plan.opaque.size(), plan.edges.size(), plan.selected.size()};
+        return std::array{plan.scene.opaque.size(), plan.edges.size(), plan.selected.size()};
     };
     using Sizes = std::array<std::size_t, 3>;
     CHECK(sizes() == Sizes{5, 0, 0});

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "frame_plan.hpp"
+#include "gpu_scene.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// From here on the sides of an item that do not show are left out.
+void cull_sides(const DrawItem& item);
+
+/// With the current program; adds to the draws and triangles of `stats`.
+void draw_triangles(const GpuGeometry& geometry, FrameStats& stats);
+
+}  // namespace vrut
