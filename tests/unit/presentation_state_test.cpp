@@ -348,3 +348,48 @@ TEST_CASE("a marker without a point is refused, null or not there") {
     CHECK(stage.refusal("a", R"({"type":"patch","patch":{"markers":{"A":{"point":null}}}})") ==
           "bad-message");
 }
+
+TEST_CASE("markers go along with their nodes, and show where those show") {
+    Stage stage("a");
+    stage.say("a", patch(R"({"markers":{"free":{"point":[1,2,3],"text":"here"},
+                                        "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
+                                        "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
+    const auto marks = [&] { return stage.presentation.visible().marks; };
+    REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}}, {{1, 0.5, 0}}});
+    stage.say("a", kMoveHinge);
+    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}}, {{3, 0.5, 0}}});
+    stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"1":{"active":false}}})"));
+    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}}, {{-1, 0, 0}}});
+    stage.say("a", patch(R"({"markers":null})"));
+    CHECK(marks().empty());
+}
+
+TEST_CASE("the view has the active background's colour and pictures, or else the plain colour") {
+    SceneParts parts;
+    Material paper;
+    paper.diffuse = {0.1, 0.2, 0.3, 1};
+    paper.texture = 0;
+    parts.textures.resize(6);
+    parts.materials = {paper};
+    const auto add = [&](Id id, NodeType type, Id parent, BackgroundData data) {
+        Node node{id, {}, type, kNone, {}, true, glm::dmat4(1), GroupData()};
+        if (type == NodeType::background) node.data = std::move(data);
+        parts.nodes.push_back({node, parent});
+    };
+    BackgroundData sky{0, {}, std::array<Index, 6>{0, 1, 2, 3, 4, 5}};
+    add(1, NodeType::assembly, 0, {});
+    add(2, NodeType::background, 1, {0, {}, {}});
+    add(3, NodeType::background, 0, sky);
+    Stage stage("a",
+                {"b", "", std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts)))), {}});
+    const auto background = [&]() -> const Background& { return stage.presentation.visible().background; };
+
+    CHECK(background() == Background{{0.1, 0.2, 0.3}, 0, {}});
+    stage.say("a", patch(R"({"backgrounds":{"active":"3","items":{"3":{"color":[1,0,0,1]}}}})"));
+    CHECK(background() == Background{{1, 0, 0}, 0, sky.cube_textures});
+    stage.say("a", patch(R"({"backgrounds":{"active":"color"}})"));
+    CHECK(background() == Background());
+    stage.say("a",
+              patch(R"({"backgrounds":{"active":"2","color":[0,0,1,1]},"nodes":{"1":{"active":false}}})"));
+    CHECK(background() == Background{{0, 0, 1}, kNone, {}});
+}
