@@ -1,17 +1,17 @@
 #include "renderer.hpp"
 
-#include <bit>
 #include <chrono>
 #include <cmath>
 
+#include "colors.hpp"
 #include "context.hpp"
 #include "frame_plan.hpp"
 #include "framebuffer.hpp"
 #include "gpu_scene.hpp"
-#include "passes/colors.hpp"
 #include "passes/edge_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
+#include "sampling.hpp"
 
 namespace vrut {
 
@@ -21,16 +21,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// Place of sample `index` in its pixel, from the pixel's centre: the Hammersley set, moved to be centred.
-glm::dvec2 sample_offset(int index, int samples) {
-    const auto count = std::bit_ceil(static_cast<unsigned>(samples));
-    double y = 0.5 / count;
-    double digit = 0.5;
-    for (unsigned rest = static_cast<unsigned>(index); rest != 0; rest >>= 1, digit /= 2)
-        y += (rest & 1) * digit;
-    return {(index + 0.5) / samples - 0.5, y - 0.5};
 }
 
 /// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,

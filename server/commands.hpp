@@ -35,6 +35,9 @@ struct RenderArguments {
         patches;  ///< further ones, with the option that they are of
     std::optional<int> device;
     bool stats = false;
+    bool reference = false;  ///< by the reference renderer, without a GPU
+    std::filesystem::path unrounded,
+        ids;  ///< further pictures: of the reference's values, of node ids; or empty
 };
 void render_command(const RenderArguments& arguments);
 

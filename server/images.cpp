@@ -4,6 +4,7 @@
 #include <turbojpeg.h>
 #include <zlib.h>
 
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -54,6 +55,20 @@ std::vector<std::uint8_t> encode_png(const Image& image) {
         throw std::runtime_error(std::string("a picture cannot be encoded as PNG: ") + header.message);
     png.resize(size);
     return png;
+}
+
+std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm::dvec3> colors) {
+    const std::string header =
+        "PF\n" + std::to_string(width) + " " + std::to_string(height) + "\n-1.0\n";  // little-endian
+    std::vector<std::uint8_t> pfm(header.begin(), header.end());
+    pfm.reserve(pfm.size() + colors.size() * 12);
+    for (const glm::dvec3& color : colors)
+        for (int k = 0; k < 3; ++k) {
+            const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(color[k]));
+            for (unsigned shift = 0; shift < 32; shift += 8)
+                pfm.push_back(static_cast<std::uint8_t>(bits >> shift));
+        }
+    return pfm;
 }
 
 std::vector<std::uint8_t> png_text_chunk(const std::string& text) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <glm/glm.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -30,6 +31,9 @@ private:
 
 /// An opaque RGB PNG. Throws std::runtime_error.
 std::vector<std::uint8_t> encode_png(const Image& image);
+
+/// RGB in 32-bit floats, rows from the bottom up, as a PFM file.
+std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm::dvec3> colors);
 
 /// Where in a PNG file a text chunk may go: behind its signature and IHDR.
 inline constexpr std::size_t kPngTextOffset = 33;

@@ -136,7 +136,13 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
     command->add_option("--jpeg-quality", arguments.jpeg_quality, "1 to 100")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    command->add_flag("--stats", arguments.stats, "Print what the picture took, as JSON");
+    auto* reference = command->add_flag("--reference", arguments.reference,
+                                        "By the reference renderer, in double precision and without a GPU");
+    command->add_option("--float", arguments.unrounded, "Its unrounded values too, as a PFM picture")
+        ->needs(reference);
+    command->add_option("--ids", arguments.ids, "The node ids at the pixels' centres too, as a PNG picture");
+    command->add_flag("--stats", arguments.stats, "Print what the picture took, as JSON")
+        ->excludes(reference);
     add_device(*command, arguments.device);
     command->callback([&arguments] { vrut::render_command(arguments); });
 }

@@ -7,6 +7,7 @@
 #include "commands.hpp"
 #include "images.hpp"
 #include "presentation.hpp"
+#include "reference.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
 #include "scene_library.hpp"
@@ -55,13 +56,7 @@ Camera wanted_camera(const RenderArguments& arguments, const Presentation& prese
     return *camera;
 }
 
-}  // namespace
-
-void render_command(const RenderArguments& arguments) {
-    const std::string extension = arguments.output.extension().string();
-    const bool jpeg = extension == ".jpg" || extension == ".jpeg";
-    if (!jpeg && extension != ".png")
-        throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
+View view_of(const RenderArguments& arguments) {
     auto scene = load_scene(arguments.scene, arguments.scene.filename().string());
     if (!scene) throw std::runtime_error(scene.error());
     Presentation presentation(*std::move(scene));
@@ -77,7 +72,44 @@ void render_command(const RenderArguments& arguments) {
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;
+    return view;
+}
 
+/// Node ids as 24-bit RGB, white for none. Throws std::runtime_error where one is too high.
+Image picture_of_ids(const View& view, const std::vector<Index>& nodes) {
+    constexpr Id kNobody = 0xffffff;
+    Image image;
+    image.resize(view.width, view.height);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        Id id = kNobody;
+        if (nodes[i] != kNone) {
+            id = view.scene->scene->nodes()[static_cast<std::size_t>(nodes[i])].id;
+            if (id >= kNobody)
+                throw std::runtime_error("--ids: node " + std::to_string(id) +
+                                         " has an id beyond 16777214, the highest that 24 bits can tell");
+        }
+        for (unsigned k = 0; k < 3; ++k)
+            image.rgba[4 * i + k] = static_cast<std::uint8_t>(id >> (16 - 8 * k));
+        image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+void write_picture(const RenderArguments& arguments, const Image& image) {
+    write_file(arguments.output, arguments.output.extension() == ".png"
+                                     ? encode_png(image)
+                                     : JpegEncoder().encode(image, arguments.jpeg_quality, false));
+}
+
+void trace_picture(const RenderArguments& arguments, const View& view) {
+    const ReferencePicture picture = trace(view);
+    write_picture(arguments, image_of(picture));
+    if (!arguments.unrounded.empty())
+        write_file(arguments.unrounded, encode_pfm(picture.width, picture.height, picture.color));
+    if (!arguments.ids.empty()) write_file(arguments.ids, encode_png(picture_of_ids(view, picture.node)));
+}
+
+void draw_picture(const RenderArguments& arguments, const View& view) {
     Renderer renderer(arguments.device);
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
@@ -85,13 +117,25 @@ void render_command(const RenderArguments& arguments) {
     Image image;
     FrameStats stats;
     renderer.render(view, image, stats);
-    write_file(arguments.output,
-               jpeg ? JpegEncoder().encode(image, arguments.jpeg_quality, false) : encode_png(image));
+    write_picture(arguments, image);
     if (arguments.stats)
         std::cout << protocol::encode(protocol::RenderReport{
                          renderer.description(), view.width, view.height, view.samples, stats.passes,
                          stats.draws, stats.triangles, stats.render_ms, stats.readback_ms})
                   << std::endl;
+}
+
+}  // namespace
+
+void render_command(const RenderArguments& arguments) {
+    const std::string extension = arguments.output.extension().string();
+    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg")
+        throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
+    const View view = view_of(arguments);
+    if (arguments.reference)
+        trace_picture(arguments, view);
+    else
+        draw_picture(arguments, view);
 }
 
 }  // namespace vrut

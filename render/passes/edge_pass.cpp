@@ -1,6 +1,6 @@
 #include "passes/edge_pass.hpp"
 
-#include "passes/colors.hpp"
+#include "colors.hpp"
 
 namespace vrut {
 

@@ -1,6 +1,6 @@
 #include "passes/opaque_pass.hpp"
 
-#include "passes/colors.hpp"
+#include "colors.hpp"
 #include "passes/drawing.hpp"
 
 namespace vrut {

@@ -4,7 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
-#include "passes/colors.hpp"
+#include "colors.hpp"
 #include "passes/drawing.hpp"
 
 namespace vrut {

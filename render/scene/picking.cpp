@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "ray_space.hpp"
+
 namespace vrut {
 
 namespace {
@@ -79,40 +81,6 @@ std::optional<double> entry(const Part& part, const glm::dvec3& direction) {
         if (std::abs(glm::dot(center, axis)) > reach(axis) + tolerance * glm::length(edges[i])) return {};
     }
     return middle - depth;
-}
-
-/// Space in which the ray runs along z: x and y across it, sheared from the world's axes; z is the distance
-/// along the ray where x and y are 0. A triangle that turns counter-clockwise as the ray's origin sees it
-/// turns clockwise in x and y.
-class RaySpace {
-public:
-    explicit RaySpace(const glm::dvec3& direction) {
-        const glm::dvec3 size = glm::abs(direction);
-        z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        x_ = (z_ + 1) % 3;
-        y_ = (z_ + 2) % 3;
-        if (direction[z_] < 0) std::swap(x_, y_);
-        shear_ = {direction[x_] / direction[z_], direction[y_] / direction[z_]};
-        length_ = direction[z_];
-    }
-
-    glm::dvec3 from_seen(const glm::dvec3& v) const {
-        return {v[x_] - shear_.x * v[z_], v[y_] - shear_.y * v[z_], v[z_] / length_};
-    }
-
-private:
-    int x_ = 0, y_ = 1, z_ = 2;
-    glm::dvec2 shear_{0};
-    double length_ = 1;
-};
-
-/// The cross product of a and b across the ray, rounded, with the sign of the exact value: where the rounded
-/// products are equal, what was rounded off decides. Exchanging a and b changes the sign and nothing else,
-/// so that two triangles agree on which side of their common edge the ray passes.
-double edge(const glm::dvec3& a, const glm::dvec3& b) {
-    const double p = a.x * b.y, q = a.y * b.x;
-    if (p != q) return p - q;
-    return std::fma(a.x, b.y, -p) - std::fma(a.y, b.x, -q);
 }
 
 /// Unit, by the world's axes; zero for a triangle without area.

@@ -1,0 +1,60 @@
+#include "reference.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "sampling.hpp"
+#include "tracer.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// The row is counted from the bottom.
+void trace_row(const reference::Tracer& tracer, const View& view, int row, ReferencePicture& picture) {
+    const int y = view.height - 1 - row;
+    for (int x = 0; x < view.width; ++x) {
+        const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.width) +
+                        static_cast<std::size_t>(x);
+        const glm::dvec2 center(x + 0.5, y + 0.5);
+        glm::dvec3 sum(0);
+        for (int i = 0; i < view.samples; ++i)
+            sum += tracer.color_at(center + sample_offset(i, view.samples));
+        picture.color[at] = sum / static_cast<double>(view.samples);
+        picture.node[at] = tracer.node_at(center);
+    }
+}
+
+}  // namespace
+
+ReferencePicture trace(const View& view) {
+    const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    ReferencePicture picture{view.width, view.height, std::vector<glm::dvec3>(pixels),
+                             std::vector<Index>(pixels, kNone)};
+    const reference::Tracer tracer(view);
+    std::atomic<int> next = 0;
+    const auto work = [&] {
+        for (int row = next++; row < view.height; row = next++) trace_row(tracer, view, row, picture);
+    };
+    std::vector<std::jthread> others(std::max(std::thread::hardware_concurrency(), 1U) - 1);
+    for (std::jthread& other : others) other = std::jthread(work);
+    work();
+    for (std::jthread& other : others) other.join();
+    return picture;
+}
+
+Image image_of(const ReferencePicture& picture) {
+    Image image;
+    image.resize(picture.width, picture.height);
+    for (std::size_t i = 0; i < picture.color.size(); ++i) {
+        for (int k = 0; k < 3; ++k)
+            image.rgba[4 * i + static_cast<std::size_t>(k)] =
+                static_cast<std::uint8_t>(std::floor(255 * picture.color[i][k] + 0.5));
+        image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+}  // namespace vrut

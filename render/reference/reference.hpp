@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "image.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// What a view shows, before it is rounded. Rows from the bottom up.
+struct ReferencePicture {
+    int width = 0, height = 0;
+    std::vector<glm::dvec3> color;  ///< of each pixel, 0 to 1: the mean of its samples
+    /// What the ray through each pixel's centre meets first, transparent surfaces included; kNone: nothing.
+    std::vector<Index> node;
+};
+
+/// The picture as the rules of the scene format have it, ray by ray in double: slow, simple, and the judge of
+/// what the GPU draws. Edges, outlines and marks are left out; a wireframe has its background alone. Uses all
+/// of the processor's cores.
+ReferencePicture trace(const View& view);
+
+/// Rounded to bytes: floor(255 x + 0.5).
+Image image_of(const ReferencePicture& picture);
+
+}  // namespace vrut

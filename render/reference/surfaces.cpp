@@ -1,0 +1,174 @@
+#include "surfaces.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "colors.hpp"
+#include "ray_space.hpp"
+
+namespace vrut::reference {
+
+namespace {
+
+/// Normals go by the cofactor matrix · sign(det) (eq. 6.3 without its inverse), to a scale that keeps parts
+/// of any size within the range of double.
+glm::dmat3 normal_matrix(glm::dmat3 m, double determinant) {
+    double largest = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(m[i][k]));
+    if (largest > 0) m /= largest;
+    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])) *
+           (determinant < 0 ? -1.0 : 1.0);
+}
+
+/// The node's matrix for positions less `center`, with the eye as its origin: what is far from the world's
+/// origin cancels before it is rounded.
+glm::dmat4 eye_from_centered(const glm::dmat4& world, const glm::dvec3& center, const glm::dvec3& eye) {
+    glm::dmat4 matrix(world);
+    matrix[3] = glm::dvec4((glm::dmat3(world) * center + glm::dvec3(world[3])) - eye, 1);
+    return matrix;
+}
+
+/// None where the node draws nothing.
+std::optional<Part> part_of(const View& view, std::size_t node) {
+    const PlacedScene& placed = *view.scene;
+    const Scene& scene = *placed.scene;
+    const auto* data = std::get_if<GeometryData>(&scene.nodes()[node].data);
+    if (!data || data->geometry == kNone || !is_finite(placed.world[node])) return {};
+    const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
+    if (geometry.triangles.empty()) return {};
+    const glm::dvec3 center = geometry.bounds.center();
+    const glm::dmat4 matrix = eye_from_centered(placed.world[node], center, view.camera.eye);
+    const Bounds box =
+        transformed(matrix, Bounds{geometry.bounds.min - center, geometry.bounds.max - center});
+    if (!(glm::length(box.min) < kFarthestDrawn && glm::length(box.max) < kFarthestDrawn)) return {};
+
+    Part part;
+    part.node = static_cast<Index>(node);
+    part.geometry = &geometry;
+    part.positions.reserve(geometry.positions.size());
+    for (const glm::dvec3& position : geometry.positions)
+        part.positions.emplace_back(matrix * glm::dvec4(position - center, 1));
+    const double determinant = relative_determinant(glm::dmat3(matrix));
+    part.normal_matrix = normal_matrix(glm::dmat3(matrix), determinant);
+
+    const Material& material = scene.material(placed.nodes[node].material);
+    const bool stylized = view.mode == DrawMode::stylized;
+    part.material = stylized ? &stylized_faces() : &material;
+    part.transparent = !stylized && scene.is_transparent(material);
+    const auto& plane = scene.plane(data->geometry);
+    if (!stylized && !part.transparent && material.reflectivity > 0 && plane)
+        part.mirror = transformed(matrix, Plane{plane->normal, plane->point - center});
+    const bool singular = !(std::abs(determinant) > 1e-12);
+    part.both_sides = singular || material.two_sided || part.mirror;
+    part.clockwise = part.both_sides || determinant > 0;
+    part.counter_clockwise = part.both_sides || determinant < 0;
+    return part;
+}
+
+std::vector<Part> parts_of(const View& view) {
+    std::vector<Part> parts;
+    if (!view.scene || view.wireframe) return parts;
+    const auto& nodes = view.scene->scene->nodes();
+    const std::vector<bool> shown = shown_nodes(*view.scene, view.camera.eye);
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i])
+            if (auto part = part_of(view, i)) parts.push_back(*std::move(part));
+    const auto id = [&](const Part& part) { return nodes[static_cast<std::size_t>(part.node)].id; };
+    std::sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return id(a) < id(b); });
+    return parts;
+}
+
+std::vector<Bounds> boxes_of(const std::vector<Part>& parts, const auto& triangles) {
+    std::vector<Bounds> boxes;
+    boxes.reserve(triangles.size());
+    for (const auto& triangle : triangles) {
+        const Part& part = parts[triangle.part];
+        Bounds& box = boxes.emplace_back();
+        for (int k = 0; k < 3; ++k) box.add(part.positions[part.geometry->triangles[triangle.index][k]]);
+    }
+    return boxes;
+}
+
+auto triangles_of(const std::vector<Part>& parts, bool transparent, auto triangles) {
+    for (std::uint32_t i = 0; i < parts.size(); ++i)
+        for (std::uint32_t k = 0;
+             parts[i].transparent == transparent && k < parts[i].geometry->triangles.size(); ++k)
+            triangles.push_back({i, k});
+    return triangles;
+}
+
+/// The sign of edge(a, b). Where the ray goes exactly through the edge it is taken to pass a hair to its
+/// right, and less than a hair above: the same side for both triangles of the edge.
+double side(double value, const glm::dvec3& a, const glm::dvec3& b) {
+    if (value != 0) return value;
+    return a.y != b.y ? a.y - b.y : b.x - a.x;
+}
+
+/// With the part left to be filled in.
+std::optional<Meeting> meet(const Part& part, std::uint32_t triangle, const RaySpace& space,
+                            const glm::dvec3& origin) {
+    const glm::uvec3& corners = part.geometry->triangles[triangle];
+    const glm::dvec3 a = space.from_seen(part.positions[corners.x] - origin);
+    const glm::dvec3 b = space.from_seen(part.positions[corners.y] - origin);
+    const glm::dvec3 c = space.from_seen(part.positions[corners.z] - origin);
+    const double u = edge(c, b), v = edge(a, c), w = edge(b, a);
+    const double u_side = side(u, c, b), v_side = side(v, a, c), w_side = side(w, b, a);
+    const bool clockwise = u_side > 0 && v_side > 0 && w_side > 0;
+    const bool counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
+    if (!(clockwise && part.clockwise) && !(counter_clockwise && part.counter_clockwise)) return {};
+    const double area = u + v + w;
+    if (area == 0) return {};
+    const double distance = a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area;
+    if (!(distance > 0)) return {};
+    return Meeting{0, triangle, distance, glm::dvec3(u, v, w) / area};
+}
+
+}  // namespace
+
+bool Meeting::before(const Meeting& other) const {
+    return std::tie(distance, other.part, other.triangle) < std::tie(other.distance, part, triangle);
+}
+
+Surfaces::Group::Group(const std::vector<Part>& parts, bool are_transparent)
+    : triangles(triangles_of(parts, are_transparent, std::vector<Triangle>())),
+      tree(boxes_of(parts, triangles)) {}
+
+Surfaces::Surfaces(const View& view)
+    : parts_(parts_of(view)), opaque_(parts_, false), transparent_(parts_, true) {}
+
+std::optional<Meeting> Surfaces::first_opaque(const Sight& ray, std::uint32_t without) const {
+    const RaySpace space(ray.direction);
+    Meeting first;
+    first.distance = std::numeric_limits<double>::infinity();
+    opaque_.tree.visit(ray.origin, ray.direction, first.distance, [&](std::uint32_t number) {
+        const Triangle& triangle = opaque_.triangles[number];
+        if (triangle.part == without) return;
+        auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
+        if (!meeting) return;
+        meeting->part = triangle.part;
+        if (meeting->before(first)) first = *meeting;
+    });
+    if (!std::isfinite(first.distance)) return {};
+    return first;
+}
+
+std::vector<Meeting> Surfaces::transparent_before(const Sight& ray, const std::optional<Meeting>& end) const {
+    std::vector<Meeting> meetings;
+    const RaySpace space(ray.direction);
+    const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
+    transparent_.tree.visit(ray.origin, ray.direction, farthest, [&](std::uint32_t number) {
+        const Triangle& triangle = transparent_.triangles[number];
+        auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
+        if (!meeting) return;
+        meeting->part = triangle.part;
+        if (!end || meeting->before(*end)) meetings.push_back(*meeting);
+    });
+    std::sort(meetings.begin(), meetings.end(),
+              [](const Meeting& a, const Meeting& b) { return a.before(b); });
+    return meetings;
+}
+
+}  // namespace vrut::reference

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "image.hpp"
+
+namespace vrut::reference {
+
+/// What is beside a picture.
+enum class Wrap { repeat, clamp };
+
+/// A picture and its halves, each made from the one before by a box filter weighted by area: floor(n / 2)
+/// texels a side, 1 at least.
+class MipMap {
+public:
+    explicit MipMap(const Image& image);
+
+    int levels() const { return static_cast<int>(levels_.size()); }
+    int width(int level) const { return levels_[static_cast<std::size_t>(level)].width; }
+    int height(int level) const { return levels_[static_cast<std::size_t>(level)].height; }
+    const glm::dvec4& texel(int level, int x, int y) const;
+
+    /// RGBA 0 to 1 at a place of the picture, (0, 0) its bottom left and (1, 1) its top right. `change` is
+    /// how the place changes from a pixel to the next, to the right and upwards: a pixel whose longer side
+    /// spans more than a texel takes the levels between which its length lies (trilinear), another four
+    /// texels of the first (bilinear).
+    glm::dvec4 sample(const glm::dvec2& place, const std::array<glm::dvec2, 2>& change, Wrap wrap) const;
+
+private:
+    struct Level {
+        int width = 0, height = 0;
+        std::vector<glm::dvec4> texels;  // rows from the bottom up
+    };
+    static Level half_of(const Level& level);
+
+    std::vector<Level> levels_;
+};
+
+/// Six square pictures of one size, each what a camera at the world's origin with 90° sees that looks along
+/// +x, -x, +y, -y, +z, -z; its top is +y, but +z for +y and -z for -y.
+class CubeMap {
+public:
+    explicit CubeMap(const std::array<const Image*, 6>& images);
+
+    /// RGB in a direction of the world (of any length) that changes so from a pixel to the next; as
+    /// MipMap::sample, on the face that the direction meets, and filtered across its edges.
+    glm::dvec3 sample(const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) const;
+
+private:
+    glm::dvec4 texel(std::size_t face, int level, int x, int y) const;
+    glm::dvec4 bilinear(std::size_t face, int level, const glm::dvec2& place) const;
+
+    std::array<MipMap, 6> faces_;
+};
+
+}  // namespace vrut::reference

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace vrut {
+
+/// Place of sample `index` of `samples` in its pixel, from the pixel's centre, in pixels, y down: the
+/// Hammersley set, moved to be centred.
+glm::dvec2 sample_offset(int index, int samples);
+
+}  // namespace vrut

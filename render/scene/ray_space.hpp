@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <glm/glm.hpp>
+#include <utility>
+
+namespace vrut {
+
+/// Space in which a ray runs along z: x and y across it, sheared from the given axes; z is the distance along
+/// the ray where x and y are 0. What it is given is relative to the ray's origin. A triangle that turns
+/// counter-clockwise as the ray's origin sees it turns clockwise in x and y. From Woop, Benthin, Wald,
+/// "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+class RaySpace {
+public:
+    /// `direction` is unit.
+    explicit RaySpace(const glm::dvec3& direction) {
+        const glm::dvec3 size = glm::abs(direction);
+        z_ = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        x_ = (z_ + 1) % 3;
+        y_ = (z_ + 2) % 3;
+        if (direction[z_] < 0) std::swap(x_, y_);
+        shear_ = {direction[x_] / direction[z_], direction[y_] / direction[z_]};
+        length_ = direction[z_];
+    }
+
+    glm::dvec3 from_seen(const glm::dvec3& v) const {
+        return {v[x_] - shear_.x * v[z_], v[y_] - shear_.y * v[z_], v[z_] / length_};
+    }
+
+private:
+    int x_ = 0, y_ = 1, z_ = 2;
+    glm::dvec2 shear_{0};
+    double length_ = 1;
+};
+
+/// The cross product of a and b across the ray, rounded, with the sign of the exact value: where the rounded
+/// products are equal, what was rounded off decides. Exchanging a and b changes the sign and nothing else,
+/// so that two triangles agree on which side of their common edge the ray passes.
+inline double edge(const glm::dvec3& a, const glm::dvec3& b) {
+    const double p = a.x * b.y, q = a.y * b.x;
+    if (p != q) return p - q;
+    return std::fma(a.x, b.y, -p) - std::fma(a.y, b.x, -q);
+}
+
+}  // namespace vrut
