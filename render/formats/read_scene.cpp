@@ -1,10 +1,9 @@
 #include "read_scene.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 
+#include "file_bytes.hpp"
+#include "scene_pictures.hpp"
 #include "vrut_text.hpp"
 
 namespace vrut {
@@ -13,11 +12,11 @@ namespace {
 
 struct Format {
     const char* extension;
-    ReadResult (*read)(std::string_view bytes, const std::string& file, const ReadProgress& progress);
+    PartsResult (*read)(std::string_view bytes, const std::string& file, const ReadProgress& progress);
 };
 
 constexpr Format kFormats[] = {
-    {".vrut", read_vrut_text},
+    {".vrut", read_vrut_parts},
 };
 
 std::string known_extensions() {
@@ -28,6 +27,17 @@ std::string known_extensions() {
 
 }  // namespace
 
+ReadResult build_scene(SceneParts parts, const std::string& file) {
+    std::vector<std::size_t> lines;
+    for (const auto& part : parts.nodes) lines.push_back(part.line);
+    auto scene = Scene::build(std::move(parts));
+    if (scene) return *std::move(scene);
+    // The root that build adds itself is never at fault.
+    const std::size_t line = scene.error().node < lines.size() ? lines[scene.error().node] : 0;
+    return tl::unexpected(file + ":" + (line > 0 ? std::to_string(line) + ":" : "") + " " +
+                          scene.error().message);
+}
+
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
     std::string extension = path.extension().string();
@@ -37,21 +47,15 @@ ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& pro
     const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& candidate) {
         return extension == candidate.extension;
     });
-    std::error_code error;
-    if (const auto status = std::filesystem::status(path, error); !std::filesystem::exists(status))
-        return tl::unexpected(file + ": there is no such file");
-    else if (!std::filesystem::is_regular_file(status))
-        return tl::unexpected(file + ": is not a file");
+    if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
     if (format == std::end(kFormats))
         return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
-
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    std::ifstream stream(path, std::ios::binary);
-    if (error || !stream) return tl::unexpected(file + ": cannot be opened: " + std::strerror(errno));
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-        return tl::unexpected(file + ": cannot be read to its end");
-    return format->read(bytes, file, progress);
+    const auto bytes = read_bytes(path);
+    if (!bytes) return tl::unexpected(file + ": " + bytes.error());
+    auto parts = format->read(*bytes, file, progress);
+    if (!parts) return tl::unexpected(parts.error());
+    read_pictures(*parts, path, progress);
+    return build_scene(*std::move(parts), file);
 }
 
 }  // namespace vrut

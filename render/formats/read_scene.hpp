@@ -15,7 +15,14 @@ using ReadResult = tl::expected<Scene, std::string>;
 /// Is told now and then which part, 0 to 1, has been read.
 using ReadProgress = std::function<void(double)>;
 
-/// Reads a scene file in any known format, chosen by the file's ending.
+/// What the reader of a format hands over, or the same kind of sentence.
+using PartsResult = tl::expected<SceneParts, std::string>;
+
+/// Scene::build with its error as a reader's, of the scene in `file`.
+ReadResult build_scene(SceneParts parts, const std::string& file);
+
+/// Reads a scene file in any known format, chosen by the file's ending, and the pictures that it names
+/// (read_pictures()).
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 }  // namespace vrut

@@ -5,6 +5,7 @@
 #include <span>
 #include <unordered_map>
 
+#include "notices.hpp"
 #include "tokenizer.hpp"
 #include "utf8.hpp"
 
@@ -15,7 +16,6 @@ namespace {
 // Coordinates beyond this would leave the range of float when squared on the GPU.
 constexpr double kMaxCoordinate = 1e15;
 constexpr double kMaxColor = 1e6;
-constexpr std::size_t kMaxNotices = 20;
 
 struct NodeKind {
     std::string_view keyword;
@@ -38,7 +38,6 @@ struct Member {
 
 /// Ids that a node's block names, to be looked up when the whole file is read.
 struct References {
-    std::size_t line = 0;
     Id geometry = -1;  // -1: none given
     Id material = -1;
 };
@@ -48,7 +47,7 @@ public:
     VrutTextReader(std::string_view text, const std::string& file, const ReadProgress& progress)
         : tokens_(text), text_(text), file_(file), progress_(progress) {}
 
-    Scene read() {
+    SceneParts read() {
         if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text != "vrut-text")
             tokens_.fail_expected("'vrut-text 1'");
         tokens_.take();
@@ -61,18 +60,9 @@ public:
             read_block();
         }
         resolve_references();
-        if (skipped_notices_ > 0)
-            parts_.notices.push_back("… and " + std::to_string(skipped_notices_) +
-                                     " more notices of this kind");
-
+        notices_.append_to(parts_.notices);
         parts_.name = std::filesystem::path(file_).stem().string();
-        auto scene = Scene::build(std::move(parts_));
-        if (!scene) {
-            // The root that build adds itself is never at fault.
-            const std::size_t line = references_[std::min(scene.error().node, references_.size() - 1)].line;
-            throw ParseError(line, scene.error().message);
-        }
-        return *std::move(scene);
+        return std::move(parts_);
     }
 
 private:
@@ -131,10 +121,7 @@ private:
     }
 
     void notice(std::size_t line, const std::string& what) {
-        if (parts_.notices.size() < kMaxNotices)
-            parts_.notices.push_back(file_ + ":" + std::to_string(line) + ": " + what);
-        else
-            ++skipped_notices_;
+        notices_.add(file_ + ":" + std::to_string(line) + ": " + what);
     }
 
     glm::dvec4 take_color(std::string_view what) {
@@ -252,7 +239,8 @@ private:
 
     void read_node(std::size_t line) {
         SceneParts::PartNode part;
-        References references{line};
+        References references;
+        part.line = line;
         Node& node = part.node;
         node.id = take_id("the node's id");
         node.name = tokens_.take_string("the node's name");
@@ -368,11 +356,11 @@ private:
 
     void resolve_references() {
         for (std::size_t i = 0; i < references_.size(); ++i) {
-            Node& node = parts_.nodes[i].node;
+            auto& [node, parent_id, line] = parts_.nodes[i];
             const References& ids = references_[i];
-            const Index material = look_up(material_ids_, ids.material, ids.line, node.id, "material");
+            const Index material = look_up(material_ids_, ids.material, line, node.id, "material");
             if (auto* data = std::get_if<GeometryData>(&node.data)) {
-                data->geometry = look_up(geometry_ids_, ids.geometry, ids.line, node.id, "geometry");
+                data->geometry = look_up(geometry_ids_, ids.geometry, line, node.id, "geometry");
                 data->material = material;
             } else if (auto* background = std::get_if<BackgroundData>(&node.data)) {
                 background->material = material;
@@ -387,12 +375,12 @@ private:
     SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
     std::unordered_map<Id, Index> material_ids_, geometry_ids_;
-    std::size_t skipped_notices_ = 0;
+    Notices notices_;
 };
 
 }  // namespace
 
-ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {
+PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress) {
     const auto at_line = [&](std::size_t line, const std::string& what) {
         return tl::unexpected(file + ":" + std::to_string(line) + ": " + what);
     };
@@ -405,6 +393,12 @@ ReadResult read_vrut_text(std::string_view text, const std::string& file, const 
     } catch (const ParseError& error) {
         return at_line(error.line, error.what());
     }
+}
+
+ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {
+    auto parts = read_vrut_parts(text, file, progress);
+    if (!parts) return tl::unexpected(parts.error());
+    return build_scene(*std::move(parts), file);
 }
 
 }  // namespace vrut

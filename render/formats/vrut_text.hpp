@@ -7,6 +7,10 @@
 namespace vrut {
 
 /// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
+PartsResult read_vrut_parts(std::string_view text, const std::string& file,
+                            const ReadProgress& progress = {});
+
+/// The same, as a scene without the pictures that it names.
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
 
 }  // namespace vrut

@@ -115,6 +115,7 @@ struct SceneParts {
     struct PartNode {
         Node node;
         Id parent_id = 0;
+        std::size_t line = 0;  ///< of the file, for errors; 0 where it has none
     };
     std::string name;
     double unit = 1;  ///< metres per unit: information for hosts

@@ -1,0 +1,30 @@
+#include "file_bytes.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+namespace vrut {
+
+std::optional<std::string> file_fault(const std::filesystem::path& path) {
+    std::error_code error;
+    const auto status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) return "there is no such file";
+    if (!std::filesystem::is_regular_file(status)) return "it is not a file";
+    return std::nullopt;
+}
+
+tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path, std::uintmax_t most) {
+    if (auto fault = file_fault(path)) return tl::unexpected(*std::move(fault));
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    std::ifstream stream(path, std::ios::binary);
+    if (error || !stream) return tl::unexpected(std::string("it cannot be opened: ") + std::strerror(errno));
+    if (size > most) return tl::unexpected("it is larger than " + std::to_string(most) + " bytes");
+    std::string bytes(static_cast<std::size_t>(size), '\0');
+    if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+        return tl::unexpected(std::string("it cannot be read to its end"));
+    return bytes;
+}
+
+}  // namespace vrut
