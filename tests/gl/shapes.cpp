@@ -16,8 +16,9 @@ void measure(Geometry& geometry) {
 
 }  // namespace
 
-std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& given) {
+std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& given, std::vector<Texture> textures) {
     SceneParts parts;
+    parts.textures = std::move(textures);
     for (const Part& part : given) {
         const auto index = static_cast<Index>(parts.nodes.size());
         parts.materials.push_back(part.material);

@@ -15,8 +15,9 @@ struct Part {
     glm::dmat4 matrix{1};
 };
 
-/// All parts under the root, in the order given.
-std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& parts);
+/// All parts under the root, in the order given; their materials may name the textures by their places.
+std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& parts,
+                                            std::vector<Texture> textures = {});
 
 Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular = glm::dvec3(0),
                      double shininess = 0);

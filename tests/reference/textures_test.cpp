@@ -1,0 +1,219 @@
+#include "textures.hpp"
+
+#include <random>
+
+#include "looks.hpp"
+#include "shading.hpp"
+
+using namespace vrut;
+
+namespace {
+
+Image image_of_grays(int width, int height, const std::vector<int>& grays) {
+    Image image;
+    image.resize(width, height);
+    for (std::size_t i = 0; i < grays.size(); ++i) {
+        for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = static_cast<std::uint8_t>(grays[i]);
+        image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+Image noise(int width, int height) {
+    std::mt19937 random(7);
+    Image image;
+    image.resize(width, height);
+    for (std::uint8_t& byte : image.rgba) byte = static_cast<std::uint8_t>(random());
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+    return image;
+}
+
+glm::dvec3 texel(const Image& image, int x, int y) {
+    const auto at = static_cast<std::size_t>(4 * (y * image.width + x));
+    return glm::dvec3(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]) / 255.0;
+}
+
+/// The picture on a plate that fills a view of so many pixels, `repeats` times across and up.
+ReferencePicture on_plate(const Image& image, int width, int height, const glm::vec2& repeats = {1, 1},
+                          const glm::vec2& from = {0, 0}) {
+    const double w = width / 2.0, h = height / 2.0;
+    Geometry plate;
+    plate.positions = {{-w, -h, 0}, {w, -h, 0}, {w, h, 0}, {-w, h, 0}};
+    plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+    plate.texcoords = {from, from + glm::vec2(repeats.x, 0), from + repeats, from + glm::vec2(0, repeats.y)};
+    for (const glm::dvec3& position : plate.positions) plate.bounds.add(position);
+    Material material = material_of({0.1, 0.9, 0.1});  // the picture replaces it
+    material.texture = 0;
+    View view = pixels(width, height);
+    view.light = directional({0, 0, -1});
+    return traced(scene_of({{1, plate, material, glm::dmat4(1)}}, {{"", image, false}}), view);
+}
+
+constexpr std::array<glm::dvec2, 2> kMagnified{};
+
+}  // namespace
+
+TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upright") {
+    const Image image = noise(8, 6);
+    const ReferencePicture shown = on_plate(image, 8, 6);
+    for (int y = 0; y < 6; ++y)
+        for (int x = 0; x < 8; ++x)
+            check_same(shown.color[static_cast<std::size_t>(8 * y + x)], texel(image, x, y), 1e-9);
+}
+
+TEST_CASE("magnified it is bilinear, and repeats") {
+    const Image image = noise(2, 3);
+    for (const glm::vec2& from : {glm::vec2(0), glm::vec2(-7, 1024)}) {
+        const ReferencePicture shown = on_plate(image, 8, 12, {1, 1}, from);
+        for (int y = 0; y < 12; ++y)
+            for (int x = 0; x < 8; ++x) {
+                // Four pixels a texel: 1.5/4 or 0.5/4 from the nearest centre of a texel.
+                const double u = (x + 0.5) / 4 - 0.5, v = (y + 0.5) / 4 - 0.5;
+                const int i = static_cast<int>(std::floor(u)), k = static_cast<int>(std::floor(v));
+                const double s = u - i, t = v - k;
+                const auto at = [&](int a, int b) { return texel(image, (a + 2) % 2, (b + 3) % 3); };
+                check_same(shown.color[static_cast<std::size_t>(8 * y + x)],
+                           (1 - s) * (1 - t) * at(i, k) + s * (1 - t) * at(i + 1, k) +
+                               (1 - s) * t * at(i, k + 1) + s * t * at(i + 1, k + 1),
+                           1e-9);
+            }
+    }
+    // One number by hand: at u = 1/16 of two texels, 3/8 of the last one and 5/8 of the first.
+    const reference::MipMap map(image_of_grays(2, 1, {0, 200}));
+    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, reference::Wrap::repeat).r == doctest::Approx(75 / 255.0));
+    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, reference::Wrap::clamp).r == 0);
+    CHECK(map.sample({std::nan(""), 1e300}, kMagnified, reference::Wrap::repeat).a == 1);
+}
+
+TEST_CASE("each level is a box filter of the one before, weighted by area") {
+    const reference::MipMap five(image_of_grays(5, 1, {10, 20, 40, 80, 160}));
+    REQUIRE(five.levels() == 3);
+    CHECK(five.width(1) == 2);
+    CHECK(five.height(1) == 1);
+    CHECK(five.texel(1, 0, 0).r * 255 == doctest::Approx((10 + 20 + 40 / 2.0) / 2.5));
+    CHECK(five.texel(1, 1, 0).r * 255 == doctest::Approx((40 / 2.0 + 80 + 160) / 2.5));
+    CHECK(five.texel(2, 0, 0).r * 255 == doctest::Approx(62));
+
+    const reference::MipMap upright(image_of_grays(2, 3, {0, 100, 30, 10, 60, 40}));
+    REQUIRE(upright.levels() == 2);
+    CHECK(upright.texel(1, 0, 0).r * 255 == doctest::Approx(40));
+    const reference::MipMap long_one(image_of_grays(1, 8, {0, 10, 20, 30, 40, 50, 60, 70}));
+    REQUIRE(long_one.levels() == 4);
+    CHECK(long_one.height(1) == 4);
+    CHECK(long_one.texel(1, 0, 2).r * 255 == doctest::Approx(45));
+    CHECK(long_one.texel(3, 0, 0).r * 255 == doctest::Approx(35));
+}
+
+TEST_CASE("shrunk it is trilinear, by the longer side of the pixel in texels") {
+    const reference::MipMap map(image_of_grays(4, 1, {0, 40, 80, 240}));  // 20 160; 90
+    const auto at = [&](double u, const glm::dvec2& across, const glm::dvec2& up) {
+        return map.sample({u, 0.5}, {across, up}, reference::Wrap::clamp).r * 255;
+    };
+    CHECK(at(0.25, {0.5, 0}, {0, 0}) == doctest::Approx(20));  // two texels
+    CHECK(at(0.25, {0, 0}, {0, 2}) == doctest::Approx(20));
+    CHECK(at(0.25, {0.4, 0.3 * 4}, {0, 0}) == doctest::Approx(20));
+    CHECK(at(0.25, {-0.4, 0.3 * 4}, {0, 0}) == doctest::Approx(20));
+    CHECK(at(0.25, {1, 0}, {0.1, 0}) == doctest::Approx(90));
+    CHECK(at(0.25, {70, 0}, {0.1, 0}) == doctest::Approx(90));
+    CHECK(at(0.25, {std::nan(""), 0}, {0.1, 0}) == doctest::Approx(90));
+    const double part = std::log2(3.0) - 1;
+    CHECK(at(0.25, {0.75, 0}, {0, 0}) == doctest::Approx(20 + part * 70));
+    CHECK(at(0.125, {0.3, 0}, {0, 0}) == doctest::Approx(std::log2(1.2) * 20));
+    CHECK(at(0.125, {0.25, 0}, {0, 0}) == doctest::Approx(0));
+}
+
+TEST_CASE("a plate that is smaller than its picture shows its levels") {
+    const Image image = noise(32, 16);
+    const ReferencePicture shown = on_plate(image, 8, 8, {1, 0.5f});  // four texels across, one up
+    const reference::MipMap map(image);
+    REQUIRE(map.width(2) == 8);
+    for (int y = 0; y < 8; ++y)
+        for (int x = 0; x < 8; ++x) {
+            // Two pixels a texel of level 2 upwards; it starts half a texel below the first centre.
+            const double v = (y + 0.5) / 4 - 0.5;
+            const int k = static_cast<int>(std::floor(v));
+            const auto row = [&](int b) { return glm::dvec3(map.texel(2, x, (b + 4) % 4)); };
+            check_same(shown.color[static_cast<std::size_t>(8 * y + x)], glm::mix(row(k), row(k + 1), v - k),
+                       1e-9);
+        }
+}
+
+TEST_CASE("what a pixel spans is the derivative of what its ray meets") {
+    using namespace vrut::reference;
+    View view = picture({2, 3, 4}, {0.1, 0.2, 0});
+    Geometry geometry = sphere(2, 6);
+    for (const glm::dvec3& p : geometry.positions) geometry.texcoords.emplace_back(p.x * p.y, p.z + 2 * p.x);
+    view.scene = scene_of({{1, geometry, two_sided(material_of({1, 1, 1})), scaled_by({1, -2, 0.5})}});
+    const Surfaces surfaces(view);
+    const Sight sight{{0.1, 0.2, -0.3},
+                      glm::normalize(glm::dvec3(-2, -3, -4)),
+                      {glm::dvec3(0.02, 0.01, -0.03), glm::dvec3(0.01, -0.02, 0)},
+                      {glm::dvec3(0.01, 0.003, -0.01), glm::dvec3(-0.002, 0.01, 0.004)}};
+    const auto meeting = surfaces.first_opaque(sight);
+    REQUIRE(meeting);
+    const reference::Part& part = surfaces.parts()[0];
+    const Spot spot = spot_of(part, *meeting, sight);
+    for (std::size_t i = 0; i < 2; ++i) {
+        constexpr double kStep = 1e-5;
+        const auto moved = [&](double by) {
+            Sight other = sight;
+            other.origin += sight.origin_change[i] * by;
+            other.direction = glm::normalize(sight.direction + sight.direction_change[i] * by);
+            const auto there = surfaces.first_opaque(other);
+            REQUIRE(there);
+            REQUIRE(there->triangle == meeting->triangle);
+            return spot_of(part, *there, other);
+        };
+        const Spot after = moved(kStep), before = moved(-kStep);
+        const glm::dvec2 texcoord = (after.texcoord - before.texcoord) / (2 * kStep);
+        const glm::dvec3 normal = (after.normal - before.normal) / (2 * kStep);
+        CHECK(glm::distance(spot.texcoord_change[i], texcoord) < 1e-6 * glm::length(texcoord));
+        CHECK(glm::distance(spot.normal_change[i], normal) < 1e-6 * glm::length(normal));
+        CHECK(glm::length(texcoord) > 0.01);
+    }
+}
+
+TEST_CASE("a pixel on a plate seen in a mirror spans what it would behind it") {
+    // The mirrored plate's picture is a slope so fine that levels differ.
+    Geometry plate = quad(4);
+    plate.texcoords = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
+    Material material = material_of({1, 1, 1});
+    material.texture = 0;
+    Material mirror = glowing({0, 0, 0});
+    mirror.reflectivity = 1;
+    View view = picture({-3, 0.5, 3}, {0, 0, 0});
+    view.light = directional({0, 0, -1});
+    const Texture texture{"", noise(64, 64), false};
+    const glm::dmat4 place = moved_by({5, 0, 3}) * turned_by(-60, {0, 1, 0.2});
+    const auto with = traced(
+        scene_of({{1, quad(40), mirror, glm::dmat4(1)}, {2, plate, two_sided(material), place}}, {texture}),
+        view);
+    View behind = view;
+    behind.light = directional({0, 0, 1});
+    const auto should =
+        traced(scene_of({{2, plate, two_sided(material), scaled_by({1, 1, -1}) * place}}, {texture}), behind);
+    int compared = 0;
+    for (std::size_t i = 0; i < with.color.size(); ++i) {
+        if (with.node[i] != 1 || should.node[i] == kNone) continue;
+        check_same(with.color[i], should.color[i], 1e-9);
+        ++compared;
+    }
+    CHECK(compared > 200);
+}
+
+TEST_CASE("the picture's alpha times the material's; its pixels let the background through") {
+    Image image = image_of_grays(2, 1, {255, 0});
+    image.rgba[3] = 51;
+    Geometry plate = quad(1);
+    plate.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    Material material = material_of({1, 1, 1});
+    material.diffuse.a = 0.5;
+    material.texture = 0;
+    View view = look({-0.5, 0, 1}, {-0.5, 0, 0});
+    view.camera.fov = 1;
+    view.background.color = {0, 0, 1};
+    const auto scene = scene_of({{1, plate, material, glm::dmat4(1)}}, {{"", image, true}});
+    check_same(traced(scene, view).color[0], {0.1, 0.1, 0.1 + 0.9});
+    view.camera.eye.x = view.camera.focus.x = 0.5;
+    check_same(traced(scene, view).color[0], {0, 0, 0.5});
+}
