@@ -16,6 +16,23 @@ std::string encode(const RenderReport& report) {
                  {"readbackMs", report.readback_ms}});
 }
 
+std::string encode(const CompareReport& report) {
+    return dump({{"width", report.width},
+                 {"height", report.height},
+                 {"maximum", report.maximum},
+                 {"rms", report.rms},
+                 {"psnr", report.psnr ? Json(*report.psnr) : Json()},
+                 {"above2", report.above2},
+                 {"above8", report.above8},
+                 {"flip",
+                  {{"mean", report.flip.mean},
+                   {"weightedMedian", report.flip.weighted_median},
+                   {"firstWeightedQuartile", report.flip.first_weighted_quartile},
+                   {"thirdWeightedQuartile", report.flip.third_weighted_quartile},
+                   {"min", report.flip.min},
+                   {"max", report.flip.max}}}});
+}
+
 std::string encode(const CameraState& camera) { return dump(write_struct(camera)); }
 
 std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& nodes) {

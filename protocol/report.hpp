@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,21 @@ struct NodeReport {
     int depth = 0;  ///< below the root
 };
 
+/// What `compare --json` prints.
+struct CompareReport {
+    int width = 0, height = 0;
+    int maximum = 0;                ///< of a channel, in steps of 1/255
+    double rms = 0;                 ///< over channels and pixels, in steps of 1/255
+    std::optional<double> psnr;     ///< dB; none (null) where the pictures are equal
+    double above2 = 0, above8 = 0;  ///< parts of the pixels, 0 to 1, off by more than so many steps
+    struct Flip {
+        double mean = 0, weighted_median = 0, first_weighted_quartile = 0, third_weighted_quartile = 0;
+        double min = 0, max = 0;
+    } flip;
+};
+
 std::string encode(const RenderReport& report);
+std::string encode(const CompareReport& report);
 /// What `replay` prints: the state's `camera`.
 std::string encode(const CameraState& camera);
 /// What `info --json` prints: the state's `scene` and the tree, root first.

@@ -55,6 +55,13 @@ struct InfoArguments {
 };
 void info_command(const InfoArguments& arguments);
 
+struct CompareArguments {
+    std::filesystem::path a, b;
+    std::filesystem::path map;  ///< FLIP's errors as a grey PNG; empty: none is written
+    bool json = false;
+};
+void compare_command(const CompareArguments& arguments);
+
 /// Where the program's scenes may lie: where it is installed, and beside its sources.
 std::vector<std::filesystem::path> scene_folders();
 /// The car: where the program is installed, or beside its sources. Throws where it is in neither place.

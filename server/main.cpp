@@ -164,6 +164,16 @@ void add_info(CLI::App& app, vrut::InfoArguments& arguments) {
     command->callback([&arguments] { vrut::info_command(arguments); });
 }
 
+void add_compare(CLI::App& app, vrut::CompareArguments& arguments) {
+    CLI::App* command = app.add_subcommand("compare", "Tell how far two pictures are apart");
+    command->add_option("a", arguments.a, "Picture (PNG or JPEG)")->required();
+    command->add_option("b", arguments.b, "Another of the same size")->required();
+    command->add_flag("--json", arguments.json, "As JSON");
+    command->add_option("--map", arguments.map,
+                        "PNG to write FLIP's error at each pixel to: black 0, white 1");
+    command->callback([&arguments] { vrut::compare_command(arguments); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -179,10 +189,12 @@ int main(int argc, char** argv) try {
     vrut::RenderArguments render;
     vrut::ReplayArguments replay;
     vrut::InfoArguments info;
+    vrut::CompareArguments compare;
     add_serve(app, serve);
     add_render(app, render);
     add_replay(app, replay);
     add_info(app, info);
+    add_compare(app, compare);
     try {
         app.parse(argc, argv);
         return 0;

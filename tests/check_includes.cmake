@@ -19,6 +19,7 @@ check(protocol "boost/|GL/|EGL/|spdlog/|turbojpeg|png" "protocol/ knows JSON, an
 check(render "boost/|nlohmann/|spdlog/|sys/socket|netinet/" "nothing under render/ knows sockets or JSON")
 check(render/scene "GL/|EGL/|gl\\.hpp" "the scene is plain data")
 check(render/formats "GL/|EGL/|gl\\.hpp" "readers make plain data")
+check(render/compare "GL/|EGL/|gl\\.hpp" "pictures are compared without a GPU")
 check(render/navigation "GL/|EGL/|gl\\.hpp|ctime|sys/time" "navigation is pure: no clock, no GL")
 check_text(render/navigation "_clock|[^a-z_]time\\(NULL|[^a-z_]time\\(nullptr|random" "navigation is pure: what time it is comes with the input")
 check(server "GL/|EGL/|gl\\.hpp|context\\.hpp|nlohmann/" "GL is for render/, JSON for protocol/")

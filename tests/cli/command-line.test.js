@@ -152,3 +152,36 @@ test('a port that is taken is told in a sentence', async () => {
   fails(1, new RegExp(`cannot listen at 127\\.0\\.0\\.1:${port}`), 'serve', '--listen', `127.0.0.1:${port}`, '--log-level', 'off');
   server.kill('SIGKILL');
 });
+
+test('compare tells how far pictures are apart', () => {
+  const draw = (name, size, ...options) =>
+    succeeds('render', CAR, '-o', file(name), '--size', size, ...options);
+  draw('a.png', '64x48');
+  draw('b.png', '64x48', '--wireframe');
+  draw('c.jpg', '64x48');
+  draw('wide.png', '65x48');
+  const compare = (...options) => JSON.parse(succeeds('compare', ...options, '--json'));
+
+  const same = compare(file('a.png'), file('a.png'));
+  assert.deepEqual(same, {
+    width: 64, height: 48, maximum: 0, rms: 0, psnr: null, above2: 0, above8: 0,
+    flip: { mean: 0, weightedMedian: 0, firstWeightedQuartile: 0, thirdWeightedQuartile: 0, min: 0, max: 0 },
+  });
+  assert.match(succeeds('compare', file('a.png'), file('a.png')), /maximum 0 \/ 255\n.*PSNR inf dB/s);
+
+  const other = compare(file('a.png'), file('b.png'), '--map', file('map.png'));
+  assert.ok(other.maximum > 50 && other.rms > 1 && other.flip.mean > 0.01, JSON.stringify(other));
+  assert.ok(Math.abs(other.psnr - 20 * Math.log10(255 / other.rms)) < 1e-9);
+  assert.ok(other.above2 >= other.above8 && other.above8 > 0 && other.above2 <= 1);
+  assert.deepEqual(pngSize('map.png'), [64, 48]);
+  assert.match(succeeds('compare', file('a.png'), file('b.png')), /FLIP mean 0\.\d+/);
+
+  const jpeg = compare(file('a.png'), file('c.jpg'));
+  assert.ok(jpeg.rms > 0 && jpeg.rms < other.rms);
+
+  fails(1, /different sizes.*64 x 48.*65 x 48/, 'compare', file('a.png'), file('wide.png'));
+  fails(1, /missing\.png: there is no such file/, 'compare', file('a.png'), file('missing.png'));
+  fails(1, /neither PNG nor JPEG/, 'compare', CAR, file('a.png'));
+  fails(1, /map\.jpg/, 'compare', file('a.png'), file('b.png'), '--map', file('map.jpg'));
+  fails(2, /b is required/, 'compare', file('a.png'));
+});

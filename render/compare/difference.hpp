@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "image.hpp"
+#include "scene.hpp"
+
+namespace vrut {
+
+/// How far two pictures are apart in red, green and blue, in steps of 1/255; alpha is not compared.
+struct Difference {
+    /// pixels[k]: those whose channel furthest off is off by k.
+    std::array<std::uint64_t, 256> pixels{};
+    double sum_of_squares = 0;  ///< over all channels of all pixels
+
+    std::uint64_t count() const;
+    /// The largest difference of a channel.
+    int maximum() const;
+    /// Root of the mean square over channels and pixels; 0 without pixels.
+    double rms() const;
+    /// Peak signal-to-noise ratio in dB, 20 log10(255 / rms()); infinite for equal pictures.
+    double psnr() const;
+    /// Part of the pixels, 0 to 1, with a channel off by more than `steps`.
+    double share_above(int steps) const;
+};
+
+/// Of the pixels for which `counts`, one for each as rows of the pictures go, is true; of all where it is
+/// empty. Throws std::invalid_argument where sizes differ.
+Difference difference(const Image& a, const Image& b, const std::vector<bool>& counts = {});
+
+/// For each pixel whether it and its eight neighbours, all in the picture, show one node.
+std::vector<bool> interior_pixels(const std::vector<Index>& nodes, int width, int height);
+
+}  // namespace vrut
