@@ -34,6 +34,12 @@ void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
               [&](const DrawItem& a, const DrawItem& b) { return id(a) < id(b); });
 }
 
+void add_textures(std::vector<DrawItem>& items, const Scene& scene) {
+    for (DrawItem& item : items)
+        if (!scene.geometries()[static_cast<std::size_t>(item.geometry)].texcoords.empty())
+            item.texture = scene.material(item.material).texture;
+}
+
 }  // namespace
 
 FramePlan plan_frame(const View& view) {
@@ -54,6 +60,7 @@ FramePlan plan_frame(const View& view) {
             if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
     }
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
+    if (!view.wireframe && view.mode == DrawMode::realistic) add_textures(items, *placed.scene);
     if (!view.wireframe) plan.scene.opaque = std::move(items);
     return plan;
 }
@@ -79,8 +86,6 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
     };
     say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return m.diffuse.a < 1; }),
         " transparent materials are drawn opaque");
-    say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return !m.image.empty(); }),
-        " textures are not drawn");
     say(std::count_if(materials.begin(), materials.end(),
                       [](const Material& m) { return m.reflectivity > 0; }),
         " reflective materials are drawn without reflections");

@@ -16,6 +16,7 @@ struct DrawItem {
     glm::dmat4 view_from_node{1};
     Sides sides = Sides::front;
     bool mirrored = false;  ///< the matrix turns counter-clockwise triangles clockwise
+    Index texture = kNone;  ///< whose colour stands in the place of the material's diffuse one
 };
 
 /// Faces that are drawn from one sight, in this order.

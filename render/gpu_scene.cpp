@@ -1,9 +1,12 @@
 #include "gpu_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <tuple>
+
+#include "gpu_textures.hpp"
 
 namespace vrut {
 
@@ -15,6 +18,7 @@ struct Vertex {
 
 struct Arrays {
     std::vector<Vertex> vertices;
+    std::vector<unsigned> corners;  ///< for each vertex the geometry's of which it is made
     std::vector<glm::uvec3> triangles;
 };
 
@@ -50,6 +54,8 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
         arrays.vertices.reserve(geometry.positions.size());
         for (unsigned i = 0; i < geometry.positions.size(); ++i)
             arrays.vertices.push_back({position(i), normal(i)});
+        arrays.corners.resize(arrays.vertices.size());
+        std::iota(arrays.corners.begin(), arrays.corners.end(), 0U);
     }
     for (glm::uvec3& triangle : arrays.triangles) {
         const glm::uvec3 corners = triangle;
@@ -62,9 +68,36 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
             triangle[k] = static_cast<unsigned>(arrays.vertices.size());
             arrays.vertices.push_back(
                 {position(corners[k]), length > 0 ? glm::vec3(cross / length) : glm::vec3(0)});
+            arrays.corners.push_back(corners[k]);
         }
     }
     return arrays;
+}
+
+/// Textures repeat, so that whole numbers may be taken off; what is left keeps more digits in float between
+/// the vertices.
+std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const Geometry& geometry) {
+    glm::dvec2 low(geometry.texcoords.front()), high = low;
+    for (const glm::dvec2 texcoord : geometry.texcoords) {
+        low = glm::min(low, texcoord);
+        high = glm::max(high, texcoord);
+    }
+    const glm::dvec2 origin = glm::floor((low + high) / 2.0);
+    std::vector<glm::vec2> result;
+    result.reserve(corners.size());
+    for (const unsigned corner : corners)
+        result.emplace_back(glm::dvec2(geometry.texcoords[corner]) - origin);
+    return result;
+}
+
+void add_texcoords(const std::vector<unsigned>& corners, const Geometry& geometry, GpuGeometry& result) {
+    const std::vector<glm::vec2> texcoords = texcoords_of(corners, geometry);
+    result.texcoords = make_buffer(texcoords.data(), texcoords.size() * sizeof(glm::vec2));
+    const GLuint array = result.vertex_array.get();
+    glVertexArrayVertexBuffer(array, 1, result.texcoords.get(), 0, sizeof(glm::vec2));
+    glEnableVertexArrayAttrib(array, 2);
+    glVertexArrayAttribFormat(array, 2, 2, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(array, 2, 1);
 }
 
 GpuGeometry upload(const Geometry& geometry) {
@@ -76,6 +109,7 @@ GpuGeometry upload(const Geometry& geometry) {
     result.index_count = static_cast<GLsizei>(arrays.triangles.size() * 3);
 
     result.vertex_array = vertex_array_of(result.vertices, result.indices);
+    if (!geometry.texcoords.empty()) add_texcoords(arrays.corners, geometry, result);
     return result;
 }
 
@@ -136,7 +170,10 @@ GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
 }  // namespace
 
 GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
-    : scene_(std::move(scene)), geometries_(scene_->geometries().size()), edges_(geometries_.size()) {}
+    : scene_(std::move(scene)),
+      geometries_(scene_->geometries().size()),
+      edges_(geometries_.size()),
+      textures_(scene_->textures().size()) {}
 
 const GpuGeometry& GpuScene::geometry(Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
@@ -154,6 +191,27 @@ const GpuEdges& GpuScene::edges(Index index) {
         ++uploads_;
     }
     return *edges;
+}
+
+const GlTexture& GpuScene::texture(Index index) {
+    GlTexture& texture = textures_[static_cast<std::size_t>(index)];
+    if (!texture) {
+        texture = upload_texture(scene_->textures()[static_cast<std::size_t>(index)].image);
+        ++uploads_;
+    }
+    return texture;
+}
+
+const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
+    GlTexture& cube_map = cube_maps_[textures];
+    if (!cube_map) {
+        std::array<const Image*, 6> images{};
+        for (std::size_t i = 0; i < 6; ++i)
+            images[i] = &scene_->textures()[static_cast<std::size_t>(textures[i])].image;
+        cube_map = upload_cube_map(images);
+        ++uploads_;
+    }
+    return cube_map;
 }
 
 }  // namespace vrut

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -13,6 +15,7 @@ namespace vrut {
 /// scene far from the world's origin keeps its precision.
 struct GpuGeometry {
     GlBuffer vertices, indices;
+    GlBuffer texcoords;  ///< for each vertex, if the geometry has any; moved by whole numbers to lie around 0
     GlVertexArray vertex_array;
     GLsizei index_count = 0;
     glm::dvec3 origin{0};
@@ -26,20 +29,25 @@ struct GpuEdges {
     GLsizei index_count = 0;
 };
 
-/// The geometries of a scene, each uploaded when it is first drawn.
+/// The geometries and textures of a scene, each uploaded when it is first drawn.
 class GpuScene {
 public:
     explicit GpuScene(std::shared_ptr<const Scene> scene);
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const GpuGeometry& geometry(Index index);
     const GpuEdges& edges(Index index);
-    /// Geometries and edges uploaded so far.
+    const GlTexture& texture(Index index);
+    /// Of the six textures (upload_cube_map()).
+    const GlTexture& cube_map(const std::array<Index, 6>& textures);
+    /// Geometries, edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
     std::shared_ptr<const Scene> scene_;
     std::vector<GpuGeometry> geometries_;
     std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
+    std::vector<GlTexture> textures_;
+    std::map<std::array<Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;
 };
 

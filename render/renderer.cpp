@@ -71,7 +71,7 @@ struct Renderer::Impl {
     }
 
     void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
-        programs.begin(sight, view);
+        programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
     }
 

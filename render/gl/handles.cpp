@@ -1,6 +1,8 @@
 #include "handles.hpp"
 
 #include <atomic>
+#include <stdexcept>
+#include <string>
 
 namespace vrut {
 
@@ -58,6 +60,19 @@ GlTexture make_texture(GLenum format, int width, int height) {
     glTextureStorage2D(name, 1, format, width, height);
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    return texture;
+}
+
+GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels) {
+    GLuint name = 0;
+    glCreateTextures(target, 1, &name);
+    GlTexture texture(name);
+    while (glGetError() != GL_NO_ERROR) {
+    }
+    glTextureStorage2D(name, levels, GL_RGBA8, width, height);
+    if (glGetError() != GL_NO_ERROR)
+        throw std::runtime_error("no texture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                 " texels can be made: the driver refuses it");
     return texture;
 }
 

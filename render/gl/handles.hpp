@@ -62,6 +62,9 @@ GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel.
 GlTexture make_texture(GLenum format, int width, int height);
+/// RGBA8 with that many levels; `target` is GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP. Throws std::runtime_error
+/// where the driver has no memory for it.
+GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels);
 GlFramebuffer make_framebuffer();
 
 }  // namespace vrut

@@ -4,6 +4,8 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
+#include "passes/texture_filter.hpp"
+
 namespace vrut {
 
 namespace {
@@ -21,6 +23,7 @@ enum Uniform : GLint {
 };
 
 constexpr GLuint kSightBinding = 0;
+constexpr GLuint kTextureUnit = 0;
 
 /// What holds for all surfaces of a sight, in view space; laid out as std140 has it.
 struct SightBlock {
@@ -45,8 +48,15 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 out vec3 view_position;
 out vec3 view_normal;
+#ifdef TEXTURED
+layout(location = 2) in vec2 texcoord;
+out vec2 place;
+#endif
 
 void main() {
+#ifdef TEXTURED
+    place = texcoord;
+#endif
     vec4 p = view_from_local * vec4(position, 1);
     vec3 n = normal_matrix * normal;
     float size = length(n);
@@ -65,6 +75,10 @@ layout(location = 8) uniform float shininess;
 layout(location = 9) uniform bool both_sides;
 in vec3 view_position;
 in vec3 view_normal;
+#ifdef TEXTURED
+layout(binding = 0) uniform sampler2D image;
+in vec2 place;
+#endif
 out vec4 color;
 
 float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
@@ -109,7 +123,12 @@ void main() {
 #endif
     float lambert = max(dot(to_light, n), 0);
     float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
-    vec3 lit = diffuse + specular * pow(highlight, shininess);
+#ifdef TEXTURED
+    vec3 matte = filtered(image, place).rgb;
+#else
+    vec3 matte = diffuse;
+#endif
+    vec3 lit = matte + specular * pow(highlight, shininess);
     color = vec4(clamp(base + lit * light_color.rgb * (lambert * intensity), 0, 1), 1);
 }
 )";
@@ -190,11 +209,14 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     };
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
     define(variant.shape == Shape::edges, "EDGES");
+    define(variant.textured, "TEXTURED");
     head += kSightBlock;
-    return make_program(head + std::string(kVertexShader), head + std::string(kFragmentShader));
+    const std::string filter(variant.textured ? kTextureFilter : std::string_view());
+    return make_program(head + std::string(kVertexShader), head + filter + std::string(kFragmentShader));
 }
 
-void SurfacePrograms::begin(const Sight& sight, const View& view) {
+void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
+    scene_ = scene;
     light_ = kind_of(view.light);
     if (!sight_) sight_ = make_changing_buffer(sizeof(SightBlock));
     const SightBlock block = block_of(sight, view);
@@ -204,13 +226,14 @@ void SurfacePrograms::begin(const Sight& sight, const View& view) {
 
 void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& geometry,
                           const Material& material) {
-    const Variant variant{shape, light_};
+    const Variant variant{shape, light_, item.texture != kNone};
     GlProgram& program = programs_[variant];
     if (!program) program = make(variant);
     glUseProgram(program.get());
     set_place(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
+    if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
     set(base_at, glm::vec3(material.emission) + glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));

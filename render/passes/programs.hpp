@@ -25,8 +25,8 @@ public:
         edges,  ///< without sides: their normals are turned to the viewer
     };
 
-    /// What is drawn from here on is seen so.
-    void begin(const Sight& sight, const View& view);
+    /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
+    void begin(const Sight& sight, const View& view, GpuScene* scene);
     /// Makes the program for this item the current one and gives it all that it needs.
     void use(Shape shape, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
 
@@ -35,6 +35,7 @@ private:
     struct Variant {
         Shape shape = Shape::faces;
         LightKind light = LightKind::headlight;
+        bool textured = false;
 
         auto operator<=>(const Variant&) const = default;
     };
@@ -44,6 +45,7 @@ private:
     LightKind light_ = LightKind::headlight;
     std::map<Variant, GlProgram> programs_;
     GlBuffer sight_;
+    GpuScene* scene_ = nullptr;
 };
 
 /// One colour everywhere.

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+
+#include "image.hpp"
+#include "scene.hpp"
+#include "view.hpp"
+
+namespace vrut {
+
+/// What a texture shows, in double: bilinear, and trilinear between levels that are box filtered.
+class ExpectedTexture {
+public:
+    explicit ExpectedTexture(const Image& image);
+
+    /// RGB, 0 to 1. The pixel reaches from `place` by `across` and by `up`; (0, 0) is the bottom left, (1, 1)
+    /// the top right.
+    glm::dvec3 at(const glm::dvec2& place, const glm::dvec2& across, const glm::dvec2& up,
+                  bool repeat = true) const;
+    int levels() const { return static_cast<int>(levels_.size()); }
+    /// A texel of a level; rows from the bottom.
+    const glm::dvec3& texel(int level, int x, int y) const;
+    glm::ivec2 size(int level) const { return levels_[static_cast<std::size_t>(level)].size; }
+
+private:
+    struct Level {
+        glm::ivec2 size{0};
+        std::vector<glm::dvec3> texels;
+    };
+    glm::dvec3 bilinear(int level, const glm::dvec2& place, bool repeat) const;
+    std::vector<Level> levels_;
+};
+
+/// log2 of the longer side of a pixel, in texels; 0 where it is shorter than one.
+double expected_level(const glm::dvec2& across, const glm::dvec2& up);
+
+/// Every texel different and unlike its neighbours.
+Image noise(int width, int height, unsigned seed = 1);
+/// As if many such were laid over each other, from coarse to fine: what a photograph is like.
+Image cloudy(int width, int height, unsigned seed = 1);
+
+/// Of 255: the largest difference of a channel, and the root of the mean square.
+struct Deviation {
+    double worst = 0, rms = 0;
+    std::string where;
+    int pixels = 0;
+};
+/// Compares each pixel for which something is expected; x and y from the top left, centres at halves.
+Deviation deviation(const Image& image,
+                    const std::function<std::optional<glm::dvec3>(double x, double y)>& expected);
+
+/// World space direction, not unit, from the eye through a place of the picture in pixels from its top left.
+glm::dvec3 ray_through(const View& view, double x, double y);
+
+}  // namespace vrut
