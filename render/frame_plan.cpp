@@ -79,7 +79,6 @@ ClassCounts count_classes(const PlacedScene& placed) {
 
 std::vector<std::string> undrawn_features(const Scene& scene) {
     const auto& materials = scene.materials();
-    const auto& nodes = scene.nodes();
     std::vector<std::string> notices;
     const auto say = [&](auto count, const std::string& what) {
         if (count > 0) notices.push_back(std::to_string(count) + what);
@@ -89,12 +88,6 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
     say(std::count_if(materials.begin(), materials.end(),
                       [](const Material& m) { return m.reflectivity > 0; }),
         " reflective materials are drawn without reflections");
-    say(std::count_if(nodes.begin(), nodes.end(),
-                      [&](const Node& node) {
-                          const auto* data = std::get_if<BackgroundData>(&node.data);
-                          return data && (data->cube_map || !scene.material(data->material).image.empty());
-                      }),
-        " background pictures are drawn as their material's colour");
     return notices;
 }
 

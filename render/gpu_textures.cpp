@@ -28,12 +28,6 @@ private:
     std::size_t first_ = 0;
 };
 
-/// Bilinear in one level; between two the shaders mix.
-void filter(const GlTexture& texture) {
-    glTextureParameteri(texture.get(), GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
-    glTextureParameteri(texture.get(), GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-}
-
 Image upside_down(const Image& image) {
     Image result;
     result.resize(image.width, image.height);
@@ -54,7 +48,6 @@ GlTexture upload_texture(const Image& image) {
         glTextureSubImage2D(texture.get(), i, 0, 0, level.width, level.height, GL_RGBA, GL_UNSIGNED_BYTE,
                             level.rgba.data());
     }
-    filter(texture);
     return texture;
 }
 
@@ -72,7 +65,6 @@ GlTexture upload_cube_map(const std::array<const Image*, 6>& images) {
                                 GL_UNSIGNED_BYTE, level.rgba.data());
         }
     }
-    filter(texture);
     return texture;
 }
 

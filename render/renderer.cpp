@@ -8,6 +8,7 @@
 #include "frame_plan.hpp"
 #include "framebuffer.hpp"
 #include "gpu_scene.hpp"
+#include "passes/background_pass.hpp"
 #include "passes/edge_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
@@ -55,6 +56,7 @@ struct Renderer::Impl {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
         glClearDepth(0);
         glEnable(GL_DEPTH_TEST);
+        glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
         glDisable(GL_DITHER);
     }
 
@@ -71,6 +73,7 @@ struct Renderer::Impl {
     }
 
     void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
+        if (BackgroundPass::is_needed(view)) background.draw(sight, view, *scene, stats);
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
     }
@@ -95,6 +98,7 @@ struct Renderer::Impl {
     std::optional<GpuScene> scene;
     std::optional<Framebuffer> target;
     SurfacePrograms programs;
+    BackgroundPass background;
     OpaquePass opaque;
     EdgePass edges;
     OutlinePass outline;

@@ -18,6 +18,7 @@ void destroy_buffer(GLuint name) { glDeleteBuffers(1, &name); }
 void destroy_vertex_array(GLuint name) { glDeleteVertexArrays(1, &name); }
 void destroy_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
 void destroy_texture(GLuint name) { glDeleteTextures(1, &name); }
+void destroy_sampler(GLuint name) { glDeleteSamplers(1, &name); }
 void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
 void destroy_shader(GLuint name) { glDeleteShader(name); }
 void destroy_program(GLuint name) { glDeleteProgram(name); }
@@ -73,7 +74,20 @@ GlTexture make_mipmapped_texture(GLenum target, int width, int height, int level
     if (glGetError() != GL_NO_ERROR)
         throw std::runtime_error("no texture of " + std::to_string(width) + "x" + std::to_string(height) +
                                  " texels can be made: the driver refuses it");
+    glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+    glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     return texture;
+}
+
+GlSampler make_clamping_sampler() {
+    GLuint name = 0;
+    glCreateSamplers(1, &name);
+    GlSampler sampler(name);
+    glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
+    glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glSamplerParameteri(name, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    glSamplerParameteri(name, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+    return sampler;
 }
 
 GlFramebuffer make_framebuffer() {

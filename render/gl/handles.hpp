@@ -42,6 +42,7 @@ void destroy_buffer(GLuint name);
 void destroy_vertex_array(GLuint name);
 void destroy_renderbuffer(GLuint name);
 void destroy_texture(GLuint name);
+void destroy_sampler(GLuint name);
 void destroy_framebuffer(GLuint name);
 void destroy_shader(GLuint name);
 void destroy_program(GLuint name);
@@ -51,6 +52,7 @@ using GlBuffer = GlHandle<detail::destroy_buffer>;
 using GlVertexArray = GlHandle<detail::destroy_vertex_array>;
 using GlRenderbuffer = GlHandle<detail::destroy_renderbuffer>;
 using GlTexture = GlHandle<detail::destroy_texture>;
+using GlSampler = GlHandle<detail::destroy_sampler>;
 using GlFramebuffer = GlHandle<detail::destroy_framebuffer>;
 using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
@@ -62,9 +64,12 @@ GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel.
 GlTexture make_texture(GLenum format, int width, int height);
-/// RGBA8 with that many levels; `target` is GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP. Throws std::runtime_error
+/// RGBA8 with that many levels, read bilinearly from one of them, repeated in both directions; `target` is
+/// GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP. Throws std::runtime_error
 /// where the driver has no memory for it.
 GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels);
+/// For mipmapped textures: beyond the edges it finds the texels there.
+GlSampler make_clamping_sampler();
 GlFramebuffer make_framebuffer();
 
 }  // namespace vrut

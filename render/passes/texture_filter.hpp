@@ -4,17 +4,36 @@
 
 namespace vrut {
 
-/// For fragment shaders: `vec4 filtered(sampler2D image, vec2 place)`, for textures of upload_texture().
-/// Bilinear where a pixel is smaller than a texel, else trilinear at the level log2 of the pixel's longer
-/// side in texels. Drivers approximate that level, and the mixing of two; so both are computed here.
+/// For fragment shaders: textures of upload_texture() and upload_cube_map(). Bilinear where a pixel is
+/// smaller than a texel, else trilinear at the level log2 of the pixel's longer side in texels. Drivers
+/// approximate that level, and the mixing of two; so both are computed here.
 inline constexpr std::string_view kTextureFilter = R"(
-float level_of(vec2 across, vec2 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }
+// Of a pixel whose sides, in texels, are these.
+float level_of(vec3 across, vec3 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }
+float level_of(vec2 across, vec2 up) { return level_of(vec3(across, 0), vec3(up, 0)); }
+
+vec4 at_level(sampler2D image, vec2 place, float level) {
+    float finer = floor(level);
+    return mix(textureLod(image, place, finer), textureLod(image, place, finer + 1), level - finer);
+}
 
 vec4 filtered(sampler2D image, vec2 place) {
     vec2 size = vec2(textureSize(image, 0));
-    float level = level_of(dFdx(place) * size, dFdy(place) * size);
+    return at_level(image, place, level_of(dFdx(place) * size, dFdy(place) * size));
+}
+
+// What lies in a direction of the world, of any length, which changes by `across` and `up` over a pixel.
+vec3 around(samplerCube panorama, vec3 direction, vec3 across, vec3 up) {
+    // On the cube whose faces lie at 1, where that direction meets it, and in texels.
+    vec3 size = abs(direction);
+    vec3 axis = size.x >= size.y && size.x >= size.z ? vec3(1, 0, 0) : size.y >= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    float ahead = dot(axis, direction);
+    float texels = float(textureSize(panorama, 0).x) / (2 * ahead * ahead);
+    float level = level_of((across * ahead - direction * dot(axis, across)) * texels,
+                           (up * ahead - direction * dot(axis, up)) * texels);
     float finer = floor(level);
-    return mix(textureLod(image, place, finer), textureLod(image, place, finer + 1), level - finer);
+    direction.z = -direction.z;
+    return mix(textureLod(panorama, direction, finer).rgb, textureLod(panorama, direction, finer + 1).rgb, level - finer);
 }
 )";
 

@@ -71,6 +71,78 @@ glm::dvec3 ExpectedTexture::at(const glm::dvec2& place, const glm::dvec2& across
     return glm::mix(bilinear(finer, place, repeat), bilinear(coarser, place, repeat), level - finer);
 }
 
+const std::array<ExpectedPanorama::Face, 6> ExpectedPanorama::kFaces{
+    Face{{1, 0, 0}, {0, 1, 0}},   Face{{-1, 0, 0}, {0, 1, 0}}, Face{{0, 1, 0}, {0, 0, 1}},
+    Face{{0, -1, 0}, {0, 0, -1}}, Face{{0, 0, 1}, {0, 1, 0}},  Face{{0, 0, -1}, {0, 1, 0}}};
+
+namespace {
+
+std::size_t face_towards(const glm::dvec3& direction) {
+    const auto ahead = [&](const ExpectedPanorama::Face& face) { return glm::dot(face.view, direction); };
+    const auto& faces = ExpectedPanorama::kFaces;
+    return static_cast<std::size_t>(
+        std::max_element(faces.begin(), faces.end(),
+                         [&](const auto& a, const auto& b) { return ahead(a) < ahead(b); }) -
+        faces.begin());
+}
+
+/// Where a direction meets a face's picture, (0, 0) to (1, 1).
+glm::dvec2 place_on(const ExpectedPanorama::Face& face, const glm::dvec3& direction) {
+    return glm::dvec2(glm::dot(direction, face.right()), glm::dot(direction, face.up)) /
+               glm::dot(direction, face.view) / 2.0 +
+           0.5;
+}
+
+}  // namespace
+
+ExpectedPanorama::ExpectedPanorama(const std::array<Image, 6>& images)
+    : faces_(images.begin(), images.end()) {}
+
+glm::dvec3 ExpectedPanorama::texel(std::size_t face, int level, const glm::ivec2& at) const {
+    const int size = faces_[face].size(level).x;
+    const glm::ivec2 inside = glm::clamp(at, 0, size - 1);
+    if (at == inside) return faces_[face].texel(level, at.x, at.y);
+    if (at.x != inside.x && at.y != inside.y)  // three faces meet
+        return (texel(face, level, inside) + texel(face, level, {at.x, inside.y}) +
+                texel(face, level, {inside.x, at.y})) /
+               3.0;
+    // Half a texel beyond the edge, on the face that begins there.
+    const Face& from = kFaces[face];
+    const glm::dvec2 on_face =
+        glm::clamp((glm::dvec2(at) + 0.5) * 2.0 / static_cast<double>(size) - 1.0, -1.0, 1.0);
+    const glm::dvec3 there = from.view * (1 - 1.0 / size) + from.right() * on_face.x + from.up * on_face.y;
+    const std::size_t to = face_towards(there);
+    const glm::ivec2 texel_there(place_on(kFaces[to], there) * static_cast<double>(size));
+    return faces_[to].texel(level, std::clamp(texel_there.x, 0, size - 1),
+                            std::clamp(texel_there.y, 0, size - 1));
+}
+
+glm::dvec3 ExpectedPanorama::bilinear(std::size_t face, int level, const glm::dvec2& place) const {
+    const glm::dvec2 at = place * glm::dvec2(faces_[face].size(level)) - 0.5, low = glm::floor(at),
+                     part = at - low;
+    const auto corner = [&](int dx, int dy) {
+        return texel(face, level, glm::ivec2(low) + glm::ivec2(dx, dy));
+    };
+    return glm::mix(glm::mix(corner(0, 0), corner(1, 0), part.x),
+                    glm::mix(corner(0, 1), corner(1, 1), part.x), part.y);
+}
+
+glm::dvec3 ExpectedPanorama::at(const glm::dvec3& direction, const glm::dvec3& across,
+                                const glm::dvec3& up) const {
+    const std::size_t face = face_towards(direction);
+    const auto change = [&](const glm::dvec3& by) {
+        constexpr double kStep = 1e-5;
+        return (place_on(kFaces[face], direction + by * kStep) -
+                place_on(kFaces[face], direction - by * kStep)) /
+               (2 * kStep) * glm::dvec2(faces_[face].size(0));
+    };
+    const int last = faces_[face].levels() - 1;
+    const double level = std::min<double>(expected_level(change(across), change(up)), last);
+    const int finer = static_cast<int>(level), coarser = std::min(finer + 1, last);
+    const glm::dvec2 place = place_on(kFaces[face], direction);
+    return glm::mix(bilinear(face, finer, place), bilinear(face, coarser, place), level - finer);
+}
+
 double expected_level(const glm::dvec2& across, const glm::dvec2& up) {
     return std::log2(std::max({1.0, glm::length(across), glm::length(up)}));
 }

@@ -33,6 +33,27 @@ private:
     std::vector<Level> levels_;
 };
 
+/// A panorama of six pictures px nx py ny pz nz, each seen by a camera with 90° at the origin.
+class ExpectedPanorama {
+public:
+    explicit ExpectedPanorama(const std::array<Image, 6>& images);
+
+    /// RGB, 0 to 1, in a direction of any length, which changes by `across` and `up` over the pixel.
+    glm::dvec3 at(const glm::dvec3& direction, const glm::dvec3& across, const glm::dvec3& up) const;
+
+    /// How the pictures were taken.
+    struct Face {
+        glm::dvec3 view, up;
+        glm::dvec3 right() const { return glm::cross(view, up); }
+    };
+    static const std::array<Face, 6> kFaces;
+
+private:
+    glm::dvec3 bilinear(std::size_t face, int level, const glm::dvec2& place) const;
+    glm::dvec3 texel(std::size_t face, int level, const glm::ivec2& at) const;
+    std::vector<ExpectedTexture> faces_;
+};
+
 /// log2 of the longer side of a pixel, in texels; 0 where it is shorter than one.
 double expected_level(const glm::dvec2& across, const glm::dvec2& up);
 

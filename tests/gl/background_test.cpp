@@ -1,0 +1,250 @@
+#include "expected_texture.hpp"
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+std::array<Image, 6> six(int size, Image (*make)(int, int, unsigned) = noise) {
+    std::array<Image, 6> images;
+    for (unsigned i = 0; i < 6; ++i) images[i] = make(size, size, 10 * (i + 1));
+    return images;
+}
+
+/// The parts before backgrounds that `view` is given to show.
+std::shared_ptr<const PlacedScene> scene_with(const std::vector<Image>& images,
+                                              const std::vector<Part>& given = {}) {
+    SceneParts parts;
+    for (const Image& image : images) parts.textures.push_back({"background.png", image, false});
+    for (const Part& part : given) {
+        const auto index = static_cast<Index>(parts.geometries.size());
+        parts.materials.push_back(part.material);
+        parts.geometries.push_back(part.geometry);
+        parts.nodes.push_back(
+            {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{index, index}},
+             0});
+    }
+    return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+}
+
+View before_picture(View view) {
+    view.background.texture = 0;
+    return view;
+}
+
+View in_panorama(View view) {
+    view.background.cube_map = {0, 1, 2, 3, 4, 5};
+    return view;
+}
+
+std::vector<Image> listed(const std::array<Image, 6>& images) { return {images.begin(), images.end()}; }
+
+Deviation check_picture(const Image& image, const View& view, Studio& studio) {
+    const ExpectedTexture texture(image);
+    const double w = view.width, h = view.height;
+    return deviation(studio.draw(scene_with({image}), before_picture(view)), [&](double x, double y) {
+        return std::optional(texture.at({x / w, 1 - y / h}, {1 / w, 0}, {0, 1 / h}, false));
+    });
+}
+
+Deviation check_panorama(const std::array<Image, 6>& images, const View& view, Studio& studio) {
+    const ExpectedPanorama panorama(images);
+    return deviation(studio.draw(scene_with(listed(images)), in_panorama(view)), [&](double x, double y) {
+        const glm::dvec3 ray = ray_through(view, x, y);
+        return std::optional(
+            panorama.at(ray, ray_through(view, x + 1, y) - ray, ray_through(view, x, y - 1) - ray));
+    });
+}
+
+View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int width, int height) {
+    View view;
+    view.camera.eye = {0, 0, 0};
+    view.camera.focus = direction;
+    view.camera.up = up;
+    view.camera = with_orthogonal_up(view.camera);
+    view.camera.fov = fov;
+    view.width = width;
+    view.height = height;
+    return view;
+}
+
+}  // namespace
+
+TEST_CASE("a background picture fills the view, upright") {
+    Studio studio;
+    const Image image = noise(48, 32);
+    View view = view_from({1, 2, 3});
+    view.width = image.width;
+    view.height = image.height;
+    CHECK(studio.draw(scene_with({image}), before_picture(view)).rgba == image.rgba);
+}
+
+TEST_CASE("a background picture is stretched, its edges clamped, and filtered") {
+    Studio studio;
+    for (const glm::ivec2 size :
+         {glm::ivec2(1, 1), {2, 2}, {5, 3}, {37, 19}, {96, 64}, {300, 170}, {16384, 16}})
+        for (const glm::ivec2 picture : {glm::ivec2(96, 64), {31, 77}, {1, 500}, {5, 3}}) {
+            CAPTURE(size.x);
+            CAPTURE(size.y);
+            CAPTURE(picture.x);
+            View view = view_from({1, 2, 3});
+            view.width = picture.x;
+            view.height = picture.y;
+            const Deviation off = check_picture(noise(size.x, size.y), view, studio);
+            CHECK_MESSAGE(off.worst <= 2, off.where);
+        }
+}
+
+TEST_CASE("each picture of a panorama is what a camera with 90 degrees sees") {
+    Studio studio;
+    const std::array<Image, 6> images = six(32);
+    for (std::size_t i = 0; i < 6; ++i) {
+        CAPTURE(i);
+        const auto& [view, up] = ExpectedPanorama::kFaces[i];
+        const Image found =
+            studio.draw(scene_with(listed(images)), in_panorama(looking(view, up, 90, 32, 32)));
+        CHECK(deviation(found, [&](double x, double y) {
+                  return glm::dvec3(pixel_of(images[i], static_cast<int>(x), static_cast<int>(y))) / 255.0;
+              }).worst <= 1);
+    }
+}
+
+TEST_CASE("a panorama is filtered across its edges and corners") {
+    Studio studio;
+    for (const int size : {1, 2, 3, 8})
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    if (std::abs(x) + std::abs(y) + std::abs(z) < 2) continue;
+                    CAPTURE(size);
+                    CAPTURE(x);
+                    CAPTURE(y);
+                    CAPTURE(z);
+                    const View view = looking({x, y, z}, {0.1, 1, 0.2}, 40, 48, 48);
+                    const Deviation off = check_panorama(six(size), view, studio);
+                    CHECK_MESSAGE(off.worst <= 2, off.where);
+                }
+}
+
+TEST_CASE("a panorama is minified by the pixel's longer side, in any direction") {
+    Studio studio;
+    for (const int size : {64, 100, 255})
+        for (const double fov : {60.0, 120.0, 165.0})
+            for (const glm::dvec3& direction :
+                 {glm::dvec3(0.01, 0.02, -1), {1, 0.3, 0.2}, {-0.2, 0.9, 0.5}, {0.3, -0.8, 0.1}, {-1, -1, -1}}) {
+                CAPTURE(size);
+                CAPTURE(fov);
+                CAPTURE(direction.x);
+                const View view = looking(direction, {0.1, 1, 0.2}, fov, 96, 64);
+                const Deviation off = check_panorama(six(size), view, studio);
+                CHECK(off.rms <= 1);
+                CHECK_MESSAGE(off.worst <= 3, off.where);
+            }
+}
+
+TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
+    Studio studio;
+    View view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 60, 96, 64));
+    const auto scene = scene_with(listed(six(16, cloudy)));
+    const Image at_origin = studio.draw(scene, view);
+    view.camera.eye += glm::dvec3(128, -512, 64);
+    view.camera.focus += glm::dvec3(128, -512, 64);
+    view.background.texture = 2;
+    const Image elsewhere = studio.draw(scene, view);
+    CHECK(deviation(elsewhere, [&](double x, double y) {
+              return glm::dvec3(pixel_of(at_origin, static_cast<int>(x), static_cast<int>(y))) / 255.0;
+          }).worst <= 1);
+}
+
+TEST_CASE("the samples of a pixel see the background where they see what stands before it") {
+    Studio studio;
+    const Image image = noise(48, 32);
+    View view = pixel_view(96, 64);
+    view.light.headlight = false;
+    view.light.type = LightData::Type::directional;
+    // A board that fills the view with the same picture.
+    SceneParts parts;
+    parts.textures = {{"board.png", image, false}};
+    parts.geometries = {rectangle(-96, -64, 192, 128, view)};
+    for (const glm::dvec3& position : parts.geometries[0].positions)
+        parts.geometries[0].texcoords.emplace_back(glm::dvec2(position) / glm::dvec2(96, 64) + 0.5);
+    parts.materials.resize(1);
+    parts.materials[0].texture = 0;
+    parts.nodes = {{Node{1, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0}};
+    const auto board = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    for (const int samples : {1, 3, 5}) {
+        CAPTURE(samples);
+        view.samples = samples;
+        const Image wanted = studio.draw(board, view),
+                    found = studio.draw(scene_with({image}), before_picture(view));
+        const Deviation off = deviation(found, [&](double x, double y) -> std::optional<glm::dvec3> {
+            if (x < 2 || x > 94 || y < 2 || y > 62) return std::nullopt;  // clamped there, not repeated
+            return glm::dvec3(pixel_of(wanted, static_cast<int>(x), static_cast<int>(y))) / 255.0;
+        });
+        CHECK_MESSAGE(off.worst <= 1, off.where);
+    }
+    // A panorama against the same seen with more pixels, each of whose centres is a sample.
+    view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 80, 32, 32));
+    const auto scene = scene_with(listed(six(16)));
+    View fine = view;
+    fine.width = fine.height = 32 * 8;
+    const Image finer = studio.draw(scene, fine);
+    view.samples = 64;
+    const Deviation off = deviation(studio.draw(scene, view), [&](double x, double y) {
+        glm::dvec3 sum(0);
+        for (int dy = 0; dy < 8; ++dy)
+            for (int dx = 0; dx < 8; ++dx)
+                sum +=
+                    glm::dvec3(pixel_of(finer, static_cast<int>(x) * 8 + dx, static_cast<int>(y) * 8 + dy));
+        return std::optional(sum / 64.0 / 255.0);
+    });
+    CHECK_MESSAGE(off.worst <= 3, off.where);
+}
+
+TEST_CASE("backgrounds stand behind everything and cost one pass where they are no plain colour") {
+    Studio studio;
+    const std::vector<Part> parts{{1, quad(0.01), material_of({0.5, 0.6, 0.7}), moved_by({0, 0, 4.9})},
+                                  {2, quad(400), material_of({0.9, 0.2, 0.1}), moved_by({2000, 0, -5000})}};
+    const View plain = view_from({0, 0, 5});
+    const auto scene = scene_with(listed(six(4)), parts), empty = scene_with(listed(six(4)));
+    const Image before_colour = studio.draw(scene, plain);
+    CHECK(studio.stats.passes == 1);
+    CHECK(studio.stats.uploads == 2);
+    const long objects = live_gl_objects();
+    for (const View& view : {before_picture(plain), in_panorama(plain)}) {
+        const Image background = studio.draw(empty, view);
+        CHECK(studio.stats.passes == 1);
+        CHECK(studio.stats.draws == 1);
+        CHECK(studio.stats.uploads == 1);
+        const Image found = studio.draw(scene, view);
+        CHECK(studio.stats.passes == 2);
+        CHECK(studio.stats.draws == 3);
+        int fronts = 0, wrong = 0;
+        for (int y = 0; y < found.height; ++y)
+            for (int x = 0; x < found.width; ++x) {
+                const bool front = pixel_of(before_colour, x, y) != glm::ivec3(230, 235, 242);
+                fronts += front;
+                wrong += pixel_of(found, x, y) != pixel_of(front ? before_colour : background, x, y);
+            }
+        CHECK(fronts > 20);
+        CHECK(wrong == 0);
+    }
+    studio.draw(scene, plain);
+    CHECK(studio.stats.passes == 1);
+    // The panorama, a program for it and one for pictures, a sampler, and an array without attributes.
+    CHECK(live_gl_objects() == objects + 5);
+    // Pictures are the scene's: without one there is the colour.
+    CHECK(pixel_of(studio.draw(nullptr, in_panorama(plain)), 5, 5) == glm::ivec3(230, 235, 242));
+    CHECK(studio.stats.passes == 0);
+}
+
+TEST_CASE("the stylized drawing and the wireframe have the background, too") {
+    Studio studio;
+    const auto scene = scene_with({noise(96, 64)}, {{1, quad(1), Material(), glm::dmat4(1)}});
+    for (const bool wireframe : {false, true}) {
+        View view = before_picture(view_from({0, 0, 5}));
+        view.mode = wireframe ? DrawMode::realistic : DrawMode::stylized;
+        view.wireframe = wireframe;
+        CHECK(pixel_of(studio.draw(scene, view), 3, 4) == pixel_of(noise(96, 64), 3, 4));
+    }
+}
