@@ -34,13 +34,45 @@ void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
               [&](const DrawItem& a, const DrawItem& b) { return id(a) < id(b); });
 }
 
-void add_textures(std::vector<DrawItem>& items, const Scene& scene) {
-    for (DrawItem& item : items)
+void add_pictures(std::vector<DrawItem>& items, const View& view) {
+    const Scene& scene = *view.scene->scene;
+    for (DrawItem& item : items) {
+        const Material& material = scene.material(item.material);
         if (!scene.geometries()[static_cast<std::size_t>(item.geometry)].texcoords.empty())
-            item.texture = scene.material(item.material).texture;
+            item.texture = material.texture;
+        item.environment = view.background.cube_map && material.reflectivity > 0 &&
+                           !is_mirror(scene, item.geometry, item.material);
+    }
+}
+
+struct Reflective {
+    int mirrors = 0, others = 0;
+};
+
+/// Geometry nodes in the materials of their file.
+Reflective count_reflective(const Scene& scene) {
+    Reflective count;
+    for (const Node& node : scene.nodes()) {
+        const auto* data = std::get_if<GeometryData>(&node.data);
+        if (!data || data->geometry == kNone || !(scene.material(data->material).reflectivity > 0)) continue;
+        ++(is_mirror(scene, data->geometry, data->material) ? count.mirrors : count.others);
+    }
+    return count;
+}
+
+bool has_cube_map(const Scene& scene) {
+    return std::any_of(scene.nodes().begin(), scene.nodes().end(), [](const Node& node) {
+        const auto* data = std::get_if<BackgroundData>(&node.data);
+        return data && data->cube_textures;
+    });
 }
 
 }  // namespace
+
+bool is_mirror(const Scene& scene, Index geometry, Index material) {
+    const Material& of = scene.material(material);
+    return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
+}
 
 FramePlan plan_frame(const View& view) {
     FramePlan plan;
@@ -60,7 +92,7 @@ FramePlan plan_frame(const View& view) {
             if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
     }
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
-    if (!view.wireframe && view.mode == DrawMode::realistic) add_textures(items, *placed.scene);
+    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
     if (!view.wireframe) plan.scene.opaque = std::move(items);
     return plan;
 }
@@ -85,9 +117,10 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
     };
     say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return m.diffuse.a < 1; }),
         " transparent materials are drawn opaque");
-    say(std::count_if(materials.begin(), materials.end(),
-                      [](const Material& m) { return m.reflectivity > 0; }),
-        " reflective materials are drawn without reflections");
+    const Reflective reflective = count_reflective(scene);
+    say(reflective.mirrors, " planar mirrors are drawn without reflections");
+    if (!has_cube_map(scene))
+        say(reflective.others, " curved or transparent reflective parts have no cube map to reflect");
     return notices;
 }
 

@@ -15,8 +15,9 @@ struct DrawItem {
     Index node = kNone, geometry = kNone, material = kNone;
     glm::dmat4 view_from_node{1};
     Sides sides = Sides::front;
-    bool mirrored = false;  ///< the matrix turns counter-clockwise triangles clockwise
-    Index texture = kNone;  ///< whose colour stands in the place of the material's diffuse one
+    bool mirrored = false;     ///< the matrix turns counter-clockwise triangles clockwise
+    Index texture = kNone;     ///< whose colour stands in the place of the material's diffuse one
+    bool environment = false;  ///< mixed with the panorama that it reflects
 };
 
 /// Faces that are drawn from one sight, in this order.
@@ -30,6 +31,9 @@ struct FramePlan {
     std::vector<DrawItem> edges;     ///< with edges
     std::vector<DrawItem> selected;  ///< to be marked
 };
+
+/// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
+bool is_mirror(const Scene& scene, Index geometry, Index material);
 
 /// Empty where the view has no scene.
 FramePlan plan_frame(const View& view);

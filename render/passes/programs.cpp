@@ -20,14 +20,16 @@ enum Uniform : GLint {
     specular_at = 7,
     shininess_at = 8,
     both_sides_at = 9,
+    reflectivity_at = 10,
 };
 
 constexpr GLuint kSightBinding = 0;
-constexpr GLuint kTextureUnit = 0;
+constexpr GLuint kTextureUnit = 0, kPanoramaUnit = 1;
 
 /// What holds for all surfaces of a sight, in view space; laid out as std140 has it.
 struct SightBlock {
     glm::mat4 clip_from_view;
+    glm::mat3x4 world_from_view;  // of directions
     glm::vec4 light_color, attenuation, light_position, light_direction;
     glm::vec4 cone;  // x, y: 1 - cos where the light is full, and where it ends
 };
@@ -35,6 +37,7 @@ struct SightBlock {
 constexpr std::string_view kSightBlock = R"(
 layout(std140, binding = 0) uniform Sight {
     mat4 clip_from_view;
+    mat3 world_from_view;
     vec4 light_color, attenuation, light_position, light_direction;
     vec4 cone;
 };
@@ -78,6 +81,10 @@ in vec3 view_normal;
 #ifdef TEXTURED
 layout(binding = 0) uniform sampler2D image;
 in vec2 place;
+#endif
+#ifdef ENVIRONMENT
+layout(location = 10) uniform float reflectivity;
+layout(binding = 1) uniform samplerCube panorama;
 #endif
 out vec4 color;
 
@@ -130,6 +137,10 @@ void main() {
 #endif
     vec3 lit = matte + specular * pow(highlight, shininess);
     color = vec4(clamp(base + lit * light_color.rgb * (lambert * intensity), 0, 1), 1);
+#ifdef ENVIRONMENT
+    vec3 seen = world_from_view * reflect(-to_eye, n);
+    color.rgb = mix(color.rgb, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
+#endif
 }
 )";
 
@@ -160,6 +171,7 @@ SightBlock block_of(const Sight& sight, const View& view) {
     const Light& light = view.light;
     SightBlock block{};
     block.clip_from_view = glm::mat4(sight.clip_from_view);
+    block.world_from_view = glm::mat3x4(glm::mat3(glm::transpose(glm::dmat3(sight.view_from_world))));
     block.light_color = glm::vec4(light.color);
     block.attenuation = light.attenuation == glm::dvec3(0) ? glm::vec4(1, 0, 0, 0)
                                                            : glm::vec4(glm::vec3(light.attenuation), 0);
@@ -210,13 +222,15 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
     define(variant.shape == Shape::edges, "EDGES");
     define(variant.textured, "TEXTURED");
+    define(variant.environment, "ENVIRONMENT");
     head += kSightBlock;
-    const std::string filter(variant.textured ? kTextureFilter : std::string_view());
+    const std::string filter(variant.textured || variant.environment ? kTextureFilter : std::string_view());
     return make_program(head + std::string(kVertexShader), head + filter + std::string(kFragmentShader));
 }
 
 void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
     scene_ = scene;
+    cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light);
     if (!sight_) sight_ = make_changing_buffer(sizeof(SightBlock));
     const SightBlock block = block_of(sight, view);
@@ -226,7 +240,7 @@ void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scen
 
 void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& geometry,
                           const Material& material) {
-    const Variant variant{shape, light_, item.texture != kNone};
+    const Variant variant{shape, light_, item.texture != kNone, item.environment};
     GlProgram& program = programs_[variant];
     if (!program) program = make(variant);
     glUseProgram(program.get());
@@ -234,6 +248,10 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
     if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (variant.environment) {
+        glBindTextureUnit(kPanoramaUnit, scene_->cube_map(*cube_map_).get());
+        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    }
     set(base_at, glm::vec3(material.emission) + glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));

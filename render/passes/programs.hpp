@@ -36,6 +36,7 @@ private:
         Shape shape = Shape::faces;
         LightKind light = LightKind::headlight;
         bool textured = false;
+        bool environment = false;
 
         auto operator<=>(const Variant&) const = default;
     };
@@ -46,6 +47,7 @@ private:
     std::map<Variant, GlProgram> programs_;
     GlBuffer sight_;
     GpuScene* scene_ = nullptr;
+    std::optional<std::array<Index, 6>> cube_map_;
 };
 
 /// One colour everywhere.

@@ -130,8 +130,11 @@ TEST_CASE("a panorama is minified by the pixel's longer side, in any direction")
     Studio studio;
     for (const int size : {64, 100, 255})
         for (const double fov : {60.0, 120.0, 165.0})
-            for (const glm::dvec3& direction :
-                 {glm::dvec3(0.01, 0.02, -1), {1, 0.3, 0.2}, {-0.2, 0.9, 0.5}, {0.3, -0.8, 0.1}, {-1, -1, -1}}) {
+            for (const glm::dvec3& direction : {glm::dvec3(0.01, 0.02, -1),
+                                                {1, 0.3, 0.2},
+                                                {-0.2, 0.9, 0.5},
+                                                {0.3, -0.8, 0.1},
+                                                {-1, -1, -1}}) {
                 CAPTURE(size);
                 CAPTURE(fov);
                 CAPTURE(direction.x);

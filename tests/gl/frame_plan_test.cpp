@@ -57,8 +57,60 @@ TEST_CASE("a plan holds what the view needs and no more") {
     CHECK(sizes() == Sizes{5, 5, 0});
 }
 
+TEST_CASE("textures and the panorama are planned for surfaces that show them") {
+    SceneParts parts;
+    parts.textures.resize(1);
+    parts.geometries = {quad(1), sphere(1, 4), sphere(1, 4)};
+    parts.geometries[2].texcoords.assign(parts.geometries[2].positions.size(), glm::vec2(0));
+    parts.materials.resize(3);
+    parts.materials[0].reflectivity = 0.5;
+    parts.materials[1] = parts.materials[0];
+    parts.materials[1].diffuse.a = 0.5;
+    parts.materials[2].texture = 0;
+    for (Id id = 0; id < 9; ++id)
+        parts.nodes.push_back({Node{id + 1,
+                                    {},
+                                    NodeType::geometry,
+                                    kNone,
+                                    {},
+                                    true,
+                                    glm::dmat4(1),
+                                    GeometryData{static_cast<Index>(id / 3), static_cast<Index>(id % 3)}},
+                               0});
+    View view = view_from({0, 0, 5});
+    view.scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    const auto ids = [&](const auto& chosen) {
+        std::vector<Id> result;
+        for (const DrawItem& item : plan_frame(view).scene.opaque)
+            if (chosen(item))
+                result.push_back(view.scene->scene->nodes()[static_cast<std::size_t>(item.node)].id);
+        return result;
+    };
+    const auto reflecting = [&] { return ids([](const DrawItem& item) { return item.environment; }); };
+    const auto textured = [&] { return ids([](const DrawItem& item) { return item.texture == 0; }); };
+    CHECK(textured() == std::vector<Id>{9});
+    CHECK(reflecting().empty());
+    view.background.cube_map.emplace();
+    // All but the opaque plane, which is a mirror.
+    CHECK(reflecting() == std::vector<Id>{2, 4, 5, 7, 8});
+    view.mode = DrawMode::stylized;
+    CHECK(reflecting().empty());
+    CHECK(textured().empty());
+}
+
 TEST_CASE("what is not drawn is told, and lights are drawn") {
     const auto notices = undrawn_features(*showroom().scene);
     CHECK(notices == std::vector<std::string>{"2 transparent materials are drawn opaque",
-                                              "2 reflective materials are drawn without reflections"});
+                                              "1 planar mirrors are drawn without reflections",
+                                              "1 curved or transparent reflective parts have no cube map to "
+                                              "reflect"});
+    SceneParts parts;
+    parts.geometries = {sphere(1, 4)};
+    parts.materials.resize(1);
+    parts.materials[0].reflectivity = 1;
+    parts.nodes = {{Node{1, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0},
+                   {Node{2, {}, NodeType::background, kNone, {}, true, glm::dmat4(1), BackgroundData{}}, 0}};
+    CHECK(undrawn_features(*Scene::build(parts)).size() == 1);
+    std::get<BackgroundData>(parts.nodes[1].node.data).cube_textures.emplace();
+    CHECK(undrawn_features(*Scene::build(parts)).empty());
 }

@@ -1,0 +1,187 @@
+#include "expected_texture.hpp"
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+std::array<Image, 6> six(int size, Image (*make)(int, int, unsigned) = cloudy) {
+    std::array<Image, 6> images;
+    for (unsigned i = 0; i < 6; ++i) images[i] = make(size, size, 10 * (i + 1));
+    return images;
+}
+
+/// One part, and a panorama for it to reflect.
+std::shared_ptr<const PlacedScene> scene_of(const Part& part, const std::array<Image, 6>& images) {
+    SceneParts parts;
+    for (const Image& image : images) parts.textures.push_back({"face.png", image, false});
+    parts.materials = {part.material};
+    parts.geometries = {part.geometry};
+    parts.nodes = {
+        {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{0, 0}}, 0}};
+    return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+}
+
+/// What a triangle of the part shows at the place where rays meet its plane.
+struct Facet {
+    glm::dvec3 corners[3], normals[3];
+    double front = 1;  ///< -1 where the matrix turns triangles round
+
+    Facet(const Part& part, const glm::uvec3& triangle) {
+        const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(part.matrix)));
+        if (glm::determinant(glm::dmat3(part.matrix)) < 0) front = -1;
+        const auto& positions = part.geometry.positions;
+        const glm::dvec3 face = glm::cross(positions[triangle[1]] - positions[triangle[0]],
+                                           positions[triangle[2]] - positions[triangle[0]]);
+        for (int k = 0; k < 3; ++k) {
+            const glm::dvec3 normal =
+                part.geometry.normals.empty() ? face : glm::dvec3(part.geometry.normals[triangle[k]]);
+            corners[k] = glm::dvec3(part.matrix * glm::dvec4(positions[triangle[k]], 1));
+            normals[k] = glm::normalize(normal_matrix * normal);
+        }
+    }
+
+    struct Meeting {
+        double t = 0;
+        bool inside = false;
+        glm::dvec3 point{0}, normal{0};
+    };
+    Meeting meet(const glm::dvec3& eye, const glm::dvec3& ray) const {
+        const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0];
+        const glm::dvec3 p = glm::cross(ray, ac), from_a = eye - corners[0], q = glm::cross(from_a, ab);
+        const double determinant = glm::dot(ab, p);
+        const double u = glm::dot(from_a, p) / determinant, v = glm::dot(ray, q) / determinant;
+        const double t = glm::dot(ac, q) / determinant;
+        return {t, determinant * front > 0 && u >= 0 && v >= 0 && u + v <= 1 && t > 0, eye + ray * t,
+                glm::normalize(normals[0] * (1 - u - v) + normals[1] * u + normals[2] * v)};
+    }
+};
+
+class Chrome {
+public:
+    Chrome(const Part& part, const std::array<Image, 6>& images, const View& view)
+        : panorama_(images), view_(view), material_(part.material) {
+        for (const glm::uvec3& triangle : part.geometry.triangles) facets_.emplace_back(part, triangle);
+    }
+
+    /// None where a corner of the pixel misses the part, or meets another face of it than the centre does.
+    std::optional<glm::dvec3> at(double x, double y) const {
+        const Facet* facet = nearest(x, y);
+        for (const double dx : {-0.49, 0.49})
+            for (const double dy : {-0.49, 0.49}) {
+                const Facet* other = nearest(x + dx, y + dy);
+                if (!facet || !other) return std::nullopt;
+                if (glm::dot(facet->normals[0], other->normals[0]) < 0.1) return std::nullopt;
+            }
+        const Facet::Meeting met = facet->meet(view_.camera.eye, ray_through(view_, x, y));
+        const glm::dvec3 own = phong(material_, view_.light, view_.camera.eye, met.point, met.normal);
+        constexpr double kStep = 1e-4;
+        const auto change = [&](double dx, double dy) {
+            return (reflected(*facet, x + dx, y + dy) - reflected(*facet, x - dx, y - dy)) / (2 * kStep);
+        };
+        return glm::mix(own, panorama_.at(reflected(*facet, x, y), change(kStep, 0), change(0, -kStep)),
+                        material_.reflectivity);
+    }
+
+private:
+    const Facet* nearest(double x, double y) const {
+        const Facet* found = nullptr;
+        double t = std::numeric_limits<double>::infinity();
+        for (const Facet& facet : facets_) {
+            const Facet::Meeting met = facet.meet(view_.camera.eye, ray_through(view_, x, y));
+            if (!met.inside || met.t >= t) continue;
+            t = met.t;
+            found = &facet;
+        }
+        return found;
+    }
+    glm::dvec3 reflected(const Facet& facet, double x, double y) const {
+        const glm::dvec3 ray = ray_through(view_, x, y);
+        return glm::normalize(glm::reflect(ray, facet.meet(view_.camera.eye, ray).normal));
+    }
+
+    ExpectedPanorama panorama_;
+    View view_;
+    Material material_;
+    std::vector<Facet> facets_;
+};
+
+Material chrome(double reflectivity) {
+    Material material = material_of({0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}, 20);
+    material.reflectivity = reflectivity;
+    return material;
+}
+
+View in_panorama(View view) {
+    view.background.cube_map = {0, 1, 2, 3, 4, 5};
+    return view;
+}
+
+Deviation check(const Part& part, const std::array<Image, 6>& images, const View& view, Studio& studio) {
+    const Chrome expected(part, images, view);
+    const Image image = studio.draw(scene_of(part, images), in_panorama(view));
+    return deviation(image, [&](double x, double y) { return expected.at(x, y); });
+}
+
+}  // namespace
+
+TEST_CASE("a chrome ball reflects the panorama") {
+    Studio studio;
+    for (const int size : {1, 4, 64, 512})
+        for (const double reflectivity : {0.25, 1.0}) {
+            CAPTURE(size);
+            CAPTURE(reflectivity);
+            const Part ball{1, sphere(1, 12), chrome(reflectivity),
+                            moved_by({1, -0.5, 0.3}) * turned_by(40, {0, 1, 0})};
+            View view = view_from({2.5, 1.5, 3.5}, {1, -0.5, 0.3});
+            const Deviation off = check(ball, six(size), view, studio);
+            CHECK(off.pixels > 500);
+            CHECK(off.rms <= 1);
+        }
+}
+
+TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirrored as it may be") {
+    Studio studio;
+    const std::array<Image, 6> images = six(32, noise);
+    for (const double x : {1.0, -1.0}) {
+        const Part part{1, box({1, 0.7, 0.8}), chrome(0.6), turned_by(30, {0, 1, 0}) * scaled_by({x, 1, 1})};
+        const Deviation off = check(part, images, view_from({2, 1.5, 3}), studio);
+        CHECK(off.pixels > 500);
+        CHECK_MESSAGE(off.worst <= 3, off.where);
+    }
+}
+
+TEST_CASE("a surface's own colour is clamped before the panorama is mixed in") {
+    Studio studio;
+    Material bright = chrome(0.5);
+    bright.emission = {3, 3, 3, 1};
+    Image grey;
+    grey.resize(1, 1);
+    grey.rgba = {51, 51, 51, 255};
+    std::array<Image, 6> images;
+    images.fill(grey);
+    const Image image = studio.draw(scene_of({1, sphere(1, 8), bright, glm::dmat4(1)}, images),
+                                    in_panorama(view_from({0, 0, 3})));
+    CHECK(pixel_of(image, 48, 32) == glm::ivec3(153));
+}
+
+TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
+    Studio studio;
+    const std::array<Image, 6> images = six(8);
+    const View plain = view_from({1, 1, 4});
+    const auto picture = [&](const Geometry& geometry, double reflectivity, const View& view) {
+        return studio.draw(scene_of({1, geometry, chrome(reflectivity), glm::dmat4(1)}, images), view);
+    };
+    const Geometry ball = sphere(1, 8);
+    const Image matte = picture(ball, 0, plain);
+    const long objects = live_gl_objects();
+    CHECK(picture(ball, 0.5, plain).rgba == matte.rgba);
+    CHECK(live_gl_objects() == objects);
+    CHECK(studio.stats.uploads == 1);
+    View stylized = in_panorama(plain);
+    stylized.mode = DrawMode::stylized;
+    CHECK(picture(ball, 0.5, stylized).rgba == picture(ball, 0, stylized).rgba);
+    CHECK(picture(ball, 0.5, in_panorama(plain)).rgba != picture(ball, 0, in_panorama(plain)).rgba);
+    // One pass for the background, one for the ball.
+    CHECK(studio.stats.passes == 2);
+}
