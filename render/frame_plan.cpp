@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "transparency_plan.hpp"
+
 namespace vrut {
 
 namespace {
@@ -15,7 +17,11 @@ std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, con
     const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
     if (geometry.triangles.empty()) return {};
     const Index material = placed.nodes[node].material;
-    DrawItem item{static_cast<Index>(node), data->geometry, material, view * placed.world[node], {}, false};
+    DrawItem item;
+    item.node = static_cast<Index>(node);
+    item.geometry = data->geometry;
+    item.material = material;
+    item.view_from_node = view * placed.world[node];
     const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
     if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn)) return {};
     const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
@@ -67,6 +73,27 @@ bool has_cube_map(const Scene& scene) {
     });
 }
 
+/// By rising id.
+Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* shapes) {
+    const PlacedScene& placed = *view.scene;
+    const Scene& scene = *placed.scene;
+    const auto is_opaque = [&](const DrawItem& item) {
+        return !scene.is_transparent(scene.material(item.material));
+    };
+    Layers layers;
+    if (view.mode == DrawMode::stylized || std::all_of(items.begin(), items.end(), is_opaque)) {
+        layers.opaque = std::move(items);
+        return layers;
+    }
+    std::vector<DrawItem> transparent;
+    for (const DrawItem& item : items) (is_opaque(item) ? layers.opaque : transparent).push_back(item);
+    mark_hidden_twins(transparent, layers.opaque, scene);
+    std::optional<GlassShapes> own;
+    if (!shapes) shapes = &own.emplace(scene);
+    layers.transparent = order_transparent(transparent, scene, view.light, *shapes);
+    return layers;
+}
+
 }  // namespace
 
 bool is_mirror(const Scene& scene, Index geometry, Index material) {
@@ -74,7 +101,7 @@ bool is_mirror(const Scene& scene, Index geometry, Index material) {
     return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
 }
 
-FramePlan plan_frame(const View& view) {
+FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     FramePlan plan;
     if (!view.scene) return plan;
     const PlacedScene& placed = *view.scene;
@@ -92,8 +119,9 @@ FramePlan plan_frame(const View& view) {
             if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
     }
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
-    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
-    if (!view.wireframe) plan.scene.opaque = std::move(items);
+    if (view.wireframe) return plan;
+    if (view.mode == DrawMode::realistic) add_pictures(items, view);
+    plan.scene = layers_of(std::move(items), view, shapes);
     return plan;
 }
 
@@ -110,13 +138,10 @@ ClassCounts count_classes(const PlacedScene& placed) {
 }
 
 std::vector<std::string> undrawn_features(const Scene& scene) {
-    const auto& materials = scene.materials();
     std::vector<std::string> notices;
     const auto say = [&](auto count, const std::string& what) {
         if (count > 0) notices.push_back(std::to_string(count) + what);
     };
-    say(std::count_if(materials.begin(), materials.end(), [](const Material& m) { return m.diffuse.a < 1; }),
-        " transparent materials are drawn opaque");
     const Reflective reflective = count_reflective(scene);
     say(reflective.mirrors, " planar mirrors are drawn without reflections");
     if (!has_cube_map(scene))

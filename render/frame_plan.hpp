@@ -18,14 +18,25 @@ struct DrawItem {
     bool mirrored = false;     ///< the matrix turns counter-clockwise triangles clockwise
     Index texture = kNone;     ///< whose colour stands in the place of the material's diffuse one
     bool environment = false;  ///< mixed with the panorama that it reflects
+    /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
+    bool behind_twin = false;
+};
+
+/// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,
+/// whose order changes from pixel to pixel, by rising id.
+struct TransparentGroup {
+    std::vector<DrawItem> items;
+    bool exact = false;
 };
 
 /// Faces that are drawn from one sight, in this order.
 struct Layers {
-    std::vector<DrawItem> opaque;  ///< by rising id
+    std::vector<DrawItem> opaque;               ///< by rising id
+    std::vector<TransparentGroup> transparent;  ///< from far to near
 };
 
-/// What a frame needs, and no more: a pass without items does not run. Each by rising id.
+/// What a frame needs, and no more: a pass without items does not run. Edges and what is selected by rising
+/// id.
 struct FramePlan {
     Layers scene;
     std::vector<DrawItem> edges;     ///< with edges
@@ -35,8 +46,11 @@ struct FramePlan {
 /// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
 bool is_mirror(const Scene& scene, Index geometry, Index material);
 
-/// Empty where the view has no scene.
-FramePlan plan_frame(const View& view);
+class GlassShapes;
+
+/// Empty where the view has no scene. What is found out about its geometries is kept in `shapes`, where it is
+/// given, for the next frame.
+FramePlan plan_frame(const View& view, GlassShapes* shapes = nullptr);
 
 /// Geometry nodes of a scene by what their material is.
 struct ClassCounts {

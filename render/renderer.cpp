@@ -7,11 +7,13 @@
 #include "context.hpp"
 #include "frame_plan.hpp"
 #include "framebuffer.hpp"
+#include "glass_shape.hpp"
 #include "gpu_scene.hpp"
 #include "passes/background_pass.hpp"
 #include "passes/edge_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
+#include "passes/transparent_pass.hpp"
 #include "sampling.hpp"
 
 namespace vrut {
@@ -60,22 +62,26 @@ struct Renderer::Impl {
         glDisable(GL_DITHER);
     }
 
-    void use_target(int width, int height) {
-        if (target && target->width() == width && target->height() == height) return;
+    void use_target(int width, int height, bool deep) {
+        if (target && target->width() == width && target->height() == height && target->deep() == deep)
+            return;
         target.reset();  // the old one's memory is free before the new one takes its own
-        target.emplace(width, height);
+        target.emplace(width, height, deep);
     }
 
     void use_scene(const std::shared_ptr<const Scene>& wanted) {
         if (scene && scene->scene() == wanted) return;
         scene.reset();
         scene.emplace(wanted);
+        shapes.emplace(*wanted);
     }
 
     void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
         if (BackgroundPass::is_needed(view)) background.draw(sight, view, *scene, stats);
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
+        for (const TransparentGroup& group : layers.transparent)
+            transparent.draw_sorted(group.items, *scene, programs, stats);
     }
 
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
@@ -96,10 +102,12 @@ struct Renderer::Impl {
 
     GlContext context;  // first: destroyed after everything below
     std::optional<GpuScene> scene;
+    std::optional<GlassShapes> shapes;
     std::optional<Framebuffer> target;
     SurfacePrograms programs;
     BackgroundPass background;
     OpaquePass opaque;
+    TransparentPass transparent;
     EdgePass edges;
     OutlinePass outline;
     std::vector<std::uint8_t> sample;
@@ -118,12 +126,12 @@ std::vector<std::string> Renderer::take_messages() { return impl_->context.take_
 bool Renderer::render(const View& view, Image& image, FrameStats& stats,
                       const std::function<bool()>& interrupted, Accumulation* kept) {
     stats = {};
-    impl_->use_target(view.width, view.height);
     image.resize(view.width, view.height);
 
     Clock::time_point start = Clock::now();
     if (view.scene) impl_->use_scene(view.scene->scene);
-    const FramePlan plan = plan_frame(view);
+    const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
+    impl_->use_target(view.width, view.height, !plan.scene.transparent.empty());
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
     const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
     Accumulation& sum = kept ? *kept : impl_->accumulation;

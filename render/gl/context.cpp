@@ -92,7 +92,7 @@ void check_drawing() {
         " 0, 1); }";
     constexpr std::string_view kFragment =
         "#version 450 core\nout vec4 color; void main() { color = vec4(0.2, 0.4, 0.6, 1); }";
-    const Framebuffer framebuffer(kSize, kSize);
+    Framebuffer framebuffer(kSize, kSize);
     const GlProgram program = make_program(kVertex, kFragment);
     const GlVertexArray vertex_array = make_vertex_array();
     framebuffer.bind();

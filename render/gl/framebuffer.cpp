@@ -6,10 +6,11 @@
 
 namespace vrut {
 
-Framebuffer::Framebuffer(int width, int height)
+Framebuffer::Framebuffer(int width, int height, bool deep)
     : width_(width),
       height_(height),
-      color_(make_renderbuffer(GL_RGBA8, width, height)),
+      deep_(deep),
+      color_(make_renderbuffer(deep ? GL_RGBA16 : GL_RGBA8, width, height)),
       depth_(make_renderbuffer(GL_DEPTH_COMPONENT32F, width, height)),
       framebuffer_(make_framebuffer()) {
     glNamedFramebufferRenderbuffer(framebuffer_.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.get());
@@ -24,11 +25,18 @@ void Framebuffer::bind() const {
     glViewport(0, 0, width_, height_);
 }
 
-void Framebuffer::read(std::span<std::uint8_t> pixels) const {
+void Framebuffer::read(std::span<std::uint8_t> pixels) {
     assert(pixels.size() == static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+    if (!deep_) {
+        glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
+        return;
+    }
+    deep_pixels_.resize(pixels.size());
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_SHORT, deep_pixels_.data());
+    for (std::size_t k = 0; k < pixels.size(); ++k)  // 65535 / 255 = 257
+        pixels[k] = static_cast<std::uint8_t>((deep_pixels_[k] + 128U) / 257U);
 }
 
 void wait_for_gl() {

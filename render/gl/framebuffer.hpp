@@ -2,28 +2,33 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "handles.hpp"
 
 namespace vrut {
 
-/// A colour target (RGBA8) with depth (32-bit float).
+/// A colour target (RGBA8; `deep`: RGBA16, in which many layers can be blended before rounding shows) with
+/// depth (32-bit float).
 class Framebuffer {
 public:
     /// Throws std::runtime_error where the driver has no memory for it.
-    Framebuffer(int width, int height);
+    Framebuffer(int width, int height, bool deep = false);
 
     int width() const { return width_; }
     int height() const { return height_; }
+    bool deep() const { return deep_; }
     /// Makes it what is drawn into, all of it.
     void bind() const;
     /// Copies the colours: 4 bytes a pixel, rows from the bottom up, width · height · 4 bytes in all.
-    void read(std::span<std::uint8_t> pixels) const;
+    void read(std::span<std::uint8_t> pixels);
 
 private:
     int width_, height_;
+    bool deep_;
     GlRenderbuffer color_, depth_;
     GlFramebuffer framebuffer_;
+    std::vector<std::uint16_t> deep_pixels_;  // read as they are: the driver takes longer to convert them
 };
 
 /// Waits until everything submitted so far is drawn.

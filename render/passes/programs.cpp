@@ -21,6 +21,7 @@ enum Uniform : GLint {
     shininess_at = 8,
     both_sides_at = 9,
     reflectivity_at = 10,
+    alpha_at = 11,
 };
 
 constexpr GLuint kSightBinding = 0;
@@ -51,6 +52,7 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 out vec3 view_position;
 out vec3 view_normal;
+invariant gl_Position;  // one depth in all programs
 #ifdef TEXTURED
 layout(location = 2) in vec2 texcoord;
 out vec2 place;
@@ -76,6 +78,9 @@ layout(location = 6) uniform vec3 diffuse;
 layout(location = 7) uniform vec3 specular;
 layout(location = 8) uniform float shininess;
 layout(location = 9) uniform bool both_sides;
+#ifdef GLASS
+layout(location = 11) uniform float alpha;
+#endif
 in vec3 view_position;
 in vec3 view_normal;
 #ifdef TEXTURED
@@ -131,15 +136,23 @@ void main() {
     float lambert = max(dot(to_light, n), 0);
     float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
 #ifdef TEXTURED
-    vec3 matte = filtered(image, place).rgb;
+    vec4 texel = filtered(image, place);
+    vec3 matte = texel.rgb;
 #else
     vec3 matte = diffuse;
 #endif
     vec3 lit = matte + specular * pow(highlight, shininess);
-    color = vec4(clamp(base + lit * light_color.rgb * (lambert * intensity), 0, 1), 1);
+    vec3 own = clamp(base + lit * light_color.rgb * (lambert * intensity), 0, 1);
 #ifdef ENVIRONMENT
     vec3 seen = world_from_view * reflect(-to_eye, n);
-    color.rgb = mix(color.rgb, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
+    own = mix(own, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
+#endif
+#if defined(GLASS) && defined(TEXTURED)
+    color = vec4(own, 1) * (alpha * texel.a);
+#elif defined(GLASS)
+    color = vec4(own, 1) * alpha;
+#else
+    color = vec4(own, 1);
 #endif
 }
 )";
@@ -223,6 +236,7 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     define(variant.shape == Shape::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.environment, "ENVIRONMENT");
+    define(variant.shape == Shape::glass, "GLASS");
     head += kSightBlock;
     const std::string filter(variant.textured || variant.environment ? kTextureFilter : std::string_view());
     return make_program(head + std::string(kVertexShader), head + filter + std::string(kFragmentShader));
@@ -257,6 +271,7 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
     glUniform1i(both_sides_at, item.sides == Sides::both);
+    if (shape == Shape::glass) glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
 }
 
 void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {

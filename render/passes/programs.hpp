@@ -23,6 +23,7 @@ public:
     enum class Shape {
         faces,
         edges,  ///< without sides: their normals are turned to the viewer
+        glass,  ///< faces, their colour multiplied by alpha
     };
 
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.

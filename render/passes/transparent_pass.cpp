@@ -1,0 +1,25 @@
+#include "passes/transparent_pass.hpp"
+
+#include "passes/drawing.hpp"
+
+namespace vrut {
+
+void TransparentPass::draw_sorted(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
+                                  FrameStats& stats) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        programs.use(SurfacePrograms::Shape::glass, item, geometry, scene.scene()->material(item.material));
+        glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+    ++stats.passes;
+}
+
+}  // namespace vrut

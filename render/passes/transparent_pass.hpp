@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+
+#include "passes/programs.hpp"
+
+namespace vrut {
+
+/// Faces of transparent materials over what is drawn already. They are tested against its depth and leave it
+/// as it is.
+class TransparentPass {
+public:
+    /// Draws `items` in their order into the bound framebuffer; adds its draws and triangles to `stats`.
+    void draw_sorted(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
+                     FrameStats& stats);
+};
+
+}  // namespace vrut

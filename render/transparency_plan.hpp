@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+
+#include "frame_plan.hpp"
+#include "glass_shape.hpp"
+
+namespace vrut {
+
+/// Transparent items, given by rising id, in groups from far to near as the eye (the origin of their view
+/// space) sees them. What lies before what is told by a plane between two boxes: the one on the eye's side is
+/// in front. Items that no such plane parts, and rings of items, become an exact group if drawing them in the
+/// wrong order could change a colour by more than 1/255. Above kMostPairs pairs that overlap on the screen,
+/// all are drawn by their distance.
+std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
+                                                const Light& light, GlassShapes& shapes);
+
+inline constexpr std::size_t kMostPairs = std::size_t{1} << 20;
+
+/// Sets behind_twin of each of `items`.
+void mark_hidden_twins(std::vector<DrawItem>& items, std::span<const DrawItem> others, const Scene& scene);
+
+}  // namespace vrut

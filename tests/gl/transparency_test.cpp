@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+/// Glass that looks the same under any light.
+Material glass(const glm::dvec3& color, double alpha, bool two_sided = false) {
+    Material material;
+    material.emission = {color, 1};
+    material.diffuse = {0, 0, 0, alpha};
+    material.two_sided = two_sided;
+    return material;
+}
+
+Material paint(const glm::dvec3& color) { return glass(color, 1); }
+
+glm::dvec3 over(const glm::dvec3& behind, const Material& material) {
+    return glm::mix(behind, glm::dvec3(material.emission), material.diffuse.a);
+}
+
+int distance(const glm::ivec3& a, const glm::ivec3& b) {
+    const glm::ivec3 off = glm::abs(a - b);
+    return std::max({off.x, off.y, off.z});
+}
+
+/// With a pixel whose centre lies on the axis.
+View odd_view(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    View view = view_from(eye, focus);
+    view.width = 97;
+    view.height = 65;
+    return view;
+}
+
+/// The pixel in the middle, which shows `expected` within `tolerance`.
+void check_middle(const Image& image, const glm::dvec3& expected, int tolerance = 1) {
+    const glm::ivec3 seen = pixel_of(image, image.width / 2, image.height / 2);
+    CHECK_MESSAGE(distance(seen, bytes_of(expected)) <= tolerance, seen.x, " ", seen.y, " ", seen.z,
+                  " instead of ", bytes_of(expected).x, " ", bytes_of(expected).y, " ", bytes_of(expected).z);
+}
+
+}  // namespace
+
+TEST_CASE("layers of glass are composited from far to near, in any order of nodes, from both sides") {
+    Studio studio;
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int worst = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        const int count = 1 + trial % 16;
+        std::vector<Id> ids(static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<Id>(i) + 1;
+        std::shuffle(ids.begin(), ids.end(), random);
+        const double thin = trial % 3 == 0 ? 0.1 : 1;
+        std::vector<Part> parts;
+        for (int i = 0; i < count; ++i)
+            parts.push_back({ids[static_cast<std::size_t>(i)], quad(2),
+                             glass({unit(random), unit(random), unit(random)}, thin * unit(random), true),
+                             moved_by({0, 0, 0.2 * i})});
+        const auto scene = scene_of(parts);
+        for (const bool front : {true, false}) {
+            const View view = view_from({0.1, 0.2, front ? 9.0 : -7.0});
+            glm::dvec3 expected = view.background.color;
+            for (int i = 0; i < count; ++i)
+                expected =
+                    over(expected, parts[static_cast<std::size_t>(front ? i : count - 1 - i)].material);
+            const Image image = studio.draw(scene, view);
+            worst = std::max(worst, distance(pixel_of(image, 48, 32), bytes_of(expected)));
+        }
+    }
+    CHECK(worst <= 1);
+}
+
+TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emission too") {
+    Studio studio;
+    Material material = material_of({0.5, 0.3, 0.2}, {0.6, 0.7, 0.8}, 20);
+    material.emission = {0.1, 0.05, 0, 1};
+    for (const double alpha : {0.0, 0.02, 0.5, 0.98, 0.9999}) {
+        CAPTURE(alpha);
+        material.diffuse.a = alpha;
+        const View view = odd_view({0, 0, 5});
+        const glm::dvec3 own = phong(material, view.light, view.camera.eye, {0, 0, 0}, {0, 0, 1});
+        check_middle(studio.draw(scene_of({{1, quad(1), material}}), view),
+                     glm::mix(view.background.color, own, alpha));
+        CHECK(studio.stats.passes == 1);
+    }
+    // A sum above 1 is clamped before it is multiplied.
+    material = glass({3, 0.5, 0}, 0.5);
+    check_middle(studio.draw(scene_of({{1, quad(1), material}}), odd_view({0, 0, 5})),
+                 glm::mix(kDefaultBackground, glm::dvec3(1, 0.5, 0), 0.5));
+}
+
+TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
+    Studio studio;
+    const glm::dvec3 red(0.8, 0.1, 0.1), green(0.1, 0.7, 0.2);
+    const auto scene = scene_of({{1, quad(1), glass(green, 0.4, true), moved_by({0, 0, 1})},
+                                 {2, quad(1), paint(red), glm::dmat4(1)},
+                                 {3, turned_inside_out(quad(1)), paint(red), glm::dmat4(1)}});
+    check_middle(studio.draw(scene, odd_view({0, 0, 5})), glm::mix(red, green, 0.4));
+    CHECK(studio.stats.passes == 2);
+    check_middle(studio.draw(scene, odd_view({0, 0, -5})), red);
+    // The back of one-sided glass is not drawn.
+    const auto one_sided = scene_of({{1, quad(1), glass(green, 0.4)}});
+    check_middle(studio.draw(one_sided, odd_view({0, 0, 5})), glm::mix(kDefaultBackground, green, 0.4));
+    check_middle(studio.draw(one_sided, odd_view({0, 0, -5})), kDefaultBackground);
+    // Mirrored, its front is still its front.
+    const auto mirrored = scene_of({{1, quad(1), glass(green, 0.4), scaled_by({-1, 1, 1})}});
+    check_middle(studio.draw(mirrored, odd_view({0, 0, 5})), glm::mix(kDefaultBackground, green, 0.4));
+    check_middle(studio.draw(mirrored, odd_view({0, 0, -5})), kDefaultBackground);
+}
+
+TEST_CASE("of the same geometry in the same place the higher id is in front, whichever is glass") {
+    Studio studio;
+    const glm::dvec3 red(0.8, 0.1, 0.1), green(0.1, 0.7, 0.2);
+    const Material pane = glass(green, 0.4, true), other = glass(red, 0.3, true);
+    Material solid = paint(red);
+    solid.two_sided = true;
+    const glm::dmat4 matrix = turned_by(20, {0, 1, 0}) * moved_by({0.1, 0.2, 0.3});
+    // One geometry of two nodes.
+    const auto twins = [&](const Material& first, const Material& second, bool first_is_higher) {
+        SceneParts parts;
+        parts.geometries = {quad(1)};
+        parts.materials = {first, second};
+        for (const Index i : {0, 1})
+            parts.nodes.push_back({Node{(i == 0) == first_is_higher ? 9 : 5,
+                                        {},
+                                        NodeType::geometry,
+                                        kNone,
+                                        {},
+                                        true,
+                                        matrix,
+                                        GeometryData{0, i}},
+                                   0});
+        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    };
+    for (const double side : {5.0, -5.0}) {
+        const View view = odd_view({0, 0, side});
+        const glm::dvec3 back = view.background.color;
+        check_middle(studio.draw(twins(pane, other, true), view), over(over(back, other), pane));
+        check_middle(studio.draw(twins(pane, other, false), view), over(over(back, pane), other));
+        check_middle(studio.draw(twins(pane, solid, true), view), over(red, pane));
+        check_middle(studio.draw(twins(pane, solid, false), view), red);
+    }
+}
+
+TEST_CASE("glass around the eye is in front of glass outside") {
+    Studio studio;
+    const Material around = glass({0.2, 0.3, 0.9}, 0.5, true), outside = glass({0.9, 0.2, 0.1}, 0.5, true);
+    for (const bool around_first : {true, false}) {
+        const auto scene = scene_of({{around_first ? 1 : 2, sphere(1, 12), around},
+                                     {around_first ? 2 : 1, quad(2), outside, moved_by({0, 0, -3})}});
+        const View view = odd_view({0, 0, 0.5}, {0, 0, -3});
+        check_middle(studio.draw(scene, view), over(over(view.background.color, outside), around));
+    }
+}
+
+TEST_CASE("a thousand panes") {
+    Studio studio;
+    std::vector<Part> parts;
+    glm::dvec3 expected = kDefaultBackground;
+    for (int i = 0; i < 1000; ++i) {
+        // 617 is coprime to 1000: ids in no order.
+        const Id id = 1 + i * 617 % 1000;
+        const Material material = glass({i % 7 / 6.0, i % 5 / 4.0, i % 3 / 2.0}, 0.05, true);
+        parts.push_back({id, quad(20), material, moved_by({0, 0, -0.01 * i})});
+    }
+    for (std::size_t i = 1000; i-- > 0;) expected = over(expected, parts[i].material);
+    const auto scene = scene_of(parts);
+    check_middle(studio.draw(scene, odd_view({0, 0, 5})), expected);
+    CHECK(studio.stats.passes == 1);
+    CHECK(studio.stats.draws == 1000);
+}
