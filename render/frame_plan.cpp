@@ -101,6 +101,11 @@ bool is_mirror(const Scene& scene, Index geometry, Index material) {
     return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
 }
 
+bool has_exact_group(const Layers& layers) {
+    return std::any_of(layers.transparent.begin(), layers.transparent.end(),
+                       [](const TransparentGroup& group) { return group.exact; });
+}
+
 FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     FramePlan plan;
     if (!view.scene) return plan;

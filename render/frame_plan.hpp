@@ -35,6 +35,8 @@ struct Layers {
     std::vector<TransparentGroup> transparent;  ///< from far to near
 };
 
+bool has_exact_group(const Layers& layers);
+
 /// What a frame needs, and no more: a pass without items does not run. Edges and what is selected by rising
 /// id.
 struct FramePlan {

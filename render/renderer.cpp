@@ -13,6 +13,7 @@
 #include "passes/edge_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
+#include "passes/pixel_sort_pass.hpp"
 #include "passes/transparent_pass.hpp"
 #include "sampling.hpp"
 
@@ -81,7 +82,10 @@ struct Renderer::Impl {
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
         for (const TransparentGroup& group : layers.transparent)
-            transparent.draw_sorted(group.items, *scene, programs, stats);
+            if (group.exact)
+                pixel_sort.draw(group.items, *scene, sight.clip_from_view, *target, programs, stats);
+            else
+                transparent.draw(group.items, *scene, programs, stats);
     }
 
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
@@ -108,6 +112,7 @@ struct Renderer::Impl {
     BackgroundPass background;
     OpaquePass opaque;
     TransparentPass transparent;
+    PixelSortPass pixel_sort;
     EdgePass edges;
     OutlinePass outline;
     std::vector<std::uint8_t> sample;
@@ -132,6 +137,7 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     if (view.scene) impl_->use_scene(view.scene->scene);
     const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
     impl_->use_target(view.width, view.height, !plan.scene.transparent.empty());
+    if (!has_exact_group(plan.scene)) impl_->pixel_sort.release();
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
     const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
     Accumulation& sum = kept ? *kept : impl_->accumulation;

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "colors.hpp"
-#include "passes/drawing.hpp"
 
 namespace vrut {
 
@@ -68,23 +67,6 @@ GlFramebuffer make_target(const GlTexture& texture) {
     if (glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw std::runtime_error("no outline can be drawn: the driver refuses the framebuffer");
     return framebuffer;
-}
-
-/// All that a part can cover, within the picture; everything where it reaches behind the eye.
-PixelBox pixel_box(const DrawItem& item, const Scene& scene, const glm::dmat4& clip_from_view,
-                   const glm::dvec2& picture) {
-    const Bounds& bounds = scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-    const glm::dmat4 clip_from_node = clip_from_view * item.view_from_node;
-    glm::dvec2 low = picture, high(0);
-    for (const glm::dvec3& corner : corners(bounds)) {
-        const glm::dvec4 clip = clip_from_node * glm::dvec4(corner, 1);
-        if (!(clip.w > 0)) return {{0, 0}, glm::ivec2(picture)};
-        const glm::dvec2 pixel =
-            glm::clamp((glm::dvec2(clip) / clip.w * 0.5 + 0.5) * picture, glm::dvec2(0), picture);
-        low = glm::min(low, pixel);
-        high = glm::max(high, pixel);
-    }
-    return {glm::ivec2(glm::floor(low)), glm::ivec2(glm::ceil(high))};
 }
 
 void scissor(const PixelBox& box) {

@@ -4,15 +4,10 @@
 #include <span>
 
 #include "framebuffer.hpp"
+#include "passes/drawing.hpp"
 #include "passes/programs.hpp"
 
 namespace vrut {
-
-/// Pixels from `low` to before `high`, y up.
-struct PixelBox {
-    glm::ivec2 low{0}, high{0};
-    glm::ivec2 size() const { return high - low; }
-};
 
 /// An outline around all that some nodes cover, of constant width in pixels, over everything. What they
 /// cover, seen or hidden, is drawn as a mask; then each pixel outside that has some of it within the width is

@@ -22,6 +22,7 @@ enum Uniform : GLint {
     both_sides_at = 9,
     reflectivity_at = 10,
     alpha_at = 11,
+    order_at = 12,
 };
 
 constexpr GLuint kSightBinding = 0;
@@ -81,6 +82,12 @@ layout(location = 9) uniform bool both_sides;
 #ifdef GLASS
 layout(location = 11) uniform float alpha;
 #endif
+#ifdef LAYERED
+layout(location = 12) uniform uint order;
+layout(early_fragment_tests) in;
+#else
+out vec4 color;
+#endif
 in vec3 view_position;
 in vec3 view_normal;
 #ifdef TEXTURED
@@ -91,7 +98,6 @@ in vec2 place;
 layout(location = 10) uniform float reflectivity;
 layout(binding = 1) uniform samplerCube panorama;
 #endif
-out vec4 color;
 
 float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
 
@@ -148,12 +154,28 @@ void main() {
     own = mix(own, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
 #endif
 #if defined(GLASS) && defined(TEXTURED)
-    color = vec4(own, 1) * (alpha * texel.a);
+    vec4 layer = vec4(own, 1) * (alpha * texel.a);
 #elif defined(GLASS)
-    color = vec4(own, 1) * alpha;
+    vec4 layer = vec4(own, 1) * alpha;
+#endif
+#if defined(LAYERED)
+    add_layer(layer, order);
+#elif defined(GLASS)
+    color = layer;
 #else
     color = vec4(own, 1);
 #endif
+}
+)";
+
+// After kLayerLists. A layer without room is counted all the same.
+constexpr std::string_view kAddLayer = R"(
+void add_layer(vec4 own, uint order) {
+    uint number = atomicAdd(count, 1) + 1;
+    if (number > most) return;
+    uint next = atomicExchange(first_layer[list_index(ivec2(gl_FragCoord.xy))], number);
+    layers[number - 1] =
+        Layer(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
 }
 )";
 
@@ -213,6 +235,24 @@ glm::mat3 normal_matrix(const glm::dmat3& m, bool mirrored) {
 
 }  // namespace
 
+const std::string_view kLayerLists = R"(
+struct Layer {
+    uint next;  // in the same pixel; 0 for none
+    uint order;
+    float depth;  // reversed
+    uint red_green, blue_alpha;  // multiplied by alpha
+};
+layout(std430, binding = 0) buffer Layers {
+    uint count, most, unused_0, unused_1;
+    Layer layers[];
+};
+layout(std430, binding = 1) buffer Lists {
+    ivec4 box;  // low corner and size
+    uint first_layer[];
+};
+int list_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
+)";
+
 SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light) {
     if (light.headlight) return LightKind::headlight;
     switch (light.type) {
@@ -236,10 +276,13 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     define(variant.shape == Shape::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.environment, "ENVIRONMENT");
-    define(variant.shape == Shape::glass, "GLASS");
+    const bool layered = variant.shape == Shape::layered_glass;
+    define(layered || variant.shape == Shape::glass, "GLASS");
+    define(layered, "LAYERED");
     head += kSightBlock;
-    const std::string filter(variant.textured || variant.environment ? kTextureFilter : std::string_view());
-    return make_program(head + std::string(kVertexShader), head + filter + std::string(kFragmentShader));
+    std::string needed(variant.textured || variant.environment ? kTextureFilter : std::string_view());
+    if (layered) needed += std::string(kLayerLists) + std::string(kAddLayer);
+    return make_program(head + std::string(kVertexShader), head + needed + std::string(kFragmentShader));
 }
 
 void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
@@ -271,7 +314,8 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
     glUniform1i(both_sides_at, item.sides == Sides::both);
-    if (shape == Shape::glass) glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
+    if (shape == Shape::glass || shape == Shape::layered_glass)
+        glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
 }
 
 void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
@@ -281,6 +325,8 @@ void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
     set(plain_color_at, glm::vec3(color));
 }
+
+void set_order(GLuint order) { glUniform1ui(order_at, order); }
 
 void set_place(const DrawItem& item, const GpuGeometry& geometry) {
     glm::dmat4 view_from_local = item.view_from_node;

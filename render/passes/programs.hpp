@@ -2,6 +2,7 @@
 
 #include <compare>
 #include <map>
+#include <string_view>
 
 #include "frame_plan.hpp"
 #include "gpu_scene.hpp"
@@ -22,8 +23,9 @@ class SurfacePrograms {
 public:
     enum class Shape {
         faces,
-        edges,  ///< without sides: their normals are turned to the viewer
-        glass,  ///< faces, their colour multiplied by alpha
+        edges,          ///< without sides: their normals are turned to the viewer
+        glass,          ///< faces, their colour multiplied by alpha
+        layered_glass,  ///< the same, into the lists of kLayerLists
     };
 
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
@@ -59,6 +61,14 @@ public:
 private:
     GlProgram program_;
 };
+
+/// Lists of the transparent layers at each pixel of a box: GLSL of a layered_glass program and of one that
+/// reads them. Layers are numbered from 1.
+extern const std::string_view kLayerLists;
+inline constexpr GLuint kLayersBinding = 0, kListsBinding = 1;
+
+/// With a layered_glass program: at equal depth the higher order is in front.
+void set_order(GLuint order);
 
 /// Where the next draw of the current program lies.
 void set_place(const DrawItem& item, const GpuGeometry& geometry);

@@ -4,8 +4,8 @@
 
 namespace vrut {
 
-void TransparentPass::draw_sorted(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
-                                  FrameStats& stats) {
+void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
+                           FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);

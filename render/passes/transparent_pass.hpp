@@ -11,8 +11,7 @@ namespace vrut {
 class TransparentPass {
 public:
     /// Draws `items` in their order into the bound framebuffer; adds its draws and triangles to `stats`.
-    void draw_sorted(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
-                     FrameStats& stats);
+    void draw(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs, FrameStats& stats);
 };
 
 }  // namespace vrut

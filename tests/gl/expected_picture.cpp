@@ -93,8 +93,12 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
     const glm::dvec3 ray =
         view + right * ((x - view_.width / 2.0) * pixel) + up * ((view_.height / 2.0 - y) * pixel);
 
-    Seen seen{-1, view_.background.color};
-    double nearest = std::numeric_limits<double>::infinity();
+    struct Hit {
+        double distance;
+        Seen seen;
+        double alpha;
+    };
+    std::vector<Hit> hits;
     for (const Triangle& triangle : triangles_) {
         const auto& [a, b, c] = triangle.corners;
         // Möller and Trumbore: camera.eye + t ray = a + u (b - a) + v (c - a)
@@ -108,15 +112,36 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
         const double u = glm::dot(from_a, p) / determinant;
         const glm::dvec3 q = glm::cross(from_a, ab);
         const double v = glm::dot(ray, q) / determinant, t = glm::dot(ac, q) / determinant;
-        // Of the same depth the later one is in front.
-        if (u < 0 || v < 0 || u + v > 1 || t <= 0 || t > nearest) continue;
-        nearest = t;
+        if (u < 0 || v < 0 || u + v > 1 || t <= 0) continue;
         const glm::dvec3 point = camera.eye + ray * t;
         glm::dvec3 normal = glm::normalize(a.normal * (1 - u - v) + b.normal * u + c.normal * v);
         if (triangle.both_sides && glm::dot(normal, camera.eye - point) < 0) normal = -normal;
-        seen = {triangle.surface, phong(triangle.material, view_.light, camera.eye, point, normal)};
+        const Material& material = triangle.material;
+        hits.push_back({t,
+                        {triangle.surface, phong(material, view_.light, camera.eye, point, normal)},
+                        material.diffuse.a});
     }
-    return seen;
+    // Of the same depth the later one is in front.
+    std::reverse(hits.begin(), hits.end());
+    std::stable_sort(hits.begin(), hits.end(),
+                     [](const Hit& a, const Hit& b) { return a.distance < b.distance; });
+
+    Seen all{-1, glm::dvec3(0)};
+    double through = 1;
+    const Hit* before = nullptr;
+    for (const Hit& hit : hits) {
+        // A ray through the edge between two triangles meets their surface once.
+        if (before && before->seen.surface == hit.seen.surface &&
+            hit.distance - before->distance < 1e-9 * hit.distance)
+            continue;
+        before = &hit;
+        all.color += through * hit.alpha * hit.seen.color;
+        all.surface = ((all.surface + 1) * 1000 + hit.seen.surface) % 1'000'003;  // one number for each stack
+        through *= 1 - hit.alpha;
+        if (through <= 0) break;
+    }
+    all.color += through * view_.background.color;
+    return all;
 }
 
 std::optional<ExpectedPicture::Seen> ExpectedPicture::pixel(int x, int y) const {

@@ -19,7 +19,7 @@ public:
     ExpectedPicture(const PlacedScene& placed, const View& view);
 
     struct Seen {
-        int surface = -1;  ///< which face, or which smooth part; -1 for the background
+        int surface = -1;  ///< which faces or smooth parts, one behind the other; -1 for the background
         glm::dvec3 color{0};
     };
     /// At a place in pixels from the picture's top left.

@@ -175,3 +175,71 @@ TEST_CASE("a thousand panes") {
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.draws == 1000);
 }
+
+namespace {
+
+/// Three long panes, each of which passes before the next and behind the one before it.
+std::vector<Part> ring_of_three() {
+    const std::array<glm::dvec3, 3> colors{{{0.9, 0.1, 0.1}, {0.1, 0.8, 0.2}, {0.2, 0.2, 0.9}}};
+    std::vector<Part> parts;
+    for (int i = 0; i < 3; ++i)
+        parts.push_back({3 - i, quad(1), glass(colors[static_cast<std::size_t>(i)], 0.4 + 0.1 * i, true),
+                         turned_by(120 * i, {0, 0, 1}) * moved_by({0, 0.8, 0}) * turned_by(15, {0, 1, 0}) *
+                             scaled_by({2, 0.4, 1})});
+    return parts;
+}
+
+const std::array<glm::dvec3, 6> kEyes{
+    {{0, 0, 5}, {0, 0, -5}, {3, 2, 4}, {-4, 1, 2}, {1, -3, -4}, {-2, 4, -3}}};
+
+}  // namespace
+
+TEST_CASE("panes that cross are right on both sides of the line in which they do") {
+    Studio studio;
+    const auto scene = scene_of({{1, quad(1), glass({0.9, 0.1, 0.1}, 0.5, true), turned_by(40, {0, 1, 0})},
+                                 {2, quad(1), glass({0.1, 0.2, 0.9}, 0.6, true), turned_by(-30, {0, 1, 0})},
+                                 {3, quad(2), paint({0.7, 0.8, 0.3}), moved_by({0, 0, -2})}});
+    for (const glm::dvec3& eye : kEyes) {
+        CAPTURE(eye.x);
+        CHECK(studio.check(scene, view_from(eye)).surfaces > 300);
+        CHECK(studio.stats.passes == 2);
+    }
+}
+
+TEST_CASE("a ring of three panes") {
+    Studio studio;
+    for (const glm::dvec3& eye : kEyes) {
+        CAPTURE(eye.x);
+        CHECK(studio.check(scene_of(ring_of_three()), view_from(eye)).surfaces > 400);
+    }
+    CHECK(studio.draw(scene_of(ring_of_three()), view_from({0, 0, 5})).width == 96);
+    CHECK(studio.stats.passes == 1);
+}
+
+TEST_CASE("a closed glass ball, drawn from both sides, before a backdrop") {
+    Studio studio;
+    Material material = material_of({0.5, 0.3, 0.2}, {0.6, 0.7, 0.8}, 20);
+    material.diffuse.a = 0.3;
+    material.two_sided = true;
+    const auto scene = scene_of({{2, sphere(1, 16), material, glm::dmat4(1)},
+                                 {1, quad(2), paint({0.7, 0.8, 0.3}), moved_by({0, 0, -2})}});
+    for (const glm::dvec3& eye : kEyes) CHECK(studio.check(scene, view_from(eye)).surfaces > 400);
+    CHECK(studio.check(scene, view_from({0.3, 0.2, 0.1}, {0, 0, -1})).surfaces > 2000);
+}
+
+TEST_CASE("layers that do not fit into the budget are made in parts of the picture") {
+    Studio studio;
+    std::vector<Part> parts;
+    for (int i = 0; i < 24; ++i)
+        parts.push_back({1 + i * 7 % 24, quad(20),
+                         glass({i % 7 / 6.0, i % 5 / 4.0, i % 3 / 2.0}, 0.1 + 0.03 * (i % 11), true),
+                         turned_by(-30 + 60 * i / 23.0, {0.2, 1, 0})});
+    const auto scene = scene_of(parts);
+    CHECK(studio.check(scene, view_from({0, 0, 5})).surfaces > 1000);
+    CHECK(studio.stats.passes >= 24 / 2);
+    // So long a row of them that it is cut across.
+    View row = view_from({0, 0, 5});
+    row.width = 256;
+    row.height = 1;
+    CHECK(studio.check(scene, row).surfaces > 50);
+}
