@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "frustum.hpp"
 #include "transparency_plan.hpp"
 
 namespace vrut {
@@ -94,6 +95,13 @@ Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* sha
     return layers;
 }
 
+/// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
+/// pixels of the picture.
+Frustum frustum_of(const View& view) {
+    return frustum_of(view.camera, static_cast<double>(view.width) / view.height,
+                      widened(view.width, view.height, 1));
+}
+
 }  // namespace
 
 bool is_mirror(const Scene& scene, Index geometry, Index material) {
@@ -116,6 +124,11 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
             if (const auto item = item_of(placed, i, view_matrix)) items.push_back(*item);
+    const Frustum frustum = frustum_of(view);
+    std::erase_if(items, [&](const DrawItem& item) {
+        const auto geometry = static_cast<std::size_t>(item.geometry);
+        return lies_outside(frustum, item.view_from_node, placed.scene->geometries()[geometry].bounds);
+    });
     sort_by_id(items, *placed.scene);
 
     if (view.selected != kNone) {

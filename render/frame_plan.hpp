@@ -37,8 +37,8 @@ struct Layers {
 
 bool has_exact_group(const Layers& layers);
 
-/// What a frame needs, and no more: a pass without items does not run. Edges and what is selected by rising
-/// id.
+/// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the picture
+/// is no item. Edges and what is selected by rising id.
 struct FramePlan {
     Layers scene;
     std::vector<DrawItem> edges;     ///< with edges

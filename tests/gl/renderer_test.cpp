@@ -239,7 +239,7 @@ TEST_CASE("other states of the same scene change the picture and upload nothing"
     Studio studio;
     const View view = view_from({0, 0, 5});
     const auto first =
-        scene_of({{1, quad(1), kPaint, glm::dmat4(1)}, {2, box({1, 1, 1}), kPaint, moved_by({0, 9, 0})}});
+        scene_of({{1, quad(1), kPaint, glm::dmat4(1)}, {2, box({1, 1, 1}), kPaint, moved_by({0, 1.5, 0})}});
     const Image before = studio.draw(first, view);
     CHECK(studio.stats.uploads == 2);
     const long objects = live_gl_objects();
