@@ -21,4 +21,7 @@ inline constexpr glm::dvec3 kStylizedEdges{0.55, 0.78, 1};
 /// What marks the selection: orange.
 inline constexpr glm::dvec3 kSelection{1, 0.6, 0};
 
+/// What markers are: crimson, with a white rim.
+inline constexpr glm::dvec3 kMark{0.8, 0.04, 0.32};
+
 }  // namespace vrut

@@ -97,12 +97,28 @@ Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* sha
 
 /// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
 /// pixels of the picture.
-Frustum frustum_of(const View& view) {
+Frustum frustum_of(const View& view, double margin) {
     return frustum_of(view.camera, static_cast<double>(view.width) / view.height,
-                      widened(view.width, view.height, 1));
+                      widened(view.width, view.height, margin));
+}
+
+/// Those before the eye whose sign reaches into the picture.
+std::vector<glm::dvec3> marks_of(const View& view, const glm::dmat4& view_matrix) {
+    std::vector<glm::dvec3> marks;
+    const Frustum frustum = frustum_of(view, mark_radius(view.height) + 1);
+    for (const Mark& mark : view.marks) {
+        const glm::dvec3 point(view_matrix * glm::dvec4(mark.point, 1));
+        if (!(glm::length(point) < kFarthestDrawn && point.z < 0)) continue;
+        if (!lies_outside(frustum, glm::dmat4(1), {point, point})) marks.push_back(point);
+    }
+    std::stable_sort(marks.begin(), marks.end(),
+                     [](const glm::dvec3& a, const glm::dvec3& b) { return a.z < b.z; });
+    return marks;
 }
 
 }  // namespace
+
+double mark_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
 bool is_mirror(const Scene& scene, Index geometry, Index material) {
     const Material& of = scene.material(material);
@@ -124,12 +140,13 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
             if (const auto item = item_of(placed, i, view_matrix)) items.push_back(*item);
-    const Frustum frustum = frustum_of(view);
+    const Frustum frustum = frustum_of(view, 1);
     std::erase_if(items, [&](const DrawItem& item) {
         const auto geometry = static_cast<std::size_t>(item.geometry);
         return lies_outside(frustum, item.view_from_node, placed.scene->geometries()[geometry].bounds);
     });
     sort_by_id(items, *placed.scene);
+    plan.marks = marks_of(view, view_matrix);
 
     if (view.selected != kNone) {
         const std::vector<bool> selected = subtree(*placed.scene, view.selected);

@@ -37,12 +37,13 @@ struct Layers {
 
 bool has_exact_group(const Layers& layers);
 
-/// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the picture
-/// is no item. Edges and what is selected by rising id.
+/// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the
+/// picture is no item. Edges and what is selected by rising id.
 struct FramePlan {
     Layers scene;
     std::vector<DrawItem> edges;     ///< with edges
     std::vector<DrawItem> selected;  ///< to be marked
+    std::vector<glm::dvec3> marks;   ///< in view space, from far to near
 };
 
 /// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
@@ -53,6 +54,9 @@ class GlassShapes;
 /// Empty where the view has no scene. What is found out about its geometries is kept in `shapes`, where it is
 /// given, for the next frame.
 FramePlan plan_frame(const View& view, GlassShapes* shapes = nullptr);
+
+/// Radius of a marker in a picture of that height, in pixels.
+double mark_radius(int picture_height);
 
 /// Geometry nodes of a scene by what their material is.
 struct ClassCounts {

@@ -11,6 +11,7 @@
 #include "gpu_scene.hpp"
 #include "passes/background_pass.hpp"
 #include "passes/edge_pass.hpp"
+#include "passes/mark_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
 #include "passes/pixel_sort_pass.hpp"
@@ -97,6 +98,13 @@ struct Renderer::Impl {
         const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
         draw_layers(plan.scene, view, {clip, view_from_world(view.camera)}, stats);
         if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view.mode, clip, programs, stats);
+        draw_selection(plan, view, clip, stats);
+        if (plan.marks.empty()) return;
+        const auto cover = view.wireframe ? MarkPass::Cover::none : MarkPass::Cover::by_depth;
+        marks.draw(plan.marks, cover, clip, *target, stats);
+    }
+
+    void draw_selection(const FramePlan& plan, const View& view, const glm::dmat4& clip, FrameStats& stats) {
         if (plan.selected.empty()) return;
         if (view.wireframe)
             edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
@@ -115,6 +123,7 @@ struct Renderer::Impl {
     PixelSortPass pixel_sort;
     EdgePass edges;
     OutlinePass outline;
+    MarkPass marks;
     std::vector<std::uint8_t> sample;
     Accumulation accumulation;  // of pictures whose samples the caller does not keep
 };

@@ -194,10 +194,11 @@ void GlContext::describe(const Candidate& candidate) {
     // The surfaceless platform does not say which device it took.
     software_ = candidate.software || renderer.find("llvmpipe") != std::string::npos ||
                 renderer.find("softpipe") != std::string::npos;
-    GLint renderbuffer = 0, viewport[2] = {0, 0};
+    GLint texture = 0, renderbuffer = 0, viewport[2] = {0, 0};
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
-    max_size_ = std::min({renderbuffer, viewport[0], viewport[1]});
+    max_size_ = std::min({texture, renderbuffer, viewport[0], viewport[1]});
 }
 
 std::vector<std::string> GlContext::take_messages() { return std::exchange(messages_, {}); }

@@ -18,6 +18,8 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     bool deep() const { return deep_; }
+    /// Its depth, to be read texel by texel.
+    const GlTexture& depth() const { return depth_; }
     /// Makes it what is drawn into, all of it.
     void bind() const;
     /// Copies the colours: 4 bytes a pixel, rows from the bottom up, width · height · 4 bytes in all.
@@ -26,7 +28,8 @@ public:
 private:
     int width_, height_;
     bool deep_;
-    GlRenderbuffer color_, depth_;
+    GlRenderbuffer color_;
+    GlTexture depth_;
     GlFramebuffer framebuffer_;
     std::vector<std::uint16_t> deep_pixels_;  // read as they are: the driver takes longer to convert them
 };

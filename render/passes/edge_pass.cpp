@@ -22,6 +22,7 @@ void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode m
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
     const bool stylized = mode == DrawMode::stylized;
+    glDepthMask(!stylized);  // of one colour, none hides another
     if (stylized) plain_.use(kStylizedEdges, clip_from_view);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
@@ -32,6 +33,7 @@ void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode m
                          scene.scene()->material(item.material));
         draw_lines(scene.edges(item.geometry), stats);
     }
+    glDepthMask(GL_TRUE);
     ++stats.passes;
 }
 

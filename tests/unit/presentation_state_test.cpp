@@ -206,6 +206,24 @@ TEST_CASE("a selection has its node's name and path") {
     CHECK(stage.presentation.visible().selected != kNone);
 }
 
+TEST_CASE("markers are seen where their point is, go with their node, and hide with it") {
+    Stage stage("a");
+    const auto marks = [&] { return stage.presentation.visible().marks; };
+    CHECK(marks().empty());
+    stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}, {{1.5, 0, 0}}});
+    stage.say("a", kMoveHinge);
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}, {{3.5, 0, 0}}});
+    stage.say("a", patch(R"({"nodes":{"1":{"active":false}}})"));
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}});
+    stage.say("a", patch(R"({"markers":{"free":{"node":5}}})"));  // winter, which does not show
+    CHECK(marks().empty());
+    stage.say("a", patch(R"({"markers":{"free":{"node":4}}})"));
+    CHECK(marks() == std::vector<Mark>{{{4, 6, 7}}});
+    stage.say("a", patch(R"({"markers":{"free":null}})"));
+    CHECK(marks().empty());
+}
+
 TEST_CASE("a view is saved by {}, as the camera stands then") {
     Stage stage("a");
     stage.say("a", patch(R"({"camera":{"eye":[1,3,4],"fov":55}})"));
