@@ -76,8 +76,9 @@ void serve_command(const ServeArguments& arguments) {
     options.record_folder = existing_folder("--record", arguments.record);
 
     Server server(options, *std::move(scene), gl_painter(arguments.device));
+    server.stop_on_signals();  // before the address is told: from then on somebody may stop it
     announce(options.listen, server.port(), options.access);
-    server.run(true);
+    server.run();
     spdlog::info("shut down");
 }
 

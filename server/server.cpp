@@ -175,14 +175,15 @@ std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().por
 const std::string& Server::description() const { return impl_->engine->description(); }
 const Metrics& Server::metrics() const { return impl_->metrics; }
 
-void Server::run(bool handle_signals) {
-    if (handle_signals) {
-        impl_->signals.add(SIGINT);
-        impl_->signals.add(SIGTERM);
-        impl_->signals.async_wait([this](boost::system::error_code error, int) {
-            if (!error) impl_->stop();
-        });
-    }
+void Server::stop_on_signals() {
+    impl_->signals.add(SIGINT);
+    impl_->signals.add(SIGTERM);
+    impl_->signals.async_wait([this](boost::system::error_code error, int) {
+        if (!error) impl_->stop();
+    });
+}
+
+void Server::run() {
     impl_->accept();
     impl_->context.run();
     if (impl_->failure) throw std::runtime_error("drawing has failed: " + *impl_->failure);

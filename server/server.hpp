@@ -34,9 +34,11 @@ public:
     const std::string& description() const;
     const Metrics& metrics() const;
 
-    /// Serves until stop(), or SIGTERM or SIGINT where `handle_signals`; clients are told, and within 3 s it
-    /// is over. Throws std::runtime_error where drawing fails for good.
-    void run(bool handle_signals);
+    /// From here on SIGTERM and SIGINT do what stop() does.
+    void stop_on_signals();
+    /// Serves until stop(); clients are told, and within 3 s it is over. Throws std::runtime_error where
+    /// drawing fails for good.
+    void run();
     /// From any thread.
     void stop();
 

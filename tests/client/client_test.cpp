@@ -86,7 +86,7 @@ public:
                      "node 1 \"Triangle\" geometry geometry 1 end\n",
                      "again.vrut"),
             FakePainter{}.factory());
-        thread_ = std::thread([this] { server_->run(false); });
+        thread_ = std::thread([this] { server_->run(); });
     }
     ~ServerAt() {
         server_->stop();

@@ -279,7 +279,7 @@ TEST_CASE("a painter that fails ends the server with its sentence") {
     std::string sentence;
     std::thread thread([&] {
         try {
-            server.run(false);
+            server.run();
         } catch (const std::exception& error) {
             sentence = error.what();
         }

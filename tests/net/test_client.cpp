@@ -77,7 +77,7 @@ TestServer::TestServer(LoadedScene scene, const PainterFactory& painter, ServerO
     spdlog::set_level(spdlog::level::off);
     options.listen = {"127.0.0.1", 0};
     server_ = std::make_unique<Server>(std::move(options), std::move(scene), painter);
-    thread_ = std::thread([this] { server_->run(false); });
+    thread_ = std::thread([this] { server_->run(); });
 }
 
 TestServer::~TestServer() { stop(); }
