@@ -160,6 +160,15 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     return plan;
 }
 
+std::vector<DrawItem> faces_of(const View& view) {
+    Layers layers = plan_frame(view).scene;
+    std::vector<DrawItem> items = std::move(layers.opaque);
+    for (const TransparentGroup& group : layers.transparent)
+        items.insert(items.end(), group.items.begin(), group.items.end());
+    if (!items.empty()) sort_by_id(items, *view.scene->scene);
+    return items;
+}
+
 ClassCounts count_classes(const PlacedScene& placed) {
     ClassCounts counts;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {

@@ -55,6 +55,9 @@ class GlassShapes;
 /// given, for the next frame.
 FramePlan plan_frame(const View& view, GlassShapes* shapes = nullptr);
 
+/// The items of all faces that a view shows, opaque or not, by rising id.
+std::vector<DrawItem> faces_of(const View& view);
+
 /// Radius of a marker in a picture of that height, in pixels.
 double mark_radius(int picture_height);
 

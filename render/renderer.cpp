@@ -11,6 +11,7 @@
 #include "gpu_scene.hpp"
 #include "passes/background_pass.hpp"
 #include "passes/edge_pass.hpp"
+#include "passes/id_pass.hpp"
 #include "passes/mark_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
@@ -124,6 +125,7 @@ struct Renderer::Impl {
     EdgePass edges;
     OutlinePass outline;
     MarkPass marks;
+    IdPass ids;
     std::vector<std::uint8_t> sample;
     Accumulation accumulation;  // of pictures whose samples the caller does not keep
 };
@@ -176,6 +178,16 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     }
     if (kept) *kept = {};
     return true;
+}
+
+std::vector<Index> Renderer::node_ids(const View& view) {
+    if (!view.scene)
+        return std::vector<Index>(
+            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), kNone);
+    impl_->use_scene(view.scene->scene);
+    const double near = fit_clip_range(view.camera, view.scene->bounds).near;
+    return impl_->ids.draw(faces_of(view), *impl_->scene, view.width, view.height,
+                           reversed_clip_from_view(view, near, glm::dvec2(0)));
 }
 
 }  // namespace vrut

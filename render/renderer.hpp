@@ -34,6 +34,10 @@ public:
     bool render(const View& view, Image& image, FrameStats& stats,
                 const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
 
+    /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
+    /// is in front of what is seen through it. Rows from the bottom up.
+    std::vector<Index> node_ids(const View& view);
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -101,12 +101,16 @@ void write_picture(const RenderArguments& arguments, const Image& image) {
                                      : JpegEncoder().encode(image, arguments.jpeg_quality, false));
 }
 
+void write_ids(const RenderArguments& arguments, const View& view, const std::vector<Index>& nodes) {
+    write_file(arguments.ids, encode_png(picture_of_ids(view, nodes)));
+}
+
 void trace_picture(const RenderArguments& arguments, const View& view) {
     const ReferencePicture picture = trace(view);
+    if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
     write_picture(arguments, image_of(picture));
     if (!arguments.unrounded.empty())
         write_file(arguments.unrounded, encode_pfm(picture.width, picture.height, picture.color));
-    if (!arguments.ids.empty()) write_file(arguments.ids, encode_png(picture_of_ids(view, picture.node)));
 }
 
 void draw_picture(const RenderArguments& arguments, const View& view) {
@@ -114,6 +118,7 @@ void draw_picture(const RenderArguments& arguments, const View& view) {
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
                                  " pixels a side");
+    if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
     Image image;
     FrameStats stats;
     renderer.render(view, image, stats);

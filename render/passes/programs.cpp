@@ -15,6 +15,7 @@ enum Uniform : GLint {
     view_from_local_at = 1,
     normal_matrix_at = 2,
     plain_color_at = 3,
+    number_at = 4,
     base_at = 5,
     diffuse_at = 6,
     specular_at = 7,
@@ -194,6 +195,13 @@ out vec4 color;
 void main() { color = vec4(plain_color, 1); }
 )";
 
+constexpr std::string_view kNumberShader = R"(#version 450 core
+layout(location = 4) uniform int number;
+out int node;
+
+void main() { node = number; }
+)";
+
 void set(GLint location, const glm::vec3& value) { glUniform3fv(location, 1, glm::value_ptr(value)); }
 
 /// 1 - cos, exact near 0.
@@ -231,6 +239,11 @@ glm::mat3 normal_matrix(const glm::dmat3& m, bool mirrored) {
         for (int k = 0; k < 3; ++k) largest = std::max(largest, std::abs(cofactors[i][k]));
     if (largest > 0) cofactors *= (mirrored ? -1 : 1) / largest;
     return glm::mat3(cofactors);
+}
+
+void set_clip(const glm::dmat4& clip_from_view) {
+    const glm::mat4 clip(clip_from_view);
+    glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
 }  // namespace
@@ -321,10 +334,17 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
 void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
     if (!program_) program_ = make_program(kPlainVertexShader, kPlainFragmentShader);
     glUseProgram(program_.get());
-    const glm::mat4 clip(clip_from_view);
-    glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
+    set_clip(clip_from_view);
     set(plain_color_at, glm::vec3(color));
 }
+
+void NumberProgram::use(const glm::dmat4& clip_from_view) {
+    if (!program_) program_ = make_program(kPlainVertexShader, kNumberShader);
+    glUseProgram(program_.get());
+    set_clip(clip_from_view);
+}
+
+void NumberProgram::set_number(Index number) { glUniform1i(number_at, number); }
 
 void set_order(GLuint order) { glUniform1ui(order_at, order); }
 

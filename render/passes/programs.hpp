@@ -62,6 +62,17 @@ private:
     GlProgram program_;
 };
 
+/// The number of a node everywhere, into a target of integers.
+class NumberProgram {
+public:
+    void use(const glm::dmat4& clip_from_view);
+    /// Of what is drawn from here on.
+    void set_number(Index number);
+
+private:
+    GlProgram program_;
+};
+
 /// Lists of the transparent layers at each pixel of a box: GLSL of a layered_glass program and of one that
 /// reads them. Layers are numbered from 1.
 extern const std::string_view kLayerLists;

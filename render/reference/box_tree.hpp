@@ -28,7 +28,7 @@ public:
         if (nodes_.empty()) return;
         const Line line(origin, direction);
         // One entry waits for each level of the tree, which halves its boxes at each: 2^32 at most.
-        std::array<Waiting, 64> waiting;
+        std::array<Waiting, 64> waiting{};
         std::size_t count = 0;
         waiting[count++] = {0, line.entry(nodes_[0].box)};
         while (count > 0) {
@@ -52,8 +52,8 @@ private:
         std::uint32_t count = 0;  ///< 0: not a leaf
     };
     struct Waiting {
-        std::uint32_t node;
-        double entry;
+        std::uint32_t node = 0;
+        double entry = 0;
     };
     /// A part of a coordinate, far above what the test of a triangle rounds off.
     static constexpr double kSlack = 1e-14;

@@ -122,7 +122,7 @@ Tracer::Look Tracer::reflected(const Look& look, const Meeting& meeting) const {
 
 glm::dvec3 Tracer::environment(const Look& look, const Spot& spot) const {
     const glm::dvec3 &d = look.sight.direction, &n = spot.normal;
-    std::array<glm::dvec3, 2> change;
+    std::array<glm::dvec3, 2> change{};
     for (std::size_t i = 0; i < 2; ++i) {
         const glm::dvec3 &d_change = look.sight.direction_change[i], &n_change = spot.normal_change[i];
         change[i] = reflect(d_change, n) - 2.0 * (glm::dot(d, n_change) * n + glm::dot(d, n) * n_change);

@@ -6,6 +6,7 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, test } = require('node:test');
+const zlib = require('node:zlib');
 
 const PROGRAM = process.env.VRUT_PREVIEW;
 const CAR = path.join(process.env.VRUT_SCENES, 'car', 'car.vrut');
@@ -97,6 +98,57 @@ test('render tells what a picture took', () => {
   assert.equal(stats.triangles, info.triangles);
   assert.equal(stats.draws, info.tree.filter((node) => node.triangles > 0).length);
   assert.ok(stats.renderMs > 0);
+});
+
+/** Pixels of an 8-bit RGB PNG, rows from the top. */
+function pngPixels(name) {
+  const bytes = fs.readFileSync(file(name));
+  const parts = [];
+  for (let at = 8; at < bytes.length; at += 12 + bytes.readUInt32BE(at))
+    if (bytes.toString('latin1', at + 4, at + 8) === 'IDAT') parts.push(bytes.subarray(at + 8, at + 8 + bytes.readUInt32BE(at)));
+  const [width, height] = pngSize(name);
+  const data = zlib.inflateSync(Buffer.concat(parts));
+  const stride = 3 * width;
+  const rows = Array.from({ length: height }, () => Buffer.alloc(stride));
+  for (let y = 0; y < height; y++)
+    for (let i = 0; i < stride; i++) {
+      const a = i < 3 ? 0 : rows[y][i - 3];
+      const b = y === 0 ? 0 : rows[y - 1][i];
+      const c = i < 3 || y === 0 ? 0 : rows[y - 1][i - 3];
+      const nearest = [a, b, c].sort((p, q) => Math.abs(a + b - c - p) - Math.abs(a + b - c - q))[0];
+      const guess = [0, a, b, (a + b) >> 1, nearest][data[y * (stride + 1)]];
+      rows[y][i] = data[y * (stride + 1) + 1 + i] + guess;
+    }
+  return rows;
+}
+
+const SQUARE = (id) => `vrut-text 1
+material 1 "Glow" emission 0.2 0.6 1 1 diffuse 0 0 0 1 end
+geometry 1 vertices 4 -1 -1 0 1 -1 0 1 1 0 -1 1 0 triangles 2 0 1 2 0 2 3 end
+node ${id} "Square" geometry parent 0 geometry 1 material 1 end
+`;
+
+test('the reference, its unrounded values, and the nodes', () => {
+  fs.writeFileSync(file('square.vrut'), SQUARE(66051));  // 0x010203
+  const view = ['--size', '4x3', '--samples', '1', '--eye', '-1,0,1', '--focus', '-1,0,0', '--fov', '90'];
+  // No device is asked for: 99 is none.
+  succeeds('render', file('square.vrut'), '-o', file('r.png'), ...view, '--reference', '--float', file('r.pfm'), '--ids', file('ri.png'), '--device', '99');
+  succeeds('render', file('square.vrut'), '-o', file('g.png'), ...view, '--ids', file('gi.png'));
+  const [sky, glow] = [[230, 235, 242], [51, 153, 255]];
+  for (const name of ['r.png', 'g.png'])
+    assert.deepEqual(pngPixels(name).map((row) => [...row]), Array(3).fill([...sky, ...sky, ...glow, ...glow]));
+  for (const name of ['ri.png', 'gi.png'])
+    assert.deepEqual(pngPixels(name).map((row) => [...row]), Array(3).fill([...Array(6).fill(255), 1, 2, 3, 1, 2, 3]));
+  const header = 'PF\n4 3\n-1.0\n';
+  const pfm = fs.readFileSync(file('r.pfm'));
+  assert.equal(pfm.toString('latin1', 0, header.length), header);
+  assert.equal(pfm.length, header.length + 4 * 3 * 12);
+  assert.equal(pfm.readFloatLE(header.length + 2 * 12 + 4), Math.fround(0.6));
+
+  fails(2, /--float/, 'render', CAR, '-o', file('x.png'), '--float', file('x.pfm'));
+  fails(2, /--stats/, 'render', CAR, '-o', file('x.png'), '--reference', '--stats');
+  fs.writeFileSync(file('high.vrut'), SQUARE(16777215));
+  fails(1, /--ids: node 16777215/, 'render', file('high.vrut'), '-o', file('x.png'), ...view, '--reference', '--ids', file('i.png'));
 });
 
 test('the camera of a file, of --set and of the options is the same camera', () => {
