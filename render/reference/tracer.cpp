@@ -83,7 +83,7 @@ Tracer::Surface Tracer::surface_at(const Look& look, const Meeting& meeting) con
     const Material& material = *part.material;
     const Spot spot = spot_of(part, meeting, look.sight);
     glm::dvec4 diffuse = material.diffuse;
-    if (material.texture != kNone) {
+    if (material.texture != kNone && !part.geometry->texcoords.empty()) {
         const glm::dvec4 texel = textures_[static_cast<std::size_t>(material.texture)]->sample(
             spot.texcoord, spot.texcoord_change, Wrap::repeat);
         diffuse = glm::dvec4(glm::dvec3(texel), diffuse.a * texel.a);

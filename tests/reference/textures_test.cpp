@@ -61,6 +61,15 @@ TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upr
             check_same(shown.color[static_cast<std::size_t>(8 * y + x)], texel(image, x, y), 1e-9);
 }
 
+TEST_CASE("without texture coordinates there is no picture") {
+    Material material = material_of({0.1, 0.9, 0.1});
+    material.texture = 0;
+    View view = look({0, 0, 5}, {0, 0, 0});
+    check_same(
+        traced(scene_of({{1, quad(1), material, glm::dmat4(1)}}, {{"", noise(2, 2), false}}), view).color[0],
+        {0.1, 0.9, 0.1});
+}
+
 TEST_CASE("magnified it is bilinear, and repeats") {
     const Image image = noise(2, 3);
     for (const glm::vec2& from : {glm::vec2(0), glm::vec2(-7, 1024)}) {
