@@ -1,4 +1,5 @@
 #include "expected_texture.hpp"
+#include "reference.hpp"
 #include "studio.hpp"
 
 using namespace vrut;
@@ -184,4 +185,56 @@ TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
     CHECK(picture(ball, 0.5, in_panorama(plain)).rgba != picture(ball, 0, in_panorama(plain)).rgba);
     // One pass for the background, one for the ball.
     CHECK(studio.stats.passes == 2);
+}
+
+TEST_CASE("the reference renderer sees the same textures, backgrounds and reflections") {
+    Studio studio;
+    SceneParts parts;
+    for (const Image& image : six(128)) parts.textures.push_back({"face.png", image, false});
+    parts.textures.push_back({"board.png", cloudy(200, 133), false});
+    Image lace = cloudy(60, 40);
+    for (std::size_t i = 3; i < lace.rgba.size(); i += 4) lace.rgba[i] = lace.rgba[i - 1];
+    parts.textures.push_back({"lace.png", lace, true});
+    parts.geometries = {sphere(0.8, 16), quad(3), box({0.4, 0.4, 0.4}), quad(0.7)};
+    for (const glm::dvec3& position : parts.geometries[1].positions)
+        parts.geometries[1].texcoords.emplace_back(position * 0.7 + 0.1);
+    for (const glm::dvec3& position : parts.geometries[3].positions)
+        parts.geometries[3].texcoords.emplace_back(position * 1.3);
+    parts.materials = {chrome(0.8), material_of({1, 1, 1}, {0.2, 0.2, 0.2}, 10), chrome(0.5), chrome(0.3)};
+    parts.materials[1].texture = 6;
+    parts.materials[3].texture = 7;
+    parts.materials[3].diffuse.a = 0.8;
+    const glm::dmat4 places[] = {moved_by({0, 0.8, 0}), turned_by(-90, {1, 0, 0}),
+                                 moved_by({1.3, 0.4, 0.6}) * turned_by(30, {0, 1, 0}),
+                                 moved_by({-0.5, 0.7, 1.5})};
+    for (Index i = 0; i < 4; ++i)
+        parts.nodes.push_back(
+            {Node{i + 1, {}, NodeType::geometry, kNone, {}, true, places[i], GeometryData{i, i}}, 0});
+    View view = view_from({2, 1.7, 4}, {0, 0.4, 0});
+    view.width = 240;
+    view.height = 160;
+    view.scene = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    for (const bool all_around : {true, false}) {
+        view.background = {};
+        if (all_around)
+            view.background.cube_map = {0, 1, 2, 3, 4, 5};
+        else
+            view.background.texture = 6;
+        const ReferencePicture reference = trace(view);
+        const auto at = [&](int x, int y) {
+            return static_cast<std::size_t>((view.height - 1 - y) * view.width + x);
+        };
+        const Deviation off =
+            deviation(studio.draw(view.scene, view), [&](double px, double py) -> std::optional<glm::dvec3> {
+                const int x = static_cast<int>(px), y = static_cast<int>(py);
+                if (x == 0 || y == 0 || x == view.width - 1 || y == view.height - 1) return std::nullopt;
+                for (int dy = -1; dy <= 1; ++dy)
+                    for (int dx = -1; dx <= 1; ++dx)
+                        if (reference.node[at(x + dx, y + dy)] != reference.node[at(x, y)])
+                            return std::nullopt;
+                return reference.color[at(x, y)];
+            });
+        CHECK(off.pixels > 30000);
+        CHECK_MESSAGE(off.rms <= 0.5, off.where);
+    }
 }
