@@ -51,7 +51,8 @@ Level half(int width, int height, const Texel& texel) {
     for (const Cover& row : rows) {
         std::fill(line.begin(), line.end(), glm::vec4(0));
         for (int k = 0; k < row.count; ++k) {
-            const std::size_t start = static_cast<std::size_t>(row.first + k) * line.size();
+            const std::size_t start =
+                (static_cast<std::size_t>(row.first) + static_cast<std::size_t>(k)) * line.size();
             for (std::size_t x = 0; x < line.size(); ++x)
                 line[x] += row.shares[static_cast<std::size_t>(k)] * texel(start + x);
         }
@@ -59,7 +60,7 @@ Level half(int width, int height, const Texel& texel) {
             glm::vec4 sum(0);
             for (int k = 0; k < column.count; ++k)
                 sum += column.shares[static_cast<std::size_t>(k)] *
-                       line[static_cast<std::size_t>(column.first + k)];
+                       line[static_cast<std::size_t>(column.first) + static_cast<std::size_t>(k)];
             result.texels.push_back(sum);
         }
     }
@@ -72,7 +73,7 @@ Image rounded(const Level& level) {
     for (std::size_t i = 0; i < level.texels.size(); ++i)
         for (int channel = 0; channel < 4; ++channel)
             image.rgba[4 * i + static_cast<std::size_t>(channel)] =
-                static_cast<std::uint8_t>(level.texels[i][channel] + 0.5F);
+                static_cast<std::uint8_t>(std::floor(level.texels[i][channel] + 0.5F));
     return image;
 }
 

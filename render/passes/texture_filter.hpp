@@ -26,14 +26,16 @@ vec4 filtered(sampler2D image, vec2 place) {
 vec3 around(samplerCube panorama, vec3 direction, vec3 across, vec3 up) {
     // On the cube whose faces lie at 1, where that direction meets it, and in texels.
     vec3 size = abs(direction);
-    vec3 axis = size.x >= size.y && size.x >= size.z ? vec3(1, 0, 0) : size.y >= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    vec3 axis = size.y >= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
+    if (size.x >= size.y && size.x >= size.z) axis = vec3(1, 0, 0);
     float ahead = dot(axis, direction);
     float texels = float(textureSize(panorama, 0).x) / (2 * ahead * ahead);
     float level = level_of((across * ahead - direction * dot(axis, across)) * texels,
                            (up * ahead - direction * dot(axis, up)) * texels);
     float finer = floor(level);
     direction.z = -direction.z;
-    return mix(textureLod(panorama, direction, finer).rgb, textureLod(panorama, direction, finer + 1).rgb, level - finer);
+    vec3 at_finer = textureLod(panorama, direction, finer).rgb;
+    return mix(at_finer, textureLod(panorama, direction, finer + 1).rgb, level - finer);
 }
 )";
 
