@@ -299,6 +299,16 @@ def indexed(mesh):
     return list(vertices), triangles
 
 
+def geometry_text(gid, vertices, triangles, normals=True):
+    """A geometry of (point, normal) pairs and of triangles that name them by number."""
+    lines = [f"geometry {gid}", f"  vertices {len(vertices)}"]
+    lines += lines_of([numbers(p) for p, _ in vertices])
+    if normals:
+        lines += [f"  normals {len(vertices)}"] + lines_of([numbers(n, 3) for _, n in vertices])
+    lines += [f"  triangles {len(triangles)}"] + lines_of([" ".join(map(str, t)) for t in triangles])
+    return "\n".join(lines + ["end"])
+
+
 class Scene:
     """Collects materials, geometries and nodes, and writes them. Ids are given in the order of making."""
 
@@ -333,11 +343,7 @@ class Scene:
             vertices, triangles = indexed(mesh)
             gid = len(self.geometries) + 1
             self.geometries[id(mesh)] = (gid, len(triangles), mesh)
-            lines = [f"geometry {gid}", f"  vertices {len(vertices)}"]
-            lines += lines_of([numbers(p) for p, _ in vertices])
-            lines += [f"  normals {len(vertices)}"] + lines_of([numbers(n, 3) for _, n in vertices])
-            lines += [f"  triangles {len(triangles)}"] + lines_of([" ".join(map(str, t)) for t in triangles])
-            self.blocks.append("\n".join(lines + ["end"]))
+            self.blocks.append(geometry_text(gid, vertices, triangles))
         gid, count, _ = self.geometries[id(mesh)]
         self.triangles += count
         members = f"   geometry {gid}   material {self.materials[material]}"
