@@ -95,6 +95,15 @@ Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* sha
     return layers;
 }
 
+/// Removes the items of these nodes and returns them, in the same order.
+std::vector<DrawItem> take(std::vector<DrawItem>& items, const std::vector<bool>& nodes) {
+    const auto kept = [&](const DrawItem& item) { return !nodes[static_cast<std::size_t>(item.node)]; };
+    const auto first = std::stable_partition(items.begin(), items.end(), kept);
+    std::vector<DrawItem> taken(first, items.end());
+    items.erase(first, items.end());
+    return taken;
+}
+
 /// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
 /// pixels of the picture.
 Frustum frustum_of(const View& view, double margin) {
@@ -148,15 +157,15 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     sort_by_id(items, *placed.scene);
     plan.marks = marks_of(view, view_matrix);
 
-    if (view.selected != kNone) {
-        const std::vector<bool> selected = subtree(*placed.scene, view.selected);
-        for (const DrawItem& item : items)
-            if (selected[static_cast<std::size_t>(item.node)]) plan.selected.push_back(item);
-    }
+    if (view.selected != kNone) plan.selected = take(items, subtree(*placed.scene, view.selected));
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
     if (view.wireframe) return plan;
-    if (view.mode == DrawMode::realistic) add_pictures(items, view);
+    if (view.mode == DrawMode::realistic) {
+        add_pictures(items, view);
+        add_pictures(plan.selected, view);
+    }
     plan.scene = layers_of(std::move(items), view, shapes);
+    plan.over = layers_of(plan.selected, view, shapes);
     return plan;
 }
 

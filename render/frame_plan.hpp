@@ -42,7 +42,8 @@ bool has_exact_group(const Layers& layers);
 struct FramePlan {
     Layers scene;
     std::vector<DrawItem> edges;     ///< with edges
-    std::vector<DrawItem> selected;  ///< to be marked
+    Layers over;                     ///< over everything before: the faces of what is selected
+    std::vector<DrawItem> selected;  ///< that itself, in no other list
     std::vector<glm::dvec3> marks;   ///< in view space, from far to near
 };
 

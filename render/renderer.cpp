@@ -80,7 +80,6 @@ struct Renderer::Impl {
     }
 
     void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
-        if (BackgroundPass::is_needed(view)) background.draw(sight, view, *scene, stats);
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
         for (const TransparentGroup& group : layers.transparent)
@@ -97,20 +96,24 @@ struct Renderer::Impl {
                      static_cast<float>(view.background.color.b), 1);
         glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
         const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
-        draw_layers(plan.scene, view, {clip, view_from_world(view.camera)}, stats);
+        const Sight sight{clip, view_from_world(view.camera)};
+        if (BackgroundPass::is_needed(view)) background.draw(sight, view, *scene, stats);
+        draw_layers(plan.scene, view, sight, stats);
         if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view.mode, clip, programs, stats);
-        draw_selection(plan, view, clip, stats);
+        if (!plan.selected.empty()) draw_selection(plan, view, sight, stats);
         if (plan.marks.empty()) return;
         const auto cover = view.wireframe ? MarkPass::Cover::none : MarkPass::Cover::by_depth;
         marks.draw(plan.marks, cover, clip, *target, stats);
     }
 
-    void draw_selection(const FramePlan& plan, const View& view, const glm::dmat4& clip, FrameStats& stats) {
-        if (plan.selected.empty()) return;
-        if (view.wireframe)
-            edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
-        else
-            outline.draw(plan.selected, *scene, clip, *target, stats);
+    void draw_selection(const FramePlan& plan, const View& view, const Sight& sight, FrameStats& stats) {
+        const glm::dmat4& clip = sight.clip_from_view;
+        if (view.wireframe) return edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
+        opaque.move_behind(plan.selected, *scene, clip, stats);
+        draw_layers(plan.over, view, sight, stats);
+        if (view.mode == DrawMode::stylized)
+            edges.draw(plan.selected, *scene, view.mode, clip, programs, stats);
+        outline.draw(plan.selected, *scene, clip, *target, stats);
     }
 
     GlContext context;  // first: destroyed after everything below
@@ -147,8 +150,9 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     Clock::time_point start = Clock::now();
     if (view.scene) impl_->use_scene(view.scene->scene);
     const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
-    impl_->use_target(view.width, view.height, !plan.scene.transparent.empty());
-    if (!has_exact_group(plan.scene)) impl_->pixel_sort.release();
+    const bool has_glass = !plan.scene.transparent.empty() || !plan.over.transparent.empty();
+    impl_->use_target(view.width, view.height, has_glass);
+    if (!has_exact_group(plan.scene) && !has_exact_group(plan.over)) impl_->pixel_sort.release();
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
     const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
     Accumulation& sum = kept ? *kept : impl_->accumulation;

@@ -45,7 +45,8 @@ struct View {
     Light light;
     DrawMode mode = DrawMode::realistic;
     bool wireframe = false;  ///< the edges of all triangles, and no faces
-    Index selected = kNone;  ///< a node whose subtree is marked: by an outline, in a wireframe by its edges
+    /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
+    Index selected = kNone;
     Background background;
     std::vector<Mark> marks;
 

@@ -27,4 +27,22 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode
     ++stats.passes;
 }
 
+void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
+                             const glm::dmat4& clip_from_view, FrameStats& stats) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthRange(0, 0);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    cover_.use(glm::dvec3(0), clip_from_view);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        set_place(item, geometry);
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthRange(0, 1);
+    ++stats.passes;
+}
+
 }  // namespace vrut

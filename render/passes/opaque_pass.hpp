@@ -13,6 +13,12 @@ public:
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
     void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode, SurfacePrograms& programs,
               FrameStats& stats);
+    /// What was drawn before is behind these items from here on, wherever they cover it.
+    void move_behind(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                     FrameStats& stats);
+
+private:
+    PlainProgram cover_;
 };
 
 }  // namespace vrut

@@ -39,22 +39,23 @@ TEST_CASE("a plan holds what the view needs and no more") {
     view.scene = std::make_shared<const PlacedScene>(showroom());
     const auto sizes = [&] {
         const FramePlan plan = plan_frame(view);
-        return std::array{plan.scene.opaque.size(), plan.edges.size(), plan.selected.size()};
+        return std::array{plan.scene.opaque.size(), plan.edges.size(), plan.over.opaque.size(),
+                          plan.selected.size()};
     };
-    using Sizes = std::array<std::size_t, 3>;
-    CHECK(sizes() == Sizes{3, 0, 0});
+    using Sizes = std::array<std::size_t, 4>;
+    CHECK(sizes() == Sizes{3, 0, 0, 0});
     view.wireframe = true;
-    CHECK(sizes() == Sizes{0, 5, 0});
+    CHECK(sizes() == Sizes{0, 5, 0, 0});
     view.mode = DrawMode::stylized;
-    CHECK(sizes() == Sizes{0, 5, 0});
-    view.wireframe = false;
-    CHECK(sizes() == Sizes{5, 5, 0});
+    CHECK(sizes() == Sizes{0, 5, 0, 0});
     view.selected = view.scene->scene->find_node(2);
-    CHECK(sizes() == Sizes{5, 5, 1});
+    CHECK(sizes() == Sizes{0, 4, 0, 1});
+    view.wireframe = false;
+    CHECK(sizes() == Sizes{4, 4, 1, 1});
     view.selected = view.scene->scene->find_node(0);
-    CHECK(sizes() == Sizes{5, 5, 5});
+    CHECK(sizes() == Sizes{0, 0, 5, 5});
     view.selected = view.scene->scene->find_node(6);
-    CHECK(sizes() == Sizes{5, 5, 0});
+    CHECK(sizes() == Sizes{5, 5, 0, 0});
 }
 
 TEST_CASE("textures and the panorama are planned for surfaces that show them") {

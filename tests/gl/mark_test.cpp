@@ -174,6 +174,18 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
     }
 }
 
+TEST_CASE("glass covers no marker") {
+    Studio studio;
+    Material glass = material_of({0, 0, 0});
+    View view = pixel_view(200, 600);
+    view.marks = {{{0, 0, -10}}};
+    for (const double alpha : {0.99, 1.0}) {
+        glass.diffuse.a = alpha;
+        const Image image = studio.draw(scene_of({{1, quad(200), glass, glm::dmat4(1)}}), view);
+        CHECK((pixel_of(image, 100, 300) == kSign) == (alpha < 1));
+    }
+}
+
 TEST_CASE("no surface hides a marker that lies on it, from near, from far, and at a glance") {
     Studio studio;
     std::mt19937 random(5);

@@ -48,7 +48,7 @@ TEST_CASE("an outline is as wide in pixels everywhere: two at a megapixel, more 
         CHECK(studio.stats.passes == 1);
         view.selected = 1;
         const Image image = studio.draw(scene, view);
-        CHECK(studio.stats.passes == 2);
+        CHECK(studio.stats.passes == 3);
         CHECK(faults(image, plain, c.width,
                      [](int x, int y) { return x >= 20 && x < 41 && y >= 30 && y < 50; }) == 0);
         const int sides = 2 * (21 + 20) * c.width;
@@ -98,7 +98,7 @@ TEST_CASE("an outline lies over everything, around all of a subtree together") {
         return studio.draw(scene, view);
     };
     CHECK(faults(select(1), plain, 1, [&](int x, int y) { return first(x, y) || second(x, y); }) == 0);
-    CHECK(studio.stats.draws == 4 + 2 + 2);
+    CHECK(studio.stats.draws == 2 + 2 + 2 + 2 + 2);
     CHECK(faults(select(2), plain, 1, first) == 0);
     CHECK(faults(select(3), plain, 1, second) == 0);
     CHECK(faults(select(6), plain, 1, third) == 0);
@@ -109,6 +109,75 @@ TEST_CASE("an outline lies over everything, around all of a subtree together") {
     }
     CHECK(faults(select(0), plain, 1, [](int x, int y) { return x >= 5 && x < 75 && y >= 5 && y < 55; }) ==
           0);
+}
+
+TEST_CASE("what is selected shows through what stands before it, as if that were not there") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    const Material red = material_of({0.9, 0, 0}), green = material_of({0, 0.9, 0}),
+                   blue = material_of({0, 0, 0.9});
+    SceneParts parts;
+    parts.materials = {red, green, blue};
+    parts.geometries = {rectangle(10, 10, 30, 30, view), rectangle(5, 5, 75, 55, view)};
+    const auto add = [&](Id id, Id parent, Index geometry, Index material, const glm::dvec3& at) {
+        parts.nodes.push_back(
+            {Node{
+                 id, {}, NodeType::geometry, kNone, {}, true, moved_by(at), GeometryData{geometry, material}},
+             parent});
+    };
+    parts.nodes.push_back({Node{1, {}, NodeType::assembly, kNone, {}, true, glm::dmat4(1), {}}, 0});
+    add(2, 1, 0, 0, {0, 0, 0.01});  // the nearer of two that are selected, by the lower id
+    add(3, 1, 0, 1, {10, -10, 0});
+    add(4, 0, 1, 2, {0, 0, 0.02});  // the curtain before it all
+    const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    std::vector<NodeState> states = scene->nodes;
+    states[static_cast<std::size_t>(scene->scene->find_node(4))].active = false;
+    const auto open = std::make_shared<const PlacedScene>(place(scene->scene, states));
+    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
+        CAPTURE(static_cast<int>(mode));
+        view.mode = mode;
+        view.selected = kNone;
+        const Image without = studio.draw(open, view), plain = studio.draw(scene, view);
+        view.selected = scene->scene->find_node(1);
+        const Image image = studio.draw(scene, view);
+        int through = 0, before = 0;
+        for (int y = 0; y < 60; ++y)
+            for (int x = 0; x < 80; ++x) {
+                const bool covered =
+                    (x >= 10 && x < 30 && y >= 10 && y < 30) || (x >= 20 && x < 40 && y >= 20 && y < 40);
+                if (pixel_of(image, x, y) == kMarked) continue;
+                through += covered && pixel_of(image, x, y) == pixel_of(without, x, y);
+                before += !covered && pixel_of(image, x, y) == pixel_of(plain, x, y);
+            }
+        CHECK(through == 700);
+        CHECK(before == 80 * 60 - 700 - count(image, kMarked));
+    }
+    // Where depth is judged after it, what is seen counts: a marker on the selection is whole, one that the
+    // curtain covers is not.
+    view.mode = DrawMode::realistic;
+    view.marks = {{{-20, 10, 0.01}}, {{20, -10, -40}}};
+    const Image marked = studio.draw(scene, view);
+    CHECK(pixel_of(marked, 20, 20) == glm::ivec3(204, 10, 82));
+    CHECK(pixel_of(marked, 57, 38) != glm::ivec3(204, 10, 82));
+}
+
+TEST_CASE("glass that is selected is blended once, and shows through what stands before it") {
+    Studio studio;
+    View view = pixel_view(80, 60);
+    Material glass = material_of({0, 0.9, 0});
+    glass.diffuse.a = 0.5;
+    const Part pane{1, rectangle(10, 10, 30, 30, view), glass, glm::dmat4(1)},
+        wall{2, rectangle(0, 0, 80, 60, view), material_of({0.9, 0, 0}), moved_by({0, 0, -1})};
+    const auto behind = scene_of({pane, wall, {3, quad(9), kPaint, moved_by({-20, 10, 0.1})}});
+    const Image plain = studio.draw(scene_of({pane, wall}), view);
+    view.selected = 1;
+    CHECK(faults(studio.draw(scene_of({pane, wall}), view), plain, 1,
+                 [](int x, int y) { return x >= 10 && x < 30 && y >= 10 && y < 30; }) == 0);
+    CHECK(pixel_of(plain, 20, 20).g > 80);
+    CHECK(pixel_of(plain, 20, 20).r > 80);
+    const Image through = studio.draw(behind, view);
+    CHECK(pixel_of(through, 20, 20).g > 110);  // half green, over the paint
+    CHECK(pixel_of(through, 20, 20).r < 40);
 }
 
 TEST_CASE("outlines at the picture's border, before and behind the eye, and of what is as small as a speck") {
@@ -166,7 +235,7 @@ TEST_CASE("an outline in the stylized drawing, around what faces away too, and f
     view.selected = 1;
     const Geometry geometry = turned_inside_out(rectangle(20, 10, 41, 30, view));
     const Image image = studio.draw(scene_of({{1, geometry, kPaint, glm::dmat4(1)}}), view);
-    CHECK(studio.stats.passes == 3);
+    CHECK(studio.stats.passes == 4);
     CHECK(count(image, kMarked) == 2 * (21 + 20));
     view.mode = DrawMode::realistic;
     view.samples = 16;
