@@ -23,10 +23,11 @@ Image drawn_end() {
     view.width = kWidth;
     view.height = kHeight;
     view.samples = 4;
-    Renderer renderer;
+    Renderer renderer({}, true);
     Image image;
     FrameStats stats;
     REQUIRE(renderer.render(view, image, stats));
+    for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
     return image;
 }
 

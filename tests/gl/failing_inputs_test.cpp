@@ -1,0 +1,243 @@
+// Scenes and views at the limits of what can be asked, and what the tests themselves must find.
+#include <cmath>
+#include <limits>
+
+#include "studio.hpp"
+#include "vrut_text.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const Material kPaint = material_of({0.7, 0.5, 0.3}, {0.2, 0.3, 0.4}, 12);
+
+std::shared_ptr<const PlacedScene> read(const std::string& text) {
+    auto scene = read_vrut_text(text, "test.vrut");
+    REQUIRE_MESSAGE(scene.has_value(), scene.error());
+    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+}
+
+/// In all ways in which a view can be drawn.
+template <class Draw>
+void in_all_modes(View view, Index selected, const Draw& draw) {
+    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized})
+        for (const bool wireframe : {false, true})
+            for (const Index node : {kNone, selected}) {
+                view.mode = mode;
+                view.wireframe = wireframe;
+                view.selected = node;
+                CAPTURE(static_cast<int>(mode));
+                CAPTURE(wireframe);
+                CAPTURE(node);
+                draw(view);
+            }
+}
+
+glm::ivec3 middle(const Image& image) { return pixel_of(image, image.width / 2, image.height / 2); }
+
+}  // namespace
+
+TEST_CASE("an empty scene is its background, in every mode and with anything selected") {
+    Studio studio;
+    for (const bool only_groups : {false, true}) {
+        SceneParts parts;
+        if (only_groups)
+            parts.nodes.push_back({Node{1, {}, NodeType::assembly, kNone, {}, true, glm::dmat4(0), {}}, 0});
+        const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+        in_all_modes(view_from({0, 0, 5}), 0, [&](const View& view) {
+            const Image image = studio.draw(scene, view);
+            CHECK(middle(image) == bytes_of(kDefaultBackground));
+            CHECK(studio.stats.passes == 0);
+        });
+    }
+}
+
+TEST_CASE("a chain of a million nodes is read, drawn in every mode, selected and given back") {
+    constexpr int kCount = 1'000'000;
+    std::string text = "vrut-text 1\ngeometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end\n";
+    const auto node = [&](int id, const std::string& rest) {
+        text +=
+            "node " + std::to_string(id) + " \"n\" " + rest + " parent " + std::to_string(id - 1) + " end\n";
+    };
+    for (int id = 1; id < kCount; ++id) node(id, "assembly");
+    node(kCount, "geometry geometry 1");
+    Studio studio;
+    auto scene = read(text);
+    CHECK(scene->nodes.size() == std::size_t{kCount} + 1);
+    in_all_modes(view_from({0, 0, 5}), scene->scene->find_node(1), [&](const View& view) {
+        const Image image = studio.draw(scene, view);
+        CHECK(studio.stats.draws >= 1);
+        CHECK((middle(image) == bytes_of(kDefaultBackground)) == view.wireframe);
+    });
+    View view = view_from({0, 0, 5});
+    view.marks = {{{0, 0, 0}}};
+    CHECK(middle(studio.draw(scene, view)) == glm::ivec3(204, 10, 82));
+    studio.draw(scene_of({}), view);  // another scene: the chain goes
+    scene.reset();
+}
+
+TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and rows of wide ones") {
+    Studio studio;
+    const auto scene =
+        scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}, {2, quad(40), kPaint, moved_by({0, 0, -2})}});
+    for (const auto& [width, height] : {std::pair{1, 8192}, {8192, 1}}) {
+        CAPTURE(width);
+        View view = view_from({0.5, 0.4, 5});
+        view.width = width;
+        view.height = height;
+        view.marks = {{{0, 0, 0}}};
+        in_all_modes(view, 1, [&](const View& shown) {
+            const Image image = studio.draw(scene, shown);
+            CHECK(image.rgba.size() == std::size_t{8192} * 4);
+            CHECK(studio.stats.passes >= 2);
+        });
+        view.marks.clear();
+        view.samples = 3;
+        studio.draw(scene, view);
+        view.samples = 1;
+        const Image image = studio.draw(scene, view);
+        const ExpectedPicture expected(*scene, view);
+        int compared = 0;
+        for (int i = 0; i < 8192; i += 97) {
+            const int x = width > 1 ? i : 0, y = width > 1 ? 0 : i;
+            const auto seen = expected.pixel(x, y);
+            if (!seen) continue;
+            const glm::ivec3 off = glm::abs(bytes_of(seen->color) - pixel_of(image, x, y));
+            CHECK(std::max({off.r, off.g, off.b}) <= 1);
+            ++compared;
+        }
+        CHECK(compared > 60);
+    }
+}
+
+TEST_CASE("from inside a body its own faces do not show, and what is in it does") {
+    Studio studio;
+    const Part within{2, sphere(0.3, 8), kPaint, moved_by({0, 0, -1})};
+    const View view = view_from({0, 0, 0.5}, {0, 0, -1});
+    for (const Geometry& body : {box({2, 2, 2}), sphere(2, 8)}) {
+        const auto scene = scene_of({{1, body, material_of({1, 0, 0}), glm::dmat4(1)}, within});
+        CHECK(studio.draw(scene, view).rgba == studio.draw(scene_of({within}), view).rgba);
+        CHECK(studio.check(scene, view).surfaces > 100);
+        // Turned inside out, it is a room around the same thing.
+        const auto room =
+            scene_of({{1, turned_inside_out(body), material_of({1, 0, 0}), glm::dmat4(1)}, within});
+        const Difference result = studio.check(room, view);
+        CHECK(result.surfaces == result.compared);
+        View marked = view;
+        marked.selected = 1;
+        CHECK(studio.draw(scene, marked).rgba.size() == 96 * 64 * 4);
+    }
+}
+
+TEST_CASE("near and far a million apart: at every distance between, the nearer of two hides the other") {
+    Studio studio;
+    const Material red = material_of({1, 0, 0}), green = material_of({0, 1, 0});
+    View view = view_from({0, 0, 0}, {0, 0, -1});
+    for (const double distance : {1.5, 10.0, 1e3, 1e5, 9e5}) {
+        CAPTURE(distance);
+        for (const bool red_first : {false, true}) {
+            const double gap = distance * 1e-5;
+            // A speck at 1 beside the view's middle, and a wall at 10^6 behind it all.
+            const auto scene =
+                scene_of({{1, quad(0.05), kPaint, moved_by({0.3, 0, -1})},
+                          {red_first ? 2 : 3, quad(distance), red, moved_by({0, 0, -distance})},
+                          {red_first ? 3 : 2, quad(distance), green, moved_by({0, 0, -distance - gap})},
+                          {4, quad(1e6), kPaint, moved_by({0, 0, -1e6})}});
+            CHECK(middle(studio.draw(scene, view)).g == 0);
+            CHECK(studio.check(scene, view).surfaces > 5000);
+        }
+    }
+}
+
+TEST_CASE("the narrowest and the widest field of view") {
+    Studio studio;
+    const auto scene = scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}});
+    for (const auto& [fov, away] : {std::pair{1.0, 200.0}, {170.0, 1.7}}) {
+        CAPTURE(fov);
+        View view = view_from({0, 0, away});
+        view.camera.fov = fov;
+        CHECK(studio.check(scene, view).surfaces > 20);
+    }
+}
+
+TEST_CASE("positions beyond all that is drawn, and matrices that go there, harm nothing else") {
+    Studio studio;
+    const std::string good = R"(vrut-text 1
+geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
+node 1 "Plain" geometry geometry 1 end
+)";
+    const View view = view_from({0, 0, 5});
+    const Image plain = studio.draw(read(good), view);
+    // Geometry of the largest coordinates, scaled; matrices whose product no double holds; and those that
+    // leave nothing.
+    const std::string far = "geometry 2 vertices 3 0 0 0 1e15 0 0 0 1e15 0 triangles 1 0 1 2 end\n",
+                      scaled = "geometry geometry 2 matrix 1e4 0 0 0 0 1e4 0 0 0 0 1e4 0 0 0 0 1 end",
+                      huge = "matrix 1e15 0 0 1e15 0 1e15 0 -1e15 0 0 1e15 0 0 0 0 1 end\n";
+    std::string nested;
+    for (int id = 2; id < 40; ++id)
+        nested += "node " + std::to_string(id) + " \"Up\" assembly parent " +
+                  std::to_string(id == 2 ? 0 : id - 1) + " " + huge;
+    for (const std::string& odd :
+         {far + "node 2 \"Odd\" " + scaled, nested + "node 40 \"Odd\" geometry parent 39 geometry 1 end",
+          std::string("node 2 \"Odd\" geometry geometry 1 matrix 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 1 end"),
+          std::string(
+              "node 2 \"Odd\" geometry geometry 1 matrix 1e-300 0 0 0 0 1e-300 0 0 0 0 1e-300 0 0 0 0 1 "
+              "end")}) {
+        CAPTURE(odd);
+        in_all_modes(view, 2, [&](const View& shown) { studio.draw(read(good + odd), shown); });
+        CHECK(studio.draw(read(good + odd), view).rgba == plain.rgba);
+    }
+    for (const std::string number : {"nan", "inf", "-inf", "1e999", "1e16", "0x10"}) {
+        CAPTURE(number);
+        CHECK_FALSE(read_vrut_text("vrut-text 1\ngeometry 1 vertices 1 " + number + " 0 0 end\n", "t"));
+        CHECK_FALSE(read_vrut_text(
+            "vrut-text 1\nnode 1 \"N\" assembly matrix " + number + " 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 end\n",
+            "t"));
+    }
+    // Numbers that no file can hold, from a host: not drawn either.
+    for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+        Geometry odd = quad(1);
+        odd.positions[2].y = number;
+        odd.bounds.max.y = number;
+        const auto scene = scene_of({{1, odd, kPaint, glm::dmat4(1)}});
+        CHECK(middle(studio.draw(scene, view)) == bytes_of(kDefaultBackground));
+        CHECK(studio.stats.draws == 0);
+    }
+}
+
+TEST_CASE("what a driver complains of fails a test" * doctest::should_fail()) {
+    Studio studio;
+    glEnable(GL_TEXTURE_WRAP_S);  // no capability
+}
+
+TEST_CASE("a GL object that is not given back fails a test" * doctest::should_fail()) {
+    struct Leak {
+        Leak() { detail::count_gl_object(1); }
+        ~Leak() { detail::count_gl_object(-1); }
+    } const leak;
+    const Studio studio;
+}
+
+TEST_CASE("GL objects of every kind are counted, moved and not copied") {
+    const Studio studio;
+    const long before = live_gl_objects();
+    const auto lives_once = [&](auto handle) {
+        using Handle = decltype(handle);
+        CHECK_FALSE(std::is_copy_constructible_v<Handle>);
+        CHECK_FALSE(std::is_copy_assignable_v<Handle>);
+        CHECK(live_gl_objects() == before + 1);
+        Handle other = std::move(handle);
+        CHECK(live_gl_objects() == before + 1);
+        CHECK(!handle);
+        other = Handle();
+        CHECK(live_gl_objects() == before);
+    };
+    lives_once(make_buffer(&before, sizeof before));
+    lives_once(make_changing_buffer(16));
+    lives_once(make_vertex_array());
+    lives_once(make_renderbuffer(GL_RGBA8, 2, 2));
+    lives_once(make_texture(GL_RGBA8, 2, 2));
+    lives_once(make_framebuffer());
+    lives_once(GlShader(glCreateShader(GL_VERTEX_SHADER)));
+    lives_once(GlProgram(glCreateProgram()));
+}
