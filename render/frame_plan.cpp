@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "frustum.hpp"
+#include "mirror_plan.hpp"
 #include "transparency_plan.hpp"
 
 namespace vrut {
@@ -12,7 +14,8 @@ namespace vrut {
 namespace {
 
 /// None where the node draws nothing.
-std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, const glm::dmat4& view) {
+std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, const glm::dmat4& view,
+                                DrawMode mode) {
     const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[node].data);
     if (!data || data->geometry == kNone) return {};
     const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
@@ -27,7 +30,9 @@ std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, con
     if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn)) return {};
     const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
     const bool singular = !(std::abs(determinant) > 1e-12);
-    item.sides = singular || placed.scene->material(material).two_sided ? Sides::both : Sides::front;
+    const bool mirror = mode == DrawMode::realistic && mirror_plane(*placed.scene, item);
+    const bool both = singular || mirror || placed.scene->material(material).two_sided;
+    item.sides = both ? Sides::both : Sides::front;
     item.mirrored = determinant < 0;
     return item;
 }
@@ -52,19 +57,27 @@ void add_pictures(std::vector<DrawItem>& items, const View& view) {
     }
 }
 
-struct Reflective {
-    int mirrors = 0, others = 0;
-};
+/// By rising id, those beside the picture too.
+std::vector<DrawItem> shown_items(const View& view) {
+    const PlacedScene& placed = *view.scene;
+    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
+    const glm::dmat4 view_matrix = view_from_world(view.camera);
+    std::vector<DrawItem> items;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i])
+            if (const auto item = item_of(placed, i, view_matrix, view.mode)) items.push_back(*item);
+    sort_by_id(items, *placed.scene);
+    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
+    return items;
+}
 
-/// Geometry nodes in the materials of their file.
-Reflective count_reflective(const Scene& scene) {
-    Reflective count;
-    for (const Node& node : scene.nodes()) {
+/// Reflective geometry nodes that are no mirrors, in the materials of their file.
+auto count_reflective(const Scene& scene) {
+    return std::count_if(scene.nodes().begin(), scene.nodes().end(), [&](const Node& node) {
         const auto* data = std::get_if<GeometryData>(&node.data);
-        if (!data || data->geometry == kNone || !(scene.material(data->material).reflectivity > 0)) continue;
-        ++(is_mirror(scene, data->geometry, data->material) ? count.mirrors : count.others);
-    }
-    return count;
+        return data && data->geometry != kNone && scene.material(data->material).reflectivity > 0 &&
+               !is_mirror(scene, data->geometry, data->material);
+    });
 }
 
 bool has_cube_map(const Scene& scene) {
@@ -74,8 +87,8 @@ bool has_cube_map(const Scene& scene) {
     });
 }
 
-/// By rising id.
-Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* shapes) {
+/// Of items by rising id; mirrors among them are ordinary surfaces.
+Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShapes* shapes) {
     const PlacedScene& placed = *view.scene;
     const Scene& scene = *placed.scene;
     const auto is_opaque = [&](const DrawItem& item) {
@@ -92,6 +105,21 @@ Layers layers_of(std::vector<DrawItem> items, const View& view, GlassShapes* sha
     std::optional<GlassShapes> own;
     if (!shapes) shapes = &own.emplace(scene);
     layers.transparent = order_transparent(transparent, scene, view.light, *shapes);
+    return layers;
+}
+
+/// Of items by rising id. What mirrors show is taken from `all`; those that show none of it reflect the
+/// panorama, where there is one.
+Layers layers_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
+                 GlassShapes* shapes) {
+    Layers layers = layers_in_mirror(std::move(items), view, shapes);
+    if (view.mode == DrawMode::stylized) return layers;
+    layers.mirrors = take_mirrors(layers.opaque, all, view);
+    for (MirrorItem& mirror : layers.mirrors)
+        mirror.reflected = layers_in_mirror(std::move(mirror.reflected.opaque), view, shapes);
+    if (!view.background.cube_map) return layers;
+    for (DrawItem& item : layers.opaque)
+        if (mirror_plane(*view.scene->scene, item)) item.environment = true;
     return layers;
 }
 
@@ -134,44 +162,46 @@ bool is_mirror(const Scene& scene, Index geometry, Index material) {
     return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
 }
 
+bool has_transparent(const Layers& layers) {
+    return !layers.transparent.empty() ||
+           std::any_of(layers.mirrors.begin(), layers.mirrors.end(),
+                       [](const MirrorItem& mirror) { return has_transparent(mirror.reflected); });
+}
+
 bool has_exact_group(const Layers& layers) {
     return std::any_of(layers.transparent.begin(), layers.transparent.end(),
-                       [](const TransparentGroup& group) { return group.exact; });
+                       [](const TransparentGroup& group) { return group.exact; }) ||
+           std::any_of(layers.mirrors.begin(), layers.mirrors.end(),
+                       [](const MirrorItem& mirror) { return has_exact_group(mirror.reflected); });
 }
 
 FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     FramePlan plan;
     if (!view.scene) return plan;
     const PlacedScene& placed = *view.scene;
-    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
-    const glm::dmat4 view_matrix = view_from_world(view.camera);
+    const std::vector<DrawItem> all = shown_items(view);
     std::vector<DrawItem> items;
-    for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i])
-            if (const auto item = item_of(placed, i, view_matrix)) items.push_back(*item);
     const Frustum frustum = frustum_of(view, 1);
-    std::erase_if(items, [&](const DrawItem& item) {
+    std::copy_if(all.begin(), all.end(), std::back_inserter(items), [&](const DrawItem& item) {
         const auto geometry = static_cast<std::size_t>(item.geometry);
-        return lies_outside(frustum, item.view_from_node, placed.scene->geometries()[geometry].bounds);
+        return !lies_outside(frustum, item.view_from_node, placed.scene->geometries()[geometry].bounds);
     });
-    sort_by_id(items, *placed.scene);
-    plan.marks = marks_of(view, view_matrix);
+    plan.marks = marks_of(view, view_from_world(view.camera));
 
     if (view.selected != kNone) plan.selected = take(items, subtree(*placed.scene, view.selected));
     if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
     if (view.wireframe) return plan;
-    if (view.mode == DrawMode::realistic) {
-        add_pictures(items, view);
-        add_pictures(plan.selected, view);
-    }
-    plan.scene = layers_of(std::move(items), view, shapes);
-    plan.over = layers_of(plan.selected, view, shapes);
+    plan.scene = layers_of(std::move(items), all, view, shapes);
+    plan.over = layers_of(plan.selected, all, view, shapes);
     return plan;
 }
 
 std::vector<DrawItem> faces_of(const View& view) {
-    Layers layers = plan_frame(view).scene;
+    View plain = view;
+    plain.selected = kNone;
+    Layers layers = plan_frame(plain).scene;
     std::vector<DrawItem> items = std::move(layers.opaque);
+    for (const MirrorItem& mirror : layers.mirrors) items.push_back(mirror.surface);
     for (const TransparentGroup& group : layers.transparent)
         items.insert(items.end(), group.items.begin(), group.items.end());
     if (!items.empty()) sort_by_id(items, *view.scene->scene);
@@ -195,10 +225,8 @@ std::vector<std::string> undrawn_features(const Scene& scene) {
     const auto say = [&](auto count, const std::string& what) {
         if (count > 0) notices.push_back(std::to_string(count) + what);
     };
-    const Reflective reflective = count_reflective(scene);
-    say(reflective.mirrors, " planar mirrors are drawn without reflections");
     if (!has_cube_map(scene))
-        say(reflective.others, " curved or transparent reflective parts have no cube map to reflect");
+        say(count_reflective(scene), " curved or transparent reflective parts have no cube map to reflect");
     return notices;
 }
 

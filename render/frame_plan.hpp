@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "projection.hpp"
 #include "scene.hpp"
 #include "view.hpp"
 
@@ -20,6 +22,8 @@ struct DrawItem {
     bool environment = false;  ///< mixed with the panorama that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool behind_twin = false;
+    /// Only points of the node's space whose product with this is not negative are drawn.
+    std::optional<glm::dvec4> kept;
 };
 
 /// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,
@@ -29,12 +33,25 @@ struct TransparentGroup {
     bool exact = false;
 };
 
+struct MirrorItem;
+
 /// Faces that are drawn from one sight, in this order.
 struct Layers {
     std::vector<DrawItem> opaque;               ///< by rising id
+    std::vector<MirrorItem> mirrors;            ///< by rising id
     std::vector<TransparentGroup> transparent;  ///< from far to near
 };
 
+/// A surface and what is seen in it.
+struct MirrorItem {
+    DrawItem surface;
+    glm::dmat4 reflection{1};  ///< about its plane, in view space
+    PixelBox box;              ///< all that it can cover
+    Layers reflected;
+};
+
+/// Whether something is blended, and something of it pixel by pixel; in mirrors too.
+bool has_transparent(const Layers& layers);
 bool has_exact_group(const Layers& layers);
 
 /// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the

@@ -13,10 +13,12 @@
 #include "passes/edge_pass.hpp"
 #include "passes/id_pass.hpp"
 #include "passes/mark_pass.hpp"
+#include "passes/mirror_pass.hpp"
 #include "passes/opaque_pass.hpp"
 #include "passes/outline_pass.hpp"
 #include "passes/pixel_sort_pass.hpp"
 #include "passes/transparent_pass.hpp"
+#include "projection.hpp"
 #include "sampling.hpp"
 
 namespace vrut {
@@ -27,19 +29,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
-/// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
-/// down.
-glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset) {
-    glm::dmat4 matrix =
-        clip_from_view(view.camera, static_cast<double>(view.width) / view.height, {near, 2 * near});
-    matrix[2][0] = 2 * offset.x / view.width;
-    matrix[2][1] = -2 * offset.y / view.height;
-    matrix[2][2] = 0;
-    matrix[3][2] = near;
-    return matrix;
 }
 
 void add(const std::vector<std::uint8_t>& sample, Accumulation& sum) {
@@ -79,14 +68,27 @@ struct Renderer::Impl {
         shapes.emplace(*wanted);
     }
 
-    void draw_layers(const Layers& layers, const View& view, const Sight& sight, FrameStats& stats) {
+    void draw_layers(const Layers& layers, const View& view, const Sight& sight, const Framebuffer& into,
+                     FrameStats& stats) {
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
+        for (const MirrorItem& mirror : layers.mirrors) draw_mirror(mirror, view, sight, into, stats);
         for (const TransparentGroup& group : layers.transparent)
             if (group.exact)
-                pixel_sort.draw(group.items, *scene, sight.clip_from_view, *target, programs, stats);
+                pixel_sort.draw(group.items, *scene, sight.clip_from_view, into, programs, stats);
             else
                 transparent.draw(group.items, *scene, programs, stats);
+    }
+
+    void draw_mirror(const MirrorItem& mirror, const View& view, const Sight& sight, const Framebuffer& into,
+                     FrameStats& stats) {
+        const Sight reflected{sight.clip_from_view, mirror.reflection * sight.view_from_world};
+        const Framebuffer& reflection =
+            mirrors.open(mirror, *scene, sight.clip_from_view, view.background.color, into, stats);
+        if (BackgroundPass::is_needed(view)) background.draw(reflected, view, *scene, stats);
+        draw_layers(mirror.reflected, view, reflected, reflection, stats);
+        programs.begin(sight, view, &*scene);
+        mirrors.close(mirror, *scene, into, programs, stats);
     }
 
     void draw(const FramePlan& plan, const View& view, double near, const glm::dvec2& offset,
@@ -98,7 +100,8 @@ struct Renderer::Impl {
         const glm::dmat4 clip = reversed_clip_from_view(view, near, offset);
         const Sight sight{clip, view_from_world(view.camera)};
         if (BackgroundPass::is_needed(view)) background.draw(sight, view, *scene, stats);
-        draw_layers(plan.scene, view, sight, stats);
+        if (plan.scene.mirrors.empty() && plan.over.mirrors.empty()) mirrors.release();
+        draw_layers(plan.scene, view, sight, *target, stats);
         if (!plan.edges.empty()) edges.draw(plan.edges, *scene, view.mode, clip, programs, stats);
         if (!plan.selected.empty()) draw_selection(plan, view, sight, stats);
         if (plan.marks.empty()) return;
@@ -110,7 +113,7 @@ struct Renderer::Impl {
         const glm::dmat4& clip = sight.clip_from_view;
         if (view.wireframe) return edges.draw_over(plan.selected, *scene, kSelection, clip, stats);
         opaque.move_behind(plan.selected, *scene, clip, stats);
-        draw_layers(plan.over, view, sight, stats);
+        draw_layers(plan.over, view, sight, *target, stats);
         if (view.mode == DrawMode::stylized)
             edges.draw(plan.selected, *scene, view.mode, clip, programs, stats);
         outline.draw(plan.selected, *scene, clip, *target, stats);
@@ -125,6 +128,7 @@ struct Renderer::Impl {
     OpaquePass opaque;
     TransparentPass transparent;
     PixelSortPass pixel_sort;
+    MirrorPass mirrors;
     EdgePass edges;
     OutlinePass outline;
     MarkPass marks;
@@ -150,7 +154,7 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     Clock::time_point start = Clock::now();
     if (view.scene) impl_->use_scene(view.scene->scene);
     const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
-    const bool has_glass = !plan.scene.transparent.empty() || !plan.over.transparent.empty();
+    const bool has_glass = has_transparent(plan.scene) || has_transparent(plan.over);
     impl_->use_target(view.width, view.height, has_glass);
     if (!has_exact_group(plan.scene) && !has_exact_group(plan.over)) impl_->pixel_sort.release();
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;

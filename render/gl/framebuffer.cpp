@@ -10,10 +10,10 @@ Framebuffer::Framebuffer(int width, int height, bool deep)
     : width_(width),
       height_(height),
       deep_(deep),
-      color_(make_renderbuffer(deep ? GL_RGBA16 : GL_RGBA8, width, height)),
+      color_(make_texture(deep ? GL_RGBA16 : GL_RGBA8, width, height)),
       depth_(make_texture(GL_DEPTH_COMPONENT32F, width, height)),
       framebuffer_(make_framebuffer()) {
-    glNamedFramebufferRenderbuffer(framebuffer_.get(), GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, color_.get());
+    glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, color_.get(), 0);
     glNamedFramebufferTexture(framebuffer_.get(), GL_DEPTH_ATTACHMENT, depth_.get(), 0);
     if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
         throw std::runtime_error("no picture of " + std::to_string(width) + "x" + std::to_string(height) +

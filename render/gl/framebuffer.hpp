@@ -18,7 +18,8 @@ public:
     int width() const { return width_; }
     int height() const { return height_; }
     bool deep() const { return deep_; }
-    /// Its depth, to be read texel by texel.
+    /// Its colours and its depth, to be read texel by texel.
+    const GlTexture& color() const { return color_; }
     const GlTexture& depth() const { return depth_; }
     /// Makes it what is drawn into, all of it.
     void bind() const;
@@ -28,8 +29,7 @@ public:
 private:
     int width_, height_;
     bool deep_;
-    GlRenderbuffer color_;
-    GlTexture depth_;
+    GlTexture color_, depth_;
     GlFramebuffer framebuffer_;
     std::vector<std::uint16_t> deep_pixels_;  // read as they are: the driver takes longer to convert them
 };

@@ -81,7 +81,9 @@ void BackgroundPass::draw(const Sight& sight, const View& view, GpuScene& scene,
         glBindTextureUnit(0, scene.texture(view.background.texture).get());
         glBindSampler(0, clamped_.get());
     }
-    glDisable(GL_DEPTH_TEST);
+    // At infinity: in a mirror only its own pixels have nothing nearer.
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glBindVertexArray(nothing_.get());

@@ -69,10 +69,6 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
-void scissor(const PixelBox& box) {
-    glScissor(box.low.x, box.low.y, std::max(box.size().x, 0), std::max(box.size().y, 0));
-}
-
 void use(const GlProgram& program, int width, const PixelBox& box, const GlTexture& texture) {
     glUseProgram(program.get());
     glUniform1i(width_at, width);
@@ -111,7 +107,9 @@ void OutlinePass::draw(std::span<const DrawItem> items, GpuScene& scene, const g
     std::vector<PixelBox> boxes;
     PixelBox all{picture, {0, 0}};
     for (const DrawItem& item : items) {
-        const PixelBox& box = boxes.emplace_back(pixel_box(item, *scene.scene(), clip_from_view, picture));
+        const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+        const PixelBox& box =
+            boxes.emplace_back(pixel_box(bounds, clip_from_view * item.view_from_node, picture));
         all = {glm::min(all.low, box.low - width), glm::max(all.high, box.high + width)};
     }
     all = {glm::max(all.low, 0), glm::min(all.high, picture)};

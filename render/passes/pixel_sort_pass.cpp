@@ -101,7 +101,8 @@ void PixelSortPass::draw(std::span<const DrawItem> items, GpuScene& scene, const
     const glm::ivec2 picture{target.width(), target.height()};
     PixelBox all{picture, {0, 0}};
     for (const DrawItem& item : items) {
-        const PixelBox box = pixel_box(item, *scene.scene(), clip_from_view, picture);
+        const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+        const PixelBox box = pixel_box(bounds, clip_from_view * item.view_from_node, picture);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
     if (all.size().x <= 0 || all.size().y <= 0) return;
@@ -157,6 +158,7 @@ std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const Pixe
 void PixelSortPass::composite(FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
+    glDisable(GL_CLIP_DISTANCE0);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glUseProgram(composite_.get());

@@ -24,6 +24,7 @@ enum Uniform : GLint {
     reflectivity_at = 10,
     alpha_at = 11,
     order_at = 12,
+    kept_at = 13,
 };
 
 constexpr GLuint kSightBinding = 0;
@@ -50,6 +51,10 @@ layout(std140, binding = 0) uniform Sight {
 constexpr std::string_view kVertexShader = R"(
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 2) uniform mat3 normal_matrix;
+#ifdef CLIPPED
+layout(location = 13) uniform vec4 kept;
+out float gl_ClipDistance[1];
+#endif
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 out vec3 view_position;
@@ -61,6 +66,9 @@ out vec2 place;
 #endif
 
 void main() {
+#ifdef CLIPPED
+    gl_ClipDistance[0] = dot(kept, vec4(position, 1));
+#endif
 #ifdef TEXTURED
     place = texcoord;
 #endif
@@ -80,6 +88,10 @@ layout(location = 6) uniform vec3 diffuse;
 layout(location = 7) uniform vec3 specular;
 layout(location = 8) uniform float shininess;
 layout(location = 9) uniform bool both_sides;
+#ifdef MIRROR
+layout(location = 10) uniform float reflectivity;
+layout(binding = 2) uniform sampler2D reflection;
+#endif
 #ifdef GLASS
 layout(location = 11) uniform float alpha;
 #endif
@@ -154,6 +166,9 @@ void main() {
     vec3 seen = world_from_view * reflect(-to_eye, n);
     own = mix(own, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
 #endif
+#ifdef MIRROR
+    own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);
+#endif
 #if defined(GLASS) && defined(TEXTURED)
     vec4 layer = vec4(own, 1) * (alpha * texel.a);
 #elif defined(GLASS)
@@ -184,6 +199,7 @@ constexpr std::string_view kPlainVertexShader = R"(#version 450 core
 layout(location = 0) uniform mat4 clip_from_view;
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 0) in vec3 position;
+invariant gl_Position;
 
 void main() { gl_Position = clip_from_view * (view_from_local * vec4(position, 1)); }
 )";
@@ -246,6 +262,16 @@ void set_clip(const glm::dmat4& clip_from_view) {
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
+void set_kept(const DrawItem& item, const GpuGeometry& geometry) {
+    if (!item.kept) {
+        glDisable(GL_CLIP_DISTANCE0);
+        return;
+    }
+    glEnable(GL_CLIP_DISTANCE0);
+    const glm::vec4 kept(glm::dvec3(*item.kept), glm::dot(*item.kept, glm::dvec4(geometry.origin, 1)));
+    glUniform4fv(kept_at, 1, glm::value_ptr(kept));
+}
+
 }  // namespace
 
 const std::string_view kLayerLists = R"(
@@ -266,8 +292,10 @@ layout(std430, binding = 1) buffer Lists {
 int list_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
 )";
 
-SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light) {
-    if (light.headlight) return LightKind::headlight;
+SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light, const Sight& sight) {
+    // It stays at the true eye, which in a mirror is not the one that sees.
+    const bool reflected = glm::determinant(glm::dmat3(sight.view_from_world)) < 0;
+    if (light.headlight) return reflected ? LightKind::point : LightKind::headlight;
     switch (light.type) {
         case LightData::Type::directional:
             return LightKind::directional;
@@ -292,6 +320,8 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     const bool layered = variant.shape == Shape::layered_glass;
     define(layered || variant.shape == Shape::glass, "GLASS");
     define(layered, "LAYERED");
+    define(variant.shape == Shape::mirror, "MIRROR");
+    define(variant.clipped, "CLIPPED");
     head += kSightBlock;
     std::string needed(variant.textured || variant.environment ? kTextureFilter : std::string_view());
     if (layered) needed += std::string(kLayerLists) + std::string(kAddLayer);
@@ -301,7 +331,7 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
 void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
     scene_ = scene;
     cube_map_ = view.background.cube_map;
-    light_ = kind_of(view.light);
+    light_ = kind_of(view.light, sight);
     if (!sight_) sight_ = make_changing_buffer(sizeof(SightBlock));
     const SightBlock block = block_of(sight, view);
     glNamedBufferSubData(sight_.get(), 0, sizeof block, &block);
@@ -310,7 +340,7 @@ void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scen
 
 void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& geometry,
                           const Material& material) {
-    const Variant variant{shape, light_, item.texture != kNone, item.environment};
+    const Variant variant{shape, light_, item.texture != kNone, item.environment, item.kept.has_value()};
     GlProgram& program = programs_[variant];
     if (!program) program = make(variant);
     glUseProgram(program.get());
@@ -329,6 +359,8 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
     glUniform1i(both_sides_at, item.sides == Sides::both);
     if (shape == Shape::glass || shape == Shape::layered_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
+    if (shape == Shape::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    set_kept(item, geometry);
 }
 
 void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {

@@ -11,7 +11,7 @@
 
 namespace vrut {
 
-/// From where a target's contents are seen.
+/// From where a target's contents are seen. In a mirror the view from the world is a reflected one.
 struct Sight {
     glm::dmat4 clip_from_view{1};
     glm::dmat4 view_from_world{1};
@@ -26,7 +26,9 @@ public:
         edges,          ///< without sides: their normals are turned to the viewer
         glass,          ///< faces, their colour multiplied by alpha
         layered_glass,  ///< the same, into the lists of kLayerLists
+        mirror,         ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
     };
+    static constexpr GLuint kReflectionUnit = 2;
 
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
     void begin(const Sight& sight, const View& view, GpuScene* scene);
@@ -40,10 +42,11 @@ private:
         LightKind light = LightKind::headlight;
         bool textured = false;
         bool environment = false;
+        bool clipped = false;
 
         auto operator<=>(const Variant&) const = default;
     };
-    static LightKind kind_of(const Light& light);
+    static LightKind kind_of(const Light& light, const Sight& sight);
     static GlProgram make(const Variant& variant);
 
     LightKind light_ = LightKind::headlight;

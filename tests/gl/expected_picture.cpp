@@ -59,7 +59,11 @@ void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const Geo
     for (const glm::uvec3& indices : geometry.triangles) {
         const auto position = [&](int k) { return geometry.positions[indices[k]]; };
         const glm::dvec3 face = glm::cross(position(1) - position(0), position(2) - position(0));
-        Triangle triangle{{}, material, smooth_surface, material.two_sided, mirrored};
+        Triangle triangle{{}, material, smooth_surface, material.two_sided, mirrored, kNone};
+        if (material.reflectivity > 0 && placed.scene->plane(data.geometry)) {
+            triangle.mirror = static_cast<Index>(node);
+            triangle.both_sides = true;
+        }
         bool flat = true;
         for (int k = 0; k < 3; ++k) {
             glm::dvec3 normal =
@@ -93,6 +97,17 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
     const glm::dvec3 ray =
         view + right * ((x - view_.width / 2.0) * pixel) + up * ((view_.height / 2.0 - y) * pixel);
 
+    return along(camera.eye, ray, kNone);
+}
+
+ExpectedPicture::Seen ExpectedPicture::along(const glm::dvec3& origin, const glm::dvec3& ray,
+                                             Index from_mirror) const {
+    Light light = view_.light;
+    if (light.headlight) {
+        light.headlight = false;
+        light.type = LightData::Type::point;
+        light.position = view_.camera.eye;
+    }
     struct Hit {
         double distance;
         Seen seen;
@@ -100,26 +115,32 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
     };
     std::vector<Hit> hits;
     for (const Triangle& triangle : triangles_) {
+        if (from_mirror != kNone && triangle.mirror == from_mirror) continue;
         const auto& [a, b, c] = triangle.corners;
-        // Möller and Trumbore: camera.eye + t ray = a + u (b - a) + v (c - a)
+        // Möller and Trumbore: origin + t ray = a + u (b - a) + v (c - a)
         const glm::dvec3 ab = b.position - a.position, ac = c.position - a.position;
         const glm::dvec3 p = glm::cross(ray, ac);
         const double determinant = glm::dot(ab, p);
         if (determinant == 0) continue;
         // Counter-clockwise in the geometry's own space, which a mirroring matrix turns clockwise.
         if (!triangle.both_sides && (determinant > 0) == triangle.mirrored) continue;
-        const glm::dvec3 from_a = camera.eye - a.position;
+        const glm::dvec3 from_a = origin - a.position;
         const double u = glm::dot(from_a, p) / determinant;
         const glm::dvec3 q = glm::cross(from_a, ab);
         const double v = glm::dot(ray, q) / determinant, t = glm::dot(ac, q) / determinant;
         if (u < 0 || v < 0 || u + v > 1 || t <= 0) continue;
-        const glm::dvec3 point = camera.eye + ray * t;
+        const glm::dvec3 point = origin + ray * t;
         glm::dvec3 normal = glm::normalize(a.normal * (1 - u - v) + b.normal * u + c.normal * v);
-        if (triangle.both_sides && glm::dot(normal, camera.eye - point) < 0) normal = -normal;
+        if (triangle.both_sides && glm::dot(normal, ray) > 0) normal = -normal;
         const Material& material = triangle.material;
-        hits.push_back({t,
-                        {triangle.surface, phong(material, view_.light, camera.eye, point, normal)},
-                        material.diffuse.a});
+        Seen seen{triangle.surface, phong(material, light, origin, point, normal)};
+        if (triangle.mirror != kNone && from_mirror == kNone) {
+            const glm::dvec3 face = glm::normalize(glm::cross(ab, ac));
+            const Seen there = along(point, glm::reflect(ray, face), triangle.mirror);
+            seen.surface = ((seen.surface + 1) * 1000 + there.surface + 1) % 1'000'003;
+            seen.color = glm::mix(seen.color, there.color, material.reflectivity);
+        }
+        hits.push_back({t, seen, material.diffuse.a});
     }
     // Of the same depth the later one is in front.
     std::reverse(hits.begin(), hits.end());

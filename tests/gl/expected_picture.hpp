@@ -13,13 +13,16 @@ namespace vrut {
 glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3& eye, const glm::dvec3& point,
                  const glm::dvec3& normal);
 
-/// What a view of a scene shows, computed ray by ray without any of the renderer.
+/// What a view of a scene shows, computed ray by ray without any of the renderer: opaque surfaces, and flat
+/// mirrors, in which mirrors are ordinary surfaces.
 class ExpectedPicture {
 public:
     ExpectedPicture(const PlacedScene& placed, const View& view);
 
     struct Seen {
-        int surface = -1;  ///< which faces or smooth parts, one behind the other; -1 for the background
+        /// Which faces or smooth parts, one behind the other, and in a mirror what is seen there; -1 for the
+        /// background.
+        int surface = -1;
         glm::dvec3 color{0};
     };
     /// At a place in pixels from the picture's top left.
@@ -38,7 +41,9 @@ private:
         int surface = -1;
         bool both_sides = false;
         bool mirrored = false;
+        Index mirror = kNone;  ///< the node of a flat mirror
     };
+    Seen along(const glm::dvec3& origin, const glm::dvec3& ray, Index from_mirror) const;
     void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
 
     View view_;

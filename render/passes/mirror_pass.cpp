@@ -1,0 +1,53 @@
+#include "passes/mirror_pass.hpp"
+
+#include "passes/drawing.hpp"
+
+namespace vrut {
+
+const Framebuffer& MirrorPass::open(const MirrorItem& mirror, GpuScene& scene,
+                                    const glm::dmat4& clip_from_view, const glm::dvec3& background,
+                                    const Framebuffer& picture, FrameStats& stats) {
+    if (!target_ || target_->width() != picture.width() || target_->height() != picture.height() ||
+        target_->deep() != picture.deep()) {
+        target_.reset();
+        target_.emplace(picture.width(), picture.height(), picture.deep());
+    }
+    target_->bind();
+    glEnable(GL_SCISSOR_TEST);
+    scissor(mirror.box);
+    // Nothing comes before what is nearest; but at the mirror's pixels everything does.
+    glClearDepth(1);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glClearDepth(0);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthRange(0, 0);
+    glDisable(GL_BLEND);
+    mask_.use(background, clip_from_view);
+    const GpuGeometry& geometry = scene.geometry(mirror.surface.geometry);
+    set_place(mirror.surface, geometry);
+    cull_sides(mirror.surface);
+    draw_triangles(geometry, stats);
+    glDepthRange(0, 1);
+    return *target_;
+}
+
+void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+                       SurfacePrograms& programs, FrameStats& stats) {
+    picture.bind();
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(mirror.surface.behind_twin ? GL_GREATER : GL_GEQUAL);
+    glDisable(GL_BLEND);
+    const GpuGeometry& geometry = scene.geometry(mirror.surface.geometry);
+    programs.use(SurfacePrograms::Shape::mirror, mirror.surface, geometry,
+                 scene.scene()->material(mirror.surface.material));
+    glBindTextureUnit(SurfacePrograms::kReflectionUnit, target_->color().get());
+    cull_sides(mirror.surface);
+    draw_triangles(geometry, stats);
+    // What is bound for reading must not be what is drawn into next.
+    glBindTextureUnit(SurfacePrograms::kReflectionUnit, 0);
+    ++stats.passes;
+}
+
+}  // namespace vrut

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+
+#include "framebuffer.hpp"
+#include "passes/programs.hpp"
+
+namespace vrut {
+
+/// Flat mirrors. What is seen in one is drawn from the same eye with the scene reflected about its plane,
+/// into a target like the picture's own, where it keeps its pixels; the surface then takes each pixel from
+/// there. One target serves all mirrors in turn.
+class MirrorPass {
+public:
+    /// Makes the target that a mirror's reflection is drawn into the current one, empty before `background`
+    /// and open only at the pixels that the mirror can be seen at.
+    const Framebuffer& open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
+                            const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats);
+    /// Draws the surface, with what was drawn since, into `picture`, which is bound afterwards.
+    void close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+               SurfacePrograms& programs, FrameStats& stats);
+    /// Gives the target's memory back.
+    void release() { target_.reset(); }
+
+private:
+    std::optional<Framebuffer> target_;
+    PlainProgram mask_;
+};
+
+}  // namespace vrut
