@@ -29,9 +29,9 @@ std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, con
     const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
     if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn)) return {};
     const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
-    const bool singular = !(std::abs(determinant) > 1e-12);
     const bool mirror = mode == DrawMode::realistic && mirror_plane(*placed.scene, item);
-    const bool both = singular || mirror || placed.scene->material(material).two_sided;
+    const bool both =
+        is_flattened(item.view_from_node) || mirror || placed.scene->material(material).two_sided;
     item.sides = both ? Sides::both : Sides::front;
     item.mirrored = determinant < 0;
     return item;
@@ -160,6 +160,10 @@ double mark_radius(int picture_height) { return std::max(picture_height / 120.0,
 bool is_mirror(const Scene& scene, Index geometry, Index material) {
     const Material& of = scene.material(material);
     return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
+}
+
+bool is_flattened(const glm::dmat4& view_from_node) {
+    return !(std::abs(relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
 }
 
 bool has_transparent(const Layers& layers) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct DrawItem {
     bool behind_twin = false;
     /// Only points of the node's space whose product with this is not negative are drawn.
     std::optional<glm::dvec4> kept;
+    /// Its triangles from far to near, numbered as TriangleOrder does; null: as in the file.
+    std::shared_ptr<const std::vector<unsigned>> order;
 };
 
 /// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,
@@ -41,6 +44,9 @@ struct Layers {
     std::vector<MirrorItem> mirrors;            ///< by rising id
     std::vector<TransparentGroup> transparent;  ///< from far to near
 };
+
+/// Whether a matrix leaves no volume: such parts are drawn from both sides.
+bool is_flattened(const glm::dmat4& view_from_node);
 
 /// A surface and what is seen in it.
 struct MirrorItem {

@@ -76,13 +76,17 @@ OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box) {
     return result;
 }
 
-const GlassShape& GlassShapes::of(const Scene& scene, Index geometry) {
-    std::unique_ptr<GlassShape>& shape = shapes_[static_cast<std::size_t>(geometry)];
-    if (!shape) {
-        const Geometry& wanted = scene.geometries()[static_cast<std::size_t>(geometry)];
-        shape = std::make_unique<GlassShape>(GlassShape{oriented_box(wanted)});
-    }
-    return *shape;
+const OrientedBox& GlassShapes::box(Index index) {
+    std::optional<OrientedBox>& box = shapes_[static_cast<std::size_t>(index)].box;
+    if (!box) box = oriented_box(geometry(index));
+    return *box;
+}
+
+const TriangleOrder& GlassShapes::order(Index index, Sides sides) {
+    std::optional<TriangleOrder>& order =
+        shapes_[static_cast<std::size_t>(index)].orders[sides == Sides::both ? 1 : 0];
+    if (!order) order = order_triangles(geometry(index), sides);
+    return *order;
 }
 
 }  // namespace vrut

@@ -2,10 +2,10 @@
 
 #include <array>
 #include <glm/glm.hpp>
-#include <memory>
+#include <optional>
 #include <vector>
 
-#include "scene.hpp"
+#include "triangle_order.hpp"
 
 namespace vrut {
 
@@ -22,19 +22,25 @@ OrientedBox oriented_box(const Geometry& geometry);
 /// The box seen through an affine `matrix`.
 OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
 
-/// What of a geometry decides in which order glass of that shape is drawn.
-struct GlassShape {
-    OrientedBox box;
-};
-
-/// The shapes of a scene's geometries, each found when it is first asked for.
+/// What decides in which order glass of a scene's geometries is drawn, found when it is first asked for.
 class GlassShapes {
 public:
-    explicit GlassShapes(const Scene& scene) : shapes_(scene.geometries().size()) {}
-    const GlassShape& of(const Scene& scene, Index geometry);
+    /// The scene must outlive it.
+    explicit GlassShapes(const Scene& scene) : scene_(scene), shapes_(scene.geometries().size()) {}
+    const OrientedBox& box(Index geometry);
+    const TriangleOrder& order(Index geometry, Sides sides);
 
 private:
-    std::vector<std::unique_ptr<GlassShape>> shapes_;
+    struct Shape {
+        std::optional<OrientedBox> box;
+        std::array<std::optional<TriangleOrder>, 2> orders;  // with front faces, with both
+    };
+    const Geometry& geometry(Index index) const {
+        return scene_.geometries()[static_cast<std::size_t>(index)];
+    }
+
+    const Scene& scene_;
+    std::vector<Shape> shapes_;
 };
 
 }  // namespace vrut

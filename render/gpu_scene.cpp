@@ -90,11 +90,9 @@ std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const 
     return result;
 }
 
-void add_texcoords(const std::vector<unsigned>& corners, const Geometry& geometry, GpuGeometry& result) {
-    const std::vector<glm::vec2> texcoords = texcoords_of(corners, geometry);
-    result.texcoords = make_buffer(texcoords.data(), texcoords.size() * sizeof(glm::vec2));
-    const GLuint array = result.vertex_array.get();
-    glVertexArrayVertexBuffer(array, 1, result.texcoords.get(), 0, sizeof(glm::vec2));
+void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array) {
+    const GLuint array = vertex_array.get();
+    glVertexArrayVertexBuffer(array, 1, texcoords.get(), 0, sizeof(glm::vec2));
     glEnableVertexArrayAttrib(array, 2);
     glVertexArrayAttribFormat(array, 2, 2, GL_FLOAT, GL_FALSE, 0);
     glVertexArrayAttribBinding(array, 2, 1);
@@ -109,7 +107,10 @@ GpuGeometry upload(const Geometry& geometry) {
     result.index_count = static_cast<GLsizei>(arrays.triangles.size() * 3);
 
     result.vertex_array = vertex_array_of(result.vertices, result.indices);
-    if (!geometry.texcoords.empty()) add_texcoords(arrays.corners, geometry, result);
+    if (geometry.texcoords.empty()) return result;
+    const std::vector<glm::vec2> texcoords = texcoords_of(arrays.corners, geometry);
+    result.texcoords = make_buffer(texcoords.data(), texcoords.size() * sizeof(glm::vec2));
+    add_texcoords(result.texcoords, result.vertex_array);
     return result;
 }
 
@@ -212,6 +213,33 @@ const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
         ++uploads_;
     }
     return cube_map;
+}
+
+const GpuTriangles& GpuScene::ordered(const DrawItem& item) {
+    const std::vector<unsigned>& order = *item.order;
+    GpuTriangles& result = ordered_[{item.geometry, order.size()}];
+    if (result.order && (result.order == item.order || *result.order == order)) return result;
+    if (!result.vertex_array) {
+        const GpuGeometry& uploaded = geometry(item.geometry);
+        result.in_file =
+            make_arrays(scene_->geometries()[static_cast<std::size_t>(item.geometry)], uploaded.origin)
+                .triangles;
+        result.indices = make_changing_buffer(order.size() * sizeof(glm::uvec3));
+        result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
+        if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
+        result.index_count = static_cast<GLsizei>(order.size() * 3);
+        ++uploads_;
+    }
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(order.size());
+    for (const unsigned number : order) {
+        glm::uvec3& triangle = triangles.emplace_back(result.in_file[number % result.in_file.size()]);
+        if (number >= result.in_file.size()) std::swap(triangle.y, triangle.z);
+    }
+    glNamedBufferSubData(result.indices.get(), 0,
+                         static_cast<GLsizeiptr>(triangles.size() * sizeof(glm::uvec3)), triangles.data());
+    result.order = item.order;
+    return result;
 }
 
 }  // namespace vrut

@@ -4,8 +4,10 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "frame_plan.hpp"
 #include "handles.hpp"
 #include "scene.hpp"
 
@@ -29,6 +31,15 @@ struct GpuEdges {
     GLsizei index_count = 0;
 };
 
+/// A geometry's triangles in another order, which can change from frame to frame.
+struct GpuTriangles {
+    GlBuffer indices;
+    GlVertexArray vertex_array;  ///< with the geometry's vertices
+    GLsizei index_count = 0;
+    std::vector<glm::uvec3> in_file;
+    std::shared_ptr<const std::vector<unsigned>> order;
+};
+
 /// The geometries and textures of a scene, each uploaded when it is first drawn.
 class GpuScene {
 public:
@@ -36,6 +47,8 @@ public:
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const GpuGeometry& geometry(Index index);
     const GpuEdges& edges(Index index);
+    /// Its triangles in an item's order, which is not null.
+    const GpuTriangles& ordered(const DrawItem& item);
     const GlTexture& texture(Index index);
     /// Of the six textures (upload_cube_map()).
     const GlTexture& cube_map(const std::array<Index, 6>& textures);
@@ -46,6 +59,7 @@ private:
     std::shared_ptr<const Scene> scene_;
     std::vector<GpuGeometry> geometries_;
     std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
+    std::map<std::pair<Index, std::size_t>, GpuTriangles> ordered_;  // by the number of triangles, too
     std::vector<GlTexture> textures_;
     std::map<std::array<Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;

@@ -5,7 +5,10 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
+
+#include "strong_components.hpp"
 
 namespace vrut {
 
@@ -74,8 +77,6 @@ Pane pane_of(OrientedBox box, const ColorRange& colors) {
     return pane;
 }
 
-enum class Order { apart, first_in_front, second_in_front, unknown };
-
 /// What a plane at right angles to `axis` tells of two boxes whose extents along it are these: it lies
 /// between them, and the eye, at 0, is on the side of the one in front.
 Order told_by(double first, double first_extent, double second, double second_extent) {
@@ -120,37 +121,64 @@ Order order_of(const OrientedBox& a, const OrientedBox& b, double size) {
 /// Which panes lie before which others, as the eye sees them.
 class Stack {
 public:
-    explicit Stack(std::vector<Pane> panes) : panes_(std::move(panes)), behind_(panes_.size()) {}
+    Stack(std::span<const DrawItem> items, const Scene& scene, const Light& light, GlassShapes& shapes);
 
     /// False where too many overlap.
-    bool compare_all(std::span<const DrawItem> items);
+    bool compare_all();
     /// Panes by number, in groups that no order parts, from far to near.
-    std::vector<std::vector<std::size_t>> groups() const;
+    std::vector<std::vector<unsigned>> groups() const { return strong_components(behind_); }
     /// What drawing a group in some order could change.
-    double risk(const std::vector<std::size_t>& group) const;
-    void sort_by_distance(std::vector<std::size_t>& group) const;
+    double risk(const std::vector<unsigned>& group) const;
+    void sort_by_distance(std::vector<unsigned>& group) const;
+    /// Says of the item how its triangles are to be drawn; true if it may show itself behind itself in an
+    /// order that is not known, and that would be seen.
+    bool shows_through_itself(unsigned pane, DrawItem& item) const;
 
 private:
-    Order compare(std::size_t a, std::size_t b, std::span<const DrawItem> items) const;
+    Order compare(unsigned a, unsigned b);
+    const std::vector<FacingTriangle>& facing(unsigned pane);
+    const Geometry& geometry(unsigned pane) const {
+        return scene_.geometries()[static_cast<std::size_t>(items_[pane].geometry)];
+    }
 
+    std::span<const DrawItem> items_;
+    const Scene& scene_;
+    GlassShapes& shapes_;
     std::vector<Pane> panes_;
-    std::vector<std::vector<std::size_t>> behind_;  // for each those that lie behind it, or may
+    std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
+    std::vector<std::optional<std::vector<FacingTriangle>>> facing_;
 };
 
+Stack::Stack(std::span<const DrawItem> items, const Scene& scene, const Light& light, GlassShapes& shapes)
+    : items_(items), scene_(scene), shapes_(shapes), behind_(items.size()), facing_(items.size()) {
+    for (const DrawItem& item : items)
+        panes_.push_back(pane_of(transformed(item.view_from_node, shapes.box(item.geometry)),
+                                 color_range(scene.material(item.material), light)));
+}
+
+const std::vector<FacingTriangle>& Stack::facing(unsigned pane) {
+    if (!facing_[pane]) facing_[pane] = facing_triangles(items_[pane], geometry(pane));
+    return *facing_[pane];
+}
+
 /// `a` has the lower id.
-Order Stack::compare(std::size_t a, std::size_t b, std::span<const DrawItem> items) const {
+Order Stack::compare(unsigned a, unsigned b) {
     const Pane &first = panes_[a], &second = panes_[b];
-    if (items[a].geometry == items[b].geometry && items[a].view_from_node == items[b].view_from_node)
+    if (items_[a].geometry == items_[b].geometry && items_[a].view_from_node == items_[b].view_from_node)
         return Order::second_in_front;
     if (first.nearest < second.farthest) return Order::second_in_front;
     if (second.nearest < first.farthest) return Order::first_in_front;
-    return order_of(first.box, second.box, first.radius + second.radius);
+    const double size = first.radius + second.radius;
+    const Order order = order_of(first.box, second.box, size);
+    if (order != Order::unknown) return order;
+    if (geometry(a).triangles.size() * geometry(b).triangles.size() > kMostCompared) return order;
+    return order_of(facing(a), facing(b), kNegligible * size);
 }
 
-bool Stack::compare_all(std::span<const DrawItem> items) {
-    std::vector<std::size_t> from_left(panes_.size());
-    std::iota(from_left.begin(), from_left.end(), std::size_t{0});
-    std::sort(from_left.begin(), from_left.end(), [&](std::size_t a, std::size_t b) {
+bool Stack::compare_all() {
+    std::vector<unsigned> from_left(panes_.size());
+    std::iota(from_left.begin(), from_left.end(), 0U);
+    std::sort(from_left.begin(), from_left.end(), [&](unsigned a, unsigned b) {
         return std::tie(panes_[a].low.x, a) < std::tie(panes_[b].low.x, b);
     });
     std::size_t pairs = 0;
@@ -162,7 +190,7 @@ bool Stack::compare_all(std::span<const DrawItem> items) {
             if (right.low.y > left.high.y || left.low.y > right.high.y) continue;
             if (++pairs > kMostPairs) return false;
             const auto [a, b] = std::minmax(from_left[i], from_left[k]);
-            const Order order = compare(a, b, items);
+            const Order order = compare(a, b);
             if (order == Order::first_in_front || order == Order::unknown) behind_[a].push_back(b);
             if (order == Order::second_in_front || order == Order::unknown) behind_[b].push_back(a);
         }
@@ -170,86 +198,80 @@ bool Stack::compare_all(std::span<const DrawItem> items) {
     return true;
 }
 
-/// Strongly connected components (Tarjan 1972, without recursion). A component is complete only after all
-/// that it leads to, which is what lies behind it.
-std::vector<std::vector<std::size_t>> Stack::groups() const {
-    constexpr std::size_t kUnseen = std::numeric_limits<std::size_t>::max();
-    std::vector<std::size_t> number(panes_.size(), kUnseen), lowest(panes_.size()), next(panes_.size(), 0);
-    std::vector<bool> open(panes_.size(), false);
-    std::vector<std::size_t> path, pending;
-    std::vector<std::vector<std::size_t>> result;
-    std::size_t count = 0;
-    for (std::size_t start = 0; start < panes_.size(); ++start) {
-        if (number[start] != kUnseen) continue;
-        path.push_back(start);
-        while (!path.empty()) {
-            const std::size_t at = path.back();
-            if (number[at] == kUnseen) {
-                number[at] = lowest[at] = count++;
-                pending.push_back(at);
-                open[at] = true;
-            }
-            if (next[at] < behind_[at].size()) {
-                const std::size_t to = behind_[at][next[at]++];
-                if (number[to] == kUnseen)
-                    path.push_back(to);
-                else if (open[to])
-                    lowest[at] = std::min(lowest[at], number[to]);
-                continue;
-            }
-            path.pop_back();
-            if (!path.empty()) lowest[path.back()] = std::min(lowest[path.back()], lowest[at]);
-            if (lowest[at] != number[at]) continue;
-            std::vector<std::size_t>& group = result.emplace_back();
-            do {
-                group.push_back(pending.back());
-                open[pending.back()] = false;
-                pending.pop_back();
-            } while (group.back() != at);
-            std::sort(group.begin(), group.end());
-        }
-    }
-    return result;
-}
-
-double Stack::risk(const std::vector<std::size_t>& group) const {
+double Stack::risk(const std::vector<unsigned>& group) const {
     double sum = 0;
-    for (const std::size_t a : group)
-        for (const std::size_t b : behind_[a])
+    for (const unsigned a : group)
+        for (const unsigned b : behind_[a])
             if (std::binary_search(group.begin(), group.end(), b))
                 sum += swapped_difference(panes_[a].colors, panes_[b].colors);
     return sum;
 }
 
-void Stack::sort_by_distance(std::vector<std::size_t>& group) const {
-    const auto distance = [&](std::size_t pane) { return glm::length(panes_[pane].box.center); };
+void Stack::sort_by_distance(std::vector<unsigned>& group) const {
+    const auto distance = [&](unsigned pane) { return glm::length(panes_[pane].box.center); };
     std::stable_sort(group.begin(), group.end(),
-                     [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
+                     [&](unsigned a, unsigned b) { return distance(a) > distance(b); });
+}
+
+/// Puts those of `all` that are in `last` behind the others, in the order of `last`.
+void put_last(const std::vector<unsigned>& last, std::span<unsigned> all) {
+    std::vector<unsigned> sorted = last;
+    std::sort(sorted.begin(), sorted.end());
+    const auto rest = std::remove_if(all.begin(), all.end(), [&](unsigned number) {
+        return std::binary_search(sorted.begin(), sorted.end(), number);
+    });
+    std::copy(last.begin(), last.end(), rest);
+}
+
+bool Stack::shows_through_itself(unsigned pane, DrawItem& item) const {
+    if (is_flattened(item.view_from_node)) return false;  // all of it in one plane
+    const TriangleOrder& known = shapes_.order(item.geometry, item.sides);
+    item.order = known.far_to_near;
+    const ColorRange& colors = panes_[pane].colors;
+    if (known.rings.empty() || swapped_difference(colors, colors) <= kVisible) return false;
+    std::vector<unsigned> order;
+    if (known.far_to_near) {
+        order = *known.far_to_near;
+    } else {
+        order.resize(geometry(pane).triangles.size() * (item.sides == Sides::both ? 2 : 1));
+        std::iota(order.begin(), order.end(), 0U);
+    }
+    for (const std::vector<unsigned>& ring : known.rings) {
+        const auto facing =
+            far_to_near(facing_triangles(item, geometry(pane), ring), kNegligible * panes_[pane].radius);
+        if (!facing) return true;
+        put_last(*facing, std::span(std::find(order.begin(), order.end(), ring.front()), ring.size()));
+    }
+    item.order = std::make_shared<const std::vector<unsigned>>(std::move(order));
+    return false;
 }
 
 }  // namespace
 
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
                                                 const Light& light, GlassShapes& shapes) {
-    std::vector<Pane> panes;
-    for (const DrawItem& item : items)
-        panes.push_back(pane_of(transformed(item.view_from_node, shapes.of(scene, item.geometry).box),
-                                color_range(scene.material(item.material), light)));
-    Stack stack(std::move(panes));
-    std::vector<std::vector<std::size_t>> order;
-    const bool ordered = stack.compare_all(items);
+    Stack stack(items, scene, light, shapes);
+    std::vector<std::vector<unsigned>> order;
+    const bool ordered = stack.compare_all();
     if (ordered) {
         order = stack.groups();
     } else {
         order.emplace_back(items.size());
-        std::iota(order[0].begin(), order[0].end(), std::size_t{0});
+        std::iota(order[0].begin(), order[0].end(), 0U);
     }
     std::vector<TransparentGroup> groups;
-    for (std::vector<std::size_t>& members : order) {
+    const auto add = [&](const DrawItem& item, bool exact, bool alone) {
+        if (alone || groups.empty() || groups.back().exact != exact) groups.push_back({{}, exact});
+        groups.back().items.push_back(item);
+    };
+    for (std::vector<unsigned>& members : order) {
         const bool exact = ordered && members.size() > 1 && stack.risk(members) > kVisible;
         if (!exact) stack.sort_by_distance(members);
-        if (exact || groups.empty() || groups.back().exact) groups.push_back({{}, exact});
-        for (const std::size_t member : members) groups.back().items.push_back(items[member]);
+        for (const unsigned member : members) {
+            DrawItem item = items[member];
+            const bool exact_alone = !exact && stack.shows_through_itself(member, item);
+            add(item, exact || exact_alone, exact_alone || (exact && member == members.front()));
+        }
     }
     return groups;
 }

@@ -4,8 +4,8 @@
 
 namespace vrut {
 
-void cull_sides(const DrawItem& item) {
-    if (item.sides == Sides::both)
+void cull_sides(const DrawItem& item, bool front_only) {
+    if (item.sides == Sides::both && !front_only)
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
@@ -17,11 +17,23 @@ void scissor(const PixelBox& box) {
     glScissor(box.low.x, box.low.y, std::max(box.size().x, 0), std::max(box.size().y, 0));
 }
 
-void draw_triangles(const GpuGeometry& geometry, FrameStats& stats) {
-    glBindVertexArray(geometry.vertex_array.get());
-    glDrawElements(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT, nullptr);
+namespace {
+
+void draw_indices(const GlVertexArray& vertex_array, GLsizei count, FrameStats& stats) {
+    glBindVertexArray(vertex_array.get());
+    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
     ++stats.draws;
-    stats.triangles += static_cast<std::uint64_t>(geometry.index_count) / 3;
+    stats.triangles += static_cast<std::uint64_t>(count) / 3;
+}
+
+}  // namespace
+
+void draw_triangles(const GpuGeometry& geometry, FrameStats& stats) {
+    draw_indices(geometry.vertex_array, geometry.index_count, stats);
+}
+
+void draw_triangles(const GpuTriangles& triangles, FrameStats& stats) {
+    draw_indices(triangles.vertex_array, triangles.index_count, stats);
 }
 
 }  // namespace vrut

@@ -61,8 +61,6 @@ void main() {
 }
 )";
 
-constexpr GLuint kNone32 = 0;
-
 /// Into so many parts of about the same size, one above the other, or beside it if the box is wider than
 /// high; fewer where there are not so many pixels.
 void split(const PixelBox& box, std::uint64_t parts, std::vector<PixelBox>& into) {
@@ -135,7 +133,7 @@ std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const Pixe
     glNamedBufferSubData(lists_.get(), 0, sizeof place, place.data());
     glClearNamedBufferSubData(lists_.get(), GL_R32UI, kHeadBytes,
                               static_cast<GLsizeiptr>(sizeof(GLuint)) * box.size().x * box.size().y,
-                              GL_RED_INTEGER, GL_UNSIGNED_INT, &kNone32);
+                              GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < items.size(); ++i) {

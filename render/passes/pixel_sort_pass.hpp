@@ -12,15 +12,11 @@ namespace vrut {
 
 /// Faces of transparent materials whose order changes from pixel to pixel. Those that the depth lets through
 /// are kept in a list for each pixel, which is then composited from near to far; at equal depth the item that
-/// comes later is in front. Lists that do not fit into the budget are made for a part of the picture at a
-/// time, so nothing is lost: but in a single pixel that alone holds more layers than the budget.
+/// comes later is in front. There is room for two layers in each pixel of the picture, but 64 MiB at most;
+/// lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
+/// single pixel needs more than all of it.
 class PixelSortPass {
 public:
-    /// Bytes that it takes for a picture, at most.
-    static constexpr std::size_t budget(std::size_t pixels) {
-        return pixels * sizeof(GLuint) + most_layers(pixels) * kLayerBytes + 2 * kHeadBytes;
-    }
-
     /// Draws into `target`, which is bound; adds its draws and triangles to `stats`, and a pass for each part
     /// of the picture.
     void draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,

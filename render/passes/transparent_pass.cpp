@@ -14,8 +14,11 @@ void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, Sur
         const GpuGeometry& geometry = scene.geometry(item.geometry);
         programs.use(SurfacePrograms::Shape::glass, item, geometry, scene.scene()->material(item.material));
         glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
-        cull_sides(item);
-        draw_triangles(geometry, stats);
+        cull_sides(item, item.order != nullptr);
+        if (item.order)
+            draw_triangles(scene.ordered(item), stats);
+        else
+            draw_triangles(geometry, stats);
     }
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
