@@ -42,10 +42,10 @@ bool shows(const PlacedScene& placed, std::size_t node, const View& view) {
     const auto& data = std::get<GeometryData>(placed.scene->nodes()[node].data);
     const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
     for (const glm::uvec3& triangle : geometry.triangles) {
-        std::vector<glm::dvec4> corners;
-        for (int k = 0; k < 3; ++k)
-            corners.push_back(clip_from_node * glm::dvec4(geometry.positions[triangle[k]], 1));
-        if (shows(corners)) return true;
+        const auto corner = [&](int k) {
+            return clip_from_node * glm::dvec4(geometry.positions[triangle[k]], 1);
+        };
+        if (shows({corner(0), corner(1), corner(2)})) return true;
     }
     return false;
 }

@@ -139,7 +139,8 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
     view.marks = {{{0, 0, -100}}};
     const Part wall{2, quad(200), black, moved_by({0, 0, -100})};
     std::vector<double> seen;
-    for (double edge = -6; edge <= 6; edge += 0.25) {
+    for (int quarter = -24; quarter <= 24; ++quarter) {
+        const double edge = quarter / 4.0;
         // From the left to `edge` pixels beyond the point.
         const auto scene =
             scene_of({{1, rectangle(0, 200, 100 + edge, 400, view), black, glm::dmat4(1)}, wall});
@@ -289,7 +290,8 @@ TEST_CASE("markers at the picture's border are cut off there, and nearer ones li
 
 TEST_CASE("markers in pictures a pixel wide or high, and with many samples") {
     Studio studio;
-    for (const auto& [width, height] : {std::pair{1, 8192}, {8192, 1}, {1, 1}}) {
+    for (const glm::ivec2 size : {glm::ivec2(1, 8192), {8192, 1}, {1, 1}}) {
+        const int width = size.x, height = size.y;
         CAPTURE(width);
         View view = pixel_view(width, height);
         view.background.color = {0, 0, 0};
