@@ -6,12 +6,11 @@ geometry's id and its shape; all below that line is made anew. What stands above
 
 import math
 import os
-import struct
 import sys
-import zlib
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
+import png  # noqa: E402
 from modelling import (add, bent, box, cross, geometry_text, indexed, lathe, moved, quad, scale, sub, turned,  # noqa: E402
                        unit)
 
@@ -120,20 +119,13 @@ def with_shapes(text):
 # ---- pictures --------------------------------------------------------------------------------------------
 
 
-def write_png(name, width, height, pixel, alpha=False):
-    """`pixel` gives red, green, blue (and alpha), 0 to 1, at the middle of a pixel; x and y from the bottom left, 0 to 1."""
+def draw(name, width, height, pixel, channels=3):
+    """`pixel` gives the colour, 0 to 1, at the middle of a pixel; x and y from the bottom left, 0 to 1."""
     rows = []
     for row in range(height):
         colours = (pixel((column + 0.5) / width, 1 - (row + 0.5) / height) for column in range(width))
-        rows.append(b"\0" + bytes(int(255 * min(max(c, 0), 1) + 0.5) for colour in colours for c in colour))
-
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    head = struct.pack(">IIBBBBB", width, height, 8, 6 if alpha else 2, 0, 0, 0)
-    with open(os.path.join(HERE, "textures", name), "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9))
-                   + chunk(b"IEND", b""))
+        rows.append(bytes(int(255 * min(max(c, 0), 1) + 0.5) for colour in colours for c in colour))
+    png.write(os.path.join(HERE, "textures", name), width, height, channels, rows)
 
 
 CREAM, INK = (0.95, 0.91, 0.82), (0.16, 0.22, 0.34)
@@ -159,11 +151,9 @@ def letter_card(x, y):
 
 
 def pixels(x, y):
-    """6 by 5 colours that are all different."""
+    """6 by 5, no two neighbours alike."""
     column, row = int(6 * x), int(5 * y)
-    hue = (column * 5 + row * 7) % 30 / 30 * 2 * math.pi
-    light = 0.55 + 0.35 * ((column + row) % 2) - 0.1
-    return tuple(light + 0.3 * math.cos(hue - k * 2 * math.pi / 3) for k in range(3))
+    return (RED, CREAM, BLUE, YELLOW, GREEN, INK)[(column * (row + 1) + 3 * row) % 6]
 
 
 def checker(x, y):
@@ -213,13 +203,13 @@ def studio(face):
 
 def main():
     os.makedirs(os.path.join(HERE, "textures"), exist_ok=True)
-    write_png("letter.png", 64, 64, letter_card)
-    write_png("pixels.png", 6, 5, pixels)
-    write_png("checker.png", 64, 64, checker)
-    write_png("leaf.png", 64, 64, leaf, alpha=True)
-    write_png("hills.png", 96, 64, hills)
+    draw("letter.png", 64, 64, letter_card)
+    draw("pixels.png", 6, 5, pixels)
+    draw("checker.png", 64, 64, checker)
+    draw("leaf.png", 64, 64, leaf, channels=4)
+    draw("hills.png", 96, 64, hills)
     for i, name in enumerate(FACES):
-        write_png(f"studio-{name}.png", 64, 64, studio(i))
+        draw(f"studio-{name}.png", 64, 64, studio(i))
     for name in sorted(os.listdir(HERE)):
         if name.endswith(".vrut"):
             path = os.path.join(HERE, name)
