@@ -54,6 +54,22 @@ Index Tracer::node_at(const glm::dvec2& place) const {
     return first ? surfaces_.parts()[first->part].node : kNone;
 }
 
+std::vector<Tracer::Layer> Tracer::layers_at(const glm::dvec2& place) const {
+    std::vector<Layer> layers;
+    const auto add = [&](const Look& look) {
+        const std::optional<Meeting> opaque = surfaces_.first_opaque(look.sight, look.mirror);
+        const bool in_mirror = look.mirror != Surfaces::kNoPart;
+        for (const Meeting& meeting : surfaces_.transparent_before(look.sight, opaque))
+            layers.push_back({meeting, look.sight, in_mirror});
+        if (opaque) layers.push_back({*opaque, look.sight, in_mirror});
+        return opaque;
+    };
+    const Look look{sight_through(place), place};
+    const std::optional<Meeting> opaque = add(look);
+    if (opaque && parts()[opaque->part].mirror) add(reflected(look, *opaque));
+    return layers;
+}
+
 Sight Tracer::sight_through(const glm::dvec2& place) const {
     const glm::dvec3 view = view_direction(view_.camera), right = right_direction(view_.camera);
     const glm::dvec3 up = glm::cross(right, view);

@@ -19,6 +19,17 @@ public:
     glm::dvec3 color_at(const glm::dvec2& place) const;
     Index node_at(const glm::dvec2& place) const;
 
+    /// A surface that a pixel's colour is made of.
+    struct Layer {
+        Meeting meeting;
+        Sight sight;             ///< what met it
+        bool reflected = false;  ///< it is seen in a mirror
+    };
+    /// All of them: nearest first, and behind a mirror what is seen in it.
+    std::vector<Layer> layers_at(const glm::dvec2& place) const;
+    const std::vector<Part>& parts() const { return surfaces_.parts(); }
+    Sight sight_through(const glm::dvec2& place) const;
+
 private:
     struct Surface {
         glm::dvec3 color{0};
@@ -30,7 +41,6 @@ private:
         glm::dvec2 place;
         std::uint32_t mirror = Surfaces::kNoPart;
     };
-    Sight sight_through(const glm::dvec2& place) const;
     glm::dvec3 color_of(const Look& look) const;
     Surface surface_at(const Look& look, const Meeting& meeting) const;
     Look reflected(const Look& look, const Meeting& meeting) const;

@@ -1,0 +1,135 @@
+#include "agreement.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "read_scene.hpp"
+#include "scene_variants.hpp"
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the pixels that show a surface; the rest are at outlines and creases.
+constexpr double kLeastInterior = 0.6;
+
+std::vector<fs::path> teaching_scenes() {
+    std::vector<fs::path> scenes;
+    for (const auto& entry : fs::directory_iterator(VRUT_SCENES "/teaching"))
+        if (entry.path().extension() == ".vrut") scenes.push_back(entry.path());
+    std::sort(scenes.begin(), scenes.end());
+    return scenes;
+}
+
+/// As it starts, but under the scene's own light where it has one.
+View view_of_file(const fs::path& path, int width, int height) {
+    auto scene = read_scene(path);
+    REQUIRE_MESSAGE(scene, scene.error());
+    View view;
+    view.scene = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    view.width = width;
+    view.height = height;
+    const PlacedScene& placed = *view.scene;
+    const auto& nodes = placed.scene->nodes();
+    view.camera = home_camera(placed.bounds, static_cast<double>(width) / height);
+    if (const Index camera = first_camera_node(placed); camera != kNone)
+        view.camera = *camera_at(placed, camera);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto node = static_cast<Index>(i);
+        if (std::holds_alternative<LightData>(nodes[i].data)) view.light = light_of(placed, node);
+        if (const auto* data = std::get_if<BackgroundData>(&nodes[i].data)) {
+            const Material& material = placed.scene->material(data->material);
+            view.background = {glm::dvec3(material.diffuse), material.texture, data->cube_textures};
+        }
+    }
+    return view;
+}
+
+std::vector<Id> ids_of(const View& view, const std::vector<Index>& nodes, Id divisor) {
+    std::vector<Id> ids;
+    ids.reserve(nodes.size());
+    for (const Index node : nodes)
+        ids.push_back(
+            node == kNone ? -1 : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id / divisor);
+    return ids;
+}
+
+/// Where the stylized drawing may have edges, which the reference leaves out.
+std::vector<bool> edges_of(Studio& studio, View view) {
+    const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+    std::vector<bool> edges(pixels);
+    if (view.mode == DrawMode::realistic) return edges;
+    view.wireframe = true;
+    view.background = {};
+    const Image image = studio.draw(view.scene, view);
+    for (std::size_t i = 0; i < pixels; ++i)
+        edges[i] = glm::ivec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) !=
+                   bytes_of(kDefaultBackground);
+    return edges;
+}
+
+/// Draws the scene as it is and in all its variants, each in both modes, against one reference. All numbers
+/// are printed where VRUT_AGREEMENT is set.
+void check_agreement(Studio& studio, const std::string& name, View view) {
+    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
+        view.mode = mode;
+        const Judge judge = judge_of(view);
+        CHECK_MESSAGE(interior_share(judge) > kLeastInterior, name);
+        const std::vector<Id> expected = ids_of(view, judge.picture.node, 1);
+        std::vector<Variant> variants = variants_of(view);
+        variants.insert(variants.begin(), {"as it is", view});
+        for (const Variant& variant : variants) {
+            const std::string what =
+                name + (mode == DrawMode::stylized ? ", stylized, " : ", ") + variant.name;
+            const std::vector<Index> nodes = studio.renderer().node_ids(variant.view);
+            const Agreement result =
+                agreement(judge, studio.draw(variant.view.scene, variant.view),
+                          edges_of(studio, variant.view), ids_of(variant.view, nodes, variant.ids), expected);
+            if (std::getenv("VRUT_AGREEMENT") != nullptr)
+                std::printf("%s: %s\n", what.c_str(), line_of(result).c_str());
+            CHECK_MESSAGE(violations(result).empty(), what << ": " << violations(result));
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a drawing that is off is told") {
+    const View view = view_of_file(VRUT_SCENES "/teaching/materials.vrut", 160, 120);
+    const Judge judge = judge_of(view);
+    const std::vector<Id> ids = ids_of(view, judge.picture.node, 1);
+    const std::vector<bool> nothing(ids.size());
+    const Image right = image_of(judge.picture);
+    CHECK(violations(agreement(judge, right, nothing, ids, ids)).empty());
+
+    const auto at = static_cast<std::size_t>(std::find(judge.interior.begin(), judge.interior.end(), true) -
+                                             judge.interior.begin());
+    Image wrong = right;
+    for (std::size_t i = 0; i < 4; ++i) wrong.rgba[4 * (at + i)] -= 2;
+    CHECK_FALSE(violations(agreement(judge, wrong, nothing, ids, ids)).empty());
+
+    std::vector<Id> others = ids;
+    others[at] = 77;
+    CHECK(violations(agreement(judge, right, nothing, others, ids)).empty());
+    others[at + 1] = others[at + 2] = 77;
+    CHECK_FALSE(violations(agreement(judge, right, nothing, others, ids)).empty());
+}
+
+TEST_CASE("teaching scenes are drawn as the reference has them, whatever their size, place and parts") {
+    Studio studio;
+    const std::vector<fs::path> scenes = teaching_scenes();
+    CHECK(scenes.size() > 30);
+    for (const fs::path& scene : scenes)
+        check_agreement(studio, scene.stem().string(), view_of_file(scene, 320, 240));
+}
+
+TEST_CASE("the car is drawn as the reference has it") {
+    Studio studio;
+    check_agreement(studio, "car", view_of_file(VRUT_SCENES "/car/car.vrut", 640, 400));
+}

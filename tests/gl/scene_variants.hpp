@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "view.hpp"
+
+namespace vrut {
+
+/// The same picture from another scene.
+struct Variant {
+    std::string name;
+    View view;
+    Id ids = 1;  ///< by this its nodes' ids are divided to get those of the scene that it was made from
+};
+
+/// The view's scene at other sizes and places, mirrored twice, turned once around, in another order, and with
+/// each mesh split in two. The scene stands as its file says.
+std::vector<Variant> variants_of(const View& view);
+
+}  // namespace vrut
