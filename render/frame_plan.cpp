@@ -71,13 +71,14 @@ std::vector<DrawItem> shown_items(const View& view) {
     return items;
 }
 
-/// Reflective geometry nodes that are no mirrors, in the materials of their file.
-auto count_reflective(const Scene& scene) {
-    return std::count_if(scene.nodes().begin(), scene.nodes().end(), [&](const Node& node) {
-        const auto* data = std::get_if<GeometryData>(&node.data);
-        return data && data->geometry != kNone && scene.material(data->material).reflectivity > 0 &&
-               !is_mirror(scene, data->geometry, data->material);
-    });
+/// Reflective geometry nodes, mirrors or others, in the materials of their file.
+std::size_t count_reflective(const Scene& scene, bool mirrors) {
+    std::size_t count = 0;
+    for (const Node& node : scene.nodes())
+        if (const auto* data = std::get_if<GeometryData>(&node.data);
+            data && data->geometry != kNone && scene.material(data->material).reflectivity > 0)
+            count += is_mirror(scene, data->geometry, data->material) == mirrors;
+    return count;
 }
 
 bool has_cube_map(const Scene& scene) {
@@ -226,11 +227,13 @@ ClassCounts count_classes(const PlacedScene& placed) {
 
 std::vector<std::string> undrawn_features(const Scene& scene) {
     std::vector<std::string> notices;
-    const auto say = [&](auto count, const std::string& what) {
-        if (count > 0) notices.push_back(std::to_string(count) + what);
-    };
-    if (!has_cube_map(scene))
-        say(count_reflective(scene), " curved or transparent reflective parts have no cube map to reflect");
+    const std::size_t mirrors = count_reflective(scene, true), others = count_reflective(scene, false);
+    if (mirrors > kMostMirrors)
+        notices.push_back(std::to_string(mirrors) + " mirrors: the scene is seen in the " +
+                          std::to_string(kMostMirrors) + " that are largest in a picture");
+    if (others > 0 && !has_cube_map(scene))
+        notices.push_back(std::to_string(others) +
+                          " curved or transparent reflective parts have no cube map to reflect");
     return notices;
 }
 

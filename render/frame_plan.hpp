@@ -95,7 +95,7 @@ struct ClassCounts {
 };
 ClassCounts count_classes(const PlacedScene& placed);
 
-/// A sentence for each thing that the scene holds and the renderer does not draw.
+/// A sentence for each thing that the scene holds and the renderer does not draw, or not always.
 std::vector<std::string> undrawn_features(const Scene& scene);
 
 }  // namespace vrut

@@ -120,4 +120,16 @@ TEST_CASE("what is not drawn is told, and lights are drawn") {
     CHECK(undrawn_features(*Scene::build(parts)).size() == 1);
     std::get<BackgroundData>(parts.nodes[1].node.data).cube_textures.emplace();
     CHECK(undrawn_features(*Scene::build(parts)).empty());
+
+    parts.geometries = {quad(1)};
+    const auto hang = [&](Id mirrors) {
+        parts.nodes.clear();
+        for (Id id = 1; id <= mirrors; ++id)
+            parts.nodes.push_back(
+                {Node{id, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0});
+        return undrawn_features(*Scene::build(parts));
+    };
+    CHECK(hang(16).empty());
+    CHECK(hang(17) ==
+          std::vector<std::string>{"17 mirrors: the scene is seen in the 16 that are largest in a picture"});
 }
