@@ -72,7 +72,7 @@ private:
         }
 
     private:
-        glm::dvec3 before_, after_, inverse_;  ///< the origin, less and plus its slack
+        glm::dvec3 before_{0}, after_{0}, inverse_{0};  ///< the origin, less and plus its slack
     };
 
     void split(std::uint32_t node, std::span<const Bounds> boxes);

@@ -36,8 +36,8 @@ struct Corners {
 
     glm::dmat3 normals{0};
     glm::dmat3x2 texcoords{0};
-    std::array<glm::dvec3, 2> sides;  ///< from the first corner to the others
-    glm::dvec3 face;                  ///< normal of the plane
+    std::array<glm::dvec3, 2> sides{};  ///< from the first corner to the others
+    glm::dvec3 face{0};                 ///< normal of the plane
 };
 
 /// How the weights of the corners change where the point moves by `move` on their plane.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <tuple>
 
 #include "colors.hpp"
@@ -68,6 +69,20 @@ std::optional<Part> part_of(const View& view, std::size_t node) {
     return part;
 }
 
+void number_twins(std::vector<Part>& parts, const PlacedScene& placed) {
+    std::multimap<const Geometry*, std::uint32_t> firsts;
+    for (std::uint32_t i = 0; i < parts.size(); ++i) {
+        const auto world = [&](std::uint32_t part) {
+            return placed.world[static_cast<std::size_t>(parts[part].node)];
+        };
+        const auto [begin, end] = firsts.equal_range(parts[i].geometry);
+        const auto first =
+            std::find_if(begin, end, [&](const auto& other) { return world(other.second) == world(i); });
+        parts[i].twins = first == end ? i : first->second;
+        if (first == end) firsts.emplace(parts[i].geometry, i);
+    }
+}
+
 std::vector<Part> parts_of(const View& view) {
     std::vector<Part> parts;
     if (!view.scene || view.wireframe) return parts;
@@ -78,6 +93,7 @@ std::vector<Part> parts_of(const View& view) {
             if (auto part = part_of(view, i)) parts.push_back(*std::move(part));
     const auto id = [&](const Part& part) { return nodes[static_cast<std::size_t>(part.node)].id; };
     std::sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return id(a) < id(b); });
+    number_twins(parts, *view.scene);
     return parts;
 }
 
@@ -145,7 +161,7 @@ std::optional<Meeting> Surfaces::first_opaque(const Sight& ray, std::uint32_t wi
     first.distance = std::numeric_limits<double>::infinity();
     opaque_.tree.visit(ray.origin, ray.direction, first.distance, [&](std::uint32_t number) {
         const Triangle& triangle = opaque_.triangles[number];
-        if (triangle.part == without) return;
+        if (is_twin(triangle.part, without)) return;
         auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
         if (!meeting) return;
         meeting->part = triangle.part;
@@ -155,12 +171,14 @@ std::optional<Meeting> Surfaces::first_opaque(const Sight& ray, std::uint32_t wi
     return first;
 }
 
-std::vector<Meeting> Surfaces::transparent_before(const Sight& ray, const std::optional<Meeting>& end) const {
+std::vector<Meeting> Surfaces::transparent_before(const Sight& ray, const std::optional<Meeting>& end,
+                                                  std::uint32_t without) const {
     std::vector<Meeting> meetings;
     const RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
     transparent_.tree.visit(ray.origin, ray.direction, farthest, [&](std::uint32_t number) {
         const Triangle& triangle = transparent_.triangles[number];
+        if (is_twin(triangle.part, without)) return;
         auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
         if (!meeting) return;
         meeting->part = triangle.part;

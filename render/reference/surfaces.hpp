@@ -31,6 +31,7 @@ struct Part {
     bool both_sides = false;  ///< normals turn to the viewer
     bool transparent = false;
     std::optional<Plane> mirror;
+    std::uint32_t twins = 0;  ///< the first part of the same geometry under the same matrix
 };
 
 /// Where a ray goes through a triangle. One exactly through an edge or a corner meets one of the triangles
@@ -51,12 +52,17 @@ public:
     const std::vector<Part>& parts() const { return parts_; }  ///< by rising id
 
     static constexpr std::uint32_t kNoPart = 0xffffffff;
-    /// The first opaque surface along the ray; what belongs to the part `without` is passed.
+    /// The first opaque surface along the ray; the part `without` and its twins are passed.
     std::optional<Meeting> first_opaque(const Sight& ray, std::uint32_t without = kNoPart) const;
-    /// All transparent surfaces before `end` (all along the ray, where it is none), nearest first.
-    std::vector<Meeting> transparent_before(const Sight& ray, const std::optional<Meeting>& end) const;
+    /// All transparent surfaces before `end` (all along the ray, where it is none), nearest first; `without`
+    /// and its twins are passed.
+    std::vector<Meeting> transparent_before(const Sight& ray, const std::optional<Meeting>& end,
+                                            std::uint32_t without = kNoPart) const;
 
 private:
+    bool is_twin(std::uint32_t part, std::uint32_t of) const {
+        return of != kNoPart && parts_[part].twins == parts_[of].twins;
+    }
     struct Triangle {
         std::uint32_t part, index;
     };

@@ -42,7 +42,7 @@ struct Four {
     }
 
     int x, y;
-    glm::dvec2 part;
+    glm::dvec2 part{0};
 };
 
 /// What `of_level` gives at the level that belongs to a pixel `texels` long, between two of them.
@@ -74,7 +74,7 @@ constexpr std::array<Face, 6> kFaces{
 std::size_t face_of(const glm::dvec3& direction) {
     const glm::dvec3 size = glm::abs(direction);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return static_cast<std::size_t>(2 * axis + (direction[axis] < 0));
+    return 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
 }
 
 /// On the face's picture, (0, 0) its bottom left and (1, 1) its top right.

@@ -59,7 +59,7 @@ std::vector<Tracer::Layer> Tracer::layers_at(const glm::dvec2& place) const {
     const auto add = [&](const Look& look) {
         const std::optional<Meeting> opaque = surfaces_.first_opaque(look.sight, look.mirror);
         const bool in_mirror = look.mirror != Surfaces::kNoPart;
-        for (const Meeting& meeting : surfaces_.transparent_before(look.sight, opaque))
+        for (const Meeting& meeting : surfaces_.transparent_before(look.sight, opaque, look.mirror))
             layers.push_back({meeting, look.sight, in_mirror});
         if (opaque) layers.push_back({*opaque, look.sight, in_mirror});
         return opaque;
@@ -85,7 +85,7 @@ glm::dvec3 Tracer::color_of(const Look& look) const {
     const std::optional<Meeting> opaque = surfaces_.first_opaque(look.sight, look.mirror);
     glm::dvec3 color(0);
     double through = 1;
-    for (const Meeting& meeting : surfaces_.transparent_before(look.sight, opaque)) {
+    for (const Meeting& meeting : surfaces_.transparent_before(look.sight, opaque, look.mirror)) {
         const Surface surface = surface_at(look, meeting);
         color += surface.color * (through * surface.alpha);
         through *= 1 - surface.alpha;

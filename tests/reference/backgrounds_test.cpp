@@ -33,7 +33,7 @@ void check_shows(const ReferencePicture& shown, const Image& image) {
 
 glm::dvec3 texel_of(const std::vector<Texture>& textures, std::size_t face, int x, int y) {
     const Image& image = textures[face].image;
-    const auto at = static_cast<std::size_t>(4 * (y * image.width + x));
+    const auto at = 4 * static_cast<std::size_t>(y * image.width + x);
     return glm::dvec3(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]) / 255.0;
 }
 

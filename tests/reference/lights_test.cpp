@@ -126,7 +126,9 @@ TEST_CASE("a ball of many triangles is a ball") {
             // |eye + t ray| = radius
             const double middle = -glm::dot(eye, ray);
             const double root = middle * middle - glm::dot(eye, eye) + kRadius * kRadius;
-            const auto pixel = static_cast<std::size_t>((view.height - 1 - y) * view.width + x);
+            const auto pixel =
+                static_cast<std::size_t>(view.height - 1 - y) * static_cast<std::size_t>(view.width) +
+                static_cast<std::size_t>(x);
             if (std::abs(root) < 0.05) continue;  // near its outline
             CHECK((shown.node[pixel] == kNone) == (root < 0));
             if (root < 0) continue;

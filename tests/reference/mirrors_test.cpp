@@ -135,6 +135,29 @@ TEST_CASE("within a mirror mirrors are ordinary surfaces, from both sides") {
     }
 }
 
+TEST_CASE("a mirror does not show what lies in its own place") {
+    const glm::dmat4 turned = moved_by({0.1, -0.2, 0.3}) * turned_by(37, {1, 2, 3});
+    View view = picture(glm::dvec3(turned * glm::dvec4(-0.3, 0.2, 3, 1)), glm::dvec3(turned[3]), 8, 8);
+    view.camera.fov = 10;
+    view.background.color = {0.2, 0.8, 0.4};
+    // One geometry of one node, or of two.
+    const auto plates = [&](const std::vector<Material>& materials) {
+        SceneParts parts;
+        parts.geometries = {quad(1)};
+        parts.materials = materials;
+        for (Index i = 0; i < static_cast<Index>(materials.size()); ++i)
+            parts.nodes.push_back(
+                {Node{9 - i, {}, NodeType::geometry, kNone, {}, true, turned, GeometryData{0, i}}, 0});
+        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    };
+    const Material plate = mirror(0.5, {0.6, 0.2, 0.2});
+    const ReferencePicture alone = traced(plates({plate}), view);
+    check_same(alone.color[27], {0.4, 0.5, 0.3});
+    for (const Material& twin :
+         {two_sided(glowing({1, 1, 0})), mirror(1), two_sided(glowing({1, 0, 1}, 0.5))})
+        CHECK(difference_of(traced(plates({plate, twin}), view), alone) < 1e-12);
+}
+
 TEST_CASE("geometry that is not flat, or transparent, is no mirror") {
     View view = look({-3, 0, 3}, {0, 0, 0});
     view.background.color = {0, 0, 0};

@@ -29,7 +29,7 @@ Image noise(int width, int height) {
 }
 
 glm::dvec3 texel(const Image& image, int x, int y) {
-    const auto at = static_cast<std::size_t>(4 * (y * image.width + x));
+    const auto at = 4 * static_cast<std::size_t>(y * image.width + x);
     return glm::dvec3(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]) / 255.0;
 }
 
@@ -58,7 +58,8 @@ TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upr
     const ReferencePicture shown = on_plate(image, 8, 6);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 8; ++x)
-            check_same(shown.color[static_cast<std::size_t>(8 * y + x)], texel(image, x, y), 1e-9);
+            check_same(shown.color[8 * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)],
+                       texel(image, x, y), 1e-9);
 }
 
 TEST_CASE("without texture coordinates there is no picture") {
@@ -81,7 +82,7 @@ TEST_CASE("magnified it is bilinear, and repeats") {
                 const int i = static_cast<int>(std::floor(u)), k = static_cast<int>(std::floor(v));
                 const double s = u - i, t = v - k;
                 const auto at = [&](int a, int b) { return texel(image, (a + 2) % 2, (b + 3) % 3); };
-                check_same(shown.color[static_cast<std::size_t>(8 * y + x)],
+                check_same(shown.color[8 * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)],
                            (1 - s) * (1 - t) * at(i, k) + s * (1 - t) * at(i + 1, k) +
                                (1 - s) * t * at(i, k + 1) + s * t * at(i + 1, k + 1),
                            1e-9);
@@ -142,8 +143,8 @@ TEST_CASE("a plate that is smaller than its picture shows its levels") {
             const double v = (y + 0.5) / 4 - 0.5;
             const int k = static_cast<int>(std::floor(v));
             const auto row = [&](int b) { return glm::dvec3(map.texel(2, x, (b + 4) % 4)); };
-            check_same(shown.color[static_cast<std::size_t>(8 * y + x)], glm::mix(row(k), row(k + 1), v - k),
-                       1e-9);
+            check_same(shown.color[8 * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)],
+                       glm::mix(row(k), row(k + 1), v - k), 1e-9);
         }
 }
 
