@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/type_ptr.hpp>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -70,7 +70,7 @@ Pane pane_of(OrientedBox box, const ColorRange& colors) {
         pane.low = glm::min(pane.low, glm::dvec2(at) / -at.z);
         pane.high = glm::max(pane.high, glm::dvec2(at) / -at.z);
     }
-    if (pane.farthest < 0 && pane.nearest >= 0) {
+    if (!(pane.nearest < 0)) {
         pane.low = glm::dvec2(-kEverywhere);
         pane.high = glm::dvec2(kEverywhere);
     }
@@ -147,6 +147,7 @@ private:
     std::vector<Pane> panes_;
     std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
     std::vector<std::optional<std::vector<FacingTriangle>>> facing_;
+    std::size_t compared_ = 0;  // pairs of triangles
 };
 
 Stack::Stack(std::span<const DrawItem> items, const Scene& scene, const Light& light, GlassShapes& shapes)
@@ -171,7 +172,8 @@ Order Stack::compare(unsigned a, unsigned b) {
     const double size = first.radius + second.radius;
     const Order order = order_of(first.box, second.box, size);
     if (order != Order::unknown) return order;
-    if (geometry(a).triangles.size() * geometry(b).triangles.size() > kMostCompared) return order;
+    const std::size_t pairs = geometry(a).triangles.size() * geometry(b).triangles.size();
+    if (pairs > kMostCompared || (compared_ += pairs) > 16 * kMostCompared) return order;
     return order_of(facing(a), facing(b), kNegligible * size);
 }
 
@@ -187,8 +189,8 @@ bool Stack::compare_all() {
         for (std::size_t k = i + 1; k < from_left.size(); ++k) {
             const Pane& right = panes_[from_left[k]];
             if (right.low.x > left.high.x) break;
-            if (right.low.y > left.high.y || left.low.y > right.high.y) continue;
             if (++pairs > kMostPairs) return false;
+            if (right.low.y > left.high.y || left.low.y > right.high.y) continue;
             const auto [a, b] = std::minmax(from_left[i], from_left[k]);
             const Order order = compare(a, b);
             if (order == Order::first_in_front || order == Order::unknown) behind_[a].push_back(b);
@@ -277,17 +279,23 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
 }
 
 void mark_hidden_twins(std::vector<DrawItem>& items, std::span<const DrawItem> others, const Scene& scene) {
+    // Compared by geometry and matrix: thousands of parts may share a geometry.
+    const auto before = [](const DrawItem* a, const DrawItem* b) {
+        if (a->geometry != b->geometry) return a->geometry < b->geometry;
+        const double *p = glm::value_ptr(a->view_from_node), *q = glm::value_ptr(b->view_from_node);
+        return std::lexicographical_compare(p, p + 16, q, q + 16);
+    };
     const auto id = [&](const DrawItem& item) {
         return scene.nodes()[static_cast<std::size_t>(item.node)].id;
     };
-    std::multimap<Index, const DrawItem*> by_geometry;
-    for (const DrawItem& other : others) by_geometry.emplace(other.geometry, &other);
-    for (DrawItem& item : items) {
-        const auto [first, last] = by_geometry.equal_range(item.geometry);
-        item.behind_twin = std::any_of(first, last, [&](const auto& entry) {
-            const DrawItem& other = *entry.second;
-            return other.view_from_node == item.view_from_node && id(other) > id(item);
-        });
+    std::vector<DrawItem*> twins;
+    twins.reserve(items.size());
+    for (DrawItem& item : items) twins.push_back(&item);
+    std::sort(twins.begin(), twins.end(), before);
+    for (const DrawItem& other : others) {
+        const auto [first, last] = std::equal_range(twins.begin(), twins.end(), &other, before);
+        for (auto twin = first; twin != last; ++twin)
+            if (id(other) > id(**twin)) (*twin)->behind_twin = true;
     }
 }
 

@@ -135,7 +135,8 @@ TriangleOrder order_triangles(const Geometry& geometry, Sides sides) {
     const std::size_t count = geometry.triangles.size() * (sides == Sides::both ? 2 : 1);
     TriangleOrder result;
     if (count > kMostOrdered) {
-        std::iota(result.rings.emplace_back(count).begin(), result.rings[0].end(), 0U);
+        std::vector<unsigned>& ring = result.rings.emplace_back(count);
+        std::iota(ring.begin(), ring.end(), 0U);
         return result;
     }
     const double tolerance = kNegligible * geometry.bounds.radius();
@@ -208,7 +209,7 @@ std::optional<std::vector<unsigned>> far_to_near(std::vector<FacingTriangle> tri
     std::size_t looked_at = 0;
     for (unsigned i = 0; i < triangles.size(); ++i)
         for (unsigned k = i + 1; k < triangles.size() && triangles[k].low.x < triangles[i].high.x; ++k) {
-            if (++looked_at > 16 * kMostCompared) return std::nullopt;
+            if (++looked_at > 4 * kMostCompared) return std::nullopt;
             switch (order_of(triangles[i], triangles[k], tolerance)) {
                 case Order::first_in_front:
                     behind[i].push_back(k);

@@ -11,9 +11,8 @@
 
 namespace vrut {
 
-/// Of a part's radius: what lies closer together counts as touching. Where the part fills a picture, that is
-/// a tenth of a pixel.
-inline constexpr double kNegligible = 1e-4;
+/// Of a part's radius: what lies closer together counts as touching.
+inline constexpr double kNegligible = 1e-6;
 
 /// An order of a geometry's triangles in which they can be drawn from far to near whatever the eye, as
 /// triangles that face away from it are not drawn (Chen et al. 2012, "Depth-Presorted Triangle Lists"). Of n
@@ -52,7 +51,7 @@ Order order_of(std::span<const FacingTriangle> first, std::span<const FacingTria
 inline constexpr std::size_t kMostCompared = std::size_t{1} << 18;
 
 /// Numbers of triangles from far to near, seen from the origin; none where some cross or lie in a ring, or
-/// where more than 16 kMostCompared pairs come into question.
+/// where more than 4 kMostCompared pairs come into question.
 std::optional<std::vector<unsigned>> far_to_near(std::vector<FacingTriangle> triangles, double tolerance);
 
 }  // namespace vrut

@@ -9,11 +9,6 @@ namespace vrut {
 
 namespace {
 
-// One triangle that holds the whole picture.
-constexpr std::string_view kScreenShader = R"(#version 450 core
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
-)";
-
 // After the lists' block. Takes the nearest few of the list, then those behind them, and so on, so that a
 // list of any length needs no more room than these.
 constexpr std::string_view kCompositeShader = R"(
@@ -103,7 +98,13 @@ void PixelSortPass::draw(std::span<const DrawItem> items, GpuScene& scene, const
         const PixelBox box = pixel_box(bounds, clip_from_view * item.view_from_node, picture);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
-    if (all.size().x <= 0 || all.size().y <= 0) return;
+    // In a mirror only its pixels count.
+    const bool scissored = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
+    std::array<GLint, 4> before{};
+    glGetIntegerv(GL_SCISSOR_BOX, before.data());
+    if (scissored)
+        all = intersection(all, {{before[0], before[1]}, {before[0] + before[2], before[1] + before[3]}});
+    if (all.empty()) return;
     prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLayersBinding, layers_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kListsBinding, lists_.get());
@@ -113,7 +114,7 @@ void PixelSortPass::draw(std::span<const DrawItem> items, GpuScene& scene, const
     while (!left.empty()) {
         const PixelBox box = left.back();
         left.pop_back();
-        glScissor(box.low.x, box.low.y, box.size().x, box.size().y);
+        scissor(box);
         const std::uint64_t layers = collect(items, box, scene, programs, stats);
         if (const std::uint64_t most = most_layers(pixels_); layers <= most || box.size() == glm::ivec2(1))
             composite(stats);
@@ -121,7 +122,8 @@ void PixelSortPass::draw(std::span<const DrawItem> items, GpuScene& scene, const
             split(box, 2 + layers / most, left);
     }
     glDepthMask(GL_TRUE);
-    glDisable(GL_SCISSOR_TEST);
+    glScissor(before[0], before[1], before[2], before[3]);
+    if (!scissored) glDisable(GL_SCISSOR_TEST);
 }
 
 std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const PixelBox& box, GpuScene& scene,

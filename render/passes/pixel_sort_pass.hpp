@@ -28,7 +28,7 @@ private:
     static constexpr std::size_t kLayerBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
     /// Two in each pixel, but 64 MiB.
     static constexpr std::size_t most_layers(std::size_t pixels) {
-        return std::min(2 * pixels, (std::size_t{64} << 20) / kLayerBytes);
+        return std::min(8 * pixels, (std::size_t{64} << 20) / kLayerBytes);
     }
 
     void prepare(std::size_t pixels);

@@ -98,6 +98,7 @@ TEST_CASE("panes beside each other, and panes that meet in an edge, are sorted")
 
 TEST_CASE("more panes than can be compared are drawn by their distance") {
     std::vector<Part> parts;
+    parts.reserve(1500);
     for (int i = 0; i < 1500; ++i)
         parts.push_back(pane(i + 1, {0.5, 0, 0}, moved_by({0, 0, -0.01 * (i * 617 % 1500)})));
     const auto groups = groups_of(parts);
