@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -59,6 +61,7 @@ Camera wanted_camera(const RenderArguments& arguments, const Presentation& prese
 View view_of(const RenderArguments& arguments) {
     auto scene = load_scene(arguments.scene, arguments.scene.filename().string());
     if (!scene) throw std::runtime_error(scene.error());
+    for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);
     Presentation presentation(*std::move(scene));
     presentation.join("render", protocol::Role::control, Time(0));
     const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),

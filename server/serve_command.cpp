@@ -71,6 +71,7 @@ void serve_command(const ServeArguments& arguments) {
     auto scene = load_scene(path, path.filename().string());
     if (!scene) throw std::runtime_error(scene.error());
     const Scene& read = *scene->placed->scene;
+    for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);
     spdlog::info("{}: {} nodes, {} triangles", path.string(), read.nodes().size(), read.triangle_count());
     options.library = SceneLibrary(existing_folder("--scenes", arguments.scenes));
     options.record_folder = existing_folder("--record", arguments.record);

@@ -91,6 +91,15 @@ test('render draws pictures of the size asked for', () => {
   assert.equal(fs.readFileSync(file('car.jpg')).readUInt16BE(0), 0xffd8);
 });
 
+test('what is left out of a scene is told on standard error, and the picture drawn', () => {
+  const scene = file('torn.vrut');
+  fs.writeFileSync(scene, 'vrut-text 1\nmaterial 7 "Torn" image "nowhere.png" end\n');
+  const result = run('render', scene, '-o', file('torn.png'), '--size', '8x8', '--reference');
+  assert.equal(result.status, 0, result.stderr);
+  assert.match(result.stderr, /material 7.*nowhere\.png/);
+  assert.deepEqual(pngSize('torn.png'), [8, 8]);
+});
+
 test('render tells what a picture took', () => {
   const stats = JSON.parse(succeeds('render', CAR, '-o', file('s.png'), '--size', '64x64', '--samples', '1', '--stats'));
   const info = JSON.parse(succeeds('info', CAR, '--json'));
