@@ -140,6 +140,15 @@ Frustum frustum_of(const View& view, double margin) {
                       widened(view.width, view.height, margin));
 }
 
+void leave_out_what_lies_outside(std::vector<DrawItem>& items, const View& view) {
+    const Frustum frustum = frustum_of(view, 1);
+    const auto& geometries = view.scene->scene->geometries();
+    std::erase_if(items, [&](const DrawItem& item) {
+        return lies_outside(frustum, item.view_from_node,
+                            geometries[static_cast<std::size_t>(item.geometry)].bounds);
+    });
+}
+
 /// Those before the eye whose sign reaches into the picture.
 std::vector<glm::dvec3> marks_of(const View& view, const glm::dmat4& view_matrix) {
     std::vector<glm::dvec3> marks;
@@ -184,13 +193,12 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     FramePlan plan;
     if (!view.scene) return plan;
     const PlacedScene& placed = *view.scene;
-    const std::vector<DrawItem> all = shown_items(view);
-    std::vector<DrawItem> items;
-    const Frustum frustum = frustum_of(view, 1);
-    std::copy_if(all.begin(), all.end(), std::back_inserter(items), [&](const DrawItem& item) {
-        const auto geometry = static_cast<std::size_t>(item.geometry);
-        return !lies_outside(frustum, item.view_from_node, placed.scene->geometries()[geometry].bounds);
-    });
+    std::vector<DrawItem> items = shown_items(view), all;
+    if (std::any_of(items.begin(), items.end(), [&](const DrawItem& item) {
+            return is_mirror(*placed.scene, item.geometry, item.material);
+        }))
+        all = items;  // what lies beside the picture may be seen in a mirror
+    leave_out_what_lies_outside(items, view);
     plan.marks = marks_of(view, view_from_world(view.camera));
 
     if (view.selected != kNone) plan.selected = take(items, subtree(*placed.scene, view.selected));
@@ -202,14 +210,9 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
 }
 
 std::vector<DrawItem> faces_of(const View& view) {
-    View plain = view;
-    plain.selected = kNone;
-    Layers layers = plan_frame(plain).scene;
-    std::vector<DrawItem> items = std::move(layers.opaque);
-    for (const MirrorItem& mirror : layers.mirrors) items.push_back(mirror.surface);
-    for (const TransparentGroup& group : layers.transparent)
-        items.insert(items.end(), group.items.begin(), group.items.end());
-    if (!items.empty()) sort_by_id(items, *view.scene->scene);
+    if (!view.scene || view.wireframe) return {};
+    std::vector<DrawItem> items = shown_items(view);
+    leave_out_what_lies_outside(items, view);
     return items;
 }
 

@@ -176,8 +176,10 @@ std::vector<MirrorItem> take_mirrors(std::vector<DrawItem>& opaque, std::span<co
     const glm::dmat4 clip_from_view =
         reversed_clip_from_view(view, fit_clip_range(view.camera, view.scene->bounds).near);
     std::vector<Candidate> chosen = candidates(opaque, scene, clip_from_view, picture);
+    if (chosen.empty()) return {};
     keep_largest(chosen);
     std::vector<DrawItem> surfaces;
+    surfaces.reserve(chosen.size());
     for (const Candidate& candidate : chosen) surfaces.push_back(opaque[candidate.place]);
     mark_hidden_twins(surfaces, opaque, scene);
     std::vector<MirrorItem> mirrors;

@@ -27,7 +27,7 @@ PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const
         low = glm::min(low, pixel);
         high = glm::max(high, pixel);
     };
-    std::array<glm::dvec4, 8> clip;
+    std::array<glm::dvec4, 8> clip{};
     for (std::size_t i = 0; const glm::dvec3& corner : corners(bounds))
         clip[i++] = clip_from_node * glm::dvec4(corner, 1);
     // The edges of the box, cut where they come through the near plane: bits of their numbers tell corners.

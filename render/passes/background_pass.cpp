@@ -3,6 +3,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
 
+#include "passes/drawing.hpp"
 #include "passes/texture_filter.hpp"
 
 namespace vrut {
@@ -13,12 +14,7 @@ enum Uniform : GLint { pixel_at = 0, shift_at = 1, ray_scale_at = 2, world_from_
 
 constexpr std::string_view kVersion = "#version 450 core\n";
 
-// One triangle that holds the whole picture.
-constexpr std::string_view kScreenShader = R"(#version 450 core
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
-)";
-
-// `at` is the sample's place: -1 to 1 over the view, as `shift` is.
+// The sample's place goes from -1 to 1 over the view, and so does `shift`.
 constexpr std::string_view kPlace = R"(
 layout(location = 0) uniform vec2 pixel;
 layout(location = 1) uniform vec2 shift;

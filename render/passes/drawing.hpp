@@ -1,10 +1,17 @@
 #pragma once
 
+#include <string_view>
+
 #include "frame_plan.hpp"
 #include "gpu_scene.hpp"
 #include "view.hpp"
 
 namespace vrut {
+
+/// One triangle that holds the whole picture; its corners need no attributes.
+inline constexpr std::string_view kScreenShader = R"(#version 450 core
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
+)";
 
 /// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
 void cull_sides(const DrawItem& item, bool front_only = false);

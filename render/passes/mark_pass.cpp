@@ -11,9 +11,10 @@ namespace vrut {
 
 namespace {
 
-enum Uniform : GLint { clip_from_view_at = 0, radius_at = 1, judged_at = 2, color_at = 3, points_at = 4 };
+enum Uniform : GLint { clip_from_view_at = 0, radius_at = 1, judged_at = 2, color_at = 3 };
 
 constexpr std::size_t kBatch = 256;  // the shader's
+constexpr GLuint kPointsBinding = 1;
 
 // Depth is near / distance, so over a plane it is linear in the picture, and over all that is convex it is
 // concave: interpolated between texels it is nowhere more than at the point itself, and going away from the
@@ -23,7 +24,7 @@ constexpr std::string_view kVertexShader = R"(#version 450 core
 layout(location = 0) uniform mat4 clip_from_view;
 layout(location = 1) uniform float radius;
 layout(location = 2) uniform bool judged;
-layout(location = 4) uniform vec3 points[256];
+layout(std140, binding = 1) uniform Points { vec4 points[256]; };
 layout(binding = 0) uniform sampler2D depth;
 flat out vec2 center;
 flat out float opacity;
@@ -57,7 +58,7 @@ float seen(vec2 at, float own, float pixel) {
 }
 
 void main() {
-    vec4 clip = clip_from_view * vec4(points[gl_InstanceID], 1);
+    vec4 clip = clip_from_view * points[gl_InstanceID];
     vec2 size = textureSize(depth, 0);
     center = (clip.xy / clip.w * 0.5 + 0.5) * size;
     float pixel = 2 / (clip_from_view[1][1] * size.y);  // at distance 1
@@ -89,7 +90,9 @@ void MarkPass::draw(std::span<const glm::dvec3> points, Cover cover, const glm::
     if (!program_) {
         program_ = make_program(kVertexShader, kFragmentShader);
         nothing_ = make_vertex_array();
+        points_ = make_changing_buffer(kBatch * sizeof(glm::vec4));
     }
+    glBindBufferBase(GL_UNIFORM_BUFFER, kPointsBinding, points_.get());
     target.bind();
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
@@ -108,9 +111,10 @@ void MarkPass::draw(std::span<const glm::dvec3> points, Cover cover, const glm::
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::size_t count = std::min(points.size() - first, kBatch);
-        std::array<glm::vec3, kBatch> batch{};
-        std::copy_n(points.begin() + static_cast<std::ptrdiff_t>(first), count, batch.begin());
-        glUniform3fv(points_at, static_cast<GLsizei>(count), glm::value_ptr(batch[0]));
+        std::array<glm::vec4, kBatch> batch{};
+        for (std::size_t i = 0; i < count; ++i) batch[i] = glm::vec4(glm::vec3(points[first + i]), 1);
+        glNamedBufferSubData(points_.get(), 0, static_cast<GLsizeiptr>(count * sizeof(glm::vec4)),
+                             batch.data());
         glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(count));
         ++stats.draws;
     }

@@ -22,6 +22,7 @@ public:
 
 private:
     GlProgram program_;
+    GlBuffer points_;
     GlVertexArray nothing_;  ///< a sign's corners need no attributes
 };
 

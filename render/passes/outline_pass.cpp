@@ -12,11 +12,6 @@ namespace {
 
 enum Uniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
 
-// One triangle that holds the whole picture.
-constexpr std::string_view kScreenShader = R"(#version 450 core
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
-)";
-
 // What lies outside the box is of an earlier picture, or of none.
 constexpr std::string_view kMeasureShader = R"(#version 450 core
 layout(location = 0) uniform int width;

@@ -132,7 +132,8 @@ void main() {
     if (dot(n, to_eye) < 0) n = -n;
 #else
     // A normal that vanishes (flattened parts, opposite neighbours) takes the face's, which faces the viewer.
-    if (dot(n, n) < 1e-12) n = cross(normalize(dFdx(view_position)), normalize(dFdy(view_position)));
+    vec3 across = dFdx(view_position), upwards = dFdy(view_position);
+    if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
     n = normalize(n);
     if (both_sides && dot(n, to_eye) < 0) n = -n;
 #endif

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <compare>
 #include <map>
 #include <string_view>
+#include <tuple>
 
 #include "frame_plan.hpp"
 #include "gpu_scene.hpp"
@@ -44,7 +44,12 @@ private:
         bool environment = false;
         bool clipped = false;
 
-        auto operator<=>(const Variant&) const = default;
+        bool operator<(const Variant& other) const {
+            const auto key = [](const Variant& v) {
+                return std::tie(v.shape, v.light, v.textured, v.environment, v.clipped);
+            };
+            return key(*this) < key(other);
+        }
     };
     static LightKind kind_of(const Light& light, const Sight& sight);
     static GlProgram make(const Variant& variant);

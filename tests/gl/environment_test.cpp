@@ -25,7 +25,7 @@ std::shared_ptr<const PlacedScene> scene_of(const Part& part, const std::array<I
 
 /// What a triangle of the part shows at the place where rays meet its plane.
 struct Facet {
-    glm::dvec3 corners[3], normals[3];
+    glm::dvec3 corners[3]{}, normals[3]{};
     double front = 1;  ///< -1 where the matrix turns triangles round
 
     Facet(const Part& part, const glm::uvec3& triangle) {
@@ -222,7 +222,8 @@ TEST_CASE("the reference renderer sees the same textures, backgrounds and reflec
             view.background.texture = 6;
         const ReferencePicture reference = trace(view);
         const auto at = [&](int x, int y) {
-            return static_cast<std::size_t>((view.height - 1 - y) * view.width + x);
+            return static_cast<std::size_t>(view.height - 1 - y) * static_cast<std::size_t>(view.width) +
+                   static_cast<std::size_t>(x);
         };
         const Deviation off =
             deviation(studio.draw(view.scene, view), [&](double px, double py) -> std::optional<glm::dvec3> {

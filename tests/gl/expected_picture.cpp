@@ -108,11 +108,6 @@ ExpectedPicture::Seen ExpectedPicture::along(const glm::dvec3& origin, const glm
         light.type = LightData::Type::point;
         light.position = view_.camera.eye;
     }
-    struct Hit {
-        double distance;
-        Seen seen;
-        double alpha;
-    };
     std::vector<Hit> hits;
     for (const Triangle& triangle : triangles_) {
         if (from_mirror != kNone && triangle.mirror == from_mirror) continue;
@@ -142,6 +137,10 @@ ExpectedPicture::Seen ExpectedPicture::along(const glm::dvec3& origin, const glm
         }
         hits.push_back({t, seen, material.diffuse.a});
     }
+    return composited(std::move(hits));
+}
+
+ExpectedPicture::Seen ExpectedPicture::composited(std::vector<Hit> hits) const {
     // Of the same depth the later one is in front.
     std::reverse(hits.begin(), hits.end());
     std::stable_sort(hits.begin(), hits.end(),

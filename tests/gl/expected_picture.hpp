@@ -43,7 +43,14 @@ private:
         bool mirrored = false;
         Index mirror = kNone;  ///< the node of a flat mirror
     };
+    struct Hit {
+        double distance;
+        Seen seen;
+        double alpha;
+    };
     Seen along(const glm::dvec3& origin, const glm::dvec3& ray, Index from_mirror) const;
+    /// In any order, those of the same distance by rising id.
+    Seen composited(std::vector<Hit> hits) const;
     void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
 
     View view_;

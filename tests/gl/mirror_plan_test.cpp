@@ -185,9 +185,9 @@ TEST_CASE("of a hundred mirrors the largest in the picture show a reflection") {
     std::vector<Part> parts{{1000, sphere(0.5, 6), kRed, moved_by({0, 0, 2})}};
     for (int i = 0; i < 100; ++i) {
         const double half = 0.1 + 0.002 * ((i * 37) % 100);
-        parts.push_back(
-            {i + 1, quad(half), mirror_of(1),
-             moved_by({(i % 10) * 0.8 - 3.6, (i / 10) * 0.7 - 3.2, 0}) * turned_by(i, {0, 1, 0})});
+        const int row = i / 10;
+        parts.push_back({i + 1, quad(half), mirror_of(1),
+                         moved_by({(i % 10) * 0.8 - 3.6, row * 0.7 - 3.2, 0}) * turned_by(i, {0, 1, 0})});
     }
     // Edge-on ones are small, however large they are.
     parts.push_back({200, quad(3), mirror_of(1), turned_by(90, {0, 1, 0})});

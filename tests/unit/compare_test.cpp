@@ -83,7 +83,7 @@ TEST_CASE("the difference of pictures is told in steps of 1/255") {
 }
 
 TEST_CASE("interior pixels have eight neighbours of their own node") {
-    std::vector<Index> nodes(7 * 5, 4);
+    std::vector<Index> nodes(std::size_t{7} * 5, 4);
     nodes[1 * 7 + 4] = kNone;
     const std::vector<bool> interior = interior_pixels(nodes, 7, 5);
     for (int y = 0; y < 5; ++y)
@@ -142,9 +142,13 @@ TEST_CASE("a pixel apart is seen where it is, and around it, and not far away") 
     const Image a = flat(width, height, 90, 90, 90);
     Image b = a;
     const int x = 20, y = 64;  // first row of a band
-    b.rgba[static_cast<std::size_t>(y * width + x) * 4] = 255;
+    b.rgba[4 * static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+           4 * static_cast<std::size_t>(x)] = 255;
     const std::vector<float> errors = flip(a, b);
-    const auto at = [&](int to_x, int to_y) { return errors[static_cast<std::size_t>(to_y * width + to_x)]; };
+    const auto at = [&](int to_x, int to_y) {
+        return errors[static_cast<std::size_t>(to_y) * static_cast<std::size_t>(width) +
+                      static_cast<std::size_t>(to_x)];
+    };
     CHECK(at(x, y) > 0.1F);
     CHECK(at(x, y - 1) == doctest::Approx(at(x, y + 1)).epsilon(1e-4));
     CHECK(at(x - 1, y) == doctest::Approx(at(x, y - 1)).epsilon(1e-4));
@@ -195,7 +199,8 @@ TEST_CASE("FLIP agrees with the published implementation") {
         float sum = 0;
         for (int y = test->height; y-- > 0;)
             for (int x = 0; x < test->width; ++x)
-                sum += errors[static_cast<std::size_t>(y * test->width + x)];
+                sum += errors[static_cast<std::size_t>(y) * static_cast<std::size_t>(test->width) +
+                              static_cast<std::size_t>(x)];
         agrees(sum / static_cast<float>(errors.size()), known.mean, 1e-6);
         agrees(found.mean, known.mean, 1e-4);
         agrees(found.weighted_median, known.median, 1e-4);

@@ -66,7 +66,7 @@ inline std::string jpeg_bytes(int width, int height, const std::vector<std::uint
     unsigned long size = 0;
     tjCompress2(encoder, rgb.data(), width, 0, height, TJPF_RGB, &data, &size,
                 grey ? TJSAMP_GRAY : TJSAMP_444, 100, flags);
-    const std::string bytes(reinterpret_cast<char*>(data), size);
+    std::string bytes(reinterpret_cast<char*>(data), size);
     tjFree(data);
     tjDestroy(encoder);
     return bytes;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "picture_bytes.hpp"
@@ -79,19 +80,20 @@ unsigned sample(const Kind& kind, int x, int y, int channel) {
 }
 
 Pixel expected(const Kind& kind, int x, int y) {
-    unsigned v[4];
-    for (int c = 0; c < kind.channels; ++c) v[c] = sample(kind, x, y, c);
+    std::array<unsigned, 4> v{};
+    for (int c = 0; c < kind.channels; ++c) v[static_cast<std::size_t>(c)] = sample(kind, x, y, c);
     if (is_palette(kind)) {
         const png_color& color = kPalette[v[0]];
         return {color.red, color.green, color.blue, kind.key && v[0] == 1 ? 40 : 255};
     }
     const auto byte = [&](unsigned value) {
-        return static_cast<int>(value * 255.0 / ((1U << kind.depth) - 1) + 0.5);
+        return static_cast<int>(std::lround(value * 255.0 / ((1U << kind.depth) - 1)));
     };
     bool is_key = kind.key;
-    for (int c = 0; c < kind.channels; ++c) is_key = is_key && v[c] == sample(kind, 2, 4, c);
+    for (int c = 0; c < kind.channels; ++c)
+        is_key = is_key && v[static_cast<std::size_t>(c)] == sample(kind, 2, 4, c);
     const bool alpha = (kind.color_type & PNG_COLOR_MASK_ALPHA) != 0;
-    const int a = alpha ? byte(v[kind.channels - 1]) : is_key ? 0 : 255;
+    const int a = alpha ? byte(v[static_cast<std::size_t>(kind.channels - 1)]) : is_key ? 0 : 255;
     if (kind.channels < 3) return {byte(v[0]), byte(v[0]), byte(v[0]), a};
     return {byte(v[0]), byte(v[1]), byte(v[2]), a};
 }
@@ -224,7 +226,7 @@ TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a
     tjhandle encoder = tjInitCompress();
     unsigned char* data = nullptr;
     unsigned long size = 0;
-    const std::vector<std::uint8_t> ink(8 * 8 * 4, 50);
+    const std::vector<std::uint8_t> ink(std::size_t{8} * 8 * 4, 50);
     REQUIRE(tjCompress2(encoder, ink.data(), 8, 0, 8, TJPF_CMYK, &data, &size, TJSAMP_444, 90, 0) == 0);
     CHECK(contains(refusal(std::string(reinterpret_cast<char*>(data), size)), "CMYK"));
     tjFree(data);
