@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 
+#include "frame_plan.hpp"
 #include "read_scene.hpp"
 #include "studio.hpp"
 
@@ -293,6 +294,11 @@ TEST_CASE("the car takes one pass, and what is not wanted costs nothing") {
     studio.draw(car, view);
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.edges == 0);
+    View planned = view;
+    planned.scene = car;
+    const Layers layers = plan_frame(planned).scene;
+    CHECK(layers.transparent.empty());  // nothing is blended
+    CHECK(layers.mirrors.empty());      // nor drawn into another target
     const int draws = studio.stats.draws;
     const std::uint64_t triangles = studio.stats.triangles;
     CHECK(triangles == car->scene->triangle_count());
