@@ -98,6 +98,7 @@ tests() { # PRESET CTEST-ARGUMENTS...
 # Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.
 tidy() {
     local object file stamp
+    local -A queued=()  # what several programs compile is looked at once
     mkdir -p build/release/tidy
     # shellcheck disable=SC2016
     sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
@@ -107,6 +108,8 @@ tidy() {
             stamp=${file#"$ROOT"/}
             stamp=build/release/tidy/${stamp//\//+}
             [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
+            [ -n "${queued[$file]:-}" ] && continue
+            queued[$file]=yes
             printf '%s\0%s\0' "$file" "$stamp"
         done | xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
             clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" "$0" 2>&1 |

@@ -44,9 +44,9 @@ private:
         Index mirror = kNone;  ///< the node of a flat mirror
     };
     struct Hit {
-        double distance;
+        double distance = 0;
         Seen seen;
-        double alpha;
+        double alpha = 1;
     };
     Seen along(const glm::dvec3& origin, const glm::dvec3& ray, Index from_mirror) const;
     /// In any order, those of the same distance by rising id.
