@@ -83,12 +83,12 @@ format() {
     sources cpp hpp | xargs -r clang-format-14 --dry-run -Werror
 }
 
-build() { # PRESET
+build() { # PRESET CMAKE-BUILD-ARGUMENTS...
     cmake --preset "$1" >"build/$1.configure.log" 2>&1 || {
         cat "build/$1.configure.log"
         return 1
     }
-    NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs"
+    NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build --preset "$1" --parallel "$jobs" "${@:2}"
 }
 
 tests() { # PRESET CTEST-ARGUMENTS...
@@ -129,10 +129,10 @@ step "format" "Run clang-format-14 -i on the files named above." format
 step "build release" "$compile_remedy" build release
 step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
 step "clang-tidy" "Mend what it names above." tidy
-step "build asan" "$compile_remedy" build asan
+step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
 if $all; then
-    step "build tsan" "$compile_remedy" build tsan
+    step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
     step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'
     step "benchmarks" "Again alone: ctest --preset release -R NAME." tests release -L '^bench$'
