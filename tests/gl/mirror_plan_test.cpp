@@ -209,6 +209,21 @@ TEST_CASE("of a hundred mirrors the largest in the picture show a reflection") {
     CHECK(smallest > 0.98 * largest_left);
     studio.draw(scene_of(parts), view);
     CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(kMostMirrors));
+
+    // The others reflect the panorama, where there is one; in a mirror no mirror does.
+    const auto reflecting = [](const std::vector<DrawItem>& items) {
+        return std::count_if(items.begin(), items.end(),
+                             [](const DrawItem& item) { return item.environment; });
+    };
+    CHECK(reflecting(plan.scene.opaque) == 0);
+    View around = view;
+    around.background.cube_map.emplace();
+    const FramePlan panoramic = plan_of(parts, around);
+    CHECK(reflecting(panoramic.scene.opaque) == static_cast<std::ptrdiff_t>(101 - kMostMirrors));
+    for (const MirrorItem& mirror : panoramic.scene.mirrors) {
+        CHECK_FALSE(mirror.surface.environment);
+        CHECK(reflecting(mirror.reflected.opaque) == 0);
+    }
 }
 
 TEST_CASE("a mirror seen along its plane does not flicker") {
