@@ -72,7 +72,12 @@ struct Renderer::Impl {
                      FrameStats& stats) {
         programs.begin(sight, view, scene ? &*scene : nullptr);
         if (!layers.opaque.empty()) opaque.draw(layers.opaque, *scene, view.mode, programs, stats);
-        for (const MirrorItem& mirror : layers.mirrors) draw_mirror(mirror, view, sight, into, stats);
+        // What a mirror shows costs as much as the picture: it is drawn only where the mirror can be seen.
+        const std::vector<bool> seen =
+            layers.mirrors.empty() ? std::vector<bool>()
+                                   : mirrors.seen(layers.mirrors, *scene, sight.clip_from_view, stats);
+        for (std::size_t i = 0; i < seen.size(); ++i)
+            if (seen[i]) draw_mirror(layers.mirrors[i], view, sight, into, stats);
         for (const TransparentGroup& group : layers.transparent)
             if (group.exact)
                 pixel_sort.draw(group.items, *scene, sight.clip_from_view, into, programs, stats);

@@ -20,6 +20,7 @@ void destroy_renderbuffer(GLuint name) { glDeleteRenderbuffers(1, &name); }
 void destroy_texture(GLuint name) { glDeleteTextures(1, &name); }
 void destroy_sampler(GLuint name) { glDeleteSamplers(1, &name); }
 void destroy_framebuffer(GLuint name) { glDeleteFramebuffers(1, &name); }
+void destroy_query(GLuint name) { glDeleteQueries(1, &name); }
 void destroy_shader(GLuint name) { glDeleteShader(name); }
 void destroy_program(GLuint name) { glDeleteProgram(name); }
 }  // namespace detail
@@ -94,6 +95,12 @@ GlFramebuffer make_framebuffer() {
     GLuint name = 0;
     glCreateFramebuffers(1, &name);
     return GlFramebuffer(name);
+}
+
+GlQuery make_query(GLenum target) {
+    GLuint name = 0;
+    glCreateQueries(target, 1, &name);
+    return GlQuery(name);
 }
 
 }  // namespace vrut

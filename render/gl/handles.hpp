@@ -44,6 +44,7 @@ void destroy_renderbuffer(GLuint name);
 void destroy_texture(GLuint name);
 void destroy_sampler(GLuint name);
 void destroy_framebuffer(GLuint name);
+void destroy_query(GLuint name);
 void destroy_shader(GLuint name);
 void destroy_program(GLuint name);
 }  // namespace detail
@@ -54,6 +55,7 @@ using GlRenderbuffer = GlHandle<detail::destroy_renderbuffer>;
 using GlTexture = GlHandle<detail::destroy_texture>;
 using GlSampler = GlHandle<detail::destroy_sampler>;
 using GlFramebuffer = GlHandle<detail::destroy_framebuffer>;
+using GlQuery = GlHandle<detail::destroy_query>;
 using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
 
@@ -71,5 +73,6 @@ GlTexture make_mipmapped_texture(GLenum target, int width, int height, int level
 /// For mipmapped textures: beyond the edges it finds the texels there.
 GlSampler make_clamping_sampler();
 GlFramebuffer make_framebuffer();
+GlQuery make_query(GLenum target);
 
 }  // namespace vrut

@@ -4,6 +4,34 @@
 
 namespace vrut {
 
+std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene& scene,
+                                   const glm::dmat4& clip_from_view, FrameStats& stats) {
+    while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
+    mask_.use(glm::dvec3(0), clip_from_view);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDepthMask(GL_FALSE);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    for (std::size_t i = 0; i < mirrors.size(); ++i) {
+        const GpuGeometry& geometry = scene.geometry(mirrors[i].surface.geometry);
+        set_place(mirrors[i].surface, geometry);
+        cull_sides(mirrors[i].surface);
+        glBeginQuery(GL_ANY_SAMPLES_PASSED, queries_[i].get());
+        draw_triangles(geometry, stats);
+        glEndQuery(GL_ANY_SAMPLES_PASSED);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+    ++stats.passes;
+    std::vector<bool> result;
+    for (std::size_t i = 0; i < mirrors.size(); ++i) {
+        GLuint any = 0;
+        glGetQueryObjectuiv(queries_[i].get(), GL_QUERY_RESULT, &any);
+        result.push_back(any != 0);
+    }
+    return result;
+}
+
 const Framebuffer& MirrorPass::open(const MirrorItem& mirror, GpuScene& scene,
                                     const glm::dmat4& clip_from_view, const glm::dvec3& background,
                                     const Framebuffer& picture, FrameStats& stats) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "framebuffer.hpp"
 #include "passes/programs.hpp"
@@ -12,6 +14,10 @@ namespace vrut {
 /// there. One target serves all mirrors in turn.
 class MirrorPass {
 public:
+    /// Which mirrors are seen from `clip_from_view` in the current target, behind nothing that has been drawn
+    /// there.
+    std::vector<bool> seen(std::span<const MirrorItem> mirrors, GpuScene& scene,
+                           const glm::dmat4& clip_from_view, FrameStats& stats);
     /// Makes the target that a mirror's reflection is drawn into the current one, empty before `background`
     /// and open only at the pixels that the mirror can be seen at.
     const Framebuffer& open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
@@ -19,12 +25,16 @@ public:
     /// Draws the surface, with what was drawn since, into `picture`, which is bound afterwards.
     void close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
                SurfacePrograms& programs, FrameStats& stats);
-    /// Gives the target's memory back.
-    void release() { target_.reset(); }
+    /// Gives back what the driver holds for mirrors.
+    void release() {
+        target_.reset();
+        queries_.clear();
+    }
 
 private:
     std::optional<Framebuffer> target_;
     PlainProgram mask_;
+    std::vector<GlQuery> queries_;
 };
 
 }  // namespace vrut

@@ -166,3 +166,20 @@ TEST_CASE("lights of all kinds stay at their places in a mirror") {
         check_mirror(studio, parts, view);
     }
 }
+
+TEST_CASE("what a mirror shows is drawn only where the mirror is seen") {
+    Studio studio;
+    const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
+    const Part mirror = mirror_at(1, moved_by({0, 0.8, -1.7}));
+    check_mirror(studio, with(things(), {mirror}), view);
+    const std::uint64_t open = studio.stats.triangles;
+    const auto walled = with(things(), {mirror, {5, quad(4), two_sided(kGreen), moved_by({0, 0.8, -1.5})}});
+    CHECK(mirrors_in(walled, view) == 1);
+    check_mirror(studio, walled, view);
+    CHECK(studio.stats.triangles < open * 2 / 3);
+    // A corner of it that looks out is enough.
+    check_mirror(studio,
+                 with(things(), {mirror, {5, quad(1.6), two_sided(kGreen), moved_by({0.6, 0.8, -1.5})}}),
+                 view);
+    CHECK(studio.stats.triangles > open);
+}
