@@ -137,6 +137,8 @@ public:
 private:
     Order compare(unsigned a, unsigned b);
     const std::vector<FacingTriangle>& facing(unsigned pane);
+    /// Of its facing triangles those that may lie before or behind something of the other.
+    std::vector<FacingTriangle> covering(unsigned pane, const Pane& other);
     const Geometry& geometry(unsigned pane) const {
         return scene_.geometries()[static_cast<std::size_t>(items_[pane].geometry)];
     }
@@ -172,9 +174,23 @@ Order Stack::compare(unsigned a, unsigned b) {
     const double size = first.radius + second.radius;
     const Order order = order_of(first.box, second.box, size);
     if (order != Order::unknown) return order;
-    const std::size_t pairs = geometry(a).triangles.size() * geometry(b).triangles.size();
+    const std::size_t size_a = geometry(a).triangles.size(), size_b = geometry(b).triangles.size();
+    if (std::max(size_a, size_b) > kMostOrdered) return order;
+    // Looking for those that cover each other costs time as well.
+    if ((compared_ += size_a + size_b) > 16 * kMostCompared) return order;
+    const auto mine = covering(a, second), others = covering(b, first);
+    const std::size_t pairs = mine.size() * others.size();
     if (pairs > kMostCompared || (compared_ += pairs) > 16 * kMostCompared) return order;
-    return order_of(facing(a), facing(b), kNegligible * size);
+    return order_of(mine, others, kNegligible * size);
+}
+
+std::vector<FacingTriangle> Stack::covering(unsigned pane, const Pane& other) {
+    std::vector<FacingTriangle> result;
+    for (const FacingTriangle& triangle : facing(pane))
+        if (triangle.low.x < other.high.x && other.low.x < triangle.high.x && triangle.low.y < other.high.y &&
+            other.low.y < triangle.high.y)
+            result.push_back(triangle);
+    return result;
 }
 
 bool Stack::compare_all() {
