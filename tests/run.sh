@@ -59,7 +59,7 @@ step() { # NAME REMEDY COMMAND...
 
 sources() { # EXTENSION...
     local folder extension
-    for folder in protocol render server tests; do
+    for folder in protocol render scenes server tests; do
         for extension in "$@"; do
             find "$folder" -name node_modules -prune -o -name "*.$extension" -print
         done
@@ -104,7 +104,7 @@ tidy() {
     sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
         -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
         while IFS=$'\t' read -r object file; do
-            case ${file#"$ROOT"/} in protocol/* | render/* | server/* | tests/*) ;; *) continue ;; esac
+            case ${file#"$ROOT"/} in protocol/* | render/* | scenes/* | server/* | tests/*) ;; *) continue ;; esac
             stamp=${file#"$ROOT"/}
             stamp=build/release/tidy/${stamp//\//+}
             [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue

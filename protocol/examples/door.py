@@ -5,6 +5,7 @@ Needs python3-websockets (Debian) or `pip install websockets`. The environment m
 and token as VRUT_PREVIEW_URL and VRUT_PREVIEW_TOKEN."""
 import argparse
 import asyncio
+import itertools
 import json
 import math
 import os
@@ -13,8 +14,12 @@ import urllib.parse
 import websockets
 
 
+ids = itertools.count(1)
+
+
 async def ask(server, message):
-    """Sends a message that has an id, and returns its answer."""
+    """Sends a message with an id, and returns its answer."""
+    message = {**message, "id": next(ids)}
     await server.send(json.dumps(message))
     async for text in server:
         answer = json.loads(text)
@@ -24,10 +29,27 @@ async def ask(server, message):
             return answer
 
 
-def turned(degrees, hinge):
-    """Row by row: a rotation about the vertical through the hinge, where the closed door has its origin."""
+async def node_at(server, path):
+    """The node at a path of names below the root, as a page of the tree describes it."""
+    node = {"id": 0}
+    for name in path.split("/"):
+        message = {"type": "tree", "node": node["id"]}
+        found = []
+        while not found:
+            page = await ask(server, message)
+            found = [n for n in page["nodes"] if n["name"] == name and n.get("parent") == node["id"]]
+            if not found and "next" not in page:
+                raise SystemExit(f"door.py: the scene has no '{path}'")
+            message["after"] = page.get("next")
+        node = found[0]
+    return node
+
+
+def turned(closed, degrees):
+    """A door's matrix, turned about the vertical through its own origin, where its hinge is."""
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    return [c, 0, s, hinge[0], 0, 1, 0, hinge[1], -s, 0, c, hinge[2], 0, 0, 0, 1]
+    turn = [c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0, 0, 0, 0, 1]
+    return [sum(closed[4 * row + k] * turn[4 * k + column] for k in range(4)) for row in range(4) for column in range(4)]
 
 
 async def main():
@@ -36,8 +58,7 @@ async def main():
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--url", default=home, help="as the server prints it")
     arguments.add_argument("--token", default=token, help="if the URL has none")
-    arguments.add_argument("--door", default="Front left", help="the node's name (default 'Front left')")
-    arguments.add_argument("--hinge", type=float, nargs=3, default=[0.8, 0, 0.84], help="as in the scene")
+    arguments.add_argument("--door", default="Body/Doors/Front left", help="its path (default 'Body/Doors/Front left')")
     arguments.add_argument("--angle", type=float, default=-65, help="degrees (default -65)")
     arguments.add_argument("--hold", type=float, default=1, help="seconds (default 1)")
     options = arguments.parse_args()
@@ -46,15 +67,12 @@ async def main():
     address = f"{page.scheme.replace('http', 'ws')}://{page.netloc}/ws"
     async with websockets.connect(address, subprotocols=["vrut-preview.v1"], max_size=None) as server:
         await server.send(json.dumps({"type": "hello", "role": "control", "token": token}))
-        found = await ask(server, {"type": "tree", "id": 1, "search": options.door})
-        doors = [n for n in found["nodes"] if n["name"] == options.door and n["type"] == "assembly"]
-        if not doors:
-            raise SystemExit(f"door.py: the scene has no assembly that is called '{options.door}'")
+        door = await node_at(server, options.door)
+        closed = door.get("matrix", [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
         steps = 25
-        matrices = [turned(options.angle * step / steps, options.hinge) for step in range(1, steps + 1)]
-        for number, matrix in enumerate(matrices + [None], 2):  # None: as the file has it
+        matrices = [turned(closed, options.angle * step / steps) for step in range(1, steps + 1)]
+        for matrix in matrices + [None]:  # None: as the file has it
             await asyncio.sleep(1 / steps if matrix else options.hold)
-            patch = {"nodes": {str(doors[0]["id"]): {"matrix": matrix}}}
-            await ask(server, {"type": "patch", "id": number, "patch": patch})
+            await ask(server, {"type": "patch", "patch": {"nodes": {str(door["id"]): {"matrix": matrix}}}})
 
 asyncio.run(main())

@@ -11,8 +11,7 @@ import sys
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.dirname(HERE))
 import png  # noqa: E402
-from modelling import (add, bent, box, cross, geometry_text, indexed, lathe, moved, quad, scale, sub, turned,  # noqa: E402
-                       unit)
+from modelling import box, geometry_text, indexed, lathe, moved, quad, scale, turned, unit  # noqa: E402
 
 # ---- shapes ----------------------------------------------------------------------------------------------
 # Each gives (point, normal) pairs, the triangles that name them by number, and whether the normals are written.

@@ -29,7 +29,7 @@ struct Series {
 
 TEST_CASE("latency of isolated inputs") {
     constexpr int kInputs = 100;
-    auto scene = load_scene(VRUT_SCENES "/car/car.vrut", "car.vrut");
+    auto scene = load_scene(VRUT_CARS "/car.vrut", "car.vrut");
     REQUIRE(scene.has_value());
     TestServer server(*std::move(scene), gl_painter({}));
     TestClient client(server.port());

@@ -9,7 +9,8 @@ const { after, test } = require('node:test');
 const zlib = require('node:zlib');
 
 const PROGRAM = process.env.VRUT_PREVIEW;
-const CAR = path.join(process.env.VRUT_SCENES, 'car', 'car.vrut');
+const CAR = process.env.VRUT_CAR;
+const MATRICES = path.join(process.env.VRUT_SCENES, 'teaching', 'matrices.vrut');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
 after(() => fs.rmSync(folder, { recursive: true }));
 
@@ -75,7 +76,7 @@ test('what cannot be done is told in a sentence, with status 1', () => {
 });
 
 test('info tells what a scene holds', () => {
-  assert.match(succeeds('info', CAR), /^car: \d+ nodes/);
+  assert.match(succeeds('info', CAR), /^car-20k: \d+ nodes/);
   const info = JSON.parse(succeeds('info', CAR, '--json'));
   assert.equal(info.tree.length, info.nodes);
   assert.equal(info.tree[0].type, 'root');
@@ -101,8 +102,8 @@ test('what is left out of a scene is told on standard error, and the picture dra
 });
 
 test('render tells what a picture took', () => {
-  const stats = JSON.parse(succeeds('render', CAR, '-o', file('s.png'), '--size', '64x64', '--samples', '1', '--stats'));
-  const info = JSON.parse(succeeds('info', CAR, '--json'));
+  const stats = JSON.parse(succeeds('render', MATRICES, '-o', file('s.png'), '--size', '64x64', '--samples', '1', '--stats'));
+  const info = JSON.parse(succeeds('info', MATRICES, '--json'));
   assert.equal(stats.passes, 1);
   assert.equal(stats.triangles, info.triangles);
   assert.equal(stats.draws, info.tree.filter((node) => node.triangles > 0).length);

@@ -8,10 +8,9 @@ const path = require('node:path');
 const { after, before, test } = require('node:test');
 const WebSocket = require('../web/node_modules/ws');
 
-const { VRUT_PREVIEW, VRUT_SCENES, VRUT_EXAMPLE_HOST, PYTHON } = process.env;
+const { VRUT_PREVIEW, VRUT_CAR, VRUT_EXAMPLE_HOST, PYTHON } = process.env;
 const EXAMPLES = path.join(__dirname, '../../protocol/examples');
 const TOKEN = 'a-token-of-the-tests';
-const DOOR = '3'; // the front left door of the car
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
 const file = (name) => path.join(folder, name);
 
@@ -20,7 +19,7 @@ let port;
 let watcher;
 
 before(async () => {
-  server = spawn(VRUT_PREVIEW, ['serve', path.join(VRUT_SCENES, 'car/car.vrut'), '--listen', '127.0.0.1:0'], {
+  server = spawn(VRUT_PREVIEW, ['serve', VRUT_CAR, '--listen', '127.0.0.1:0'], {
     env: { ...process.env, VRUT_PREVIEW_CONTROL_TOKEN: TOKEN },
     stdio: ['ignore', 'pipe', 'ignore'],
   });
@@ -82,6 +81,7 @@ class Watcher {
       self.socket.on('message', (data) => {
         const message = JSON.parse(data);
         if (message.type === 'state') resolve((self.state = message.state));
+        if (message.type === 'tree') self.tree = message.nodes;
         if (message.type === 'patch') self.patches.push(message.patch);
         if (message.type === 'patch') self.state = merged(self.state, message.patch);
       });
@@ -143,7 +143,7 @@ function png(name) {
 
 test('each script tells its usage', async () => {
   assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
-  assert.match(await succeeds(python('door.py', '--help')), /--hinge/);
+  assert.match(await succeeds(python('door.py', '--help')), /--angle/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -190,7 +190,7 @@ test('orbit.py saves the views of a whole turn, told the address as it is printe
 test('example_host prints the camera that others set, and ends at SIGINT', async () => {
   const host = spawn(VRUT_EXAMPLE_HOST, ['--port', port, '--token', TOKEN, '--name', 'wall']);
   const ended = new Promise((resolve) => host.on('exit', (status) => resolve(status)));
-  await printed(host, /^revision \d+ eye .* fov 40\n/);
+  await printed(host, /^revision \d+ eye .* fov [\d.]+\n/);
   watcher.send({ type: 'patch', patch: { camera: { eye: [4, 1.5, 3], focus: [0, 0.5, 0], up: [0, 1, 0], fov: 35 } } });
   await printed(host, /^revision \d+ eye 4 1.5 3 focus 0 0.5 0 up \S+ \S+ \S+ fov 35\n/m);
   host.kill('SIGINT');
@@ -210,16 +210,25 @@ test('example_host leads the camera once around, back to where it was', async ()
   host.kill('SIGTERM');
 });
 
-test('door.py opens a door and closes it', async () => {
+test('door.py opens a door about its own hinge, and closes it', async () => {
+  const named = (name, parent) => watcher.tree?.find((node) => node.name === name && (!parent || node.parent === parent));
+  watcher.send({ type: 'tree', id: 1, search: 'Doors' });
+  await watcher.until(() => named('Doors'));
+  const doors = named('Doors').id;
+  watcher.send({ type: 'tree', id: 2, node: doors });
+  await watcher.until(() => named('Front left', doors));
+  const { id, matrix: closed } = named('Front left', doors);
+
   watcher.patches.length = 0;
   await succeeds(python('door.py', '--hold', '0.1'));
-  const matrices = watcher.patches.map((patch) => patch.nodes?.[DOOR]?.matrix).filter(Boolean);
+  const matrices = watcher.patches.map((patch) => patch.nodes?.[id]?.matrix).filter(Boolean);
   assert.ok(matrices.length >= 5, `${matrices.length} steps`);
-  const open = matrices.at(-1); // -65°: cos 0.42261826, sin -0.90630779
-  const expected = [0.42261826, 0, -0.90630779, 0.8, 0, 1, 0, 0, 0.90630779, 0, 0.42261826, 0.84, 0, 0, 0, 1];
-  expected.forEach((value, i) => assert.ok(Math.abs(open[i] - value) < 1e-7, `${open}`));
-  await watcher.until(() => !(DOOR in (watcher.state.nodes ?? {})));
-  assert.match((await python('door.py', '--door', 'Nose')).stderr, /^door\.py: .*'Nose'\n$/);
+  // The closed door has no rotation: open, it has that of -65°, cos 0.42261826, sin -0.90630779.
+  const expected = [...closed];
+  [expected[0], expected[2], expected[8], expected[10]] = [0.42261826, -0.90630779, 0.90630779, 0.42261826];
+  expected.forEach((value, i) => assert.ok(Math.abs(matrices.at(-1)[i] - value) < 1e-7, `${matrices.at(-1)}`));
+  await watcher.until(() => !(id in (watcher.state.nodes ?? {})));
+  assert.match((await python('door.py', '--door', 'Body/Nose')).stderr, /^door\.py: .*'Body\/Nose'\n$/);
 });
 
 test('snapshot.mjs saves pictures of the size and from where it is asked to', async () => {

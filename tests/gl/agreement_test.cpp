@@ -131,5 +131,5 @@ TEST_CASE("teaching scenes are drawn as the reference has them, whatever their s
 
 TEST_CASE("the car is drawn as the reference has it") {
     Studio studio;
-    check_agreement(studio, "car", view_of_file(VRUT_SCENES "/car/car.vrut", 640, 400));
+    check_agreement(studio, "car", view_of_file(VRUT_CARS "/car.vrut", 640, 400));
 }

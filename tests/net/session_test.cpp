@@ -314,16 +314,16 @@ TEST_CASE("nobody waits behind another's thousand requests") {
 
 TEST_CASE("who comes later hears nothing of a scene that was loaded before") {
     ServerOptions options;
-    options.library = SceneLibrary(VRUT_SCENES);
+    options.library = SceneLibrary(VRUT_CARS);
     TestServer server(FakePainter{}, options);
     TestClient first(server.port());
     first.join();
-    first.send({{"type", "open"}, {"id", 1}, {"scene", "car/car.vrut"}});
+    first.send({{"type", "open"}, {"id", 1}, {"scene", "car-20k.vrut"}});
     first.wait_for("ok");
     while (!first.wait_for("loading").contains("done")) {
     }
     TestClient second(server.port());
-    CHECK(second.join("view")["scene"]["name"] == "car");
+    CHECK(second.join("view")["scene"]["name"] == "car-20k");
     second.send({{"type", "pick"}, {"id", 1}, {"x", 0}, {"y", 0}});
     for (;;) {
         const auto message = second.receive();

@@ -46,7 +46,7 @@ void one_round(TestServer& server, TestClient& presenter, int round) {
 }  // namespace
 
 TEST_CASE("a minute of work leaves no more behind than a few seconds") {
-    auto scene = load_scene(VRUT_SCENES "/car/car.vrut", "car.vrut");
+    auto scene = load_scene(VRUT_CARS "/car-20k.vrut", "car-20k.vrut");
     REQUIRE(scene.has_value());
     TestServer server(*std::move(scene), gl_painter({}));
     TestClient presenter(server.port());

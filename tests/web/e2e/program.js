@@ -8,7 +8,7 @@ import { promisify } from 'node:util';
 const READY_WITHIN_MS = 60_000;
 
 const program = fromEnvironment('VRUT_PREVIEW', 'the path of the program');
-const scene = path.join(fromEnvironment('VRUT_SCENES', 'the folder of the scenes'), 'car', 'car.vrut');
+const scene = fromEnvironment('VRUT_CAR', 'the car');
 
 function fromEnvironment(name, what) {
   const value = process.env[name];
