@@ -256,11 +256,13 @@ def handle():
 def mirror_housing():
     """The left outside mirror's housing about its own middle; it opens to the rear (-z)."""
     def at_depth(z, k, dx=0.0):
-        return [(0.105 * 2 * x * k + dx, 0.068 * 2 * y * k + (0.010 * x if k > 0.5 else 0), z) for x, y in oval(12, 1, 1, 3.2)]
+        return [(0.105 * 2 * x * k + dx, 0.068 * 2 * y * k + (0.010 * x if k > 0.5 else 0), z) for x, y in oval(12, 1, 1, 2.6)]
 
     cage = loft([at_depth(-0.020, 0.92), at_depth(-0.052, 0.955), at_depth(-0.056, 0.985), at_depth(-0.044, 1.01),
-                 at_depth(0.005, 0.97), at_depth(0.045, 0.76), at_depth(0.062, 0.40)], close_front=True, close_back=True)
-    return cage.crease(HARD, where=lambda p: -0.0567 < p.z < -0.050)
+                 at_depth(0.000, 0.985), at_depth(0.034, 0.86), at_depth(0.056, 0.58), at_depth(0.064, 0.26)], close_front=True, close_back=True)
+    for depth in (-0.052, -0.056):  # the rim
+        cage.crease(HARD, where=lambda p: abs(p.z - depth) < 1e-5)
+    return cage
 
 
 def mirror_glass():
@@ -350,12 +352,12 @@ def add_mirror(car, door, sign, hinge, sides):
         name, parent, sign, mirror_housing, paint, turn=tilt))
     place = Vector((-0.010 * sign, 0, -0.044))
     to_mirror = (Vector((centre.x * sign, centre.y, centre.z)) + place - DRIVERS_EYE).normalized()
-    normal = (Vector((0.10 * sign, -0.03, -1)).normalized() - to_mirror).normalized()  # the driver sees along the car
+    normal = (Vector((0.045 * sign, -0.03, -1)).normalized() - to_mirror).normalized()  # the driver sees along the car
     glass = (at(place) @ Matrix.Rotation(math.atan2(-normal.x, -normal.z), 4, "Y")
              @ Matrix.Rotation(math.asin(normal.y), 4, "X"))
     if "mirror glass" not in sides.meshes:
         sides.meshes["mirror glass"] = car.mesh(mirror_glass(), "Mirror glass")
-    car.part("Glass", mirror, sides.meshes["mirror glass"], "Mirror", glass)
+    car.part("Glass", mirror, sides.meshes["mirror glass"], "Mirror", glass, tolerance=0.15)
     sides.part("Foot", mirror, sign, lambda: tube([(-0.200, -0.048, 0.030), (-0.130, -0.052, 0.022), (-0.075, -0.048, 0.012), (-0.02, -0.03, 0.0)],
                                                   [0.044, 0.034, 0.026, 0.022], 6).bend(lambda p: (p.x, p.y * 0.7 - 0.014, p.z * 1.3)),
                "Black trim", key="mirror foot")
