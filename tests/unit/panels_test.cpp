@@ -235,14 +235,14 @@ TEST_CASE("what a switch hides is not counted, what several nodes use is counted
     CageScene cages;
     cages.meshes = {shapes::cube(), shapes::cube()};
     const auto add = [&](Id id, Id parent, NodeType type, int mesh) -> CageNode& {
-        CageNode node;
+        CageNode& node = cages.nodes.emplace_back();
         node.part.node.id = id;
         node.part.node.type = type;
         node.part.parent_id = parent;
         node.mesh = mesh;
         if (type == NodeType::geometry) node.part.node.data = GeometryData{};
         if (type == NodeType::switch_) node.part.node.data = SwitchData{1};
-        return cages.nodes.emplace_back(node);
+        return node;
     };
     add(1, 0, NodeType::switch_, kNone);
     add(2, 1, NodeType::geometry, 0);
