@@ -18,6 +18,7 @@ std::string encode(const Ok& message);
 std::string encode(const Picked& message);
 std::string encode(const Flown& message);
 std::string encode(const TreePage& message);
+std::string encode(const SceneList& message);
 std::string encode(const Loading& message);
 std::string encode(const Stats& message);
 std::string encode(const Error& message);

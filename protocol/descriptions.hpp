@@ -31,8 +31,10 @@ inline constexpr Integer kId{};
 inline constexpr Integer kPixels{1, 8192};
 inline constexpr Integer kJpegQuality{1, 100};
 inline constexpr Text kName{std::numeric_limits<std::uint32_t>::max()};
+inline constexpr Text kClientName{100};
 inline constexpr std::size_t kMaxKeyframes = 1000;
 
+inline constexpr Integer kActiveChild{-2, std::numeric_limits<int>::max()};
 inline constexpr auto kRole = word("control", "view", "host");
 inline constexpr auto kMode = word("realistic", "stylized");
 inline constexpr auto kFormat = word("jpeg", "png");
@@ -43,7 +45,7 @@ inline constexpr auto kStyle = word("vrut", "maya", "catia", "cinema4d");
 template <class V>
 void describe(V& v, const Hello*) {
     v.required("role", &Hello::role, kRole);
-    v.optional("name", &Hello::name, Text{100});
+    v.optional("name", &Hello::name, kClientName);
     v.optional("token", &Hello::token, Text{1000});
 }
 
@@ -168,13 +170,17 @@ void describe(V& v, const Tree*) {
     v.optional("node", &Tree::node, kId);
     v.optional("depth", &Tree::depth, Integer{0, 1'000'000'000});
     v.optional("search", &Tree::search, Text{1000});
+    v.optional("only", &Tree::only, word("switches", "hinges"));
     v.optional("after", &Tree::after, kId);
 }
 
 template <class V>
 void describe(V& v, const Open*) {
-    v.required("scene", &Open::scene, Text{1000});
+    v.required("scene", &Open::scene, Text{kMaxSceneName});
 }
+
+template <class V>
+void describe(V&, const Scenes*) {}
 
 template <class V>
 void describe(V& v, const Record*) {
@@ -230,12 +236,20 @@ void describe(V& v, const Picked*) {
     v.required("point", &Picked::point, Vector<glm::dvec3>{kAny.min, kAny.max});
     v.required("normal", &Picked::normal, Vector<glm::dvec3>{-1.001, 1.001});
     v.required("distance", &Picked::distance, kDuration);
+    v.required("local", &Picked::local, Vector<glm::dvec3>{kAny.min, kAny.max});
 }
 
 template <class V>
 void describe(V& v, const Flown*) {
     v.required("id", &Flown::id, kId);
     v.required("completed", &Flown::completed, Flag{});
+}
+
+template <class V>
+void describe(V& v, const TreeHinge*) {
+    v.required("axis", &TreeHinge::axis, Vector<glm::dvec3>{-1.001, 1.001});
+    v.required("degrees", &TreeHinge::degrees, Number{-360, 360});
+    v.required("closed", &TreeHinge::closed, kMatrix);
 }
 
 template <class V>
@@ -249,6 +263,9 @@ void describe(V& v, const TreeNode*) {
     v.required("triangles", &TreeNode::triangles, kId);
     v.required("material", &TreeNode::material, kId);
     v.required("matrix", &TreeNode::matrix, kMatrix);
+    v.required("hinge", &TreeNode::hinge, Object<TreeHinge>{});
+    v.required("activeChild", &TreeNode::active_child, kActiveChild);
+    v.required("choices", &TreeNode::choices, List<Text>{kName, 0, kMaxChoices});
 }
 
 template <class V>
@@ -256,6 +273,12 @@ void describe(V& v, const TreePage*) {
     v.required("id", &TreePage::id, kId);
     v.required("nodes", &TreePage::nodes, List<Object<TreeNode>>{{}, 0, kMaxInteger});
     v.required("next", &TreePage::next, kId);
+}
+
+template <class V>
+void describe(V& v, const SceneList*) {
+    v.required("id", &SceneList::id, kId);
+    v.required("scenes", &SceneList::scenes, List<Text>{Text{kMaxSceneName}, 0, kMaxScenes});
 }
 
 template <class V>
@@ -402,7 +425,7 @@ void describe(V& v, const SelectionState*) {
 template <class V>
 void describe(V& v, const NodeOverride*) {
     v.writable("active", &NodeOverride::active, Flag{});
-    v.writable("activeChild", &NodeOverride::active_child, Integer{-2, std::numeric_limits<int>::max()});
+    v.writable("activeChild", &NodeOverride::active_child, kActiveChild);
     v.writable("matrix", &NodeOverride::matrix, kMatrix);
     v.writable("material", &NodeOverride::material, kId);
 }
@@ -432,6 +455,7 @@ void describe(V& v, const QualityState*) {
 template <class V>
 void describe(V& v, const ControlState*) {
     v.fixed("holder", &ControlState::holder, kName);
+    v.fixed("name", &ControlState::name, kName);
     v.fixed("kept", &ControlState::kept, Flag{});
 }
 
@@ -496,6 +520,8 @@ void describe(V& v, const FrameHeader*) {
     v.required("renderer", &FrameHeader::renderer, Object<FrameHeader::Renderer>{});
     v.required("quality", &FrameHeader::quality, Object<Quality>{});
     v.required("timing", &FrameHeader::timing, Object<FrameHeader::Timing>{});
+    v.optional("markers", &FrameHeader::markers,
+               ValuesByName<Vector<glm::dvec3>>{Vector<glm::dvec3>{kAny.min, kAny.max}});
 }
 
 }  // namespace vrut::protocol

@@ -58,11 +58,21 @@ const Json& member(const Json& json, const char* name) {
     return json[name];
 }
 
+/// A name as `hello` has it; logs of earlier versions have none.
+std::string read_client_name(const Json& json) {
+    return json.contains("name") ? kClientName.read(json["name"], "name") : std::string();
+}
+
+void write_client_name(const std::string& name, Json& json) {
+    if (!name.empty()) json["name"] = name;
+}
+
 /// Clients stand flat, as the contract has them: width and height only where they asked for a size.
 Json write_client(const LogHeader::Client& client) {
     Json json = client.wanted ? write_struct(*client.wanted) : Json::object();
     json["client"] = client.client;
     json["role"] = name_of(client.role);
+    write_client_name(client.name, json);
     return json;
 }
 
@@ -71,6 +81,7 @@ LogHeader::Client read_client(const Json& json) {
     client.client = read_string(member(json, "client"), "clients.client", 100);
     client.role = read_role(member(json, "role"));
     if (json.contains("width")) client.wanted = read_struct<Resize>(json, "clients");
+    client.name = read_client_name(json);
     return client;
 }
 
@@ -86,7 +97,7 @@ decltype(LogLine::what) read_event(const Json& json) {
     constexpr auto kEvents = word("connected", "disconnected", "opened", "drawn");
     switch (kEvents.read(member(json, "event"), "event")) {
         case 0:
-            return LogLine::Connected{read_role(member(json, "role"))};
+            return LogLine::Connected{read_role(member(json, "role")), read_client_name(json)};
         case 1:
             return LogLine::Disconnected{};
         case 2:
@@ -113,6 +124,7 @@ struct WriteWhat {
     void operator()(const LogLine::Connected& connected) {
         json["event"] = "connected";
         json["role"] = name_of(connected.role);
+        write_client_name(connected.name, json);
     }
     void operator()(const LogLine::Disconnected&) { json["event"] = "disconnected"; }
     void operator()(const LogLine::Opened& opened) {

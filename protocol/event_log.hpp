@@ -33,6 +33,7 @@ struct LogHeader {
         std::string client;
         Role role = Role::view;
         std::optional<Resize> wanted;
+        std::string name = {};  ///< empty: none
     };
     std::vector<Client> clients;
     // What else the camera depends on:
@@ -55,6 +56,7 @@ struct LogHeader {
 struct LogLine {
     struct Connected {
         Role role = Role::view;
+        std::string name = {};  ///< empty: none
     };
     struct Disconnected {};
     /// A scene that was being loaded is shown from here on.

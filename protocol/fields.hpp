@@ -148,6 +148,19 @@ struct Table {
     Json schema() const { return {{"type", "object"}, {"additionalProperties", schema_of_struct<T>()}}; }
 };
 
+/// {"NAME": value}, to be written only.
+template <class Kind>
+struct ValuesByName {
+    Kind kind;
+    template <class T>
+    Json write(const std::map<std::string, T>& values) const {
+        Json json = Json::object();
+        for (const auto& [name, value] : values) json[name] = kind.write(value);
+        return json;
+    }
+    Json schema() const { return {{"type", "object"}, {"additionalProperties", kind.schema()}}; }
+};
+
 /// What is shared because it is large and seldom changes.
 template <class Kind>
 struct SharedKind {

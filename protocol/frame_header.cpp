@@ -16,9 +16,10 @@ constexpr std::size_t kLongestComment = 65'533;
 std::string encode(const FrameHeader& header) {
     Json json = write_struct(header);
     std::string text = dump(json);
-    if (text.size() <= kLongestComment) return text;
-    json["camera"].erase("name");  // the only member without a bound
-    return dump(json);
+    if (text.size() > kLongestComment && json.erase("markers") > 0) text = dump(json);
+    // Of the others, the only one without a bound.
+    if (text.size() > kLongestComment && json["camera"].erase("name") > 0) text = dump(json);
+    return text;
 }
 
 std::size_t comment_offset(std::span<const std::uint8_t> jpeg) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -33,9 +34,10 @@ struct FrameHeader {
     Renderer renderer;
     Quality quality;
     Timing timing;
+    std::map<std::string, glm::dvec3> markers;  ///< where the signs stand in the world, by name
 };
 
-/// At most 65,533 bytes: a camera's name that is too long for that is left out.
+/// At most 65,533 bytes: where it would be longer, `markers` are left out, and then a camera's name.
 std::string encode(const FrameHeader& header);
 
 /// Where in a JPEG file a COM segment goes: behind SOI and the JFIF APP0.

@@ -49,6 +49,7 @@ void add_server_messages(Json& defs) {
     add_server_message<Picked>(defs, "picked");
     add_server_message<Flown>(defs, "flown");
     add_server_message<TreePage>(defs, "tree");
+    add_server_message<SceneList>(defs, "scenes");
     add_server_message<Loading>(defs, "loading");
     add_server_message<Stats>(defs, "stats");
     add_server_message<Error>(defs, "error");

@@ -37,6 +37,7 @@ void for_each_client_type(Use use) {
     use("fly", Fly{});
     use("tree", Tree{});
     use("open", Open{});
+    use("scenes", Scenes{});
     use("record", Record{});
     use("control", Control{});
     use("shown", Shown{});

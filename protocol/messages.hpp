@@ -20,6 +20,9 @@ inline constexpr const char* kSubprotocol = "vrut-preview.v1";
 inline constexpr std::size_t kMaxMessageBytes = 65'536;
 inline constexpr int kMaxDepth = 32;
 inline constexpr int kMaxGrants = 2;
+inline constexpr std::size_t kMaxSceneName = 1000;  ///< bytes
+inline constexpr std::size_t kMaxScenes = 1000;     ///< in a list
+inline constexpr std::size_t kMaxChoices = 64;      ///< of a switch that tells of its children
 /// Highest message id and revision: 2^53 - 1, exact in JSON.
 inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;
 
@@ -141,15 +144,20 @@ struct Fly {
 
 /// A page of the scene's tree.
 struct Tree {
+    enum class Only { switches, hinges };
     std::optional<std::int64_t> node;   ///< none: the root
-    std::optional<int> depth;           ///< none: 1, or where something is searched for, all
+    std::optional<int> depth;           ///< none: 1, or with `search` or `only` all
     std::string search;                 ///< part of a name, in either case; empty: all
+    std::optional<Only> only;           ///< nodes of one kind; none: all
     std::optional<std::int64_t> after;  ///< where the page before ended
 };
 
 struct Open {
     std::string scene;
 };
+
+/// What can be opened.
+struct Scenes {};
 
 struct Record {
     enum class Action { start, stop };
@@ -165,7 +173,7 @@ struct Shown {
 struct ClientMessage {
     std::optional<std::int64_t> id;
     std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Patch, Pick, Snapshot, Fly,
-                 Tree, Open, Record, Control, Shown>
+                 Tree, Open, Scenes, Record, Control, Shown>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
 };
@@ -204,11 +212,18 @@ struct Picked {
     std::optional<std::vector<std::string>> path;  ///< names from the root, the last 32
     std::optional<glm::dvec3> point, normal;       ///< world; the normal is geometric, towards the viewer
     std::optional<double> distance;                ///< from the eye
+    std::optional<glm::dvec3> local;               ///< the point in the node's own space, where that has one
 };
 
 struct Flown {
     std::int64_t id = 0;
     bool completed = false;
+};
+
+struct TreeHinge {
+    glm::dvec3 axis{0, 1, 0};  ///< unit, in the node's own space, through its origin
+    double degrees = 0;        ///< signed: so far it opens
+    glm::dmat4 closed{1};      ///< the node's matrix as in the file
 };
 
 struct TreeNode {
@@ -220,12 +235,22 @@ struct TreeNode {
     std::uint64_t triangles = 0;  ///< of its own geometry
     std::optional<std::int64_t> material;
     std::optional<glm::dmat4> matrix = {};  ///< as it is now; none: the identity
+    std::optional<TreeHinge> hinge = {};
+    // Of a switch:
+    std::optional<int> active_child = {};  ///< as in the file
+    std::optional<std::vector<std::string>> choices =
+        {};  ///< its children's names, by rising id; kMaxChoices
 };
 
 struct TreePage {
     std::int64_t id = 0;
     std::vector<TreeNode> nodes;
     std::optional<std::int64_t> next;  ///< `after` for the page that follows; none: this was the last
+};
+
+struct SceneList {
+    std::int64_t id = 0;
+    std::vector<std::string> scenes;  ///< names for `open`, sorted
 };
 
 /// How far the loading of a scene is; once at the end either `done` or `refused`.

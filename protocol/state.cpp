@@ -78,6 +78,7 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
         if (const auto control = document.find("control"); control != document.end()) {
             if (control->contains("holder"))
                 state.control.holder = kName.read((*control)["holder"], "holder");
+            if (control->contains("name")) state.control.name = kName.read((*control)["name"], "name");
             state.control.kept = control->contains("kept") && Flag{}.read((*control)["kept"], "kept");
         }
         return state;

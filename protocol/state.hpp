@@ -129,6 +129,7 @@ struct QualityState {
 
 struct ControlState {  // r
     std::optional<std::string> holder;
+    std::optional<std::string> name;  ///< that the holder gave in its `hello`
     bool kept = false;
     bool operator==(const ControlState&) const = default;
 };

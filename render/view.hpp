@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "camera.hpp"
@@ -26,9 +27,10 @@ struct Background {
     bool operator==(const Background&) const = default;
 };
 
-/// A sign on a surface, in world space.
+/// A sign on a surface, in world space, and the name by which clients know it.
 struct Mark {
     glm::dvec3 point{0};
+    std::string name = {};
 
     bool operator==(const Mark&) const = default;
 };

@@ -17,6 +17,7 @@ constexpr int kMostSnapshots = 2;  // of a client, waiting
 /// At most, for those who follow the camera without frames.
 constexpr std::chrono::milliseconds kFlightStep{16};
 constexpr std::size_t kBegunRemembered = 16;
+constexpr std::chrono::seconds kBetweenListings{1};  // of the folder of scenes
 
 /// "" where it is of none.
 std::string client_of(const EngineEvent& event) {
@@ -108,6 +109,7 @@ void Engine::run(LoadedScene scene) {
     PresentationOptions options;
     options.record_folder = record_folder_;
     options.load = [this](const std::string& name) { return load(name); };
+    options.scenes = [this] { return scenes(); };
     presentation_.emplace(with_notices(std::move(scene)), std::move(options));
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
@@ -191,7 +193,7 @@ void Engine::handle_waiting() {
 void Engine::handle(const ClientJoined& joined) {
     clients_[joined.client].handled = joined.id;
     const Clock::time_point now = Clock::now();
-    presentation_->join(joined.client, joined.role, time_of(now));
+    presentation_->join(joined.client, joined.role, time_of(now), joined.name);
     stats_.joined(joined.client, joined.role, joined.name, now);
 }
 
@@ -253,6 +255,16 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     loader_.start(*path, name);
     tell({name, 0, {}, {}});
     return std::nullopt;
+}
+
+/// Listed anew once a second at most: a walk takes up to 100 ms, and clients may ask by the thousand.
+const std::vector<std::string>& Engine::scenes() {
+    const Clock::time_point now = Clock::now();
+    if (!scenes_listed_ || now - *scenes_listed_ >= kBetweenListings) {
+        scenes_ = library_.names();
+        scenes_listed_ = Clock::now();
+    }
+    return scenes_;
 }
 
 void Engine::handle(const ClientSaid& said) {

@@ -120,6 +120,7 @@ private:
     void grant(Client& client, const ClientSaid& said);
     void report();
     std::optional<protocol::Error> load(const std::string& name);
+    const std::vector<std::string>& scenes();
     Time time_of(Clock::time_point when) const { return std::chrono::duration_cast<Time>(when - start_); }
 
     // --- pictures
@@ -143,6 +144,8 @@ private:
     LoadedScene with_notices(LoadedScene scene) const;
 
     SceneLibrary library_;
+    std::vector<std::string> scenes_;  ///< as they were listed last
+    std::optional<Clock::time_point> scenes_listed_;
     std::filesystem::path record_folder_;
     Metrics& metrics_;
     EngineCallbacks callbacks_;

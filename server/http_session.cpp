@@ -43,7 +43,7 @@ Response make_response(const Request& request, http::status status, std::string_
     response.set(
         "Content-Security-Policy",
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-        "base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
+        "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
     response.keep_alive(request.keep_alive());
     response.body() = std::move(body);
     response.prepare_payload();

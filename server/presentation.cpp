@@ -21,10 +21,11 @@ Presentation::Presentation(LoadedScene scene, PresentationOptions options)
       visible_(view_of(state_, scene_)),
       recorder_(options_.record_folder) {}
 
-void Presentation::join(const std::string& client, Role role, Time at) {
+void Presentation::join(const std::string& client, Role role, Time at, const std::string& name) {
     advance(at);
     clients_[client].role = role;
-    record(client, protocol::LogLine::Connected{role});
+    clients_[client].name = name;
+    record(client, protocol::LogLine::Connected{role, name});
 }
 
 void Presentation::leave(const std::string& client, Time at) {
@@ -201,6 +202,8 @@ void Presentation::hold(const std::optional<std::string>& holder) {
             clicks_.lift(*control.holder);
         }
         control.holder = holder;
+        control.name.reset();
+        if (holder && !clients_.at(*holder).name.empty()) control.name = clients_.at(*holder).name;
         if (!size_waits_) use_holders_size();
     }
     control.kept = steering_.kept();

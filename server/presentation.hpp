@@ -46,6 +46,8 @@ struct PresentationOptions {
     std::filesystem::path record_folder = {};  ///< empty: nothing is recorded
     /// Begins to load a scene of this name, or says why not.
     std::function<std::optional<protocol::Error>(const std::string& name)> load = {};
+    /// Names of the scenes that can be loaded.
+    std::function<std::vector<std::string>()> scenes = {};
     /// What is said was accepted before: it is not judged again by revisions, nor recorded.
     bool replaying = false;
 };
@@ -58,7 +60,8 @@ public:
     explicit Presentation(LoadedScene scene, PresentationOptions options = {});
 
     // What happens. Times never fall: an earlier one counts as the latest before.
-    void join(const std::string& client, protocol::Role role, Time at);
+    /// `name`: as the client calls itself; empty: it does not.
+    void join(const std::string& client, protocol::Role role, Time at, const std::string& name = {});
     void leave(const std::string& client, Time at);
     /// Any message but `hello` and `frame`. What is refused changes nothing, and not who steers either; then
     /// false comes back.
@@ -100,6 +103,7 @@ private:
     struct Client {
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
+        std::string name = {};
     };
     /// The message in hand.
     struct Said {
@@ -129,6 +133,7 @@ private:
     void apply(const Said& said, const protocol::Fly& fly);
     void apply(const Said& said, const protocol::Tree& tree);
     void apply(const Said& said, const protocol::Open& open);
+    void apply(const Said& said, const protocol::Scenes& scenes);
     void apply(const Said& said, const protocol::Record& record);
     void apply(const Said& said, const protocol::Control& control);
     void apply(const Said& said, const protocol::Shown& shown);

@@ -1,5 +1,6 @@
 // What fingers, mouse and keys do, and what they point at.
 #include <algorithm>
+#include <cmath>
 
 #include "codec.hpp"
 #include "keys.hpp"
@@ -102,7 +103,10 @@ void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     protocol::Picked picked;
     if (const auto& hit = seen->hit) {
         const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
-        picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance};
+        picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
+        const glm::dmat4 node_from_world = glm::inverse(scene_->world[static_cast<std::size_t>(hit->node)]);
+        const glm::dvec3 local(node_from_world * glm::dvec4(hit->point, 1));
+        if (std::isfinite(local.x + local.y + local.z)) picked.local = local;  // else it is flat
     }
     answer_with(said, picked);
 }

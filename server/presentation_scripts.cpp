@@ -134,6 +134,11 @@ void Presentation::apply(const Said& said, const protocol::Open& open) {
     answer(said);
 }
 
+void Presentation::apply(const Said& said, const protocol::Scenes&) {
+    answer_with(said,
+                protocol::SceneList{0, options_.scenes ? options_.scenes() : std::vector<std::string>()});
+}
+
 void Presentation::apply(const Said& said, const protocol::Record& record) {
     if (!may_steer(said)) return;
     if (options_.replaying) {
@@ -214,7 +219,8 @@ protocol::LogHeader Presentation::log_header() const {
     header.scene_sha256 = loaded_.sha256;
     header.started = iso_time_now();
     header.state = protocol::document_of(state_);
-    for (const auto& [name, client] : clients_) header.clients.push_back({name, client.role, client.wanted});
+    for (const auto& [name, client] : clients_)
+        header.clients.push_back({name, client.role, client.wanted, client.name});
     header.view = view_size_;
     header.at_home = at_home_;
     header.home = starting_.views.at("home");
@@ -247,7 +253,7 @@ tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& heade
     select(selected ? scene_->scene->find_node(*selected) : kNone);
     steering_ = Steering(state_.control.holder, state_.control.kept, time_);
     for (const protocol::LogHeader::Client& client : header.clients)
-        clients_[client.client] = {client.role, client.wanted};
+        clients_[client.client] = {client.role, client.wanted, client.name};
     for (const protocol::LoggedFrame& frame : header.frames)
         frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
     if (const auto& flight = header.flight) {

@@ -46,7 +46,7 @@ struct Player {
         return "a message that was accepted is refused now: " + why;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Connected& connected) const {
-        presentation.join(line.client, connected.role, line.at);
+        presentation.join(line.client, connected.role, line.at, connected.name);
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Disconnected&) const {

@@ -3,12 +3,14 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
+#include <deque>
 #include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <vector>
 
 #include "read_scene.hpp"
+#include "utf8.hpp"
 
 namespace vrut {
 
@@ -45,6 +47,33 @@ tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) 
         std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first == folder.end();
     if (!below || !fs::is_regular_file(file, error)) return tl::unexpected(sentence);
     return file;
+}
+
+std::vector<std::string> SceneLibrary::names() const {
+    std::vector<std::string> names;
+    if (folder_.empty()) return names;
+    std::size_t entries = 0;
+    std::deque<fs::path> folders = {fs::path()};  // below folder_
+    for (; !folders.empty() && entries < kMostEntries; folders.pop_front()) {
+        std::error_code error;
+        for (fs::directory_iterator entry(folder_ / folders.front(), error), end;
+             !error && entry != end && entries < kMostEntries; entry.increment(error)) {
+            ++entries;
+            const fs::path below = folders.front() / entry->path().filename();
+            const std::string name = below.generic_string();
+            if (name.size() > protocol::kMaxSceneName || find_invalid_utf8(name) != std::string_view::npos)
+                continue;  // no message can ask for it
+            std::error_code ignored;
+            const bool link = entry->is_symlink(ignored);
+            if (!link && entry->is_directory(ignored))
+                folders.push_back(below);
+            else if (has_reader(below) && (link ? find(name).has_value() : entry->is_regular_file(ignored)))
+                names.push_back(name);
+        }
+    }
+    std::sort(names.begin(), names.end());
+    names.resize(std::min(names.size(), kMostNames));
+    return names;
 }
 
 std::string sha256_of(const fs::path& path) {

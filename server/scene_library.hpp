@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "scene_state.hpp"
 
@@ -22,6 +23,12 @@ public:
 
     /// The file of this name, which may lie in a folder below, but nowhere else; or why there is none.
     tl::expected<std::filesystem::path, std::string> find(const std::string& name) const;
+
+    static constexpr std::size_t kMostNames = protocol::kMaxScenes, kMostEntries = 10'000;
+    /// Names of scene files that find() finds, by their endings, sorted, at most kMostNames. In a folder of
+    /// more than kMostEntries entries, folders below counted, some may be missing. Folders behind links are
+    /// not looked into, and what cannot be read is passed over.
+    std::vector<std::string> names() const;
 
 private:
     std::filesystem::path folder_;

@@ -1,6 +1,7 @@
 #include "scene_state.hpp"
 
 #include <charconv>
+#include <cmath>
 
 #include "frame_plan.hpp"
 
@@ -263,17 +264,19 @@ Background background_of(const protocol::BackgroundsState& backgrounds, const Pl
             placed.scene->material(data.material).texture, data.cube_textures};
 }
 
-/// In world space, those whose node shows.
+/// In world space, those whose node shows and lies within the range of double.
 std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers,
                            const PlacedScene& placed) {
     std::vector<Mark> marks;
     for (const auto& [name, marker] : markers) {
-        if (!marker.node) {
-            marks.push_back({marker.point});
-        } else if (const Index node = placed.scene->find_node(*marker.node); is_shown(placed, node)) {
-            const glm::dmat4& world = placed.world[static_cast<std::size_t>(node)];
-            marks.push_back({glm::dvec3(world * glm::dvec4(marker.point, 1))});
+        glm::dvec3 point = marker.point;
+        if (marker.node) {
+            const Index node = placed.scene->find_node(*marker.node);
+            if (!is_shown(placed, node)) continue;
+            point = glm::dvec3(placed.world[static_cast<std::size_t>(node)] * glm::dvec4(point, 1));
         }
+        const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+        if (finite) marks.push_back({point, name});
     }
     return marks;
 }
@@ -310,6 +313,7 @@ protocol::FrameHeader header_of(const protocol::State& state, const View& view,
     header.height = view.height;
     header.view = view_size;
     header.renderer = {state.renderer.mode, state.renderer.wireframe, state.renderer.show_selection};
+    for (const Mark& mark : view.marks) header.markers[mark.name] = mark.point;
     return header;
 }
 

@@ -56,6 +56,13 @@ bool holds(const std::string& name, const std::string& part) {
                        [](char a, char b) { return lower(a) == lower(b); }) != name.end();
 }
 
+bool is_wanted(const Node& node, const protocol::Tree& tree) {
+    using Only = protocol::Tree::Only;
+    if (tree.only == Only::switches && node.type != NodeType::switch_) return false;
+    if (tree.only == Only::hinges && !node.hinge) return false;
+    return tree.search.empty() || holds(node.name, tree.search);
+}
+
 protocol::TreeNode describe(const PlacedScene& placed, Index index) {
     const Scene& scene = *placed.scene;
     const Node& node = at(scene, index);
@@ -68,6 +75,14 @@ protocol::TreeNode describe(const PlacedScene& placed, Index index) {
     described.active = state.active;
     described.children = node.children.size();
     if (state.matrix != glm::dmat4(1)) described.matrix = state.matrix;
+    if (node.hinge) described.hinge = {unit_axis(*node.hinge), node.hinge->degrees, node.matrix};
+    if (const auto* data = std::get_if<SwitchData>(&node.data)) {
+        described.active_child = data->active_child;
+        if (node.children.size() <= protocol::kMaxChoices) {
+            described.choices.emplace();
+            for (const Index child : node.children) described.choices->push_back(at(scene, child).name);
+        }
+    }
     if (const auto* data = std::get_if<GeometryData>(&node.data)) {
         if (data->geometry != kNone)
             described.triangles =
@@ -76,6 +91,14 @@ protocol::TreeNode describe(const PlacedScene& placed, Index index) {
             described.material = scene.materials()[static_cast<std::size_t>(state.material)].id;
     }
     return described;
+}
+
+/// About that of its JSON, in bytes.
+std::size_t size_of(const protocol::TreeNode& node) {
+    std::size_t bytes = node.name.size() + 100 + (node.matrix ? 400 : 0) + (node.hinge ? 500 : 0);
+    if (node.choices)
+        for (const std::string& choice : *node.choices) bytes += choice.size() + 3;
+    return bytes;
 }
 
 protocol::Error unknown(Id node, const std::string& why) {
@@ -90,7 +113,7 @@ tl::expected<protocol::TreePage, protocol::Error> tree_page(const PlacedScene& p
     const Index top = scene.find_node(tree.node.value_or(0));
     if (top == kNone) return tl::unexpected(unknown(*tree.node, "there is no node"));
     const int all = std::numeric_limits<int>::max();
-    Walk walk{scene, top, tree.depth.value_or(tree.search.empty() ? 1 : all), top};
+    Walk walk{scene, top, tree.depth.value_or(tree.search.empty() && !tree.only ? 1 : all), top};
     if (tree.after) {
         const Index after = scene.find_node(*tree.after);
         const auto depth = after == kNone ? std::nullopt : depth_below(scene, top, after);
@@ -109,10 +132,9 @@ tl::expected<protocol::TreePage, protocol::Error> tree_page(const PlacedScene& p
             break;
         }
         last = walk.node;
-        const std::string& name = at(scene, walk.node).name;
-        if (!tree.search.empty() && !holds(name, tree.search)) continue;
+        if (!is_wanted(at(scene, walk.node), tree)) continue;
         page.nodes.push_back(describe(placed, walk.node));
-        bytes += name.size() + (page.nodes.back().matrix ? 500 : 100);
+        bytes += size_of(page.nodes.back());
     }
     return page;
 }

@@ -45,10 +45,17 @@ async def node_at(server, path):
     return node
 
 
-def turned(closed, degrees):
-    """A door's matrix, turned about the vertical through its own origin, where its hinge is."""
+def turned(closed, axis, degrees):
+    """A door's matrix, turned about an axis (unit) through its own origin, where its hinge is."""
+    x, y, z = axis
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    turn = [c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0, 0, 0, 0, 1]
+    k = 1 - c
+    turn = [
+        c + k * x * x, k * x * y - s * z, k * x * z + s * y, 0,
+        k * x * y + s * z, c + k * y * y, k * y * z - s * x, 0,
+        k * x * z - s * y, k * y * z + s * x, c + k * z * z, 0,
+        0, 0, 0, 1,
+    ]
     return [sum(closed[4 * row + k] * turn[4 * k + column] for k in range(4)) for row in range(4) for column in range(4)]
 
 
@@ -59,7 +66,7 @@ async def main():
     arguments.add_argument("--url", default=home, help="as the server prints it")
     arguments.add_argument("--token", default=token, help="if the URL has none")
     arguments.add_argument("--door", default="Body/Doors/Front left", help="its path (default 'Body/Doors/Front left')")
-    arguments.add_argument("--angle", type=float, default=-65, help="degrees (default -65)")
+    arguments.add_argument("--angle", type=float, help="degrees (default as far as its hinge goes)")
     arguments.add_argument("--hold", type=float, default=1, help="seconds (default 1)")
     options = arguments.parse_args()
     page = urllib.parse.urlsplit(options.url)
@@ -68,9 +75,12 @@ async def main():
     async with websockets.connect(address, subprotocols=["vrut-preview.v1"], max_size=None) as server:
         await server.send(json.dumps({"type": "hello", "role": "control", "token": token}))
         door = await node_at(server, options.door)
-        closed = door.get("matrix", [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+        if "hinge" not in door:
+            raise SystemExit(f"door.py: '{options.door}' has no hinge")
+        hinge = door["hinge"]
+        angle = hinge["degrees"] if options.angle is None else options.angle
         steps = 25
-        matrices = [turned(closed, options.angle * step / steps) for step in range(1, steps + 1)]
+        matrices = [turned(hinge["closed"], hinge["axis"], angle * step / steps) for step in range(1, steps + 1)]
         for matrix in matrices + [None]:  # None: as the file has it
             await asyncio.sleep(1 / steps if matrix else options.hold)
             await ask(server, {"type": "patch", "patch": {"nodes": {str(door["id"]): {"matrix": matrix}}}})

@@ -19,6 +19,17 @@ constexpr Format kFormats[] = {
     {".vrut", read_vrut_parts},
 };
 
+/// null: none reads this ending, in whatever case.
+const Format* format_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
+    });
+    for (const Format& format : kFormats)
+        if (extension == format.extension) return &format;
+    return nullptr;
+}
+
 std::string known_extensions() {
     std::string list;
     for (const Format& format : kFormats) list += (list.empty() ? "" : ", ") + std::string(format.extension);
@@ -38,17 +49,13 @@ ReadResult build_scene(SceneParts parts, const std::string& file) {
                           scene.error().message);
 }
 
+bool has_reader(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
-    });
-    const auto format = std::find_if(std::begin(kFormats), std::end(kFormats), [&](const Format& candidate) {
-        return extension == candidate.extension;
-    });
+    const Format* const format = format_of(path);
     if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
-    if (format == std::end(kFormats))
+    if (format == nullptr)
         return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
     const auto bytes = read_bytes(path);
     if (!bytes) return tl::unexpected(file + ": " + bytes.error());

@@ -21,6 +21,9 @@ using PartsResult = tl::expected<SceneParts, std::string>;
 /// Scene::build with its error as a reader's, of the scene in `file`.
 ReadResult build_scene(SceneParts parts, const std::string& file);
 
+/// Whether the file's ending is that of a known format.
+bool has_reader(const std::filesystem::path& path);
+
 /// Reads a scene file in any known format, chosen by the file's ending, and the pictures that it names
 /// (read_pictures()).
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});

@@ -251,6 +251,8 @@ private:
             {"active", [&] { node.active = tokens_.take_flag("active"); }},
             {"matrix", [&] { read_matrix(node.matrix); }},
         };
+        if (node.type == NodeType::assembly || node.type == NodeType::geometry)
+            members.push_back({"hinge", [&] { read_hinge(node.hinge.emplace()); }});
         add_members_of_type(node, references, members);
         read_members("node " + std::to_string(node.id), members);
         if (node.type == NodeType::sound)
@@ -269,6 +271,14 @@ private:
             }
         if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1)
             throw ParseError(line, "expected 0 0 0 1 as the matrix's last row, found another");
+    }
+
+    void read_hinge(Hinge& hinge) {
+        const std::size_t line = tokens_.peek().line;
+        hinge.axis = take_point("the hinge's axis");
+        if (hinge.axis == glm::dvec3(0))
+            throw ParseError(line, "expected a hinge's axis that is not zero, found 0 0 0");
+        hinge.degrees = tokens_.take_number("the hinge's degrees", -360, 360);
     }
 
     void add_members_of_type(Node& node, References& references, std::vector<Member>& members) {

@@ -7,6 +7,7 @@
 namespace vrut {
 
 /// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
+/// Nodes of type assembly and geometry may have a hinge: `hinge X Y Z DEGREES`, see Hinge.
 PartsResult read_vrut_parts(std::string_view text, const std::string& file,
                             const ReadProgress& progress = {});
 

@@ -117,6 +117,7 @@ private:
                 for (int column = 0; column < 4; ++column) number(node.matrix[column][row]);
             text("\n ");
         }
+        if (node.hinge) text("  hinge").numbers(node.hinge->axis).number(node.hinge->degrees);
         std::visit([&](const auto& data) { write_data(scene, data); }, node.data);
         text("  end\n");
     }

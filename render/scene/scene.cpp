@@ -31,6 +31,11 @@ std::string_view name_of(NodeType type) {
     return "";
 }
 
+glm::dvec3 unit_axis(const Hinge& hinge) {
+    const glm::dvec3 sizes = glm::abs(hinge.axis);
+    return glm::normalize(hinge.axis / std::max({sizes.x, sizes.y, sizes.z}));  // whose squares are in range
+}
+
 Scene::Scene() { *this = *build({}); }
 
 namespace {

@@ -99,6 +99,17 @@ struct BackgroundData {
     std::optional<std::array<Index, 6>> cube_textures;
 };
 
+/// How a door or a lid opens: it turns about an axis of its own space, through its own origin.
+struct Hinge {
+    glm::dvec3 axis{0, 1, 0};  ///< as the file gives it: of any length but 0
+    double degrees = 0;        ///< how far it opens, right-handed about the axis; -360 to 360
+
+    bool operator==(const Hinge&) const = default;
+};
+
+/// The hinge's axis with length 1.
+glm::dvec3 unit_axis(const Hinge& hinge);
+
 struct Node {
     Id id = 0;
     std::string name;
@@ -108,6 +119,7 @@ struct Node {
     bool active = true;
     glm::dmat4 matrix{1};  ///< parent from node
     std::variant<GroupData, GeometryData, CameraData, LightData, SwitchData, LodData, BackgroundData> data;
+    std::optional<Hinge> hinge = {};  ///< of assemblies and geometry nodes
 };
 
 /// What a reader hands over: nodes still name their parents by id.

@@ -266,6 +266,7 @@ class Car:
         return node["id"]
 
     def group(self, name, parent=0, matrix=None, **members):
+        """`hinge`, x y z degrees, where it opens by turning about an axis through its own origin."""
         return self.node("assembly", name, parent, matrix, **members)
 
     def mesh(self, cage, name):

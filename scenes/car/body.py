@@ -324,12 +324,12 @@ def at(place, sign=1):
 
 
 def add_doors(car, skin, body, sides):
-    """The four doors; each hangs in its hinge: a rotation about the node's own y axis opens it."""
+    """The four doors; each hangs in its hinge, the node's own y axis."""
     doors = car.group("Doors", body)
     nodes = {}
     for row, hinge in (("Front", FRONT_HINGE), ("Rear", REAR_HINGE)):
         for side, sign in SIDES:
-            door = car.group(f"{row} {side}", doors, at(hinge, sign))
+            door = car.group(f"{row} {side}", doors, at(hinge, sign), hinge=[0, 1, 0, -65 * sign])
             nodes[f"{row} {side}"] = (door, Vector((hinge.x * sign, hinge.y, hinge.z)))
             glass = "Glass clear" if row == "Front" else "Glass tinted"
             car.painted_panel("Panel", door, skin, f"{row} door {side}", 0.022)
@@ -364,10 +364,10 @@ def add_mirror(car, door, sign, hinge, sides):
 
 
 def add_lids(car, skin, body):
-    bonnet = car.group("Bonnet", body, at(BONNET_HINGE))
+    bonnet = car.group("Bonnet", body, at(BONNET_HINGE), hinge=[1, 0, 0, -50])
     car.painted_panel("Panel", bonnet, skin, "Bonnet", 0.018)
 
-    lid = car.group("Boot lid", body, at(TAILGATE_HINGE))
+    lid = car.group("Boot lid", body, at(TAILGATE_HINGE), hinge=[1, 0, 0, 70])
     car.painted_panel("Panel", lid, skin, "Boot lid", 0.022)
     car.pane("Window", lid, skin, "Rear window", "Glass tinted")
     car.panel("Window band", lid, skin, "Rear window band", "Piano black", lift=-0.002, thickness=0.012)

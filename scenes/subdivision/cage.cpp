@@ -335,6 +335,8 @@ public:
             result.part.parent_id = to_integer(*parent, 0, kMaxId, members.who(), "parent");
         members.read("active", node.active);
         if (const Json* matrix = members.find("matrix")) read_matrix(*matrix, node, members.who());
+        if (node.type == NodeType::assembly || node.type == NodeType::geometry)
+            if (const Json* hinge = members.find("hinge")) node.hinge = to_hinge(*hinge, members.who());
         read_type(members, result);
         members.expect_no_more();
         if (!places_.emplace(node.id, scene_.nodes.size()).second)
@@ -377,6 +379,15 @@ private:
                     numbers[4 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column)];
         if (glm::row(node.matrix, 3) != glm::dvec4(0, 0, 0, 1))
             fail(who, "expected 0 0 0 1 as the matrix's last row");
+    }
+
+    static Hinge to_hinge(const Json& value, const std::string& who) {
+        const auto [x, y, z, degrees] = to_numbers<4>(value, who, "a hinge");
+        if (glm::dvec3(x, y, z) == glm::dvec3(0))
+            fail(who, "expected a hinge's axis that is not zero, found " + excerpt(value));
+        if (std::abs(degrees) > 360)
+            fail(who, "expected a hinge's degrees from -360 to 360, found " + excerpt(value));
+        return {{x, y, z}, degrees};
     }
 
     Index material(Members& members) const {

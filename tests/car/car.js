@@ -13,7 +13,7 @@ const [COARSE, FINE] = ['car-20k.vrut', 'car.vrut'].map((name) => path.join(VRUT
 const NOBODY = 0xffffff;
 const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 
-/** {id, name, type, path, matrix, material: name, children: [node]} of each node, by path. */
+/** {id, name, type, path, matrix, hinge?: [x, y, z, degrees], material: name, children: [node]} of each node, by path. */
 function readNodes(text) {
   const materials = new Map([...text.matchAll(/^material (\d+) "([^"]*)"/gm)].map(([, id, name]) => [id, name]));
   const nodes = [...text.matchAll(/^node (\d+) "([^"]*)" (\w+)\s+parent (\d+)([^]*?)\bend$/gm)].map(
@@ -22,6 +22,7 @@ function readNodes(text) {
       name,
       type,
       parent: Number(parent),
+      hinge: /hinge ((?:\S+\s+){4})/.exec(members)?.[1].trim().split(/\s+/).map(Number),
       matrix: /matrix ((?:\S+\s+){16})/.exec(members)?.[1].trim().split(/\s+/).map(Number) ?? IDENTITY,
       material: materials.get(/\bmaterial (\d+)/.exec(members)?.[1]),
       children: [],

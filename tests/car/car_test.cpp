@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <set>
 
@@ -108,6 +109,25 @@ glm::dvec3 area_of(const Geometry& geometry) {
 }
 
 const std::vector<std::string> kLevels{"car-20k", "car"};
+
+/// How far what is at and below a node reaches in a direction, with the node opened by its hinge.
+double reach_of(const Scene& scene, Index top, double part, const glm::dvec3& direction) {
+    std::vector<NodeState> states = file_states(scene);
+    const auto place = static_cast<std::size_t>(top);
+    const Hinge& hinge = *scene.nodes()[place].hinge;
+    states[place].matrix =
+        glm::rotate(states[place].matrix, part * hinge.degrees * kRadiansPerDegree, unit_axis(hinge));
+    const std::vector<glm::dmat4> world = world_matrices(scene, states);
+    const std::vector<bool> below = subtree(scene, top);
+    double reach = -1e9;
+    for (std::size_t i = 0; i < world.size(); ++i) {
+        const Geometry* geometry = below[i] ? geometry_at(scene, static_cast<Index>(i)) : nullptr;
+        if (geometry == nullptr) continue;
+        for (const glm::dvec3& position : geometry->positions)
+            reach = std::max(reach, glm::dot(direction, glm::dvec3(world[i] * glm::dvec4(position, 1))));
+    }
+    return reach;
+}
 
 }  // namespace
 
@@ -318,6 +338,44 @@ TEST_CASE("what a presenter would ask for is there") {
     for (const std::string& level : kLevels)
         for (const std::string& path : wanted)
             CHECK_MESSAGE(node_at(car(level), path) != kNone, level << ": " << path);
+}
+
+TEST_CASE("doors, bonnet and boot lid open outwards by their hinges, and nothing else has one") {
+    const glm::dvec3 left(1, 0, 0), up(0, 1, 0), back(0, 0, -1);
+    struct Hinged {
+        std::string path;
+        glm::dvec3 axis, outwards;
+        double least;  ///< metres by which it reaches beyond where it was
+    };
+    const std::vector<Hinged> all{{"Body/Doors/Front left", {0, 1, 0}, left, 0.5},
+                                  {"Body/Doors/Front right", {0, 1, 0}, -left, 0.5},
+                                  {"Body/Doors/Rear left", {0, 1, 0}, left, 0.4},
+                                  {"Body/Doors/Rear right", {0, 1, 0}, -left, 0.4},
+                                  {"Body/Bonnet", {1, 0, 0}, up, 0.5},
+                                  {"Body/Boot lid", {1, 0, 0}, back, 0.4}};
+    for (const std::string& level : kLevels) {
+        CAPTURE(level);
+        const Scene& scene = car(level);
+        CHECK(std::count_if(scene.nodes().begin(), scene.nodes().end(), [](const Node& node) {
+                  return node.hinge.has_value();
+              }) == static_cast<long>(all.size()));
+        for (const Hinged& hinged : all) {
+            CAPTURE(hinged.path);
+            const Index index = node_at(scene, hinged.path);
+            REQUIRE(index != kNone);
+            const Node& node = scene.nodes()[static_cast<std::size_t>(index)];
+            REQUIRE(node.hinge);
+            CHECK(unit_axis(*node.hinge) == hinged.axis);
+            double reach = reach_of(scene, index, 0, hinged.outwards);
+            const double closed = reach;
+            for (const double part : {0.25, 0.5, 0.75, 1.0}) {  // further at every step
+                const double opened = reach_of(scene, index, part, hinged.outwards);
+                CHECK_MESSAGE(opened > reach, "at " << part << " it reaches " << opened);
+                reach = opened;
+            }
+            CHECK_MESSAGE(reach - closed > hinged.least, "it reaches " << reach - closed << " m further");
+        }
+    }
 }
 
 TEST_CASE("what turns has its origin where it turns, and a matrix that leaves its size") {

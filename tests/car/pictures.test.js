@@ -54,20 +54,25 @@ const HINGED = [
     const sign = side === 'left' ? 1 : -1;
     const z = row === 'Front' ? 0.4 : -0.4;
     return {
-      at: `Body/Doors/${row} ${side}`, axis: 'y', angle: -65 * sign, flat: 'top',
+      at: `Body/Doors/${row} ${side}`, flat: 'top',
       sticksOut: ([x]) => x * sign, behind: ['Interior'],
       eye: [5 * sign, 1.5, z - 2], focus: [0.5 * sign, 0.7, z],
     };
   })),
   {
-    at: 'Body/Bonnet', axis: 'x', angle: -50, flat: 'left', sticksOut: ([, y]) => y,
+    at: 'Body/Bonnet', flat: 'left', sticksOut: ([, y]) => y,
     behind: ['Drive train', 'Chassis'], eye: [1, 2, 5], focus: [0, 0.8, 1.4],
   },
   {
-    at: 'Body/Boot lid', axis: 'x', angle: 70, flat: 'left', sticksOut: ([z]) => -z,
+    at: 'Body/Boot lid', flat: 'left', sticksOut: ([z]) => -z,
     behind: ['Interior/Boot'], eye: [0.6, 1.4, -5.5], focus: [0, 0.8, -2],
   },
-];
+].map((part) => {
+  const [x, y, z, angle] = node(part.at).hinge;
+  const axis = { '1,0,0': 'x', '0,1,0': 'y' }[[x, y, z]];
+  assert.ok(axis, `${part.at} turns about ${[x, y, z]}`);
+  return { ...part, axis, angle };
+});
 
 for (const part of HINGED) {
   const ids = idsBelow(part.at);

@@ -229,7 +229,25 @@ test('door.py opens a door about its own hinge, and closes it', async () => {
   expected.forEach((value, i) => assert.ok(Math.abs(matrices.at(-1)[i] - value) < 1e-7, `${matrices.at(-1)}`));
   await watcher.until(() => !(id in (watcher.state.nodes ?? {})));
   assert.match((await python('door.py', '--door', 'Body/Nose')).stderr, /^door\.py: .*'Body\/Nose'\n$/);
+  assert.equal((await python('door.py', '--door', 'Body/Roof')).stderr, "door.py: 'Body/Roof' has no hinge\n");
 });
+
+test('door.py opens what turns about another axis, and as far as it is told to', async () => {
+  watcher.tree = undefined;
+  watcher.send({ type: 'tree', id: 3, search: 'Boot lid' });
+  await watcher.until(() => watcher.tree);
+  const { id, hinge } = watcher.tree.find((node) => node.hinge);
+  assert.deepEqual([hinge.axis, hinge.degrees], [[1, 0, 0], 70]);
+  for (const [args, degrees] of [[[], 70], [['--angle', '30'], 30]]) {
+    watcher.patches.length = 0;
+    await succeeds(python('door.py', '--door', 'Body/Boot lid', '--hold', '0.1', ...args));
+    const last = watcher.patches.map((patch) => patch.nodes?.[id]?.matrix).filter(Boolean).at(-1);
+    const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
+    const expected = [...hinge.closed];
+    [expected[5], expected[6], expected[9], expected[10]] = [c, -s, s, c];
+    expected.forEach((value, i) => assert.ok(Math.abs(last[i] - value) < 1e-12, `${last}`));
+    await watcher.until(() => !(id in (watcher.state.nodes ?? {})));
+  }});
 
 test('snapshot.mjs saves pictures of the size and from where it is asked to', async () => {
   const before = JSON.stringify(watcher.state.camera);

@@ -11,6 +11,7 @@ TEST_CASE("the page and its files are served, and nothing else") {
     CHECK(page.status == 200);
     CHECK(page.body.find("main.js") != std::string::npos);
     CHECK(page.headers.find("Content-Security-Policy: default-src 'none'") != std::string::npos);
+    CHECK(page.headers.find("; manifest-src 'self'; ") != std::string::npos);
     CHECK(http(server.port(), "GET", "/main.js").headers.find("text/javascript") != std::string::npos);
     CHECK(http(server.port(), "GET", "/style.css?x=1").status == 200);
     const HttpAnswer head = http(server.port(), "HEAD", "/");

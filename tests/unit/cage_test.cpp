@@ -12,7 +12,7 @@ const std::string kGood = R"({"unit": 0.001,
    "texcoords": [[0,0],[1,0],[2,0],[0,1],[1,1],[2,1]], "quads": [[0,1,4,3],[1,2,5,4]], "creases": [[1,4,2.5]]}],
  "skins": [{"mesh": 0, "cuts": [{"name": "Door", "gap": 0.004, "within":
    [{"from": "left", "outline": [[0,0,0.1],[1,0,0.1],[1,1,0]]}]}]}],
- "nodes": [{"id": 1, "name": "All", "type": "assembly", "matrix": [1,0,0,7, 0,1,0,8, 0,0,1,9, 0,0,0,1]},
+ "nodes": [{"id": 1, "name": "All", "type": "assembly", "hinge": [0,1,0,-65], "matrix": [1,0,0,7, 0,1,0,8, 0,0,1,9, 0,0,0,1]},
   {"id": 2, "name": "Part", "type": "geometry", "parent": 1, "mesh": 0, "material": "Red", "tolerance": 3},
   {"id": 3, "name": "Panel", "type": "geometry", "parent": 1, "material": "Red",
    "panel": {"skin": 0, "cut": "Door", "lift": 0.001, "thickness": 0.02, "edge": 0.002}},
@@ -46,6 +46,8 @@ TEST_CASE("a file of cages") {
     CHECK(scene->skins[0].cuts[0].within[0].corners[1].place == glm::dvec2(1, 0));
     REQUIRE(scene->nodes.size() == 9);
     CHECK(scene->nodes[0].part.node.matrix[3] == glm::dvec4(7, 8, 9, 1));
+    CHECK(scene->nodes[0].part.node.hinge == Hinge{{0, 1, 0}, -65});
+    CHECK_FALSE(scene->nodes[1].part.node.hinge);
     CHECK(scene->nodes[1].tolerance == 3);
     CHECK(std::get<GeometryData>(scene->nodes[1].part.node.data).material == 0);
     CHECK(scene->nodes[2].panel->cut == 0);
@@ -104,6 +106,12 @@ TEST_CASE("what is wrong with a file of cages is told in one sentence") {
     CHECK(fault("0,0,0,1]}", "0,0,0,2]}") == "node 1 \"All\": expected 0 0 0 1 as the matrix's last row");
     CHECK(fault("\"unit\": 0.001", "\"unit\": 1e999") ==
           "expected numbers in the range of double, found another");
+    CHECK(fault("[0,1,0,-65]", "[0,1,0]") == "node 1 \"All\": expected 4 numbers as a hinge, found [0,1,0]");
+    CHECK(fault("[0,1,0,-65]", "[0,0,0,-65]") ==
+          "node 1 \"All\": expected a hinge's axis that is not zero, found [0,0,0,-65]");
+    CHECK(fault("[0,1,0,-65]", "[0,1,0,361]") ==
+          "node 1 \"All\": expected a hinge's degrees from -360 to 360, found [0,1,0,361]");
+    CHECK(fault("\"fov\": 50", "\"hinge\": [0,1,0,5]") == "node 8 \"Eye\": unknown member \"hinge\"");
     // What scene text does not hold.
     CHECK(fault("[0.6, 0.1, 0.1, 1]", "[0.6, 0.1, 0.1, 2]") ==
           "material \"Red\": expected a number from 0 to 1 as diffuse, found 2");

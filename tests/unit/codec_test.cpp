@@ -410,10 +410,11 @@ TEST_CASE("messages to clients") {
           R"({"code":"busy","id":3,"message":"too much","type":"error"})");
     CHECK(encode(Error{{}, "busy", "bad \xff"}).find("\xef\xbf\xbd") != std::string::npos);
     CHECK(encode(Ok{5, 12, "drive"}) == R"({"id":5,"name":"drive","revision":12,"type":"ok"})");
-    CHECK(encode(Picked{4, {}, {}, {}, {}, {}, {}}) == R"({"id":4,"type":"picked"})");
-    CHECK(encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5}) ==
-          R"({"distance":5.0,"id":4,"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"
-          R"("point":[1.0,2.0,3.0],"type":"picked"})");
+    CHECK(encode(Picked{4, {}, {}, {}, {}, {}, {}, {}}) == R"({"id":4,"type":"picked"})");
+    CHECK(
+        encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5, {{1, 2, 0}}}) ==
+        R"({"distance":5.0,"id":4,"local":[1.0,2.0,0.0],"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"
+        R"("point":[1.0,2.0,3.0],"type":"picked"})");
     CHECK(encode(Welcome{1, "0.1", "c1", Role::control, {65536, 32, 2, 16'000'000, 10'000, 1'000'000}}) ==
           R"({"client":"c1","limits":{"maxDepth":32,"maxGrants":2,"maxMessage":65536,"maxPixels":16000000,)"
           R"("maxServerMessage":1000000,"messagesPerSecond":10000},"role":"control","server":"0.1",)"

@@ -39,7 +39,7 @@ const std::string kHeader =
     R"({"log":"vrut-preview","version":1,"scene":"car","sceneSha256":"ab12","started":"2026-01-02T03:04:05Z",)"
     R"("state":{"camera":{"fov":40}},"view":{"width":1280,"height":720,"pixelRatio":1},)"
     R"("clients":[{"client":"c1","role":"control","width":800,"height":600.5,"pixelRatio":2},)"
-    R"({"client":"c2","role":"view"}]})";
+    R"({"client":"c2","role":"view","name":"Wall"}]})";
 
 const std::string kCamera =
     R"({"node":4,"name":"Driver","eye":[0.1,0.2,0.30000000000000004],"focus":[1,2,3],"up":[0,0,1],)"
@@ -63,7 +63,7 @@ TEST_CASE("a log's header begins with what it is, and has what the replay needs"
     written.scene_sha256 = "ab12";
     written.started = "2026-01-02T03:04:05Z";
     written.state = std::make_shared<const json>(json::parse(R"({"camera":{"fov":40}})"));
-    written.clients = {{"c1", Role::control, Resize{800, 600.5, 2}}, {"c2", Role::view, {}}};
+    written.clients = {{"c1", Role::control, Resize{800, 600.5, 2}}, {"c2", Role::view, {}, "Wall"}};
     const std::string text = encode(written);
     CHECK(text.starts_with(R"({"log":"vrut-preview","version":1,)"));
     CHECK(text.find('\n') == std::string::npos);
@@ -82,6 +82,8 @@ TEST_CASE("every member of a log's header is read") {
     CHECK(read.clients[0].wanted == Resize{800, 600.5, 2});
     CHECK(read.clients[1].role == Role::view);
     CHECK_FALSE(read.clients[1].wanted.has_value());
+    CHECK(read.clients[0].name.empty());
+    CHECK(read.clients[1].name == "Wall");
     CHECK(read.view == Resize{1280, 720, 1});
     CHECK(read.at_home);
     CHECK(read.home == ViewState{{1, 2, 3}, {4, 5, 6}, {0, 1, 0}, {7, 8, 9}, 33});
@@ -125,6 +127,8 @@ TEST_CASE("each kind of line, as it stands in the file") {
     const auto text = [](const LogLine& written) { return encode(written); };
     CHECK(text({LogTime(12'500), "c1", LogLine::Connected{Role::host}}) ==
           R"({"at":12.5,"client":"c1","event":"connected","role":"host"})");
+    CHECK(text({LogTime(0), "c1", LogLine::Connected{Role::view, "Wall"}}) ==
+          R"({"at":0.0,"client":"c1","event":"connected","name":"Wall","role":"view"})");
     CHECK(text({LogTime(0), "c1", LogLine::Disconnected{}}) ==
           R"({"at":0.0,"client":"c1","event":"disconnected"})");
     CHECK(text({LogTime(1), "", LogLine::Opened{"car", "ab12"}}) ==
@@ -139,6 +143,9 @@ TEST_CASE("each kind of line is read back") {
     CHECK(connected.at == LogTime(12'500));
     CHECK(connected.client == "c1");
     CHECK(std::get<LogLine::Connected>(connected.what).role == Role::host);
+    CHECK(std::get<LogLine::Connected>(connected.what).name.empty());
+    const LogLine named = line(R"({"at":1,"client":"c1","event":"connected","role":"view","name":"Wall"})");
+    CHECK(std::get<LogLine::Connected>(named.what).name == "Wall");
     // Whoever wrote the role with it, as the contract has it, is read as well.
     const LogLine gone = line(R"({"at":0,"client":"c1","event":"disconnected","role":"view"})");
     CHECK(std::holds_alternative<LogLine::Disconnected>(gone.what));
@@ -236,6 +243,7 @@ TEST_CASE("a wrong line is refused with a sentence") {
         {R"({"at":0,"client":"c1","event":"connected"})", "'role'"},
         {R"({"at":0,"client":"c1","event":"connected","role":"king"})", "'role'"},
         {R"({"at":0,"event":"connected","role":"view"})", "'client'"},
+        {R"({"at":0,"client":"c1","event":"connected","role":"view","name":5})", "'name'"},
         {R"({"at":0,"event":"disconnected"})", "'client'"},
         {R"({"at":0,"client":"","event":"disconnected"})", "'client'"},
         {R"({"at":0,"event":"opened","scene":"car"})", "'sceneSha256'"},
@@ -286,6 +294,7 @@ TEST_CASE("a wrong header is refused with a sentence") {
     check(with("/version", 2), "'version'");
     check(with("/clients/0/role", "king"), "'role'");
     check(with("/clients/0/width", 0), "width");
+    check(with("/clients/0/name", 5), "'name'");
     check(with("/clients/1/width", 100), "height");
     check(with("/clients/1", 5), "'clients'");
     check(with("/atHome", 1), "'atHome'");

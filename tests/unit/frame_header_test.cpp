@@ -67,6 +67,35 @@ TEST_CASE("a header is never longer than a comment can be") {
     CHECK_FALSE(nlohmann::json::parse(text)["camera"].contains("name"));
 }
 
+TEST_CASE("a header tells where markers stand, by name") {
+    FrameHeader header;
+    CHECK_FALSE(nlohmann::json::parse(encode(header)).contains("markers"));
+    header.markers = {{"Scratch \"1\"", {0.1, -2, 1e300}}, {"Grip", {1, 2, 3}}};
+    CHECK(nlohmann::json::parse(encode(header))["markers"] ==
+          nlohmann::json({{"Scratch \"1\"", {0.1, -2.0, 1e300}}, {"Grip", {1.0, 2.0, 3.0}}}));
+}
+
+TEST_CASE("where a header would be too long, markers go before anything else does") {
+    FrameHeader header;
+    header.camera.pose.name = "Driver";
+    for (int i = 0; i < 256; ++i)
+        header.markers[std::string(95, '\1') + std::to_string(i)] = {1.0 / 3, 2.0 / 3, -1e-300};
+    const auto json = nlohmann::json::parse(encode(header));  // six bytes in JSON for each of a name's
+    CHECK_FALSE(json.contains("markers"));
+    CHECK(json["camera"]["name"] == "Driver");
+
+    // What has just fitted stays; a byte more is too much.
+    header.markers = {{"Grip", {1, 2, 3}}};
+    header.camera.pose.name = "";
+    header.camera.pose.name = std::string(65'533 - encode(header).size(), 'x');
+    CHECK(encode(header).size() == 65'533);
+    CHECK(nlohmann::json::parse(encode(header)).contains("markers"));
+    *header.camera.pose.name += 'x';
+    const auto longer = nlohmann::json::parse(encode(header));
+    CHECK_FALSE(longer.contains("markers"));
+    CHECK(longer["camera"]["name"] == *header.camera.pose.name);
+}
+
 TEST_CASE("the comment goes behind the JFIF segment") {
     std::vector<std::uint8_t> jpeg(40, 0);
     jpeg[0] = 0xFF, jpeg[1] = 0xD8, jpeg[2] = 0xFF, jpeg[3] = 0xE0, jpeg[4] = 0, jpeg[5] = 16;

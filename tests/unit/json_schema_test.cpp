@@ -122,9 +122,9 @@ TEST_CASE("the examples have all members that the schema has") {
         }
         CHECK(described == all);
     }
-    CHECK(types.size() == 21);
-    CHECK(defs["clientMessage"]["oneOf"].size() == 21);
-    CHECK(defs["serverMessage"]["oneOf"].size() == 10);
+    CHECK(types.size() == 22);
+    CHECK(defs["clientMessage"]["oneOf"].size() == 22);
+    CHECK(defs["serverMessage"]["oneOf"].size() == 11);
 }
 
 TEST_CASE("what the server says, for the schema to be tried on") {
@@ -138,7 +138,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.selection = {5, "Door", {{"Car", "Door"}}};
     state.nodes["5"] = {false, -1, glm::dmat4(1), 3};
     state.markers["Scratch"] = {{1, 2, 3}, 5, "here"};
-    state.control = {"c1", true};
+    state.control = {"c1", "Bea", true};
     state.recording = RecordingState{"drive"};
     state.backgrounds.items["11"].texture = "sky.png";
     auto names = std::make_shared<Names>();
@@ -150,12 +150,21 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     add(StateDocument::next(*second, examples::start())->encode_patch_from(*second, ""));
     add(encode(Ok{5, 12, {}}));
     add(encode(Ok{5, 12, "drive"}));
-    add(encode(Picked{4, {}, {}, {}, {}, {}, {}}));
-    add(encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5}));
+    add(encode(Picked{4, {}, {}, {}, {}, {}, {}, {}}));
+    add(encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5, {{1, 2, 0}}}));
     add(encode(Flown{6, true}));
     add(encode(TreePage{7, {}, {}}));
     add(encode(TreePage{
         7, {{1, "Car", "group", {}, true, 2, 0, {}}, {2, "Door", "geometry", 1, false, 0, 9, 3}}, 2}));
+    TreePage switches{7, {{4, "Rim", "switch", 1, true, 2, 0, {}}}, {}};
+    switches.nodes[0].active_child = -1;
+    switches.nodes[0].choices = {"Five spokes", "Ten spokes"};
+    add(encode(switches));
+    TreePage hinged{7, {{3, "Door", "assembly", 1, true, 0, 0, {}}}, {}};
+    hinged.nodes[0].hinge = {{0, 1, 0}, -65, glm::dmat4(1)};
+    add(encode(hinged));
+    add(encode(SceneList{8, {}}));
+    add(encode(SceneList{8, {"car.vrut", "more/bus.vrut"}}));
     add(encode(Loading{"car", 0.5, {}, {}}));
     add(encode(Loading{"car", 1, true, {}}));
     add(encode(Loading{"car", 0, {}, "no such file"}));
@@ -171,6 +180,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     header.frame = 3;
     const json plain = json::parse(encode(header));
     header.snapshot = 17, header.camera.pose = state.camera, header.timing.since_input_ms = 2.5;
+    header.markers["Scratch"] = {1, 2, 3};
     const json all = {{"serverMessage", messages},
                       {"frameHeader", {plain, json::parse(encode(header))}},
                       {"stateDocument", {first->json(), second->json()}}};

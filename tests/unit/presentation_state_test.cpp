@@ -211,15 +211,15 @@ TEST_CASE("markers are seen where their point is, go with their node, and hide w
     const auto marks = [&] { return stage.presentation.visible().marks; };
     CHECK(marks().empty());
     stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}, {{1.5, 0, 0}}});
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
     stage.say("a", kMoveHinge);
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}, {{3.5, 0, 0}}});
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{3.5, 0, 0}, "hinge"}});
     stage.say("a", patch(R"({"nodes":{"1":{"active":false}}})"));
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}}});
+    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":{"node":5}}})"));  // winter, which does not show
     CHECK(marks().empty());
     stage.say("a", patch(R"({"markers":{"free":{"node":4}}})"));
-    CHECK(marks() == std::vector<Mark>{{{4, 6, 7}}});
+    CHECK(marks() == std::vector<Mark>{{{4, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":null}})"));
     CHECK(marks().empty());
 }
@@ -373,13 +373,45 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
                                         "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
                                         "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
     const auto marks = [&] { return stage.presentation.visible().marks; };
-    REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}}, {{1, 0.5, 0}}});
+    REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
     stage.say("a", kMoveHinge);
-    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}}, {{3, 0.5, 0}}});
+    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
     stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"1":{"active":false}}})"));
-    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}}, {{-1, 0, 0}}});
+    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{-1, 0, 0}, "snow"}});
     stage.say("a", patch(R"({"markers":null})"));
     CHECK(marks().empty());
+}
+
+TEST_CASE("a picture's header says where the signs in it stand") {
+    Stage stage("a");
+    const auto places = [&] {
+        const View& view = stage.presentation.visible();
+        return header_of(stage.presentation.state(), view, stage.presentation.view_size()).markers;
+    };
+    using Places = std::map<std::string, glm::dvec3>;
+    CHECK(places().empty());
+    stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"handle":{"node":2,"point":[0.5,0,0]},
+                                        "snow":{"node":5,"point":[0,0,0]}}})"));
+    CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {1.5, 0, 0}}});
+    stage.say("a", kMoveHinge);
+    CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {3.5, 0, 0}}});
+    const View before = stage.presentation.visible();
+    stage.say("a", patch(R"({"markers":{"free":null,"other":{"point":[5,6,7]}}})"));
+    CHECK(stage.presentation.visible() != before);  // so that a picture with the new name comes
+    CHECK(places() == Places{{"handle", {3.5, 0, 0}}, {"other", {5, 6, 7}}});
+}
+
+TEST_CASE("a marker that lies out of the range of double is nowhere") {
+    std::string text = "vrut-text 1\n";  // each a thousand million million times larger than the one above
+    for (int id = 1; id <= 22; ++id)
+        text += "node " + std::to_string(id) + " \"Part\" assembly parent " + std::to_string(id - 1) +
+                " matrix 1e15 0 0 0 0 1e15 0 0 0 0 1e15 0 0 0 0 1 end\n";
+    Stage stage("a", scene_of(text, "large.vrut"));
+    stage.say("a",
+              patch(R"({"markers":{"far":{"node":20,"point":[1,1,1]},"gone":{"node":22,"point":[1,1,1]}}})"));
+    const std::vector<Mark> marks = stage.presentation.visible().marks;
+    REQUIRE(marks.size() == 1);
+    CHECK(marks[0].name == "far");
 }
 
 TEST_CASE("the view has the active background's colour and pictures, or else the plain colour") {

@@ -92,7 +92,7 @@ TEST_CASE("who takes control keeps it until he releases it or another takes it")
     stage.at(1h);
     CHECK(stage.refusal("b", kNavigate) == "not-in-control");
     CHECK(stage.refusal("b", kTake) == "");
-    CHECK(stage.holder() == "b");
+    CHECK(stage.state()["control"] == json({{"holder", "b"}, {"name", "Bea"}, {"kept", true}}));
     CHECK(stage.refusal("a", kRelease) == "");  // which is not his to give
     CHECK(stage.holder() == "b");
     stage.say("b", kRelease);
@@ -288,6 +288,23 @@ TEST_CASE("a press that takes control is measured in the view that it began in")
     CHECK(stage.presentation.view_size() == protocol::Resize{400, 200, 1});
     stage.say("b", finger("up", 50, 50));
     CHECK(stage.presentation.view_size() == protocol::Resize{100, 100, 2});
+}
+
+TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
+    const std::string ask = R"({"type":"scenes","id":4})";
+    Stage none("a");
+    CHECK(none.say("a", ask));
+    CHECK(none.told().at(0) == json::parse(R"({"type":"scenes","id":4,"scenes":[],"to":"a"})"));
+    PresentationOptions options;
+    options.scenes = [] { return std::vector<std::string>{"car.vrut", "more/bus.vrut"}; };
+    Stage stage("ahv", scene(), std::move(options));
+    for (const std::string client : {"a", "h", "v"}) {
+        CHECK(stage.say(client, ask));
+        CHECK(stage.told().at(0)["scenes"] == json::parse(R"(["car.vrut","more/bus.vrut"])"));
+        CHECK(stage.holder() == "");
+    }
+    CHECK(stage.say("a", R"({"type":"scenes"})"));  // nobody could tell what the answer is to
+    CHECK(stage.told().empty());
 }
 
 TEST_CASE("an earlier time counts as the latest before") {

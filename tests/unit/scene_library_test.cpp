@@ -73,13 +73,71 @@ TEST_CASE("the folder itself may be behind a link, and may go") {
     const SceneLibrary library(outer.path() / "link");
     CHECK(library.find("room.vrut") == fs::canonical(room));
     fs::remove_all(outer.path() / "real");
+    CHECK(library.names().empty());
     REQUIRE_FALSE(library.find("room.vrut"));
     CHECK(library.find("room.vrut").error().find("cannot be read") != std::string::npos);
 }
 
 TEST_CASE("without a folder there is nothing to open") {
+    CHECK(SceneLibrary().names().empty());
     REQUIRE_FALSE(SceneLibrary().find("room.vrut"));
     CHECK(SceneLibrary().find("room.vrut").error() == "this server has no folder of scenes to open");
+}
+
+TEST_CASE("the names are those of scene files, sorted, and open finds each of them") {
+    const TemporaryFolder folder;
+    for (const std::string name : {"room.vrut", "a/b/deep.vrut", "a.vrut", "Large.VRUT", "a/room.vrut"})
+        folder.write(name, kScene);
+    for (const std::string name : {"notes.txt", "vrut", ".vrut", "a/room.vrut.bak", "bad\xFF.vrut"})
+        folder.write(name, "");
+    fs::create_directory(folder.path() / "folder.vrut");
+    const SceneLibrary library(folder.path());
+    CHECK(library.names() ==
+          std::vector<std::string>{"Large.VRUT", "a.vrut", "a/b/deep.vrut", "a/room.vrut", "room.vrut"});
+    for (const std::string& name : library.names()) CHECK(library.find(name));
+    CHECK(SceneLibrary(folder.path() / "a/").names() == std::vector<std::string>{"b/deep.vrut", "room.vrut"});
+}
+
+TEST_CASE("of links those are named that stay in the folder, and no folders") {
+    const TemporaryFolder outer;
+    outer.write("secret.vrut", kScene);
+    outer.write("scenes/room.vrut", kScene);
+    const fs::path folder = outer.path() / "scenes";
+    fs::create_symlink(outer.path() / "secret.vrut", folder / "link.vrut");
+    fs::create_symlink(folder / "none.vrut", folder / "dangling.vrut");
+    fs::create_symlink(folder / "room.vrut", folder / "inside.vrut");
+    fs::create_directory_symlink(outer.path(), folder / "up");
+    fs::create_directory_symlink(folder, folder / "loop");
+    CHECK(SceneLibrary(folder).names() == std::vector<std::string>{"inside.vrut", "room.vrut"});
+    fs::create_directory_symlink(folder, outer.path() / "link");
+    CHECK(SceneLibrary(outer.path() / "link").names() ==
+          std::vector<std::string>{"inside.vrut", "room.vrut"});
+}
+
+TEST_CASE("no more names come than a list may have, and a walk ends") {
+    const TemporaryFolder folder;
+    const SceneLibrary library(folder.path());
+    const auto number = [](std::size_t i) { return std::to_string(100'000 + i); };
+    for (std::size_t i = SceneLibrary::kMostNames; i-- > 0;) folder.write(number(i) + ".vrut", "");
+    CHECK(library.names().size() == SceneLibrary::kMostNames);
+    folder.write("1.vrut", "");
+    const auto names = library.names();
+    CHECK(names.size() == SceneLibrary::kMostNames);
+    CHECK(names.front() == "1.vrut");
+    CHECK(names.back() == number(SceneLibrary::kMostNames - 2) + ".vrut");
+
+    const TemporaryFolder deep;  // each folder is an entry, and has one
+    fs::path below = deep.path();
+    for (int i = 0; i < 600; ++i) below /= "d";
+    fs::create_directories(below);
+    deep.write("z.vrut", "");
+    CHECK(SceneLibrary(deep.path()).names() == std::vector<std::string>{"z.vrut"});
+
+    const TemporaryFolder full;
+    for (std::size_t i = 0; i < SceneLibrary::kMostEntries; ++i) full.write("f" + std::to_string(i), "");
+    fs::create_directories(full.path() / "below");
+    for (std::size_t i = 0; i < 5; ++i) full.write("below/" + number(i) + ".vrut", "");
+    CHECK(SceneLibrary(full.path()).names().empty());  // its entries come before those below it
 }
 
 TEST_CASE("a name that is too long for the sentence is cut, and for the system refused") {

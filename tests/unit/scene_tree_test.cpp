@@ -113,6 +113,23 @@ TEST_CASE("a node is told with parent, children, triangles and material, as it s
     CHECK(page.nodes[2].material == 9);
 }
 
+TEST_CASE("a hinge is told with its unit axis and the file's matrix, however the node stands now") {
+    auto door = part(1, 0, "Door");
+    door.node.matrix[3] = {1, 2, 3, 1};
+    door.node.hinge = Hinge{{0, -4, 0}, 65};
+    PlacedScene now = placed({door, part(2, 0, "Wall")});
+    const auto index = static_cast<std::size_t>(now.scene->find_node(1));
+    now.nodes[index].matrix = glm::dmat4(1);
+    const TreePage page = page_of(now, {});
+    REQUIRE(page.nodes.size() == 3);
+    REQUIRE(page.nodes[1].hinge);
+    CHECK(page.nodes[1].hinge->axis == glm::dvec3(0, -1, 0));
+    CHECK(page.nodes[1].hinge->degrees == 65);
+    CHECK(page.nodes[1].hinge->closed == door.node.matrix);
+    CHECK_FALSE(page.nodes[1].matrix);
+    CHECK_FALSE(page.nodes[2].hinge);
+}
+
 TEST_CASE("a search finds parts of names in either case, at any depth") {
     const PlacedScene scene = small();
     CHECK(ids(page_of(scene, asked(R"("search":"door")"))) == Ids{20, 7, 10});
@@ -185,4 +202,42 @@ TEST_CASE("a chain of 100,000 nodes is walked in pages of bounded work") {
     CHECK(found == Ids{kLength});
     CHECK(pages == 21);
     CHECK(all_pages(scene, asked(R"("depth":1000000000)")).first.size() == kLength + 1);
+}
+
+TEST_CASE("only switches are listed, with what they offer and what the file chose") {
+    std::vector<SceneParts::PartNode> nodes{part(1, 0, "Paint"), part(7, 1, "Silver"), part(3, 1, "Red"),
+                                            part(4, 0, "Rims"), part(8, 4, "Ten spokes")};
+    for (const std::size_t at : {std::size_t{0}, std::size_t{3}}) {
+        nodes[at].node.type = NodeType::switch_;
+        nodes[at].node.data = SwitchData{static_cast<int>(at) - 1};
+    }
+    const PlacedScene scene = placed(std::move(nodes));
+    const TreePage page = page_of(scene, asked(R"("only":"switches")"));
+    CHECK(ids(page) == Ids{1, 4});
+    CHECK(page.nodes[0].choices == std::vector<std::string>{"Red", "Silver"});
+    CHECK(page.nodes[0].active_child == -1);
+    CHECK(page.nodes[1].active_child == 2);
+    CHECK(ids(page_of(scene, asked(R"("only":"switches","depth":0)"))).empty());
+    CHECK(ids(page_of(scene, asked(R"("only":"switches","search":"rim")"))) == Ids{4});
+    CHECK(ids(page_of(scene, asked(R"("only":"hinges")"))).empty());
+    CHECK(!page_of(scene, asked(R"("node":8)")).nodes[0].choices);
+}
+
+TEST_CASE("a switch of very many children is no choice") {
+    std::vector<SceneParts::PartNode> nodes{part(1, 0, "Many")};
+    nodes[0].node.type = NodeType::switch_;
+    nodes[0].node.data = SwitchData{};
+    for (Id id = 2; id < 2 + static_cast<Id>(protocol::kMaxChoices); ++id) nodes.push_back(part(id, 1));
+    CHECK(page_of(placed(nodes), asked(R"("only":"switches")")).nodes[0].choices->size() ==
+          protocol::kMaxChoices);
+    nodes.push_back(part(1000, 1));
+    CHECK(!page_of(placed(nodes), asked(R"("only":"switches")")).nodes[0].choices);
+}
+
+TEST_CASE("only what has a hinge is listed") {
+    std::vector<SceneParts::PartNode> nodes{part(1, 0, "Door"), part(2, 1, "Handle")};
+    nodes[0].node.hinge = Hinge{{0, 2, 0}, -65};
+    const TreePage page = page_of(placed(std::move(nodes)), asked(R"("only":"hinges")"));
+    CHECK(ids(page) == Ids{1});
+    CHECK(page.nodes[0].hinge->degrees == -65);
 }

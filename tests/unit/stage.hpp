@@ -62,7 +62,7 @@ inline const char* const kMoveHinge =
 
 class Stage {
 public:
-    /// `clients` join, each a letter: h a host, v a view, others control.
+    /// `clients` join, each a letter: h a host, v a view, others control; b calls itself Bea, others nothing.
     explicit Stage(const std::string& clients, LoadedScene shown = scene(), PresentationOptions options = {})
         : presentation(std::move(shown), std::move(options)) {
         for (const char name : clients) join(name);
@@ -70,7 +70,7 @@ public:
     void join(char name) {
         using protocol::Role;
         const Role role = name == 'h' ? Role::host : name == 'v' ? Role::view : Role::control;
-        presentation.join(std::string(1, name), role, now);
+        presentation.join(std::string(1, name), role, now, name == 'b' ? "Bea" : "");
     }
     bool say(const std::string& client, const std::string& text) {
         const auto message = protocol::decode(text);

@@ -524,7 +524,7 @@ public:
                 result.recording.reset();
                 break;
             case 2:
-                result.control = {"c" + std::to_string(below(3)), below(2) == 0};
+                result.control = {"c" + std::to_string(below(3)), "Bea", below(2) == 0};
                 break;
             case 3:
                 result.control.holder.reset();
@@ -635,7 +635,7 @@ TEST_CASE("a document that is none is not restored") {
          {"[]", "null", R"({"camera":5})", R"({"camera":{"eye":[1,2]}})", R"({"camera":{"fov":171}})",
           R"({"navigation":{"style":5}})", R"({"lights":{"active":"99"}})", R"({"lights":{"items":[]}})",
           R"({"markers":{"a":{"text":5}}})", R"({"views":[]})", R"({"control":{"holder":5}})",
-          R"({"control":{"kept":5}})", R"({"nodes":{"5":{"matrix":[1]}}})"}) {
+          R"({"control":{"kept":5}})", R"({"control":{"name":5}})", R"({"nodes":{"5":{"matrix":[1]}}})"}) {
         INFO(std::string(text));
         const auto result = restored(start(), json::parse(text));
         REQUIRE_FALSE(result.has_value());

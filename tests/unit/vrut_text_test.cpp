@@ -30,7 +30,7 @@ node 4 "Body" assembly
   matrix 1 2 3 4  5 6 7 8  9 10 11 12  0 0 0 1
 end
 node 0 "Estate" root end
-node 5 "Door" geometry   parent 4   geometry 7   material 3   end
+node 5 "Door" geometry   parent 4   geometry 7   hinge 0 2 0 -65.5   material 3   end
 node 6 "Presenter" camera parent 0   eye 3 1 4   focus 0 0.7 0.5   up 1 2 3   fov 41   end
 node 8 "Lamp" light      parent 0   type spot   color 0.1 0.2 0.3 1   attenuation 4 5 6   angle 33   end
 node 9 "Wheels" switch   parent 4   active-child -2   end
@@ -118,6 +118,8 @@ TEST_CASE("nodes of every type") {
     CHECK(body.type == NodeType::assembly);
     CHECK_FALSE(body.active);
     CHECK(body.matrix * glm::dvec4(1, 10, 100, 1) == glm::dvec4(325, 773, 1221, 1));
+    CHECK_FALSE(body.hinge);
+    CHECK(node_of(scene, 5).hinge == Hinge{{0, 2, 0}, -65.5});
     const auto child_ids = [&] {
         std::vector<Id> ids;
         for (const Index child : body.children)
@@ -176,6 +178,16 @@ TEST_CASE("what a node leaves out") {
     CHECK(data_of<SwitchData>(scene, 4).active_child == 0);
     CHECK(data_of<LodData>(scene, 5).ranges.empty());
     CHECK(data_of<BackgroundData>(scene, 6).material == kNone);
+}
+
+TEST_CASE("a hinge's axis may have any length but none, and has one direction") {
+    const Scene scene = read_well(
+        "vrut-text 1 node 1 \"\" assembly hinge 0 0 -1e15 360 end node 2 \"\" geometry hinge 3e-300 0 4e-300 "
+        "-360 end "
+        "node 3 \"\" assembly hinge 1 0 0 0 end");
+    CHECK(unit_axis(*node_of(scene, 1).hinge) == glm::dvec3(0, 0, -1));
+    CHECK(glm::distance(unit_axis(*node_of(scene, 2).hinge), glm::dvec3(0.6, 0, 0.8)) < 1e-15);
+    CHECK(node_of(scene, 3).hinge->degrees == 0);
 }
 
 TEST_CASE("VRUT's numbers stand for its node types") {
@@ -361,6 +373,16 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "node 1 \"x\" assembly\nmatrix 1 0 0 0 0 1 0 0 0 0 1 0\n0 0 0 2\n\nend", 4,
          "0 0 0 1 as the matrix's last row"},
         {h + "node 1 \"x\" assembly\nmatrix 1 0 0 0 0 1 0 0 0 0 1 0\nend", 4, "a matrix element"},
+        {h + "node 1 \"x\" assembly\nhinge 0\n0 0 65 end", 3, "a hinge's axis that is not zero, found 0 0 0"},
+        {h + "node 1 \"x\" assembly\nhinge 0 1e16 0 65 end", 3, "the hinge's axis"},
+        {h + "node 1 \"x\" assembly\nhinge 0 nan 0 65 end", 3, "the hinge's axis"},
+        {h + "node 1 \"x\" assembly\nhinge 0 1 0 end", 3,
+         "the hinge's degrees (a number from -360 to 360), found 'end'"},
+        {h + "node 1 \"x\" geometry\nhinge 0 1 0 360.5 end", 3,
+         "the hinge's degrees (a number from -360 to 360), found '360.5'"},
+        {h + "node 1 \"x\" geometry\nhinge 0 1 0 -361 end", 3, "the hinge's degrees"},
+        {h + "node 1 \"x\" geometry\nhinge 0 1 0 inf end", 3, "the hinge's degrees"},
+        {h + "node 1 \"x\" geometry\nhinge 0 1 0 5 hinge 0 1 0 5 end", 3, "'hinge' once in node 1"},
         // --- the tree
         {h + "node 1 \"x\" assembly end\n\nnode 1 \"y\" assembly end", 4, "each node once, found 1 twice"},
         {h + "node 1 \"x\" assembly end\nnode 2 \"x\" assembly\nparent 7 end", 3,

@@ -258,4 +258,34 @@ describe('a slow client', () => {
   });
 });
 
+test('the header tells where markers stand in that picture; one that does not show has no place', async (t) => {
+  const client = await steering(t, server);
+  const now = async () => (await client.frame((header) => header.revision === client.revision && isStill(header))).header;
+  assert.equal((await now()).markers, undefined);
+  await client.patch({ markers: { Free: { point: [1, 2, 0.1 + 0.2] }, Grip: { node: 4, point: [0.5, 0, 0] }, Snow: { node: 8, point: [0, 0, 0] } } });
+  assert.deepEqual((await now()).markers, { Free: [1, 2, 0.1 + 0.2], Grip: [1.5, 0, 0] });
+  await client.patch({ nodes: { 3: { matrix: [0, 0, 1, 1, 0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 0, 1] } } });
+  near((await now()).markers.Grip, [1, 0, -0.5], 'goes with its node');
+  const snapshot = await client.ask({ type: 'snapshot', width: 64, height: 48 });
+  near(snapshot.header.markers.Grip, [1, 0, -0.5], 'in a snapshot as well');
+  await client.patch({ nodes: { 4: { active: false } } });
+  assert.deepEqual(Object.keys((await now()).markers), ['Free']);
+  await client.patch({ markers: { Free: null, Other: { point: [1, 2, 3] } }, nodes: null });
+  assert.deepEqual(Object.keys((await now()).markers), ['Grip', 'Other']);
+  await client.patch({ markers: null });
+  assert.equal((await now()).markers, undefined);
+});
+
+test('a marker at what was picked goes with its part', async (t) => {
+  const client = await steering(t, server);
+  const now = async () => (await client.frame((header) => header.revision === client.revision && isStill(header))).header;
+  await client.patch({ nodes: { 4: { matrix: [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1] } } });
+  const { node, point, local } = await client.ask({ type: 'pick', x: 256, y: 150 });
+  assert.equal(node, 4);
+  near(local, [(point[0] - 1) / 2, point[1] / 2, point[2] / 2], 'in the space of the node, which is twice as large');
+  await client.patch({ markers: { Bolt: { node, point: local } } });
+  near((await now()).markers.Bolt, point, 'where it was picked');
+  await client.patch({ markers: null, nodes: null });
+});
+
 schemaTest(server);

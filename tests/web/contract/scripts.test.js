@@ -1,6 +1,6 @@
-// Contract: the messages that scripts use: navigate, fit, pick, snapshot, fly, tree, open, record.
+// Contract: the messages that scripts use: navigate, fit, pick, snapshot, fly, tree, open, scenes, record.
 import assert from 'node:assert/strict';
-import { copyFileSync, readdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { copyFileSync, mkdirSync, readdirSync, readFileSync, rmSync, symlinkSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { after, describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -415,6 +415,10 @@ describe('tree', () => {
 
   test('search finds names', async (t) => {
     const client = await ContractClient.join(t, server, { role: 'view' });
+    const switches = await client.ask({ type: 'tree', only: 'switches' });
+    assert.deepEqual(switches.nodes.map(({ id, activeChild, choices }) => [id, activeChild, choices]), [[6, 0, ['Summer', 'Winter']]]);
+    assert.deepEqual(ids(await client.ask({ type: 'tree', only: 'hinges' })), [3]);
+    await client.refused({ type: 'tree', only: 'doors' }, 'out-of-range');
     const found = await client.ask({ type: 'tree', search: 'Door', depth: 32 });
     assert.ok(ids(found).includes(4));
     assert.ok(!ids(found).includes(2));
@@ -429,6 +433,24 @@ describe('tree', () => {
     assert.deepEqual([door.active, door.material], [false, 1]);
     await client.patch({ nodes: null });
   });
+});
+
+test('a hinge is told, by which a part is opened and closed again', async (t) => {
+  const client = await steering(t, server);
+  const told = async () => (await client.ask({ type: 'tree', node: 3, depth: 0 })).nodes[0];
+  const { matrix: file, hinge } = await told();
+  assert.deepEqual(hinge, { axis: [0, 1, 0], degrees: -90, closed: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1] });
+  assert.deepEqual(file, hinge.closed);
+  assert.equal((await client.ask({ type: 'tree', node: 4 })).nodes[0].hinge, undefined);
+
+  const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map((axis) => turnedAbout(axis, [0, 0, 0], hinge.axis, 0.5 * hinge.degrees));
+  const half = [x[0], y[0], z[0], 0, x[1], y[1], z[1], 0, x[2], y[2], z[2], 0, 0, 0, 0, 1];
+  await client.patch({ nodes: { 3: { matrix: product(hinge.closed, half) } } });
+  const open = await told();
+  assert.deepEqual(open.hinge, hinge, 'closed stays what the file has');
+  near(open.matrix, product(hinge.closed, half));
+  await client.patch({ nodes: { 3: { matrix: null } } });
+  assert.deepEqual((await told()).matrix, file);
 });
 
 describe('open', () => {
@@ -510,6 +532,41 @@ describe('open', () => {
     t.after(() => bare.stop());
     const client = await ContractClient.join(t, bare);
     await client.refused({ type: 'open', scene: 'nowhere.vrut' }, ['refused-scene', 'not-allowed'], { valid: true });
+  });
+});
+
+describe('scenes', () => {
+  test('every role hears what open would take, sorted, and what is added later', async (t) => {
+    const clients = [];
+    for (const role of ['control', 'view', 'host']) clients.push(await ContractClient.join(t, server, { role }));
+    const listed = async (client) => (await client.ask({ type: 'scenes' })).scenes;
+    const before = await listed(clients[0]);
+    for (const name of ['stage.vrut', 'many.vrut', 'broken.vrut']) assert.ok(before.includes(name), `${before}`);
+    for (const client of clients) assert.deepEqual(await listed(client), before);
+
+    const folder = path.join(scenes, 'more');
+    mkdirSync(folder);
+    t.after(() => rmSync(folder, { recursive: true }));
+    copyFileSync(sceneFile('second.vrut'), path.join(folder, 'second.vrut'));
+    copyFileSync(sceneFile('second.vrut'), path.join(folder, 'second.txt'));
+    symlinkSync('/etc', path.join(folder, 'etc'));
+    symlinkSync(sceneFile('second.vrut'), path.join(folder, 'outside.vrut'));
+    await sleep(1100); // it is looked up once a second at most
+    const after = await listed(clients[1]);
+    assert.deepEqual(after, [...before, 'more/second.vrut'].sort());
+    assert.equal(clients[0].state.control.holder, undefined, 'nobody steers by asking');
+
+    await clients[0].ask({ type: 'open', scene: 'more/second.vrut' });
+    await clients[0].until('the second scene', () => clients[0].state.scene.name === 'second', 30000);
+    await clients[0].ask({ type: 'open', scene: 'stage.vrut' });
+    await clients[0].until('the first scene', () => clients[0].state.scene.name === 'stage', 30000);
+  });
+
+  test('none without a folder', async (t) => {
+    const bare = await Server.start();
+    t.after(() => bare.stop());
+    const client = await ContractClient.join(t, bare, { role: 'view' });
+    assert.deepEqual((await client.ask({ type: 'scenes' })).scenes, []);
   });
 });
 

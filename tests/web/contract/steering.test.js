@@ -43,8 +43,22 @@ const FREE = [
   { type: 'pick', x: 5, y: 5 },
   { type: 'snapshot', width: 8, height: 8 },
   { type: 'tree' },
+  { type: 'scenes' },
   { type: 'resize', ...VIEW },
 ];
+
+test('the state tells how the holder calls itself, to everybody', async (t) => {
+  const [watcher, first, second] = [await join(t, { role: 'view' }), await join(t, { name: 'Eva’s tablet' }), await join(t)];
+  await first.ask({ type: 'control', action: 'take' });
+  await watcher.until('the name', () => watcher.state.control.name === 'Eva’s tablet');
+  assert.equal(watcher.state.control.holder, first.id);
+  await second.ask({ type: 'control', action: 'take' });
+  assert.deepEqual(second.state.control, { holder: second.id, kept: true });
+  await first.ask({ type: 'control', action: 'take' });
+  await first.ask({ type: 'control', action: 'release' });
+  assert.deepEqual(first.state.control, { kept: false });
+  await first.refused({ type: 'patch', patch: { control: { name: 'Mine' } } }, 'read-only');
+});
 
 describe('becoming the holder', () => {
   for (const message of [...STEERING.filter((m) => !['open', 'record'].includes(m.type)), { type: 'record', action: 'stop' }, ...INPUT]) {
