@@ -15,10 +15,10 @@ BUILD_PACKAGES=(
 # To draw: EGL, and Mesa's drivers, with one that draws in software where there is no GPU.
 # shellcheck disable=SC2034
 RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri)
-# To test: doctest, a browser and what steers it, and what checks the source.
+# To test: doctest, two browsers and what steers them, and what checks the source.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
-    doctest-dev nodejs:node npm:npm chromium:chromium python3-websockets curl:curl
+    doctest-dev nodejs:node npm:npm chromium:chromium firefox-esr:firefox-esr python3-websockets curl:curl
     clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.

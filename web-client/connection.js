@@ -3,165 +3,140 @@ import { mergePatch } from './merge-patch.js';
 
 const SUBPROTOCOL = 'vrut-preview.v1';
 const POLICY_VIOLATION = 1008;
-const MOST_GRANTS = 2;
+/** One frame is drawn while the next is on its way. */
+const GRANTS = 2;
 
 const FIRST_RETRY_MS = 250;
 const LAST_RETRY_MS = 4000;
 const WELCOME_WITHIN_MS = 8000;
 const ANSWER_WITHIN_MS = 4000;
-
-/** What the connection needs of the browser; tests bring their own. */
-const browser = {
-  openSocket: (url, protocol) => new WebSocket(url, protocol),
-  setTimeout: (action, ms) => setTimeout(action, ms),
-  clearTimeout: (timer) => clearTimeout(timer),
-  random: () => Math.random(),
-};
+const ASKS_AFTER_MS = 5000;
+const SILENT_AFTER_MS = 10_000;
 
 /**
- * @typedef {object} Phase where the connection stands
- * @property {'connecting'|'open'|'waiting'|'refused'} name
- * @property {number} [retryMs] waiting: when the next attempt begins
- * @property {boolean} [hadOpened] waiting: an open connection was lost just now
- * @property {string} [reason] waiting, refused: why the server would not have this page, in its own words
+ * Where the connection stands; `reason` is why the server would not have this page, in its own words.
  *
- * @typedef {object} Frame
- * @property {?object} header null where it could not be read
- * @property {ArrayBuffer} data the whole file
- *
- * @typedef {object} Listeners
- * @property {(phase: Phase) => void} phase
- * @property {(frame: Frame) => Promise<void>} frame settles when the frame is drawn or dropped
- * @property {(state: object) => void} state the state document has changed
- * @property {(error: {code: string, message: string, id?: number}) => void} error
- * @property {(message: object) => void} message every other kind of message
+ * @typedef {{name: 'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
+ *   reason?: string}} Phase
  */
 
-/**
- * The page's end of the wire: connects, says hello, keeps the state document, grants frames, and begins anew
- * when the connection is lost.
- */
+/** Connects, says hello, keeps the state document, grants frames, and begins anew when the connection is lost. */
 export class Connection {
+  /** The document as last heard, kept over a lost connection; null before the first. */
+  state = null;
+  revision = 0;
+  /** What the server gave this page; undefined while not connected. */
+  role;
+  client;
+
   #url;
   #hello;
   #on;
-  #browser;
 
   #socket = null;
   #phase = 'waiting';
-  #welcome = null;
-  #state = null;
-  #revision = 0;
   #size = null;
   #lastId = 0;
-  #claimId = 0;
+  /** How to settle what is not answered yet, by id. */
+  #asked = new Map();
+  /** The id under which this page kept control until it lost the connection. */
+  #keptAs;
   #retries = 0;
   #refusal = '';
-  /** The next attempt while waiting; else the limit for an answer that is due. */
-  #timer = undefined;
+  #timer;
 
   /**
-   * @param {object} options
-   * @param {string} options.url
-   * @param {{role: string, name?: string, token?: string}} options.hello
-   * @param {Listeners} options.on
-   * @param {typeof browser} [options.environment]
+   * `on` has a function for each `phase`, `frame` ({header, data}; the header may be null; promises that it is drawn or
+   * dropped), message `sent`, changed `state`, `error` and other `message` that answers nothing that was asked.
    */
-  constructor({ url, hello, on, environment = browser }) {
+  constructor({ url, hello, on }) {
     this.#url = url;
     this.#hello = hello;
     this.#on = on;
-    this.#browser = environment;
   }
 
-  /** The role that the server gave; undefined while not connected. */
-  get role() {
-    return this.#welcome?.role;
+  /** Whether this page holds control. */
+  get steers() {
+    return this.client !== undefined && this.state?.control?.holder === this.client;
   }
 
-  /** The state document as last heard, kept over a lost connection; null before the first. */
-  get state() {
-    return this.#state;
-  }
-
-  get revision() {
-    return this.#revision;
-  }
-
-  /** Connects, and from then on stays connected as well as can be. */
   start() {
-    this.#connect();
+    this.#setPhase({ name: 'connecting' });
+    this.#refusal = '';
+    const socket = new WebSocket(this.#url, SUBPROTOCOL);
+    this.#socket = socket;
+    socket.binaryType = 'arraybuffer';
+    socket.onopen = () => this.#post({ type: 'hello', ...this.#hello });
+    socket.onmessage = ({ data }) => {
+      if (this.#phase === 'open') this.#listen();
+      if (typeof data === 'string') this.#receive(parse(data));
+      else this.#receiveFrame(socket, data);
+    };
+    socket.onclose = (event) => this.#lost(event);
+    this.#giveUpAfter(WELCOME_WITHIN_MS);
   }
 
-  /**
-   * The page is seen again, or the network is back: tries at once instead of waiting, and makes sure that a
-   * connection that looks open still is (a tablet's sleep leaves dead ones behind).
-   */
+  /** Tries at once, or asks whether an open connection is alive: sleep leaves dead ones behind. */
   wake() {
-    if (this.#phase === 'waiting' || this.#phase === 'refused') {
-      this.#connect();
-    } else if (this.#phase === 'open' && this.#size) {
-      this.send({ type: 'resize', ...this.#size });
-      this.#setTimer(ANSWER_WITHIN_MS, () => this.#abandon());
-    }
+    if (this.#phase === 'open') this.#probe(ANSWER_WITHIN_MS);
+    else if (this.#phase !== 'connecting') this.start();
   }
 
-  /**
-   * The size that this page wants, now and after every reconnect.
-   *
-   * @param {{width: number, height: number, pixelRatio: number}} size
-   */
+  /** The {width, height, pixelRatio} that this page wants, now and after every reconnect. */
   resize(size) {
     this.#size = size;
     this.send({ type: 'resize', ...size });
   }
 
-  /**
-   * Sends a message with the next id; without an open connection it is dropped, since what a finger did
-   * then is of no use later.
-   *
-   * @param {object} message
-   * @returns {number} its id; 0 when dropped
-   */
+  /** Sends a message and returns its id; 0 while not connected: what a finger does then is of no use later. */
   send(message) {
     if (this.#phase !== 'open') return 0;
     this.#lastId += 1;
-    this.#post({ ...message, id: this.#lastId });
+    const sent = { ...message, id: this.#lastId };
+    this.#post(sent);
+    this.#on.sent?.(sent);
     return this.#lastId;
+  }
+
+  /** Sends a message and promises its answer, of a `snapshot` the frame. An error without a message: it got lost. */
+  ask(message) {
+    const id = this.send(message);
+    return new Promise((resolve, reject) => {
+      if (id) this.#asked.set(id, { resolve, reject });
+      else reject(new Error());
+    });
   }
 
   #post(message) {
     this.#socket.send(JSON.stringify(message));
   }
 
-  #connect() {
-    this.#setPhase({ name: 'connecting' });
-    this.#refusal = '';
-    const socket = this.#browser.openSocket(this.#url, SUBPROTOCOL);
-    this.#socket = socket;
-    socket.binaryType = 'arraybuffer';
-    socket.onopen = () => this.#post({ type: 'hello', ...this.#hello });
-    socket.onmessage = ({ data }) => {
-      if (typeof data === 'string') this.#receive(data);
-      else this.#receiveFrame(socket, data);
-    };
-    socket.onclose = ({ code, reason }) => this.#lost(code, reason);
-    this.#setTimer(WELCOME_WITHIN_MS, () => this.#abandon());
+  /** A connection may die without a word: after a silence a question finds out. */
+  #listen() {
+    this.#setTimer(ASKS_AFTER_MS, () => this.#probe(SILENT_AFTER_MS));
   }
 
-  /** Gives a silent connection up without waiting for a close that may never come. */
-  #abandon() {
-    const socket = this.#socket;
-    this.#lost();
-    socket.close();
+  #probe(withinMs) {
+    this.send({ type: 'tree', depth: 0 });
+    this.#giveUpAfter(withinMs);
   }
 
-  #lost(code, reason) {
-    Object.assign(this.#socket, { onopen: null, onmessage: null, onclose: null });
+  #giveUpAfter(ms) {
+    this.#setTimer(ms, () => this.#lost({}));
+  }
+
+  #lost({ code, reason }) {
+    // The close of a silent connection may never come.
+    this.#socket.onclose = null;
+    this.#socket.close();
     this.#socket = null;
-    this.#clearTimer();
+    clearTimeout(this.#timer);
     const hadOpened = this.#phase === 'open';
-    this.#welcome = null;
+    if (hadOpened) this.#keptAs = this.steers && this.state.control.kept ? this.client : undefined;
+    this.role = undefined;
+    this.client = undefined;
+    for (const { reject } of this.#asked.values()) reject(new Error());
+    this.#asked.clear();
 
     if (code === POLICY_VIOLATION) {
       this.#setPhase({ name: 'refused', reason: this.#refusal || reason });
@@ -169,61 +144,71 @@ export class Connection {
     }
     const longest = Math.min(LAST_RETRY_MS, FIRST_RETRY_MS * 2 ** this.#retries);
     this.#retries += 1;
-    // Spread, so that the pages of a room do not all come back in the same instant.
-    const retryMs = longest * (0.5 + 0.5 * this.#browser.random());
-    this.#setTimer(retryMs, () => this.#connect());
+    // The pages of a room are not all to come back in the same instant.
+    const retryMs = longest * (0.5 + 0.5 * Math.random());
+    this.#setTimer(retryMs, () => this.start());
     this.#setPhase({ name: 'waiting', retryMs, hadOpened, reason: this.#refusal });
   }
 
-  #receive(text) {
-    if (this.#phase === 'open') this.#clearTimer();
-    const message = parse(text);
+  #receive(message) {
+    const isOpen = this.#phase === 'open';
     switch (message?.type) {
       case 'welcome':
-        this.#welcome = message;
+        this.role = message.role;
+        this.client = message.client;
         break;
       case 'state':
-        this.#state = message.state;
-        this.#revision = message.revision;
-        if (this.#phase !== 'open') this.#begin();
-        this.#on.state(this.#state);
-        break;
       case 'patch':
-        this.#state = mergePatch(this.#state, message.patch);
-        this.#revision = message.revision;
-        this.#on.state(this.#state);
+        this.state = message.state ?? mergePatch(this.state, message.patch);
+        this.revision = message.revision;
+        if (!isOpen) this.#begin();
+        this.#on.state(this.state);
         break;
       case 'error':
-        if (this.#phase !== 'open') this.#refusal = message.message;
-        else if (!message.id || message.id !== this.#claimId) this.#on.error(message);
+        if (!isOpen) this.#refusal = message.message;
+        else if (!this.#settle(message.id, message)) this.#on.error(message);
         break;
-      case undefined:
+      case undefined: // no message at all
         break;
       default:
-        this.#on.message(message);
+        if (!this.#settle(message.id, message)) this.#on.message(message);
     }
+  }
+
+  /** Whether somebody has waited for the answer. */
+  #settle(id, answer) {
+    const asked = this.#asked.get(id);
+    if (answer.type === 'error') asked?.reject(new Error(answer.message));
+    else asked?.resolve(answer);
+    return this.#asked.delete(id);
   }
 
   /** The hello is answered in full: asks for the first pictures. */
   #begin() {
-    this.#clearTimer();
+    this.#listen();
     this.#setPhase({ name: 'open' });
     if (this.#size) this.send({ type: 'resize', ...this.#size });
-    // The view has the size that its holder wants. Where nobody holds control, a change of nothing is
-    // enough to become the holder, and the first picture has this page's size. It is taken from nobody.
-    if (this.role === 'control' && !this.#state.control?.holder) {
-      this.#claimId = this.send({ type: 'patch', patch: {} });
+    // The view has its holder's size. Where there is none, a change of nothing makes this page the holder, unless
+    // somebody else is faster, which is nobody's concern.
+    const holder = this.state.control?.holder;
+    // The server may not have noticed yet that the former connection is dead.
+    if (this.role === 'control' && (!holder || holder === this.#keptAs)) {
+      this.ask(this.#keptAs ? { type: 'control', action: 'take' } : { type: 'patch', patch: {} }).catch(() => {});
     }
-    const grants = Math.min(MOST_GRANTS, this.#welcome?.limits?.maxGrants ?? MOST_GRANTS);
-    for (let i = 0; i < grants; i += 1) this.#post({ type: 'frame' });
+    for (let i = 0; i < GRANTS; i += 1) this.#post({ type: 'frame' });
   }
 
   /** A frame's grant is given back when it is drawn, so that a slow page is sent no more than it can show. */
   async #receiveFrame(socket, data) {
-    this.#clearTimer();
     this.#retries = 0;
+    const header = frameHeader(data);
+    // What was asked for uses no grant, and is not for the view.
+    if (header?.snapshot) {
+      this.#settle(header.snapshot, { header, data });
+      return;
+    }
     try {
-      await this.#on.frame({ header: frameHeader(data), data });
+      await this.#on.frame({ header, data });
     } finally {
       if (socket === this.#socket) this.#post({ type: 'frame' });
     }
@@ -235,43 +220,27 @@ export class Connection {
   }
 
   #setTimer(ms, action) {
-    this.#clearTimer();
-    this.#timer = this.#browser.setTimeout(action, ms);
-  }
-
-  #clearTimer() {
-    this.#browser.clearTimeout(this.#timer);
-    this.#timer = undefined;
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(action, ms);
   }
 }
 
-/**
- * The address of the server's WebSocket, beside the page's own.
- *
- * @param {string} page
- * @returns {string}
- */
 export function socketAddress(page) {
-  const address = new URL('ws', page);
-  address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
-  address.hash = '';
-  return address.href;
+  return new URL('ws', page).href.replace('http', 'ws');
 }
 
-/**
- * The token in the page's address (`#token=…`), which browsers keep to themselves.
- *
- * @param {string} hash
- * @returns {string|undefined}
- */
+export function roleFrom(hash) {
+  return settings(hash).has('watch') ? 'view' : 'control';
+}
+
 export function tokenFrom(hash) {
-  const token = /[#&]token=([^&]*)/.exec(hash)?.[1];
-  if (!token) return undefined;
-  try {
-    return decodeURIComponent(token);
-  } catch {
-    return token;
-  }
+  return settings(hash).get('token') || undefined;
+}
+
+/** The page's settings are in the fragment of its address (`#watch&token=…`), which browsers keep to themselves. */
+function settings(hash) {
+  // A plus is no space.
+  return new URLSearchParams(hash.slice(1).replaceAll('+', '%2B'));
 }
 
 function parse(text) {

@@ -1,189 +1,161 @@
-const KEYS = new Set([
-  'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-', 'f', 'Home', 'w', 's', 'Escape',
-  '1', '2', '3', // held in a drag, in one of the navigation styles
-]);
-/** Those that may go on while they are held; a held `w` must not flicker. */
 const REPEATING_KEYS = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']);
+/** A held `w` must not flicker; digits are held in drags of one navigation style. */
+const KEYS = new Set([...REPEATING_KEYS, 'f', 'Home', 'w', 's', 'Escape', '1', '2', '3']);
 
 /**
- * Passes pointer, wheel and key events on to the server, which alone knows what they mean. Moves are thinned
- * to one a display frame for each pointer; everything else goes out at once and in order.
+ * Passes pointer, wheel and key events on to the server, which alone knows what they mean. Each pointer's moves are
+ * thinned to one a display frame; everything else goes out at once and in order.
  */
 export class Input {
-  #element;
-  #window;
-  #send;
-  #mapping;
-  #frame;
-
-  /** Nothing is passed on while this is false. */
+  #page;
   #enabled = true;
-  /** Pressed pointers, each with its latest message. */
+  /** Each pressed pointer's latest message. */
   #pressed = new Map();
-  /** Moves that wait for the display frame. */
-  #moves = new Map();
-  #flushing = false;
+  /** Whose latest message waits for the display frame. */
+  #moved = new Set();
   #keys = new Set();
-  /** From the window's coordinates to the view's; one for a whole gesture, even if the view changes. */
+  /** One mapping for a whole gesture, even if the view changes. */
   #toView = null;
 
-  /**
-   * @param {HTMLElement} element the view
-   * @param {object} options
-   * @param {(message: object) => void} options.send
-   * @param {() => (clientX: number, clientY: number) => {x: number, y: number}} options.mapping
-   * @param {() => number|undefined} options.frame number of the frame last drawn
-   * @param {Window} [options.window]
-   */
-  constructor(element, { send, mapping, frame, window = globalThis.window }) {
-    this.#element = element;
-    this.#window = window;
-    this.#send = send;
-    this.#mapping = mapping;
-    this.#frame = frame;
-
-    const listen = (target, handler, ...types) => {
-      for (const type of types) target.addEventListener(type, handler.bind(this), { passive: false });
+  /** The page's `send`, `mapping` like Picture's, `frame`: the number of the one drawn, and `marks`: FingerMarks. */
+  constructor(element, page) {
+    this.#page = { window: globalThis.window, ...page };
+    const { window } = this.#page;
+    const listen = (target, handlers) => {
+      for (const [type, handler] of Object.entries(handlers)) {
+        target.addEventListener(type, handler.bind(this), { passive: false });
+      }
     };
-    listen(element, this.#down, 'pointerdown');
-    listen(element, this.#move, 'pointermove');
-    listen(element, this.#up, 'pointerup', 'pointercancel');
-    listen(element, this.#lostCapture, 'lostpointercapture');
-    listen(element, this.#wheel, 'wheel');
-    listen(element, (event) => event.preventDefault(), 'contextmenu');
-    listen(window, this.#keyDown, 'keydown');
-    listen(window, this.#keyUp, 'keyup');
-    listen(window, this.#cancelAll, 'blur');
-    listen(window.document, (event) => {
-      if (window.document.visibilityState === 'hidden') this.#cancelAll(event);
-    }, 'visibilitychange');
+    const prevent = (event) => event.preventDefault();
+    listen(element, {
+      pointerdown: this.#down,
+      pointermove: this.#move,
+      pointerup: this.#up,
+      pointercancel: this.#up,
+      // After its proper end a pointer is no longer pressed.
+      lostpointercapture: this.#cancel,
+      wheel: this.#wheel,
+      contextmenu: prevent,
+    });
+    listen(window, {
+      keydown: this.#keyDown,
+      keyup: this.#keyUp,
+      blur: this.#cancelAll,
+      // Safari zooms the page by gestures that it has beside the pointers.
+      gesturestart: prevent,
+      gesturechange: prevent,
+      gestureend: prevent,
+    });
+    listen(window.document, { visibilitychange: this.#cancelAll });
   }
 
-  /** Whether input is passed on. A change forgets what is pressed: the other side has, too. */
+  /** Whether input is passed on. A change forgets what is pressed, as the other side does. */
   set enabled(enabled) {
     if (enabled === this.#enabled) return;
     this.#enabled = enabled;
     this.#pressed.clear();
-    this.#moves.clear();
+    this.#moved.clear();
     this.#keys.clear();
+    this.#page.marks?.clear();
   }
 
   #down(event) {
     event.preventDefault();
     if (!this.#enabled) return;
+    const { currentTarget, pointerId, pointerType, clientX, clientY } = event;
     try {
-      this.#element.setPointerCapture(event.pointerId);
+      currentTarget.setPointerCapture(pointerId);
     } catch {
-      // The pointer has gone already; its end follows.
+      // The pointer has gone already.
     }
-    if (this.#pressed.size === 0) this.#toView = this.#mapping();
-    this.#flush();
-    this.#pass(event);
+    if (this.#pressed.size === 0) this.#toView = this.#page.mapping();
+    if (['touch', 'pen'].includes(pointerType)) this.#page.marks?.press(pointerId, clientX, clientY);
+    this.#sendPointer(event);
   }
 
   #move(event) {
-    if (!this.#pressed.has(event.pointerId)) return;
-    // A further button of a pressed mouse comes as a move, and none of those may get lost.
-    if (event.button >= 0) {
-      this.#flush();
-      this.#pass(event);
+    const { pointerId, clientX, clientY, button } = event;
+    if (!this.#pressed.has(pointerId)) return;
+    this.#page.marks?.move(pointerId, clientX, clientY);
+    // A further mouse button comes as a move, and none of those may get lost.
+    if (button >= 0) {
+      this.#sendPointer(event);
       return;
     }
-    const message = this.#pointerMessage(event);
-    this.#pressed.set(event.pointerId, message);
-    this.#moves.set(event.pointerId, message);
-    if (this.#flushing) return;
-    this.#flushing = true;
-    this.#window.requestAnimationFrame(() => {
-      this.#flushing = false;
-      this.#flush();
-    });
+    this.#pressed.set(pointerId, this.#pointerMessage(event));
+    if (this.#moved.size === 0) this.#page.window.requestAnimationFrame(() => this.#flush());
+    this.#moved.add(pointerId);
   }
 
   #up(event) {
-    if (!this.#pressed.has(event.pointerId)) return;
-    this.#flush();
-    this.#pass(event);
-    this.#pressed.delete(event.pointerId);
+    if (this.#pressed.has(event.pointerId)) this.#end(this.#pointerMessage(event));
   }
 
-  /** After a proper end the pointer is no longer pressed; any other loss ends it here. */
-  #lostCapture(event) {
-    this.#cancel(event.pointerId, event.timeStamp);
-  }
-
-  #cancelAll(event) {
-    for (const pointerId of [...this.#pressed.keys()]) this.#cancel(pointerId, event.timeStamp);
+  #cancelAll({ timeStamp }) {
+    for (const pointerId of this.#pressed.keys()) this.#cancel({ pointerId, timeStamp });
     this.#keys.clear();
   }
 
-  #cancel(pointerId, timeStamp) {
+  #cancel({ pointerId, timeStamp }) {
     const last = this.#pressed.get(pointerId);
-    if (!last) return;
-    this.#flush();
-    this.#send({ ...last, type: 'pointercancel', button: 0, buttons: 0, timeStamp });
-    this.#pressed.delete(pointerId);
+    if (last) this.#end({ ...last, type: 'pointercancel', button: 0, buttons: 0, timeStamp });
+  }
+
+  #end(message) {
+    this.#send(message);
+    this.#pressed.delete(message.pointerId);
+    this.#page.marks?.release(message.pointerId);
   }
 
   #wheel(event) {
     event.preventDefault();
     if (!this.#enabled) return;
-    this.#flush();
-    const toView = this.#pressed.size > 0 ? this.#toView : this.#mapping();
-    this.#send({
-      type: 'wheel',
-      ...toView(event.clientX, event.clientY),
-      deltaX: event.deltaX,
-      deltaY: event.deltaY,
-      deltaMode: event.deltaMode,
-      ...common(event),
-    });
+    const place = this.#page.mapping()(event.clientX, event.clientY);
+    this.#send({ ...members(event, 'deltaX', 'deltaY', 'deltaMode'), ...place });
   }
 
   #keyDown(event) {
-    // With these held, a key means something to the browser.
-    if (event.ctrlKey || event.metaKey || event.altKey || !KEYS.has(event.key)) return;
-    if (!this.#enabled || event.defaultPrevented) return;
+    const { key, ctrlKey, metaKey, altKey } = event;
+    if (!this.#enabled || ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
+    // The menu and its button have keys of their own.
+    if (event.defaultPrevented || event.target?.closest?.('#menu, button')) return;
     event.preventDefault();
-    if (event.repeat && !REPEATING_KEYS.has(event.key)) return;
+    if (event.repeat && !REPEATING_KEYS.has(key)) return;
     this.#keys.add(event.code);
-    this.#sendKey(event);
+    this.#send(members(event, 'key', 'code'));
   }
 
   #keyUp(event) {
-    if (this.#keys.delete(event.code)) this.#sendKey(event);
-  }
-
-  #sendKey(event) {
-    this.#flush();
-    this.#send({ type: event.type, key: event.key, code: event.code, ...common(event) });
-  }
-
-  #pass(event) {
-    const message = this.#pointerMessage(event);
-    this.#pressed.set(event.pointerId, message);
-    this.#send(message);
+    if (this.#keys.delete(event.code)) this.#send(members(event, 'key', 'code'));
   }
 
   #pointerMessage(event) {
     return {
-      type: event.type,
-      pointerId: event.pointerId,
+      ...members(event, 'pointerId', 'button', 'buttons'),
       pointerType: event.pointerType || 'mouse',
       ...this.#toView(event.clientX, event.clientY),
-      button: event.button,
-      buttons: event.buttons,
-      ...common(event),
-      frame: this.#frame(),
+      frame: this.#page.frame(),
     };
   }
 
+  #sendPointer(event) {
+    const message = this.#pointerMessage(event);
+    this.#send(message);
+    this.#pressed.set(event.pointerId, message);
+  }
+
+  #send(message) {
+    this.#flush();
+    this.#page.send(message);
+  }
+
   #flush() {
-    for (const message of this.#moves.values()) this.#send(message);
-    this.#moves.clear();
+    for (const pointerId of this.#moved) this.#page.send(this.#pressed.get(pointerId));
+    this.#moved.clear();
   }
 }
 
-function common({ ctrlKey, shiftKey, altKey, metaKey, timeStamp }) {
-  return { ctrlKey, shiftKey, altKey, metaKey, timeStamp };
+function members(event, ...names) {
+  const all = ['type', 'ctrlKey', 'shiftKey', 'altKey', 'metaKey', 'timeStamp', ...names];
+  return Object.fromEntries(all.map((name) => [name, event[name]]));
 }

@@ -1,84 +1,216 @@
-import { Connection, socketAddress, tokenFrom } from './connection.js';
+import { Awake } from './awake.js';
+import { Changes } from './changes.js';
+import { connectionSection } from './connection-section.js';
+import { Connection, roleFrom, socketAddress } from './connection.js';
+import { element } from './controls.js';
+import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
+import { Labels } from './labels.js';
+import { Lines, connectionSentence } from './lines.js';
+import { recall, remember } from './memory.js';
+import { Menu } from './menu.js';
+import { Meter } from './meter.js';
+import { partsSection } from './parts-section.js';
 import { Picture } from './picture.js';
-import { Status, connectionSentence } from './status.js';
+import { Prediction } from './prediction.js';
+import { Presence } from './presence.js';
+import { sceneSections } from './scene-sections.js';
+import { language, say, setLanguage } from './texts.js';
+import { Token } from './token.js';
 import { watchViewSize } from './view-size.js';
+import { viewsSection } from './views-section.js';
 
-const canvas = document.getElementById('view');
-const status = new Status(document.getElementById('status'));
+const find = (id) => document.getElementById(id);
+const canvas = find('view');
+const lines = new Lines(find('lines'));
+const corner = new Presence(find('presence'));
 const picture = new Picture(canvas);
-const token = tokenFrom(location.hash);
+const prediction = new Prediction();
+const labels = new Labels(find('labels'));
+const meter = new Meter();
+const awake = new Awake();
+const token = new Token(location.hash);
 
-let phase = { name: 'connecting' };
+let phase = { name: 'starting' };
 let hasPicture = false;
+let stats = null;
 const noticesSeen = new Set();
 
 const connection = new Connection({
   url: socketAddress(document.baseURI),
-  hello: { role: 'control', token },
+  hello: {
+    role: roleFrom(location.hash),
+    name: /iPad|iPhone|Android|Windows|Mac|Linux/.exec(navigator.userAgent)?.[0],
+    token: token.value,
+  },
   on: {
     phase(now) {
       phase = now;
       hasPicture = false;
-      if (phase.name !== 'open') canvas.classList.add('stale');
-      input.enabled = phase.name === 'open' && connection.role === 'control';
-      sayPhase();
+      stats = null;
+      const controls = connection.role === 'control';
+      input.enabled = awake.wanted = controls;
+      meter.forgetSent();
+      prediction.forget();
+      if (phase.name === 'refused') token.refused();
+      if (phase.name === 'open') {
+        token.accepted();
+        find('menu-button').hidden = !controls;
+        if (!controls) menu.close();
+      }
+      showPhase();
+      show();
     },
 
     async frame(frame) {
       const outcome = await picture.show(frame);
-      if (outcome === 'failed') status.pass('A picture from the server could not be read.');
-      if (outcome !== 'drawn' || phase.name !== 'open' || hasPicture) return;
+      if (outcome === 'failed') {
+        lines.pass(say('A picture from the server could not be read.', 'Obraz ze serveru nelze přečíst.'));
+      }
+      if (outcome !== 'drawn' || phase.name !== 'open') return;
+      // In the same task, so that nothing jumps.
+      prediction.drawn(picture.header);
+      follow();
+      meter.drawn(frame.header.handled, frame.data.byteLength, performance.now());
       hasPicture = true;
-      canvas.classList.remove('stale');
-      sayPhase();
+      showPhase();
+      show();
+    },
+
+    sent(message) {
+      prediction.sent(message);
+      follow();
+      // What one who does not steer sends moves nothing.
+      if (connection.steers) meter.sent(message.type, message.id, performance.now());
     },
 
     state(state) {
-      const notices = state.scene?.notices ?? [];
-      const news = notices.filter((notice) => !noticesSeen.has(notice));
-      if (news.length > 0) status.pass(news.join(' · '));
-      for (const notice of notices) noticesSeen.add(notice);
+      prediction.follow(state, connection.steers);
+      for (const notice of state.scene?.notices ?? []) {
+        if (!noticesSeen.has(notice)) lines.pass(notice);
+        noticesSeen.add(notice);
+      }
+      show();
     },
 
-    error({ message }) {
-      status.pass(message);
+    error({ code, message }) {
+      if (code === 'not-in-control') prediction.forget();
+      lines.pass(message);
+      show();
     },
 
-    message({ type, scene, done, refused }) {
-      if (type !== 'loading') return;
-      if (refused) status.pass(refused);
-      else if (!done) status.pass(`Loading ${scene}…`);
+    message(message) {
+      if (message.type === 'stats') {
+        stats = message;
+        show();
+      } else if (message.type === 'loading') {
+        const { scene, fraction, done, refused } = message;
+        lines.hold('loading', done || refused ? '' : say(`Loading ${scene}…`, `Načítá se ${scene}…`), fraction);
+        if (refused) lines.pass(refused);
+      }
     },
   },
 });
+
+const ask = (message) => connection.ask(message);
+const changes = new Changes({ ask, refused: report });
 
 const input = new Input(canvas, {
   send: (message) => connection.send(message),
   mapping: () => picture.mapping(),
   // A server that has begun anew knows nothing of the frames before.
   frame: () => (hasPicture ? picture.header.frame : undefined),
+  marks: new FingerMarks(find('finger-marks')),
 });
 
-function sayPhase() {
-  const sentence = connectionSentence(phase, hasPicture, Boolean(token));
-  if (sentence !== null) status.hold(sentence);
+// Whoever touches the picture means it with the keys, too.
+canvas.addEventListener('pointerdown', () => canvas.focus({ preventScroll: true }));
+
+/** What the sections of the menu are given. */
+const page = {
+  change: (patch) => changes.add(patch),
+  ask,
+  state: () => connection.state,
+  header: () => picture.header,
+  report,
+  meter,
+};
+
+const menu = new Menu({
+  button: find('menu-button'),
+  panel: find('menu'),
+  build: () => [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)],
+  setLanguage(code) {
+    remember('language', code);
+    speak(code);
+  },
+});
+
+/** While frames are late the last picture goes with the fingers, and its labels with it. */
+function follow() {
+  picture.move(prediction.transform);
+  labels.show(picture.header, connection.state?.markers, picture.mapping(), prediction.transform);
+}
+
+/** Says why something was refused, and shows what is the case instead. */
+function report(error) {
+  if (error.message) lines.pass(error.message);
+  show();
+}
+
+let nextShow;
+
+/** Everything is brought up to date in the next display frame. */
+function show() {
+  cancelAnimationFrame(nextShow);
+  nextShow = requestAnimationFrame(() => {
+    const { state, revision, role, client, steers } = connection;
+    const { header } = picture;
+    corner.show({ phase, role, client, state, header: hasPicture ? header : null });
+    showPart(state?.selection ?? {});
+    follow();
+    menu.show({ state, revision, header, stats, client, steers });
+  });
+}
+
+/** The chosen part's name and its parent's, as variants are called by their paint; the rest of its path is small. */
+function showPart({ node, name, path = [] }) {
+  const names = path.slice(1);
+  const title = names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`);
+  const above = names.slice(0, -2).join(' › ');
+  const part = find('part');
+  // Only a change: a screen reader would read the same words again.
+  if (part.textContent === title + above) return;
+  part.replaceChildren(...(title ? [title, element('small', {}, above)] : []));
+}
+
+function showPhase() {
+  canvas.classList.toggle('stale', !hasPicture);
+  const sentence = connectionSentence(phase, hasPicture, token.inAddress);
+  if (sentence !== null) lines.hold('connection', sentence);
+}
+
+function speak(code) {
+  setLanguage(code);
+  document.documentElement.lang = language();
+  canvas.ariaLabel = say('The scene, as the server draws it', 'Scéna, jak ji kreslí server');
+  menu.rebuild();
+  showPhase();
+  show();
 }
 
 watchViewSize(canvas, (size) => {
   picture.layout();
   connection.resize(size);
+  show();
 });
 
 document.addEventListener('visibilitychange', () => {
-  if (document.visibilityState === 'visible') connection.wake();
+  if (!document.hidden) connection.wake();
 });
 window.addEventListener('online', () => connection.wake());
-window.addEventListener('pageshow', (event) => {
-  if (event.persisted) connection.wake();
-});
 // Another token in the address: another start.
 window.addEventListener('hashchange', () => location.reload());
 
-status.hold('Connecting…');
+speak(recall('language'));
 connection.start();

@@ -1,45 +1,29 @@
-/**
- * Shows frames on a canvas: the newest wins, and none is ever drawn after a newer one.
- *
- * The canvas tells scripts what it shows: `data-frame`, `data-level` and `data-revision`.
- */
+/** Shows frames on a canvas, none after a newer one; `data-frame`, `data-level` and `data-revision` say which. */
 export class Picture {
+  /** The header of the frame last drawn; null before the first. */
+  header = null;
   #canvas;
   #context;
   #decode;
-  #header = null;
   #received = 0;
   #drawn = 0;
+  #similarity = null;
 
-  /**
-   * @param {HTMLCanvasElement} canvas
-   * @param {(file: Blob) => Promise<ImageBitmap>} [decode]
-   */
   constructor(canvas, decode = (file) => createImageBitmap(file)) {
     this.#canvas = canvas;
     this.#context = canvas.getContext('2d', { alpha: false });
     this.#decode = decode;
   }
 
-  /** The header of the frame last drawn; null before the first. */
-  get header() {
-    return this.#header;
-  }
-
   /**
-   * @param {import('./connection.js').Frame} frame
-   * @returns {Promise<'drawn'|'late'|'failed'>} late: a newer one was drawn first
+   * Promises 'drawn', 'late' (a newer one was drawn first) or 'failed'. Who awaits this goes on before the page is
+   * displayed, so that picture and move() can change together.
    */
   async show({ header, data }) {
     this.#received += 1;
     const turn = this.#received;
-    if (!header) return 'failed';
-    let bitmap;
-    try {
-      bitmap = await this.#decode(new Blob([data], { type: 'image/jpeg' }));
-    } catch {
-      return 'failed';
-    }
+    const bitmap = header && (await this.#decode(new Blob([data], { type: 'image/jpeg' })).catch(() => null));
+    if (!bitmap) return 'failed';
     const late = turn < this.#drawn;
     if (!late) {
       this.#drawn = turn;
@@ -49,46 +33,58 @@ export class Picture {
     return late ? 'late' : 'drawn';
   }
 
-  /** To be called when the canvas has changed its place on the page. */
-  layout() {
-    const view = this.#header?.view;
-    const { width, height } = this.#canvas.getBoundingClientRect();
-    const fills = view && Math.abs(view.width - width) < 1 && Math.abs(view.height - height) < 1;
-    this.#canvas.classList.toggle('fills', Boolean(fills));
+  /** Moves the picture by a Similarity until the next one comes; null: back to its place. */
+  move(similarity) {
+    this.#similarity = similarity;
+    const { scale, x, y } = similarity ?? {};
+    const shrunk = shrinkage(this.#box, this.#view);
+    this.#canvas.style.transform = similarity ? `translate(${x * shrunk}px, ${y * shrunk}px) scale(${scale})` : '';
   }
 
-  /** From the window's coordinates to those of the view that the picture shows. */
+  /** To be called when the canvas has changed its place on the page. */
+  layout() {
+    const { width, height } = this.#box;
+    this.#canvas.classList.toggle('fills', this.#view.width === width && this.#view.height === height);
+    this.move(this.#similarity);
+  }
+
+  /** From the window's coordinates to those of the view shown, wherever the picture was moved. */
   mapping() {
-    const box = this.#canvas.getBoundingClientRect();
-    return viewMapping(box, this.#header?.view ?? box);
+    return viewMapping(this.#box, this.#view);
+  }
+
+  /** Where the canvas is when it is not moved. */
+  get #box() {
+    const { offsetLeft: left, offsetTop: top, offsetWidth: width, offsetHeight: height } = this.#canvas;
+    return { left, top, width, height };
+  }
+
+  get #view() {
+    return this.header?.view ?? this.#box;
   }
 
   #draw(header, bitmap) {
     const canvas = this.#canvas;
-    // The canvas has the picture's own pixels; the style sheet fits it into the page.
-    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
-      canvas.width = bitmap.width;
-      canvas.height = bitmap.height;
-    }
+    // Setting its size clears the canvas, even if it stays the same.
+    if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
+    if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
     this.#context.drawImage(bitmap, 0, 0);
-    this.#header = header;
+    this.header = header;
     this.layout();
-    canvas.dataset.frame = header.frame;
-    canvas.dataset.level = header.quality?.level ?? '';
-    canvas.dataset.revision = header.revision;
+    const { frame, revision, quality } = header;
+    Object.assign(canvas.dataset, { frame, revision, level: quality?.level ?? '' });
   }
 }
 
-/**
- * Where a view lies that is fitted into a box as a whole, in its middle.
- *
- * @param {{left: number, top: number, width: number, height: number}} box in the window's coordinates
- * @param {{width: number, height: number}} view in its own
- * @returns {(clientX: number, clientY: number) => {x: number, y: number}}
- */
+/** From the window's coordinates to those of a view that is fitted as a whole into the middle of a box. */
 export function viewMapping(box, view) {
-  const scale = Math.min(box.width / view.width, box.height / view.height);
-  const left = box.left + (box.width - view.width * scale) / 2;
-  const top = box.top + (box.height - view.height * scale) / 2;
-  return (clientX, clientY) => ({ x: (clientX - left) / scale, y: (clientY - top) / scale });
+  const scale = shrinkage(box, view);
+  return (clientX, clientY) => ({
+    x: (clientX - box.left - box.width / 2) / scale + view.width / 2,
+    y: (clientY - box.top - box.height / 2) / scale + view.height / 2,
+  });
+}
+
+function shrinkage(box, view) {
+  return Math.min(box.width / view.width, box.height / view.height);
 }

@@ -151,8 +151,8 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
     await server.stop('SIGKILL');
     await tablet.page.waitForFunction(() =>
       document.querySelector('#view').classList.contains('stale') &&
-      document.querySelector('#status').textContent.includes('does not answer'));
-    await tablet.page.locator('#status').evaluate((line) =>
+      document.querySelector('#lines').textContent.includes('does not answer'));
+    await tablet.page.locator('#lines p').first().evaluate((line) =>
       Promise.all(line.getAnimations().map((animation) => animation.finished)));
     await tablet.screenshot('tablet-server-away');
 
@@ -168,7 +168,7 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
       return last.view.width === upright.width && last.quality.level === 'still';
     });
     assertTurned(await tablet.touch([{ from: [400, 600], to: [482, 600] }]), { right: (82 / SHORTER_SIDE) * 180, down: 0 });
-    await tablet.page.waitForFunction(() => document.querySelector('#status').textContent === '');
+    await tablet.page.waitForFunction(() => document.querySelector('#lines').textContent === '');
   });
 
   test('in all this the browser had nothing to complain of', () => {

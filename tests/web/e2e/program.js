@@ -20,16 +20,20 @@ function fromEnvironment(name, what) {
 export class Server {
   #child;
 
-  /** @param {number} [port] any free one if left out */
-  static async start(port = 0) {
+  /**
+   * @param {number} [port] any free one if left out
+   * @param {string[]} [options] more of the command line
+   */
+  static async start(port = 0, options = []) {
     const server = new Server();
-    server.address = await server.#start(port);
+    server.address = await server.#start(port, options);
     server.port = Number(new URL(server.address).port);
     return server;
   }
 
-  #start(port) {
-    this.#child = spawn(program, ['serve', scene, '--listen', `127.0.0.1:${port}`], { stdio: ['ignore', 'pipe', 'pipe'] });
+  #start(port, options) {
+    const words = ['serve', scene, '--listen', `127.0.0.1:${port}`, ...options];
+    this.#child = spawn(program, words, { stdio: ['ignore', 'pipe', 'pipe'] });
     const child = this.#child;
     let said = '';
     let complained = '';
@@ -52,6 +56,11 @@ export class Server {
         resolve(address);
       });
     });
+  }
+
+  /** @param {NodeJS.Signals} name */
+  signal(name) {
+    this.#child.kill(name);
   }
 
   /** @param {NodeJS.Signals} [signal] */

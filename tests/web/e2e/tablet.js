@@ -4,6 +4,7 @@ import { chromium } from 'playwright-core';
 import { Wire } from './wire.js';
 
 const BROWSER = '/usr/bin/chromium';
+const LIMIT_MS = 20_000;
 const ARGUMENTS = [
   '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update',
   '--disable-sync',
@@ -13,6 +14,22 @@ export const browserIsMissing = existsSync(BROWSER) ? false : `there is no ${BRO
 
 export function launchBrowser() {
   return chromium.launch({ executablePath: BROWSER, headless: true, chromiumSandbox: false, args: ARGUMENTS });
+}
+
+/** Runs in the page, before it: keeps its WebSockets where a test finds them. */
+function rememberSockets() {
+  window.sockets = [];
+  window.WebSocket = class extends WebSocket {
+    constructor(...about) {
+      super(...about);
+      window.sockets.push(this);
+    }
+  };
+}
+
+/** @returns {number} by how much, of 255, two glances differ where they differ most */
+export function difference(a, b) {
+  return Math.max(...a.map((value, i) => Math.abs(value - b[i])));
 }
 
 /** A page in the browser, with what a test needs to use it like a hand and to listen in. */
@@ -26,15 +43,19 @@ export class Tablet {
    * @param {import('playwright-core').Browser} browser
    * @param {string} address
    * @param {{width: number, height: number, pixelRatio: number}} size
+   * @param {import('playwright-core').BrowserContextOptions} [options] more of the browser's
    */
-  static async open(browser, address, { width, height, pixelRatio }) {
+  static async open(browser, address, { width, height, pixelRatio }, options = {}) {
     const tablet = new Tablet();
     const context = await browser.newContext({
       viewport: { width, height },
       deviceScaleFactor: pixelRatio,
       hasTouch: true,
       isMobile: true,
+      ...options,
     });
+    context.setDefaultTimeout(LIMIT_MS);
+    await context.addInitScript(rememberSockets);
     tablet.page = await context.newPage();
     tablet.wire = new Wire(tablet.page);
     tablet.page.on('pageerror', (error) => tablet.complaints.push(String(error)));
@@ -75,15 +96,21 @@ export class Tablet {
    * @param {{from: number[], to: number[]}[]} fingers
    */
   touch(fingers) {
+    return this.gesture(() => this.stroke(fingers), { type: 'pointerup', count: fingers.length });
+  }
+
+  /** The same anywhere on the page, whatever comes of it. */
+  async stroke(fingers) {
     const points = (part) =>
       fingers.map(({ from, to }, id) => ({ id, x: from[0] + part * (to[0] - from[0]), y: from[1] + part * (to[1] - from[1]) }));
-    const send = (type, touchPoints) => this.devtools.send('Input.dispatchTouchEvent', { type, touchPoints });
-    const act = async () => {
-      for (let down = 1; down <= fingers.length; down += 1) await send('touchStart', points(0).slice(0, down));
-      for (const part of [0.25, 0.5, 0.75, 1]) await send('touchMove', points(part));
-      await send('touchEnd', []);
-    };
-    return this.gesture(act, { type: 'pointerup', count: fingers.length });
+    for (let down = 1; down <= fingers.length; down += 1) await this.finger('touchStart', points(0).slice(0, down));
+    for (const part of [0.25, 0.5, 0.75, 1]) await this.finger('touchMove', points(part));
+    await this.finger('touchEnd', []);
+  }
+
+  /** @param {'touchStart'|'touchMove'|'touchEnd'} type */
+  finger(type, touchPoints) {
+    return this.devtools.send('Input.dispatchTouchEvent', { type, touchPoints });
   }
 
   /**
@@ -111,9 +138,31 @@ export class Tablet {
     }, { type: 'wheel' });
   }
 
+  /** Sends a message on the page's own connection, behind its back. */
+  say(message) {
+    return this.page.evaluate((text) => window.sockets.at(-1).send(text), JSON.stringify(message));
+  }
+
   /** Waits until the canvas shows a frame, or a later one. */
   shows(frame) {
     return this.page.waitForFunction((number) => Number(document.querySelector('#view').dataset.frame) >= number, frame);
+  }
+
+  /**
+   * Waits for a still picture.
+   *
+   * @param {number} [revision] that it shows at least
+   * @returns {Promise<number[]>} what it looks like from far away: 24 × 16 mean colours
+   */
+  async glance(revision = 0) {
+    const { frame } = await this.wire.stillOf(revision);
+    await this.shows(frame);
+    return this.page.evaluate(() => {
+      const context = new OffscreenCanvas(24, 16).getContext('2d', { willReadFrequently: true });
+      context.imageSmoothingQuality = 'high';
+      context.drawImage(document.querySelector('#view'), 0, 0, 24, 16);
+      return [...context.getImageData(0, 0, 24, 16).data];
+    });
   }
 
   /** What a script sees of the page. */
@@ -127,7 +176,7 @@ export class Tablet {
         width: canvas.width,
         height: canvas.height,
         stale: canvas.classList.contains('stale'),
-        status: document.querySelector('#status').textContent,
+        lines: document.querySelector('#lines').textContent,
       };
     });
   }

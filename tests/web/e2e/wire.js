@@ -10,6 +10,9 @@ export class Wire {
   /** Headers of the frames that it received. */
   frames = [];
   state = null;
+  revision = 0;
+  /** The server's errors. */
+  errors = [];
   connections = 0;
   #listeners = new Set();
 
@@ -52,6 +55,14 @@ export class Wire {
     });
   }
 
+  /** Waits for a still frame of a revision, or a later one. */
+  stillOf(revision) {
+    return this.until(`a still frame of revision ${revision}`, () => {
+      const last = this.frames.at(-1);
+      return last?.quality.level === 'still' && last.revision >= revision && last;
+    });
+  }
+
   /** Waits until no frame has come for a while. */
   async quiet(ms) {
     const limit = Date.now() + LIMIT_MS;
@@ -66,6 +77,8 @@ export class Wire {
     this.sent = [];
     this.frames = [];
     this.state = null;
+    this.revision = 0;
+    this.errors = [];
     this.connections += 1;
     const { sent, frames } = this;
     socket.on('framesent', ({ payload }) => {
@@ -82,6 +95,8 @@ export class Wire {
   #receive(message) {
     if (message.type === 'state') this.state = message.state;
     if (message.type === 'patch') this.state = mergePatch(this.state, message.patch);
+    if (message.type === 'state' || message.type === 'patch') this.revision = message.revision;
+    if (message.type === 'error') this.errors.push(message);
   }
 
   #heard() {

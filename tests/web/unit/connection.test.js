@@ -1,35 +1,41 @@
 import assert from 'node:assert/strict';
-import { describe, test } from 'node:test';
-import { Connection, socketAddress, tokenFrom } from '../../../web-client/connection.js';
-import { FakeClock, FakeSocket, jpegWith } from './fakes.js';
+import { afterEach, describe, test } from 'node:test';
+import { Connection, roleFrom, socketAddress, tokenFrom } from '../../../web-client/connection.js';
+import { FakeClock, FakeSocket, jpegWith, replaceGlobals } from './fakes.js';
 
 const SIZE = { width: 1180, height: 820, pixelRatio: 2 };
-const WELCOME = { type: 'welcome', version: 1, client: 'a', role: 'control', limits: { maxGrants: 2 } };
+const WELCOME = { type: 'welcome', version: 1, client: 'a', role: 'control' };
 const STATE = { type: 'state', revision: 5, state: { camera: { fov: 40 }, control: { holder: 'b' } } };
+
+let restore = () => {};
+
+afterEach(() => restore());
 
 /** A connection, all that it is surrounded by, and a log of what it tells. */
 function setUp({ role = 'control', token, random = () => 1 } = {}) {
-  const page = { sockets: [], phases: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
+  const page = { sockets: [], phases: [], sent: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
   page.connection = new Connection({
     url: 'ws://server/ws',
     hello: { role, token },
     on: {
       phase: (phase) => page.phases.push(phase),
+      sent: (message) => page.sent.push(message),
       frame: (frame) => new Promise((drawn) => page.frames.push({ ...frame, drawn })),
       state: (state) => page.states.push(state),
       error: (error) => page.errors.push(error),
       message: (message) => page.messages.push(message),
     },
-    environment: {
-      openSocket(url, protocol) {
-        const socket = new FakeSocket(url, protocol);
-        page.sockets.push(socket);
-        return socket;
-      },
-      setTimeout: page.clock.setTimeout,
-      clearTimeout: page.clock.clearTimeout,
-      random,
+  });
+  restore = replaceGlobals({
+    WebSocket: class extends FakeSocket {
+      constructor(url, protocol) {
+        super(url, protocol);
+        page.sockets.push(this);
+      }
     },
+    setTimeout: page.clock.setTimeout,
+    clearTimeout: page.clock.clearTimeout,
+    Math: Object.create(Math, { random: { value: random } }),
   });
   Object.defineProperties(page, {
     socket: { get: () => page.sockets.at(-1) },
@@ -86,13 +92,6 @@ describe('hello', () => {
     assert.equal(page.connection.role, 'control');
   });
 
-  test('a server that keeps one grant gets one', () => {
-    const page = setUp();
-    page.connection.start();
-    answerHello(page, { ...WELCOME, limits: { maxGrants: 1 } });
-    assert.deepEqual(page.socket.take().filter(({ type }) => type === 'frame'), [{ type: 'frame' }]);
-  });
-
   test('control that nobody holds is taken, by a patch of nothing', () => {
     const page = setUp();
     page.connection.resize(SIZE);
@@ -119,11 +118,9 @@ describe('messages', () => {
     assert.equal(page.connection.send({ type: 'fit' }), 1);
     assert.equal(page.connection.send({ type: 'fit' }), 2);
     page.connection.resize(SIZE);
-    assert.deepEqual(page.socket.take(), [
-      { type: 'fit', id: 1 },
-      { type: 'fit', id: 2 },
-      { type: 'resize', ...SIZE, id: 3 },
-    ]);
+    const messages = [{ type: 'fit', id: 1 }, { type: 'fit', id: 2 }, { type: 'resize', ...SIZE, id: 3 }];
+    assert.deepEqual(page.socket.take(), messages);
+    assert.deepEqual(page.sent, messages);
   });
 
   test('are dropped while there is nobody to hear them', () => {
@@ -232,7 +229,6 @@ describe('a lost connection', () => {
       { type: 'frame' },
     ]);
     assert.equal(page.connection.revision, 1);
-    assert.equal(page.clock.next, undefined);
   });
 
   test('a picture makes the pauses short again, a welcome alone does not', () => {
@@ -274,22 +270,156 @@ describe('a lost connection', () => {
 
   test('a page that is seen again finds out that its connection is dead', () => {
     const page = setUpOpen();
-    page.connection.resize(SIZE);
-    page.socket.take();
     page.connection.wake();
-    assert.deepEqual(page.socket.take().map(({ type }) => type), ['resize']);
-    page.clock.advance(4000);
+    assert.deepEqual(page.socket.take(), [{ type: 'tree', depth: 0, id: 1 }]);
+    page.clock.advance(3999);
+    assert.equal(page.phase.name, 'open');
+    page.clock.advance(1);
     assert.equal(page.phase.name, 'waiting');
     assert.ok(page.phase.hadOpened);
   });
 
   test('or alive', () => {
     const page = setUpOpen();
-    page.connection.resize(SIZE);
     page.connection.wake();
-    page.socket.says({ type: 'ok', id: 2, revision: 5 });
-    assert.equal(page.clock.next, undefined);
+    page.socket.says({ type: 'tree', id: 1, nodes: [] });
+    page.clock.advance(4000);
     assert.equal(page.phase.name, 'open');
+  });
+});
+
+describe('a silent connection', () => {
+  test('is asked after 5 s, and given up 10 s later', () => {
+    const page = setUpOpen();
+    page.clock.advance(4999);
+    assert.deepEqual(page.socket.take(), []);
+    page.clock.advance(1);
+    assert.deepEqual(page.socket.take(), [{ type: 'tree', depth: 0, id: 1 }]);
+    page.clock.advance(9999);
+    assert.equal(page.phase.name, 'open');
+    page.clock.advance(1);
+    assert.equal(page.phase.name, 'waiting');
+    assert.ok(page.phase.hadOpened);
+    assert.ok(page.sockets[0].closed);
+  });
+
+  test('that answers is asked again after the next silence', () => {
+    const page = setUpOpen();
+    page.clock.advance(5000);
+    page.socket.take();
+    page.clock.advance(9000);
+    page.socket.says({ type: 'tree', id: 1, nodes: [] });
+    page.clock.advance(4999);
+    assert.deepEqual(page.socket.take(), []);
+    page.clock.advance(1);
+    assert.deepEqual(page.socket.take().map(({ type }) => type), ['tree']);
+  });
+
+  test('is not silent while anything comes: a frame, a patch, an answer', () => {
+    const page = setUpOpen();
+    const comes = [
+      () => page.socket.sendsFrame(jpegWith({ frame: 1 })),
+      () => page.socket.says({ type: 'patch', revision: 6, patch: {} }),
+      () => page.socket.says({ type: 'ok', id: 1, revision: 6 }),
+    ];
+    for (const something of comes) {
+      page.clock.advance(4000);
+      something();
+    }
+    page.clock.advance(4999);
+    assert.deepEqual(page.socket.take(), []);
+  });
+});
+
+describe('a question', () => {
+  test('is settled by the answer of its id, which is told to nobody else', async () => {
+    const page = setUpOpen();
+    const asked = [page.connection.ask({ type: 'tree' }), page.connection.ask({ type: 'patch', patch: {} })];
+    assert.deepEqual(page.socket.take().map(({ id }) => id), [1, 2]);
+    page.socket.says({ type: 'ok', id: 2, revision: 6 });
+    page.socket.says({ type: 'tree', id: 1, nodes: [] });
+    assert.deepEqual(await Promise.all(asked), [{ type: 'tree', id: 1, nodes: [] }, { type: 'ok', id: 2, revision: 6 }]);
+    assert.deepEqual(page.messages, []);
+  });
+
+  test('is refused in the words of the server', async () => {
+    const page = setUpOpen();
+    const asked = page.connection.ask({ type: 'patch', patch: {} });
+    page.socket.says({ type: 'error', id: 1, code: 'not-in-control', message: 'Another steers.' });
+    await assert.rejects(asked, { message: 'Another steers.' });
+    assert.deepEqual(page.errors, []);
+  });
+
+  test('for a snapshot is settled by the frame, which uses no grant and is not for the view', async () => {
+    const page = setUpOpen();
+    const asked = page.connection.ask({ type: 'snapshot', width: 8, height: 8 });
+    page.socket.take();
+    const jpeg = jpegWith({ frame: 3, snapshot: 1 });
+    page.socket.sendsFrame(jpeg);
+    assert.deepEqual(await asked, { header: { frame: 3, snapshot: 1 }, data: jpeg });
+    await settle();
+    assert.deepEqual(page.frames, []);
+    assert.deepEqual(page.socket.take(), []);
+  });
+
+  test('is lost with the connection, and where there is none', async () => {
+    const page = setUpOpen();
+    const asked = page.connection.ask({ type: 'tree' });
+    page.socket.ends(1006);
+    await assert.rejects(asked, { message: '' });
+    await assert.rejects(page.connection.ask({ type: 'tree' }), { message: '' });
+  });
+});
+
+describe('control', () => {
+  const held = (control) => ({ ...STATE, state: { control } });
+  const reconnect = (page, control, welcome = { ...WELCOME, client: 'z' }) => {
+    page.socket.ends(1006);
+    page.clock.advance(page.clock.next);
+    answerHello(page, welcome, held(control));
+    return page.socket.take().filter(({ type }) => type === 'control' || type === 'patch');
+  };
+
+  test('is this page\'s where the state names it as the holder', () => {
+    const page = setUpOpen();
+    assert.ok(!page.connection.steers);
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a' } } });
+    assert.ok(page.connection.steers);
+    page.socket.ends(1006);
+    assert.ok(!page.connection.steers);
+  });
+
+  test('that was kept is kept again after a lost connection', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
+    assert.deepEqual(reconnect(page, { kept: false }), [{ type: 'control', action: 'take', id: 1 }]);
+  });
+
+  test('also where several attempts were needed', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
+    page.socket.ends(1006);
+    page.clock.advance(page.clock.next);
+    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['control']);
+  });
+
+  test('is taken from nobody who holds it by then', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
+    assert.deepEqual(reconnect(page, { holder: 'b', kept: false }), []);
+    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['patch']);
+  });
+
+  test('that a dead connection of this page still keeps is taken from it', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
+    assert.deepEqual(reconnect(page, { holder: 'a', kept: true }), [{ type: 'control', action: 'take', id: 1 }]);
+  });
+
+  test('that was held but not kept is not kept afterwards', () => {
+    const page = setUpOpen();
+    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: false } } });
+    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['patch']);
   });
 });
 
@@ -336,4 +466,12 @@ test('the token comes from the fragment, untouched but for its escapes', () => {
   assert.equal(tokenFrom('#token=a-b_c'), 'a-b_c');
   assert.equal(tokenFrom('#x=1&token=a+b%2Fc&y=2'), 'a+b/c');
   assert.equal(tokenFrom('#token=100%'), '100%');
+});
+
+test('the address asks for the role', () => {
+  assert.equal(roleFrom(''), 'control');
+  assert.equal(roleFrom('#token=watch'), 'control');
+  assert.equal(roleFrom('#watch'), 'view');
+  assert.equal(roleFrom('#watch&token=abc'), 'view');
+  assert.equal(roleFrom('#token=abc&watch'), 'view');
 });

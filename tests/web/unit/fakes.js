@@ -1,3 +1,17 @@
+/** Puts others in the place of globals; what it returns undoes that. */
+export function replaceGlobals(others) {
+  const before = Object.keys(others).map((name) => [name, Object.getOwnPropertyDescriptor(globalThis, name)]);
+  for (const [name, value] of Object.entries(others)) {
+    Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+  }
+  return () => {
+    for (const [name, property] of before) {
+      if (property) Object.defineProperty(globalThis, name, property);
+      else delete globalThis[name];
+    }
+  };
+}
+
 /** Time that passes only when a test says so. */
 export class FakeClock {
   #now = 0;
@@ -116,6 +130,83 @@ export class FakeWindow extends EventTarget {
 
   elementResized() {
     for (const tell of this.#observers) tell();
+  }
+}
+
+/** As much of an element as holds words and other elements. */
+export class FakeElement {
+  children = [];
+  parent = null;
+  /** How often its own words were written. */
+  writes = 0;
+  #text = '';
+
+  constructor(tag) {
+    this.tag = tag;
+  }
+
+  get firstChild() {
+    return this.children[0];
+  }
+
+  get lastElementChild() {
+    return this.children.at(-1);
+  }
+
+  get textContent() {
+    return this.#text + this.children.map(({ textContent }) => textContent).join('');
+  }
+
+  set textContent(text) {
+    this.writes += 1;
+    this.#text = text;
+    this.children = [];
+  }
+
+  append(...children) {
+    for (const child of children) this.appendChild(child);
+  }
+
+  appendChild(child) {
+    child.parent = this;
+    this.children.push(child);
+    return child;
+  }
+
+  remove() {
+    this.parent.children = this.parent.children.filter((child) => child !== this);
+  }
+
+  /** @param {string} tag the first child of this tag */
+  querySelector(tag) {
+    return this.children.find((child) => child.tag === tag) ?? null;
+  }
+}
+
+export const fakeDocument = { createElement: (tag) => new FakeElement(tag) };
+
+/** The browser's storage; one that is switched off refuses everything. */
+export class FakeStorage {
+  items = new Map();
+  isOff = false;
+
+  getItem(name) {
+    this.#refuse();
+    return this.items.get(name) ?? null;
+  }
+
+  setItem(name, value) {
+    this.#refuse();
+    this.items.set(name, String(value));
+  }
+
+  removeItem(name) {
+    this.#refuse();
+    this.items.delete(name);
+  }
+
+  #refuse() {
+    if (this.isOff) throw new Error('SecurityError');
   }
 }
 

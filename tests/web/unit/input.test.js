@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { Input } from '../../../web-client/input.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
+import { gestures, messagesOf } from './gestures.js';
 
 const NO_KEYS = { ctrlKey: false, shiftKey: false, altKey: false, metaKey: false };
 
@@ -9,7 +10,8 @@ function setUp() {
   const window = new FakeWindow();
   const captured = [];
   const element = Object.assign(new EventTarget(), { setPointerCapture: (id) => captured.push(id) });
-  const page = { window, element, captured, sent: [], frame: 12, scale: 1 };
+  const page = { window, element, captured, sent: [], marked: [], frame: 12, scale: 1 };
+  const mark = (what) => (...told) => page.marked.push([what, ...told]);
   page.input = new Input(element, {
     window,
     send: (message) => page.sent.push(message),
@@ -18,6 +20,7 @@ function setUp() {
       return (x, y) => ({ x: x * scale, y: y * scale });
     },
     frame: () => page.frame,
+    marks: { press: mark('press'), move: mark('move'), release: mark('release'), clear: mark('clear') },
   });
   page.take = () => page.sent.splice(0);
   page.on = (type, members) => {
@@ -28,8 +31,9 @@ function setUp() {
   page.pointer = (type, members) =>
     page.on(type, { pointerId: 1, pointerType: 'touch', clientX: 0, clientY: 0, button: 0, buttons: 1, ...members });
   page.move = (clientX, clientY, members) => page.pointer('pointermove', { clientX, clientY, button: -1, ...members });
-  page.key = (type, key, members) => {
+  page.key = (type, key, { target, ...members } = {}) => {
     const event = fakeEvent(type, { ...NO_KEYS, key, code: `code of ${key}`, ...members });
+    if (target) Object.defineProperty(event, 'target', { value: target });
     window.dispatchEvent(event);
     return event;
   };
@@ -163,9 +167,6 @@ describe('pointers', () => {
     page.pointer('pointerdown', { pointerId: 3 });
     page.take();
     page.window.document.dispatchEvent(fakeEvent('visibilitychange'));
-    assert.deepEqual(cancelled(), []);
-    page.window.document.visibilityState = 'hidden';
-    page.window.document.dispatchEvent(fakeEvent('visibilitychange'));
     assert.deepEqual(cancelled(), [['pointercancel', 3, 0]]);
   });
 
@@ -218,6 +219,60 @@ test('there is no context menu', () => {
   assert.ok(setUp().on('contextmenu').defaultPrevented);
 });
 
+test('no gesture of the browser zooms the page', () => {
+  for (const type of ['gesturestart', 'gesturechange', 'gestureend']) {
+    const event = fakeEvent(type);
+    setUp().window.dispatchEvent(event);
+    assert.ok(event.defaultPrevented, type);
+  }
+});
+
+describe('a touched view', () => {
+  const pressed = (pointerType) => {
+    const page = setUp();
+    page.pointer('pointerdown', { pointerType, clientX: 10, clientY: 20 });
+    return page;
+  };
+
+  test('marks fingers and pens, not the mouse, in the same event as it hears of them', () => {
+    for (const pointerType of ['touch', 'pen']) {
+      const page = pressed(pointerType);
+      page.scale = 2;
+      page.move(11, 21, { pointerType });
+      assert.deepEqual(page.marked, [['press', 1, 10, 20], ['move', 1, 11, 21]]);
+    }
+    assert.deepEqual(pressed('mouse').marked, []);
+  });
+
+  const ends = {
+    'is lifted': (page) => page.pointer('pointerup', { buttons: 0 }),
+    'is cancelled': (page) => page.pointer('pointercancel', { buttons: 0 }),
+    'is lost': (page) => page.on('lostpointercapture', { pointerId: 1 }),
+    'was on a window that lost the focus': (page) => page.window.dispatchEvent(fakeEvent('blur')),
+  };
+  for (const [what, end] of Object.entries(ends)) {
+    test(`marks no finger that ${what}`, () => {
+      const page = pressed('touch');
+      end(page);
+      page.move(50, 50);
+      assert.deepEqual(page.marked.slice(1), [['release', 1]]);
+    });
+  }
+
+  test('marks none while input is off', () => {
+    const page = pressed('touch');
+    page.input.enabled = false;
+    page.pointer('pointerdown', { pointerId: 2 });
+    assert.deepEqual(page.marked.slice(1), [['clear']]);
+  });
+});
+
+for (const gesture of gestures) {
+  test(`of the events of ${gesture.name} the messages are made that the server's tests read`, () => {
+    assert.deepEqual(messagesOf(gesture), gesture.messages);
+  });
+}
+
 describe('keys', () => {
   test('of the table are passed on and kept from the page', () => {
     const page = setUp();
@@ -244,6 +299,18 @@ describe('keys', () => {
     ];
     assert.deepEqual(page.take(), []);
     assert.ok(events.every(({ defaultPrevented }) => !defaultPrevented));
+  });
+
+  test('of a button or the menu stay there', () => {
+    const page = setUp();
+    const inside = (what) => ({ closest: (selectors) => (selectors.split(', ').includes(what) ? {} : null) });
+    for (const what of ['#menu', 'button']) {
+      assert.equal(page.key('keydown', 'w', { target: inside(what) }).defaultPrevented, false, what);
+      page.key('keyup', 'w', { target: inside(what) });
+    }
+    assert.deepEqual(page.take(), []);
+    page.key('keydown', 'w', { target: inside('main') });
+    assert.equal(page.take().length, 1);
   });
 
   test('that are held go on where that makes sense', () => {

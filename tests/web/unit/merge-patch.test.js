@@ -34,6 +34,12 @@ test('both arguments stay as they are, and what is untouched is shared', () => {
   assert.equal(merged.scene, target.scene);
 });
 
+test('two patches become one that does what both do', () => {
+  const first = { camera: { fov: 40 }, views: { side: { fov: 30 }, top: null } };
+  const both = mergePatch(first, { camera: { fov: 50 }, views: { side: null }, selection: { node: null } }, true);
+  assert.deepEqual(both, { camera: { fov: 50 }, views: { side: null, top: null }, selection: { node: null } });
+});
+
 test('a member may have any name', () => {
   const merged = mergePatch({}, JSON.parse('{"__proto__": {"text": "here"}, "toString": {"text": "there"}}'));
   assert.deepEqual(Object.keys(merged), ['__proto__', 'toString']);

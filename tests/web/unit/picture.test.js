@@ -5,12 +5,16 @@ import { Picture, viewMapping } from '../../../web-client/picture.js';
 function setUp() {
   const page = { drawn: [], closed: [], decoding: [], classes: new Set(), box: { left: 0, top: 0, width: 100, height: 50 } };
   page.canvas = {
+    style: {},
     width: 1,
     height: 1,
     dataset: {},
     classList: { toggle: (name, on) => (on ? page.classes.add(name) : page.classes.delete(name)) },
     getContext: () => ({ drawImage: (bitmap) => page.drawn.push(bitmap.name) }),
-    getBoundingClientRect: () => page.box,
+    get offsetLeft() { return page.box.left; },
+    get offsetTop() { return page.box.top; },
+    get offsetWidth() { return page.box.width; },
+    get offsetHeight() { return page.box.height; },
   };
   page.picture = new Picture(page.canvas, () => new Promise((resolve, reject) => page.decoding.push({ resolve, reject })));
   page.decoded = (index, name) =>
@@ -84,6 +88,40 @@ test('before the first picture the view is the page', () => {
   const page = setUp();
   page.box = { left: 10, top: 20, width: 100, height: 50 };
   assert.deepEqual(page.picture.mapping()(15, 30), { x: 5, y: 10 });
+});
+
+test('a picture is moved in the pixels of the view that it shows, and goes back', async () => {
+  const page = setUp();
+  const shown = page.picture.show(frame(1, { width: 200, height: 100, pixelRatio: 2 }));
+  page.decoded(0, 'one');
+  await shown;
+  page.picture.move(null);
+  assert.equal(page.canvas.style.transform, '');
+  page.picture.move({ scale: 2, x: 30, y: -8 });
+  assert.equal(page.canvas.style.transform, 'translate(15px, -4px) scale(2)');
+  page.picture.move({ scale: 0.5, x: 0, y: 10 });
+  assert.equal(page.canvas.style.transform, 'translate(0px, 5px) scale(0.5)');
+  page.picture.move(null);
+  assert.equal(page.canvas.style.transform, '');
+});
+
+test('wherever it is moved, coordinates are those of its place', async () => {
+  const page = setUp();
+  page.box = { left: 10, top: 20, width: 100, height: 200 };
+  const shown = page.picture.show(frame(1));
+  page.decoded(0, 'one');
+  await shown;
+  page.picture.move({ scale: 0.25, x: 300, y: -50 });
+  assert.deepEqual(page.picture.mapping()(60, 120), { x: 50, y: 25 });
+  assert.deepEqual(page.picture.mapping()(10, 95), { x: 0, y: 0 });
+  assert.ok(!page.classes.has('fills'));
+  // The page is turned, and so is the way that the picture is moved by.
+  page.box = { left: 0, top: 0, width: 100, height: 50 };
+  page.picture.layout();
+  assert.ok(page.classes.has('fills'));
+  page.box = { left: 0, top: 0, width: 50, height: 100 };
+  page.picture.layout();
+  assert.equal(page.canvas.style.transform, 'translate(150px, -25px) scale(0.25)');
 });
 
 test('coordinates go through the bars beside a fitted picture', () => {

@@ -1,0 +1,76 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { after, before, describe, test } from 'node:test';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+// Axe looks at elements, not at pixels: one for each of CSS is enough.
+const SIZES = { 'a tablet': { width: 1180, height: 820, pixelRatio: 1 }, 'a phone': { width: 390, height: 844, pixelRatio: 1 } };
+const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
+
+describe('axe finds nothing', { skip: browserIsMissing }, () => {
+  let server;
+  let browser;
+
+  before(async () => {
+    server = await Server.start();
+    browser = await launchBrowser();
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+  });
+
+  for (const [name, size] of Object.entries(SIZES)) {
+    test(`on ${name}`, async (t) => {
+      const tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
+      const { page } = tablet;
+      await tablet.shows((await tablet.wire.still()).frame);
+      const unfold = () => page.locator('#menu details').evaluateAll((all) => {
+        for (const details of all) details.open = true;
+      });
+      const open = async () => {
+        await page.locator('#menu-button').tap();
+        await page.locator('#menu.open').waitFor();
+        await unfold();
+      };
+
+      const looks = {
+        'the menu closed': async () => {},
+        'the menu open': open,
+        'in the dark': () => page.emulateMedia({ colorScheme: 'dark' }),
+        'in Czech': async () => {
+          await page.locator('.head [lang]').tap();
+          await page.locator('html[lang="cs"]').waitFor();
+          await unfold();
+        },
+        'the server away': async () => {
+          tablet.serverAway = true;
+          await server.stop('SIGKILL');
+          await page.locator('#view.stale').waitFor();
+          await page.locator('#lines p').first().waitFor();
+        },
+        'and in the light': () => page.emulateMedia({ colorScheme: 'light' }),
+      };
+      for (const [look, act] of Object.entries(looks)) {
+        await t.test(look, async () => {
+          await act();
+          const found = await page.evaluate(async (source) => {
+            if (!window.axe) (0, eval)(source);
+            // What fades is looked at when it has.
+            await Promise.allSettled(document.getAnimations().map((animation) => animation.finished));
+            const { violations, passes } = await window.axe.run(document, { resultTypes: ['violations'] });
+            return { passes: passes.length, violations: violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(({ html, failureSummary }) => [html, failureSummary]) })) };
+          }, axe);
+          assert.deepEqual(found.violations, []);
+          assert.ok(found.passes > 10, `${found.passes} rules passed`);
+        });
+      }
+      assert.deepEqual(tablet.complaints, []);
+      await page.context().close();
+      server = await Server.start(server.port);
+    });
+  }
+});

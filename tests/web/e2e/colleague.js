@@ -1,0 +1,69 @@
+import { once } from 'node:events';
+import WebSocket from 'ws';
+import { socketAddress } from '../../../web-client/connection.js';
+import { mergePatch } from '../../../web-client/merge-patch.js';
+
+/** Somebody else at the server, who wants no pictures. */
+export class Colleague {
+  state = null;
+  #socket;
+  #lastId = 0;
+  #asked = new Map();
+
+  /** @param {string} address of the page */
+  static async join(address) {
+    const colleague = new Colleague();
+    const socket = new WebSocket(socketAddress(address), 'vrut-preview.v1');
+    colleague.#socket = socket;
+    await once(socket, 'open');
+    const joined = new Promise((resolve) => {
+      socket.on('message', (data, isBinary) => {
+        if (isBinary) return;
+        colleague.#receive(JSON.parse(data));
+        if (colleague.state) resolve();
+      });
+    });
+    socket.send(JSON.stringify({ type: 'hello', role: 'control' }));
+    await joined;
+    return colleague;
+  }
+
+  /** @returns {Promise<object>} the answer, which may be an error */
+  ask(message) {
+    this.#lastId += 1;
+    const id = this.#lastId;
+    this.#socket.send(JSON.stringify({ ...message, id }));
+    return new Promise((resolve) => {
+      this.#asked.set(id, resolve);
+    });
+  }
+
+  /**
+   * Changes the state as soon as the holder of control is quiet, and leaves control free.
+   *
+   * @returns {Promise<number>} the revision of the change
+   */
+  async patch(patch) {
+    for (;;) {
+      const { type, code, message, revision } = await this.ask({ type: 'patch', patch });
+      if (type !== 'error') {
+        await this.ask({ type: 'control', action: 'release' });
+        return revision;
+      }
+      if (code !== 'not-in-control') throw new Error(message);
+      await new Promise((resolve) => setTimeout(resolve, 100));
+    }
+  }
+
+  async leave() {
+    this.#socket.close();
+    await once(this.#socket, 'close');
+  }
+
+  #receive(message) {
+    if (message.type === 'state') this.state = message.state;
+    if (message.type === 'patch') this.state = mergePatch(this.state, message.patch);
+    this.#asked.get(message.id)?.(message);
+    this.#asked.delete(message.id);
+  }
+}

@@ -1,0 +1,195 @@
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import { pointAt, project } from '../projection.js';
+import { Server } from './program.js';
+import { HeldLink } from './held-link.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
+const MIDDLE = [TABLET.width / 2, TABLET.height / 2];
+const WITHIN_PX = 2;
+const FADED_WITHIN_MS = 2000;
+
+const apart = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+const grid = [-0.4, -0.2, 0, 0.3, 0.45].flatMap((x) => [-0.4, 0, 0.35].map((y) => [x * TABLET.width, y * TABLET.height]));
+
+/** Where what is drawn at a place, measured from the view's middle, is seen while the picture is moved. */
+const moved = ({ a: scale, e: x, f: y }, place) => [scale * place[0] + x, scale * place[1] + y];
+
+describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }, () => {
+  let server;
+  let link;
+  let browser;
+  let tablet;
+
+  before(async () => {
+    server = await Server.start();
+    link = await HeldLink.open(server.port);
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, link.address, TABLET);
+    await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
+    await tablet.page.evaluate(() => {
+      // Where the latest messages say that the fingers are.
+      globalThis.fingers = {};
+      const { send } = WebSocket.prototype;
+      WebSocket.prototype.send = function listening(text) {
+        const { type, pointerId, x, y, id } = JSON.parse(text);
+        if (type.startsWith('pointer')) globalThis.fingers[pointerId] = [x, y];
+        if (id) globalThis.lastId = id;
+        send.call(this, text);
+      };
+    });
+  });
+
+  after(async () => {
+    await browser?.close();
+    link?.close();
+    await server?.stop();
+  });
+
+  const touch = (type, ...places) =>
+    tablet.devtools.send('Input.dispatchTouchEvent', { type, touchPoints: places.map(([x, y], id) => ({ id, x, y })) });
+
+  /** What a display frame shows, and what was sent until then. */
+  const look = () =>
+    tablet.page.evaluate(() => new Promise((resolve) => {
+      requestAnimationFrame(() => requestAnimationFrame(() => {
+        const canvas = document.querySelector('#view');
+        const { a, e, f } = new DOMMatrix(getComputedStyle(canvas).transform);
+        const places = Object.values(globalThis.fingers).slice(-2);
+        resolve({ frame: Number(canvas.dataset.frame), transform: { a, e, f }, places, lastId: globalThis.lastId });
+      }));
+    }));
+
+  const marks = () =>
+    tablet.page.evaluate(() => [...document.querySelectorAll('.finger-mark.pressed')].map((mark) => {
+      const { x, y, width, height } = mark.getBoundingClientRect();
+      return [x + width / 2, y + height / 2];
+    }));
+
+  const header = ({ frame }) => tablet.wire.frames.find((candidate) => candidate.frame === frame);
+
+  async function settled() {
+    const { lastId } = await look();
+    const { frame } = await tablet.wire.still(lastId);
+    await tablet.shows(frame);
+  }
+
+  test('a mark goes with each finger and away with it', async () => {
+    await settled();
+    assert.deepEqual(await marks(), []);
+    await touch('touchStart', [300, 500]);
+    await touch('touchStart', [300, 500], [700, 300]);
+    assert.deepEqual(await marks(), [[300, 500], [700, 300]]);
+    await touch('touchMove', [320, 540], [760, 280]);
+    await look();
+    assert.deepEqual(await marks(), [[320, 540], [760, 280]]);
+    await tablet.screenshot('finger-marks');
+    await touch('touchMove', [-40, 540], [760, 280]);
+    await look();
+    assert.deepEqual(await marks(), [[-40, 540], [760, 280]]);
+    await touch('touchCancel');
+    assert.deepEqual(await marks(), []);
+    await tablet.page.waitForFunction(() =>
+      [...document.querySelectorAll('.finger-mark')].every((mark) => getComputedStyle(mark).opacity === '0'),
+    undefined, { timeout: FADED_WITHIN_MS });
+  });
+
+  test('two fingers take the picture along at once, and the next one lies where it was taken to', async () => {
+    await settled();
+    await tablet.screenshot('hands-before');
+    const start = await look();
+    assert.deepEqual(start.transform, { a: 1, e: 0, f: 0 });
+    link.hold();
+    await touch('touchStart', [500, 400]);
+    await touch('touchStart', [500, 400], [700, 450]);
+    await touch('touchMove', [520, 390], [720, 440]);
+    const panned = await look();
+    assert.equal(panned.frame, start.frame);
+    assert.ok(apart([panned.transform.e, panned.transform.f], [20, -10]) < 0.01, JSON.stringify(panned.transform));
+    assert.ok(Math.abs(panned.transform.a - 1) < 1e-9);
+
+    await touch('touchMove', [470, 380], [760, 450]);
+    await touch('touchEnd');
+    const late = await look();
+    assert.equal(late.frame, start.frame);
+    assert.ok(late.transform.a > 1.3, JSON.stringify(late.transform));
+    await tablet.screenshot('hands-late');
+
+    link.release();
+    const drawn = await tablet.wire.still(late.lastId);
+    await tablet.shows(drawn.frame);
+    assert.deepEqual((await look()).transform, { a: 1, e: 0, f: 0 });
+    await tablet.screenshot('hands-drawn');
+
+    const old = header(start).camera;
+    for (const place of grid) {
+      const point = pointAt(drawn.camera, place, TABLET);
+      const predicted = moved(late.transform, project(old, point, TABLET));
+      assert.ok(apart(predicted, place) <= WITHIN_PX, `${predicted} instead of ${place}`);
+    }
+  });
+
+  test('while pictures trickle in, what was touched stays under the finger', async () => {
+    await settled();
+    const start = await look();
+    const [x, y] = [500, 600];
+    // What the first finger touches, at the focus' depth.
+    const touched = pointAt(header(start).camera, [x - MIDDLE[0], y - MIDDLE[1]], TABLET);
+    const frames = new Set();
+    let movedAhead = 0;
+    link.hold();
+    await touch('touchStart', [x, y]);
+    await touch('touchStart', [x, y], [x + 200, y]);
+    for (let step = 1; step <= 24; step += 1) {
+      const by = [12 * step, -9 * step];
+      await touch('touchMove', [x + by[0], y + by[1]], [x + 200 + by[0], y + by[1]]);
+      const seen = await look();
+      const { camera, view } = header(seen);
+      assert.deepEqual(view, TABLET);
+      const at = moved(seen.transform, project(camera, touched, TABLET));
+      const [finger] = seen.places;
+      assert.deepEqual(finger, [x + by[0], y + by[1]]);
+      const beside = apart([at[0] + MIDDLE[0], at[1] + MIDDLE[1]], finger);
+      assert.ok(beside <= WITHIN_PX, `step ${step}: ${beside} pixels beside the finger`);
+      frames.add(seen.frame);
+      if (apart([seen.transform.e, seen.transform.f], [0, 0]) > 5) movedAhead += 1;
+      if (step % 4 === 0) link.pass();
+    }
+    await touch('touchEnd');
+    link.release();
+    await settled();
+    assert.ok(frames.size >= 3, `${frames.size} pictures`);
+    assert.ok(movedAhead >= 10, `${movedAhead} of 24 steps ahead of the picture`);
+  });
+
+  test('a turn waits for the picture', async () => {
+    await settled();
+    link.hold();
+    await touch('touchStart', [500, 400]);
+    await touch('touchMove', [600, 420]);
+    assert.deepEqual((await look()).transform, { a: 1, e: 0, f: 0 });
+    await touch('touchEnd');
+    link.release();
+    await settled();
+  });
+
+  test('a lost connection puts the picture back', async () => {
+    await settled();
+    link.hold();
+    await touch('touchStart', [500, 400]);
+    await touch('touchStart', [500, 400], [700, 400]);
+    await touch('touchMove', [550, 400], [750, 400]);
+    assert.notEqual((await look()).transform.e, 0);
+    tablet.serverAway = true;
+    link.close();
+    await tablet.page.waitForFunction(() => document.querySelector('#view').classList.contains('stale'));
+    assert.deepEqual((await look()).transform, { a: 1, e: 0, f: 0 });
+    assert.deepEqual(await marks(), []);
+    await touch('touchEnd');
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(tablet.complaints, []);
+  });
+});

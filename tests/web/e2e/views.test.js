@@ -1,0 +1,305 @@
+import assert from 'node:assert/strict';
+import { access, mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
+import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { frameHeader } from '../../../web-client/frame-header.js';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
+const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+const SCENES = fileURLToPath(new URL('../../../scenes/teaching', import.meta.url));
+
+const saved = ({ eye, focus, up, center, fov }) => ({ eye, focus, up, center, fov });
+const distance = ({ eye, focus }) => Math.hypot(...eye.map((x, i) => x - focus[i]));
+
+describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
+  let folder;
+  let server;
+  let browser;
+  let tablet;
+  let phone;
+  let views;
+  let connection;
+
+  /** Opens the menu with one section, and gives it. */
+  async function unfold({ page }, name) {
+    if (!(await page.locator('#menu.open').count())) await page.locator('#menu-button').tap();
+    const section = page.locator(`[data-section="${name}"]`);
+    if (!(await section.evaluate((details) => details.open))) await section.locator('summary').tap();
+    return section;
+  }
+
+  const button = (section, name) => section.getByRole('button', { name, exact: true });
+  const state = () => tablet.wire.state;
+  const until = (what, get) => tablet.wire.until(what, get);
+  const cameraIs = (view) => until('the camera of the view', () => {
+    const now = saved(state().camera);
+    return JSON.stringify(now) === JSON.stringify(saved(view)) && now;
+  });
+  const says = (sentence, { page } = tablet) => page.locator('#lines').getByText(sentence).waitFor();
+  const fact = (section, name, text) => section.locator(`[data-fact="${name}"]`).getByText(text, { exact: true }).waitFor();
+
+  before(async () => {
+    folder = await mkdtemp(path.join(tmpdir(), 'vrut-preview-'));
+    server = await Server.start(0, ['--scenes', SCENES, '--record', folder]);
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, server.address, TABLET);
+    await tablet.wire.still();
+    views = await unfold(tablet, 'views');
+    connection = await unfold(tablet, 'connection');
+  });
+
+  after(async () => {
+    await browser?.close();
+    await server?.stop();
+    await rm(folder, { recursive: true });
+  });
+
+  test('a view is saved, and gone back to to the bit', async () => {
+    await tablet.touch([{ from: [300, 400], to: [371, 433] }]);
+    const there = saved(state().camera);
+    await views.getByRole('textbox', { name: 'Name of the view' }).fill('Left lamp');
+    await button(views, 'Save view').tap();
+    await until('the view', () => state().views['Left lamp']);
+    assert.deepEqual(state().views['Left lamp'], there);
+
+    await tablet.touch([{ from: [500, 400], to: [380, 320] }]);
+    assert.notDeepEqual(saved(state().camera), there);
+    await button(views, 'Left lamp').tap();
+    await cameraIs(there);
+    const { frame } = await until('its picture', () => {
+      const last = tablet.wire.frames.at(-1);
+      return last.quality.level === 'still' && JSON.stringify(saved(last.camera)) === JSON.stringify(there) && last;
+    });
+    await tablet.shows(frame);
+  });
+
+  test('one without a name is given one, and a name is not taken twice', async () => {
+    await button(views, 'Save view').tap();
+    await until('the view', () => state().views['View 1']);
+    const before = structuredClone(state().views);
+    for (const name of ['View 1', 'home']) {
+      await views.getByRole('textbox', { name: 'Name of the view' }).fill(name);
+      await button(views, 'Save view').tap();
+      await says(`There is a view “${name}” already.`);
+    }
+    await views.getByRole('textbox', { name: 'Name of the view' }).fill('é'.repeat(60));
+    await button(views, 'Save view').tap();
+    await says(/100 bytes/);
+    assert.deepEqual(state().views, before);
+    assert.equal(await views.getByRole('button', { name: 'home', exact: true }).count(), 0);
+    await views.getByRole('textbox', { name: 'Name of the view' }).fill('');
+  });
+
+  test('a view is deleted, and the focus stays near', async () => {
+    await button(views, 'Delete Left lamp').tap();
+    await until('no view', () => !state().views['Left lamp']);
+    await button(views, 'Left lamp').waitFor({ state: 'detached' });
+    await tablet.page.waitForFunction(() => document.activeElement.textContent === 'View 1');
+    await button(views, 'Delete View 1').tap();
+    await views.getByText('No view is saved yet.').waitFor();
+    assert.deepEqual(Object.keys(state().views), ['home']);
+  });
+
+  test('home is one tap away, and so is the whole scene', async () => {
+    await button(views, 'Home').tap();
+    await cameraIs(state().views.home);
+    await tablet.wire.still();
+    const { after: far } = await tablet.wheel(2000);
+    await button(views, 'Fit the scene').tap();
+    await until('the scene to fill the view', () => distance(state().camera) < 0.7 * distance(far));
+  });
+
+  test('the cameras of the scene are there, and the one in use is marked', async () => {
+    for (const name of ['Driver\'s seat', 'Outside']) {
+      await button(views, name).tap();
+      await until(`the camera ${name}`, () => state().camera.name === name && state().camera.node !== undefined);
+      await views.getByRole('button', { name, exact: true, pressed: true }).waitFor();
+      assert.equal(await views.getByRole('list', { name: 'Cameras of the scene' }).getByRole('button', { pressed: true }).count(), 1);
+    }
+  });
+
+  const middle = [TABLET.width / 2, TABLET.height / 2];
+  const labelIsAt = ([x, y]) => tablet.page.waitForFunction(([wantedX, wantedY]) => {
+    const box = document.querySelector('#labels p')?.getBoundingClientRect();
+    return box && Math.hypot(box.x - wantedX, box.y - wantedY) < 0.5;
+  }, [x, y]);
+
+  test('a marker is put on what is in the middle, with its text beside it', async () => {
+    await tablet.wire.quiet(500);
+    const field = views.getByRole('textbox', { name: 'Text of the marker' });
+    await field.fill('Gap too wide');
+    await button(views, 'Mark the middle').tap();
+    await until('the marker', () => state().markers['marker 1']?.text === 'Gap too wide');
+    await tablet.page.waitForFunction((input) => input.value === '', await field.elementHandle());
+    await tablet.page.locator('#labels p', { hasText: 'Gap too wide' }).locator('span').waitFor();
+    await labelIsAt(middle);
+    await tablet.screenshot('tablet-marker');
+  });
+
+  test('a marker is looked at from as far as before, and the label goes with it', async () => {
+    await tablet.touch([{ from: [300, 400], to: [371, 433] }, { from: [420, 400], to: [491, 433] }]);
+    await tablet.wire.still();
+    const far = distance(state().camera);
+    const place = tablet.wire.frames.at(-1).markers['marker 1'];
+    assert.notDeepEqual(state().camera.focus, place);
+    await button(views, 'Gap too wide').tap();
+    await until('the marker in the middle', () => JSON.stringify(state().camera.focus) === JSON.stringify(place));
+    assert.ok(Math.abs(distance(state().camera) - far) < 1e-9 * far);
+    await labelIsAt(middle);
+  });
+
+  test('a marker needs the keyboard only, and markers are deleted', async () => {
+    await tablet.wire.quiet(500);
+    await button(views, 'Mark the middle').focus();
+    await tablet.page.keyboard.press('Enter');
+    await until('the second marker', () => state().markers['marker 2']?.text === 'Marker 1');
+    await button(views, 'Delete Gap too wide').tap();
+    await button(views, 'Delete Marker 1').tap();
+    await views.getByText('There is no marker yet.').waitFor();
+    await tablet.page.waitForFunction(() => !document.querySelector('#labels p'));
+    assert.deepEqual(state().markers, {});
+  });
+
+  test('where there is no part, there is no marker, and its text is kept', async () => {
+    const field = views.getByRole('textbox', { name: 'Text of the marker' });
+    await button(views, 'Home').tap();
+    await cameraIs(state().views.home);
+    for (let i = 0; i < 2; i += 1) await tablet.wheel(2000);
+    await tablet.touch([{ from: [60, 200], to: [640, 480] }, { from: [160, 200], to: [740, 480] }]);
+    await tablet.wire.quiet(500);
+    await field.fill('Nothing');
+    // No tap: while the server draws on the same machine, that may take as long as a long press, which is none.
+    await button(views, 'Mark the middle').click();
+    await says('There is no part in the middle of the view.');
+    assert.equal(await field.inputValue(), 'Nothing');
+    assert.deepEqual(state().markers, {});
+    await field.fill('');
+    await button(views, 'Home').tap();
+    await cameraIs(state().views.home);
+  });
+
+  test('the page measures, and measures nothing when nothing comes', async () => {
+    await tablet.touch([{ from: [500, 400], to: [420, 400] }]);
+    await connection.locator('[data-fact="latency"]').getByText(/^[\d,]+ ms, [\d,]+ ms$/).waitFor();
+    await connection.locator('[data-fact="level"]').getByText(/^Still · \d+ samples · full size · JPEG \d+$/).waitFor();
+    await fact(connection, 'frames', '0 / s');
+    await fact(connection, 'data', '0 kB / s');
+  });
+
+  test('control is taken, kept and given back', async () => {
+    phone = await Tablet.open(browser, server.address, PHONE);
+    await phone.wire.still();
+    const onPhone = await unfold(phone, 'connection');
+    await fact(connection, 'clients', '2');
+    await button(connection, 'Take and keep').tap();
+    await fact(connection, 'holder', 'You, until you release it');
+    const { holder, name } = state().control;
+    assert.ok(name);
+    await fact(onPhone, 'holder', name);
+    assert.ok(await button(onPhone, 'Release').isDisabled());
+
+    await button(onPhone, 'Take and keep').tap();
+    await fact(onPhone, 'holder', 'You, until you release it');
+    await fact(connection, 'holder', state().control.name);
+    assert.notEqual(state().control.holder, holder);
+    await button(views, 'Home').tap();
+    await says(/in control|steers/);
+
+    await phone.screenshot('phone-connection');
+    await button(onPhone, 'Release').tap();
+    await fact(onPhone, 'holder', 'Nobody');
+    await fact(connection, 'holder', 'Nobody');
+    await phone.page.close();
+    await button(connection, 'Take and keep').tap();
+    await fact(connection, 'holder', 'You, until you release it');
+    await button(connection, 'Release').tap();
+    await fact(connection, 'holder', 'Nobody');
+  });
+
+  test('speed and accuracy', async () => {
+    await connection.getByRole('slider', { name: 'Speed or accuracy' }).fill('0.9');
+    await until('the preference', () => state().quality.preference === 0.9);
+    await connection.getByText('90 % accuracy').waitFor();
+    await tablet.screenshot('tablet-connection');
+  });
+
+  test('a session is recorded', async () => {
+    await button(connection, 'Record').tap();
+    const name = await until('a recording', () => state().recording?.name);
+    await fact(connection, 'recording', name);
+    await button(connection, 'Stop recording').tap();
+    await until('the recording to end', () => !state().recording);
+    await button(connection, 'Record').waitFor();
+    await access(path.join(folder, `${name}.jsonl`));
+  });
+
+  test('the picture is saved with all its pixels', async () => {
+    const download = tablet.page.waitForEvent('download');
+    await button(connection, 'Save picture').tap();
+    const file = await download;
+    assert.match(file.suggestedFilename(), /^scene-\d{8}-\d{6}\.jpg$/);
+    const header = frameHeader(Uint8Array.from(await readFile(await file.path())).buffer);
+    const { view } = tablet.wire.frames.at(-1);
+    assert.equal(header.width, Math.round(view.width * view.pixelRatio));
+    assert.equal(header.height, Math.round(view.height * view.pixelRatio));
+    assert.equal(header.quality.jpegQuality, 95);
+    assert.deepEqual(header.camera.eye, state().camera.eye);
+    await button(connection, 'Save picture').waitFor();
+  });
+
+  test('another scene is opened', async () => {
+    await connection.getByRole('combobox', { name: 'Another scene' }).selectOption('glass.vrut');
+    const { name } = state().scene;
+    await button(connection, 'Open').tap();
+    await until('the other scene', () => state().scene.name !== name && state().scene);
+    await tablet.wire.still();
+    await button(views, 'Home').tap();
+    await cameraIs(state().views.home);
+  });
+
+  test('a server without folders says what it cannot do', async () => {
+    const bare = await Server.start();
+    try {
+      const page = await Tablet.open(browser, bare.address, TABLET);
+      await page.wire.still();
+      const section = await unfold(page, 'connection');
+      await section.getByText('The server has no other scenes to offer.').waitFor();
+      await button(section, 'Record').tap();
+      await says(/no folder for recordings/, page);
+      assert.equal(page.wire.state.recording, undefined);
+      await page.page.close();
+    } finally {
+      await bare.stop();
+    }
+  });
+
+  test('a page without a token in its address goes on with the one that was accepted', async () => {
+    const file = path.join(folder, 'tokens.json');
+    await writeFile(file, JSON.stringify({ control: 'let-this-tablet-steer', view: 'let-this-tablet-see' }), { mode: 0o600 });
+    const guarded = await Server.start(0, ['--token-file', file]);
+    try {
+      const { origin } = new URL(guarded.address);
+      const { page, wire } = await Tablet.open(browser, `${origin}/#token=let-this-tablet-steer`, TABLET);
+      await wire.still();
+      await page.goto('about:blank');
+      await page.goto(origin);
+      await page.locator('#presence').getByText('Connected').waitFor();
+      await page.evaluate(() => localStorage.setItem('vrut-preview.token', 'wrong'));
+      await page.reload();
+      await says(/token/, { page });
+      assert.equal(await page.evaluate(() => localStorage.getItem('vrut-preview.token')), null);
+      await page.close();
+    } finally {
+      await guarded.stop();
+    }
+  });
+
+  test('in all this the browser had nothing to complain of', () => {
+    assert.deepEqual(tablet.complaints, []);
+    assert.deepEqual(phone?.complaints, []);
+  });
+});

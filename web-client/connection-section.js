@@ -1,0 +1,183 @@
+import { button, element, fact, facts, joined, range } from './controls.js';
+import { say, written } from './texts.js';
+
+const LARGEST_SIDE = 8192;
+const MEASURES_EVERY_MS = 500;
+const KEEPS_FILE_MS = 60_000;
+
+/** Who steers, how pictures come, and what the server does besides. @returns {import('./menu.js').Section} */
+export function connectionSection({ change, ask, report, meter, state, header }) {
+  const tell = (message) => ask(message).catch(report);
+  const others = scenes(tell);
+  return {
+    ...others,
+    name: 'connection',
+    title: say('Connection', 'Spojení'),
+    ...joined([steering(tell), pictures(change, meter), files(tell, state, header), others]),
+  };
+}
+
+function steering(tell) {
+  const about = facts({
+    holder: say('In control', 'Řídí'),
+    clients: say('Clients', 'Klienti'),
+    watchers: say('Of these only watching', 'Z toho jen sleduje'),
+  });
+  const control = (action) => () => tell({ type: 'control', action });
+  const take = button(say('Take and keep', 'Převzít řízení'), control('take'), { icon: 'hand' });
+  const release = button(say('Release', 'Vrátit řízení'), control('release'));
+  const heading = element('h3', {}, say('Walls', 'Stěny'));
+  const walls = element('dl', { className: 'facts' });
+  return {
+    content: [about.element, element('div', { className: 'buttons' }, take, release), heading, walls],
+    show({ state, stats, client, steers, revision }) {
+      const { hosts = {}, ...counts } = stats ?? {};
+      about.show({ ...counts, holder: holderWords(state.control, client) });
+      take.disabled = steers && state.control.kept;
+      release.disabled = !steers;
+      const lines = Object.entries(hosts).map(([id, host]) =>
+        fact(host.name || clientWords(id), element('dd', {}, hostWords(host, revision))));
+      heading.hidden = lines.length === 0;
+      walls.replaceChildren(...lines);
+    },
+  };
+}
+
+function pictures(change, meter) {
+  const about = facts({
+    latency: say('Response (median, 95 %)', 'Odezva (medián, 95 %)'),
+    frames: say('Pictures', 'Obrazy'),
+    data: say('Data', 'Data'),
+  });
+  const accuracy = (value) => say(`${written(100 * value)} % accuracy`, `přesnost ${written(100 * value)} %`);
+  const preferred = range(say('Speed or accuracy', 'Rychlost, nebo přesnost'),
+    { min: 0, max: 1, step: 0.05, say: accuracy }, (preference) => change({ quality: { preference } }));
+  const level = element('p', { className: 'note', data: { fact: 'level' } });
+  let timer;
+  const measure = () => {
+    clearTimeout(timer);
+    const { p50, p95, framesPerSecond, bytesPerSecond } = meter.read(performance.now());
+    about.show({
+      latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
+      frames: `${written(framesPerSecond, 1)} / s`,
+      data: `${bytesWords(bytesPerSecond)} / s`,
+    });
+    // Nobody tells when pictures cease.
+    if (framesPerSecond > 0 && about.element.isConnected) timer = setTimeout(measure, MEASURES_EVERY_MS);
+  };
+  return {
+    content: [about.element, preferred.element, level],
+    show({ state, header }) {
+      measure();
+      preferred.show(state.quality.preference);
+      level.textContent = header ? qualityWords(header.quality) : '';
+    },
+  };
+}
+
+function files(tell, present, drawn) {
+  const about = facts({ recording: say('Recording', 'Nahrává se') });
+  const record = button('', () => tell({ type: 'record', action: present().recording ? 'stop' : 'start' }),
+    { icon: 'record' });
+  const snapshot = button('', async () => {
+    if (snapshot.ariaBusy === 'true') return;
+    setBusy(true);
+    const picture = await tell({ type: 'snapshot', ...snapshotSize(drawn().view), jpegQuality: 95 });
+    if (picture) save(picture.data);
+    setBusy(false);
+  }, { icon: 'camera' });
+  // Not disabled, which would take the focus from it.
+  const setBusy = (busy) => {
+    snapshot.ariaBusy = busy;
+    snapshot.lastChild.data = busy ? say('Drawing…', 'Kreslí se…') : say('Save picture', 'Uložit obraz');
+  };
+  setBusy(false);
+  return {
+    content: [element('div', { className: 'buttons' }, snapshot, record), about.element],
+    show({ state: { recording }, header }) {
+      snapshot.disabled = !header;
+      record.lastChild.data = recording ? say('Stop recording', 'Ukončit nahrávání') : say('Record', 'Nahrávat');
+      about.element.hidden = !recording;
+      about.show({ recording: recording?.name });
+    },
+  };
+}
+
+function scenes(tell) {
+  let askedBy;
+  const select = element('select');
+  const label = element('label', { className: 'control' }, say('Another scene', 'Jiná scéna'), select);
+  const open = button(say('Open', 'Otevřít'), () => tell({ type: 'open', scene: select.value }), { icon: 'open' });
+  const row = element('div', { className: 'entry', hidden: true }, label, open);
+  const none = element('p', { className: 'note', hidden: true },
+    say('The server has no other scenes to offer.', 'Server nenabízí další scény.'));
+  const unfolded = async () => {
+    const answer = askedBy && await tell({ type: 'scenes' });
+    if (!answer) return;
+    select.replaceChildren(...answer.scenes.map((name) => new Option(name, name, false, name === select.value)));
+    none.hidden = answer.scenes.length > 0;
+    row.hidden = !none.hidden;
+  };
+  return {
+    content: [row, none],
+    unfolded,
+    show({ client }) {
+      if (!client || client === askedBy) return;
+      askedBy = client;
+      unfolded();
+    },
+  };
+}
+
+/** Who steers, by `control` of the state, for the page of `client`. */
+export function holderWords({ holder, name, kept } = {}, client) {
+  if (!holder) return say('Nobody', 'Nikdo');
+  if (holder !== client) return name || clientWords(holder);
+  return kept ? say('You, until you release it', 'Vy, dokud řízení nevrátíte') : say('You', 'Vy');
+}
+
+function clientWords(id) {
+  return say(`Client ${id}`, `Klient ${id}`);
+}
+
+/** How far a host of `stats` is behind the present revision. */
+export function hostWords({ revision: shown, lagMs }, revision) {
+  const count = written(revision - shown);
+  const words = shown < revision ? say(`${count} behind`, `pozadu o ${count}`) : say('up to date', 'aktuální');
+  return lagMs === undefined ? words : `${words} · ${written(lagMs)} ms`;
+}
+
+/** By the `quality` of a picture's header. */
+export function qualityWords({ level, scale, samples, detail, jpegQuality }) {
+  const percent = written(100 * scale);
+  return [
+    level === 'still' ? say('Still', 'V klidu') : say('Moving', 'V pohybu'),
+    samples > 1 && say(`${samples} samples`, `vzorků: ${samples}`),
+    scale < 1 ? say(`${percent} % size`, `velikost ${percent} %`) : say('full size', 'plná velikost'),
+    detail > 0 && say('simplified', 'zjednodušeno'),
+    `JPEG ${jpegQuality}`,
+  ].filter(Boolean).join(' · ');
+}
+
+/** All pixels of the view, or as many as the server draws. */
+export function snapshotSize({ width, height, pixelRatio }) {
+  const scale = Math.min(pixelRatio, LARGEST_SIDE / width, LARGEST_SIDE / height);
+  const side = (length) => Math.max(1, Math.round(length * scale));
+  return { width: side(width), height: side(height) };
+}
+
+/** scene-YYYYMMDD-HHMMSS.jpg, by the user's clock. */
+export function snapshotName(date) {
+  // Swedish has the order of ISO 8601: 2026-03-04 05:06:07.
+  return `scene-${date.toLocaleString('sv').replace(/[-:]/g, '').replace(' ', '-')}.jpg`;
+}
+
+export function bytesWords(bytes) {
+  return bytes < 1e6 ? `${written(bytes / 1e3)} kB` : `${written(bytes / 1e6, 1)} MB`;
+}
+
+function save(data) {
+  const href = URL.createObjectURL(new Blob([data], { type: 'image/jpeg' }));
+  element('a', { href, download: snapshotName(new Date()) }).click();
+  setTimeout(() => URL.revokeObjectURL(href), KEEPS_FILE_MS);
+}

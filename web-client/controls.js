@@ -1,0 +1,183 @@
+import { language, written } from './texts.js';
+
+/** With properties (`data` for its dataset, `role` and `aria-…` as attributes) and children. */
+export function element(tag, properties = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name === 'data') Object.assign(made.dataset, value);
+    else if (name === 'role' || name.startsWith('aria-')) made.setAttribute(name, value);
+    else made[name] = value;
+  }
+  made.append(...children);
+  return made;
+}
+
+/**
+ * Shows a value; its `change` is told what the user does, and may give a promise of its end.
+ *
+ * @typedef {{element: HTMLElement, show: (...value: *) => void}} Control
+ */
+
+/** `tell` says what the user does; what is shown waits `during` that, or it would jump back. */
+function patient(made, apply, tell) {
+  let waiting = 0;
+  let latest = [];
+  const show = (...value) => {
+    latest = value;
+    if (waiting === 0 && value[0] !== undefined) apply(...value);
+  };
+  const during = async (end) => {
+    waiting += 1;
+    await end;
+    waiting -= 1;
+    show(...latest);
+  };
+  made.oninput = () => during(tell());
+  return { element: made, show, during };
+}
+
+function labelled(label, kind, ...inputs) {
+  return element('label', { className: `control ${kind}` }, element('span', {}, label), ...inputs);
+}
+
+function group(label, kind, ...inputs) {
+  return element('fieldset', { className: `control ${kind}` }, element('legend', {}, label), ...inputs);
+}
+
+/** With an icon of index.html; `only` with that, or else the label is its `lastChild`. */
+export function button(label, act, { icon, quiet = false, only = false } = {}) {
+  const made = element('button', { type: 'button', onclick: act, className: quiet ? 'quiet' : '' });
+  const use = `<use href="#icon-${icon}"/>`;
+  if (icon) made.innerHTML = `<svg class="icon" viewBox="0 0 24 24" aria-hidden="true">${use}</svg>`;
+  if (only) Object.assign(made, { title: label, ariaLabel: label });
+  else made.append(label);
+  return made;
+}
+
+/** On or off. @returns {Control} shows a boolean */
+export function toggle(label, change) {
+  const input = element('input', { type: 'checkbox', role: 'switch' });
+  const apply = (checked) => Object.assign(input, { checked });
+  return patient(labelled(label, 'toggle', input), apply, () => change(input.checked));
+}
+
+let choices = 0;
+
+/** One of a few options, [value, label] each. @returns {Control} shows a value */
+export function choice(label, options, change) {
+  choices += 1;
+  const name = `choice-${choices}`;
+  const inputs = options.map(([value]) => element('input', { type: 'radio', name, value }));
+  const segments = options.map(([, text], i) => element('label', {}, inputs[i], text));
+  const apply = (value) => {
+    for (const input of inputs) input.checked = input.value === value;
+  };
+  return patient(group(label, 'choice', element('div', { className: 'segments' }, ...segments)), apply,
+    () => change(inputs.find(({ checked }) => checked).value));
+}
+
+/** One of many. @returns {Control} shows a value and the options, [value, label] each */
+export function selection(label, change) {
+  let shown = '';
+  const select = element('select');
+  const apply = (value, options) => {
+    const text = JSON.stringify(options);
+    if (text !== shown) select.replaceChildren(...options.map(([key, name]) => new Option(name, key)));
+    shown = text;
+    select.value = value;
+  };
+  return patient(labelled(label, '', select), apply, () => change(select.value));
+}
+
+/** A number, in words by `say`; `logarithmic`, with `step` of its decimal exponent. @returns {Control} shows it */
+export function range(label, { min, max, logarithmic = false, step = 1, say }, change) {
+  const toScale = logarithmic ? Math.log10 : Number;
+  const fromScale = logarithmic ? (exponent) => Number((10 ** exponent).toPrecision(3)) : Number;
+  // Not an `output`: the label would be that one's, and not the slider's.
+  const words = element('span', { className: 'value', 'aria-hidden': 'true' });
+  const input = element('input', { type: 'range', min: toScale(min), max: toScale(max), step });
+  const describe = (value) => {
+    words.textContent = input.ariaValueText = say(value);
+  };
+  const apply = (value) => {
+    input.value = toScale(value);
+    describe(value);
+  };
+  const control = patient(labelled(label, 'range', words, input), apply, () => {
+    const value = fromScale(Number(input.value));
+    describe(value);
+    return change(value);
+  });
+  input.onpointerdown = () => {
+    input.onpointerup?.();
+    control.during(new Promise((resolve) => {
+      input.onpointerup = input.onpointercancel = resolve;
+    }));
+  };
+  return control;
+}
+
+/** Typed numbers from 0 on; `change` is given all. @returns {Control} shows an array of them */
+export function numbers(label, labels, change) {
+  let latest = [];
+  const inputs = labels.map(() => element('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal' }));
+  for (const [i, input] of inputs.entries()) {
+    input.onchange = () => {
+      if (input.valueAsNumber >= 0) change(latest.with(i, input.valueAsNumber));
+      else input.value = latest[i];
+    };
+  }
+  const show = (values) => {
+    latest = values;
+    for (const [i, input] of inputs.entries()) if (document.activeElement !== input) input.value = values[i];
+  };
+  const labelledInputs = inputs.map((input, i) => element('label', {}, labels[i], input));
+  return { element: group(label, 'numbers', ...labelledInputs), show };
+}
+
+/** A colour; its alpha stays as it is. @returns {Control} shows RGBA, 0 to 1 */
+export function color(label, change) {
+  let alpha = 1;
+  const byte = (x) => Math.round(255 * Math.min(Math.max(x, 0), 1)).toString(16).padStart(2, '0');
+  const input = element('input', { type: 'color' });
+  const apply = (rgba) => {
+    alpha = rgba[3];
+    input.value = `#${rgba.slice(0, 3).map(byte).join('')}`;
+  };
+  return patient(labelled(label, '', input), apply, () =>
+    change([...[1, 3, 5].map((at) => parseInt(input.value.slice(at, at + 2), 16) / 255), alpha]));
+}
+
+/** With labels by key. @returns {Control} shows texts or numbers by key, or dashes */
+export function facts(labels) {
+  const values = Object.keys(labels).map((key) => element('dd', { data: { fact: key } }));
+  const lines = values.map((value) => fact(labels[value.dataset.fact], value));
+  const show = (told) => {
+    for (const value of values) {
+      const known = told[value.dataset.fact] ?? '–';
+      const text = typeof known === 'number' ? written(known, 3) : known;
+      if (value.textContent !== text) value.textContent = text;
+    }
+  };
+  return { element: element('dl', { className: 'facts' }, ...lines), show };
+}
+
+/** One line of such a list. */
+export function fact(label, value) {
+  return element('div', {}, element('dt', {}, label), value);
+}
+
+/** Parts of a section as one. */
+export function joined(parts) {
+  return {
+    content: parts.flatMap(({ content }) => content),
+    show(now) {
+      for (const part of parts) part.show(now);
+    },
+  };
+}
+
+/** The order in which people look for names. */
+export function byName(a, b) {
+  return a.localeCompare(b, language(), { numeric: true });
+}

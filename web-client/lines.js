@@ -1,0 +1,90 @@
+import { element } from './controls.js';
+import { say } from './texts.js';
+
+const MOST_LINES = 3;
+const PASSES_AFTER_MS = 6000;
+
+/** Quiet lines over the picture: none while all is well. */
+export class Lines {
+  #element;
+  #lasting = new Map();
+  #passing = [];
+
+  constructor(element) {
+    this.#element = element;
+  }
+
+  /** Says one sentence until it is replaced, '' for none, with a bar where a fraction, 0 to 1, is done. */
+  hold(about, text, fraction) {
+    if (text) this.#lasting.set(about, { sentence: whole(text), fraction });
+    else this.#lasting.delete(about);
+    this.#show();
+  }
+
+  /** Says a sentence for some seconds. One that is being said already is not said twice. */
+  pass(text) {
+    const sentence = whole(text);
+    this.#passing = this.#passing.filter((line) => line.sentence !== sentence).slice(1 - MOST_LINES);
+    const line = { sentence };
+    this.#passing.push(line);
+    setTimeout(() => {
+      this.#passing = this.#passing.filter((other) => other !== line);
+      this.#show();
+    }, PASSES_AFTER_MS);
+    this.#show();
+  }
+
+  #show() {
+    const lines = [...this.#lasting.values(), ...this.#passing];
+    while (this.#element.children.length > lines.length) this.#element.lastElementChild.remove();
+    for (const [i, { sentence, fraction }] of lines.entries()) {
+      const line = this.#element.children[i] ?? this.#element.appendChild(element('p', {}, element('span')));
+      // Only a change: a screen reader would read the same words again.
+      if (line.firstChild.textContent !== sentence) line.firstChild.textContent = sentence;
+      const bar = line.querySelector('progress');
+      if (fraction === undefined) bar?.remove();
+      else Object.assign(bar ?? line.appendChild(element('progress')), { ariaLabel: sentence, value: fraction });
+    }
+  }
+}
+
+/**
+ * What is to be said of the connection; null where what was said last still holds.
+ *
+ * @param {import('./connection.js').Phase} phase
+ * @param {boolean} hasPicture whether a picture has been drawn since the connection opened
+ * @param {boolean} hasToken
+ */
+export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPicture, hasToken) {
+  const seconds = Math.round(retryMs / 1000);
+  switch (name) {
+    case 'starting':
+      return say('Connecting…', 'Připojování…');
+    case 'open':
+      return hasPicture ? '' : say('Waiting for the picture…', 'Čeká se na obraz…');
+    case 'waiting':
+      return [
+        whole(reason || (hadOpened
+          ? say('The connection to the server is lost.', 'Spojení se serverem se ztratilo.')
+          : say('The server does not answer.', 'Server neodpovídá.'))),
+        hadOpened || seconds === 0
+          ? say('Trying again…', 'Zkouší se znovu…')
+          : say(`Trying again in ${seconds} s.`, `Znovu za ${seconds} s.`),
+      ].join(' ');
+    case 'refused':
+      return [
+        whole(reason || (hasToken
+          ? say('The server does not accept the token in this address.', 'Server nepřijímá klíč v této adrese.')
+          : say('The server asks for a token.', 'Server žádá klíč.'))),
+        say('Open the address that the server printed.', 'Otevřete adresu, kterou server vypsal.'),
+      ].join(' ');
+    default:
+      return null;
+  }
+}
+
+/** The server's sentences begin small, to be put behind others. */
+function whole(text) {
+  const sentence = text.charAt(0).toUpperCase() + text.slice(1);
+  return /[.!?…]$/.test(sentence) ? sentence : `${sentence}.`;
+}

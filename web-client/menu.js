@@ -1,0 +1,113 @@
+import { button, element } from './controls.js';
+import { recall, remember } from './memory.js';
+import { language, say } from './texts.js';
+
+/**
+ * What the page knows: the state, the header of the frame last drawn, what the server measures, this page's id.
+ *
+ * @typedef {{state: ?object, revision: number, header: ?object, stats: ?object, client?: string, steers: boolean}} Now
+ *
+ * A folding part of the menu, told when it has been opened and before it is built anew.
+ *
+ * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now) => void,
+ *   unfolded?: () => void, dispose?: () => void}} Section
+ */
+
+/** The panel of folding sections, and the button that opens it. */
+export class Menu {
+  #button;
+  #panel;
+  #build;
+  #setLanguage;
+  #sections = [];
+  #now = null;
+
+  /** Empty until `rebuild`; `build` gives the sections in the language in force. */
+  constructor({ button: opener, panel, build, setLanguage }) {
+    this.#button = opener;
+    this.#panel = panel;
+    this.#build = build;
+    this.#setLanguage = setLanguage;
+    opener.onclick = () => this.open();
+    panel.onkeydown = (event) => {
+      // What is typed here is not meant for the view.
+      event.stopPropagation();
+      if (event.key === 'Escape' && !event.defaultPrevented) this.close();
+    };
+  }
+
+  get isOpen() {
+    return !this.#panel.inert;
+  }
+
+  open() {
+    this.#turn(true);
+    this.#showAll();
+    this.#panel.querySelector('.close').focus({ preventScroll: true });
+  }
+
+  close() {
+    if (!this.isOpen) return;
+    // Before it is inert, or the browser takes the focus from it first.
+    this.#button.focus({ preventScroll: true });
+    this.#turn(false);
+  }
+
+  #turn(isOpen) {
+    this.#panel.inert = !isOpen;
+    this.#panel.classList.toggle('open', isOpen);
+    this.#button.ariaExpanded = isOpen;
+  }
+
+  show(now) {
+    this.#now = now;
+    if (this.isOpen) this.#showAll();
+  }
+
+  /** Makes everything anew, in the language in force. */
+  rebuild() {
+    for (const section of this.#sections) section.dispose?.();
+    this.#sections = this.#build();
+    this.#button.title = say('Menu', 'Nabídka');
+    this.#panel.ariaLabel = this.#button.title;
+    const other = language() === 'en' ? 'cs' : 'en';
+    const turn = button(say('Čeština', 'English'), () => this.#setLanguage(other), { quiet: true });
+    turn.lang = other;
+    const close = tool('close', say('Close the menu', 'Zavřít nabídku'), () => this.close());
+    close.classList.add('close');
+    const full = tool('full', say('Full screen', 'Celá obrazovka'), turnFullScreen);
+    const head = element('div', { className: 'head' }, turn, ...(document.fullscreenEnabled ? [full] : []), close);
+    this.#panel.replaceChildren(head, ...this.#sections.map(foldable));
+    if (this.isOpen) turn.focus({ preventScroll: true });
+    if (this.#now) this.show(this.#now);
+  }
+
+  #showAll() {
+    if (!this.#now?.state) return;
+    for (const section of this.#sections) section.show(this.#now);
+  }
+}
+
+function tool(icon, label, act) {
+  return button(label, act, { icon, quiet: true, only: true });
+}
+
+function turnFullScreen() {
+  if (document.fullscreenElement) document.exitFullscreen();
+  else document.documentElement.requestFullscreen();
+}
+
+function foldable({ name, title, content, unfolded: opened }) {
+  const details = element('details', { data: { section: name }, open: unfolded().includes(name) },
+    element('summary', {}, element('h2', {}, title)), element('div', { className: 'content' }, ...content));
+  details.ontoggle = () => {
+    const others = unfolded().filter((other) => other !== name);
+    remember('sections', [...others, ...(details.open ? [name] : [])].join(' '));
+    if (details.open) opened?.();
+  };
+  return details;
+}
+
+function unfolded() {
+  return (recall('sections') ?? 'scene renderer').split(' ');
+}

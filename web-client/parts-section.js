@@ -1,0 +1,279 @@
+import { button, choice, element, selection, toggle } from './controls.js';
+import { say } from './texts.js';
+
+const MOST_SEGMENTS = 5;
+const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB
+const MOST_ROWS = 50; // that are added before somebody asks for more, unless a page has more of them
+const SEARCH_AFTER_MS = 250;
+const SWING_MS = 600;
+
+/** The scene's variants, doors and parts, asked for when somebody looks at them, and anew with each whole state. */
+export function partsSection({ ask, change, report, state }) {
+  let shown = {};
+  let scene;
+  /** What shows a part of the state, and how it is brought up to date. */
+  const followers = new Map();
+
+  const all = say('All parts', 'Všechny díly');
+  const choices = element('div', { className: 'choices' });
+  const tree = element('div');
+  const asInFile = button(say('As in the file', 'Jako v souboru'), () => {
+    swings.clear();
+    change({ nodes: null });
+  });
+
+  function look() {
+    const present = state()?.scene;
+    if (!present || !choices.closest('details').open) return;
+    if (scene !== present) {
+      scene = present;
+      swings.clear();
+      choices.replaceChildren();
+      listParts();
+      loadChoices();
+    }
+    refresh();
+  }
+
+  function follow(made, show) {
+    followers.set(made, show);
+    return made;
+  }
+
+  function refresh() {
+    for (const [made, show] of followers) {
+      if (made.isConnected) show(state());
+      else followers.delete(made);
+    }
+    asInFile.disabled = Object.keys(state().nodes).length === 0;
+  }
+
+  /** Adds rows of what a `tree` message finds, and one for more of them; a list that is gone is left alone. */
+  async function fill(rows, query) {
+    const enough = rows.childElementCount + MOST_ROWS;
+    let { after } = query;
+    try {
+      // A page may be empty, and yet not the last.
+      do {
+        const { nodes, next } = await ask({ type: 'tree', ...query, after });
+        if (!rows.isConnected) return;
+        rows.append(...nodes.filter(({ id, parent }) => parent !== undefined && id !== query.node).map(row));
+        refresh();
+        after = next;
+      } while (after !== undefined && rows.childElementCount < enough);
+    } catch (error) {
+      report(error);
+      return;
+    }
+    if (query.search) {
+      const count = `${rows.childElementCount}${after === undefined ? '' : '+'}`;
+      found.textContent = say(`Found: ${count}`, `Nalezeno: ${count}`);
+    }
+    if (after === undefined) return;
+    const more = element('li', { className: 'buttons' }, button(say('More', 'Další'), () => {
+      more.previousElementSibling.querySelector('[aria-pressed]').focus();
+      more.remove();
+      fill(rows, { ...query, after });
+    }));
+    rows.append(more);
+  }
+
+  function row(node) {
+    const { id } = node;
+    const name = nameOf(node);
+    let active;
+    const choose = button(name, () => change({ selection: { node: state().selection.node === id ? null : id } }),
+      { quiet: true });
+    const see = tool('seen', '', () => change({ nodes: { [id]: { active: !active } } }));
+    const fit = tool('fit', say(`Fit the view to ${name}`, `Přiblížit: ${name}`),
+      () => ask({ type: 'fit', node: id }).catch(report));
+    const line = element('div', { className: 'row' }, choose, see, fit);
+    const item = element('li', {}, line);
+    if (node.children > 0) line.prepend(unfolder(item, id, name));
+
+    let before;
+    return follow(item, ({ nodes, selection: { node: selected } }) => {
+      const changed = nodes[id]?.active;
+      // The answer told what was the case then; an entry differs from the file, which so has the other.
+      if (changed !== undefined) node.active = !changed;
+      active = changed ?? node.active;
+      const now = `${active} ${selected === id}`;
+      if (now === before) return;
+      before = now;
+      choose.ariaPressed = selected === id;
+      item.classList.toggle('off', !active);
+      see.querySelector('use').setAttribute('href', active ? '#icon-seen' : '#icon-hidden');
+      see.title = active ? say(`Hide ${name}`, `Skrýt: ${name}`) : say(`Show ${name}`, `Zobrazit: ${name}`);
+      see.ariaLabel = see.title;
+    });
+  }
+
+  function unfolder(item, id, name) {
+    const label = say(`What ${name} is made of`, `Z čeho je ${name}`);
+    const unfold = tool('open', label, () => {
+      const below = item.querySelector('ul');
+      unfold.ariaExpanded = !below;
+      if (below) below.remove();
+      else fill(item.appendChild(list(label)), { node: id });
+    });
+    unfold.ariaExpanded = false;
+    return unfold;
+  }
+
+  let timer;
+  const field = element('input', {
+    type: 'search', className: 'field', placeholder: say('Search', 'Hledat'), ariaLabel: say('Search', 'Hledat'),
+    autocomplete: 'off',
+    oninput() {
+      clearTimeout(timer);
+      timer = setTimeout(listParts, SEARCH_AFTER_MS);
+    },
+    onkeydown(event) {
+      if (event.key !== 'Escape' || !field.value) return;
+      event.preventDefault(); // the menu stays open
+      clear();
+    },
+  });
+  const box = element('div', { className: 'entry' }, field,
+    tool('close', say('Clear the search', 'Zrušit hledání'), clear));
+  const found = element('p', { className: 'note', role: 'status' });
+
+  function clear() {
+    field.value = '';
+    field.focus();
+    listParts();
+  }
+
+  /** The tree, or what is found instead of it. */
+  function listParts() {
+    clearTimeout(timer);
+    const search = field.value.trim();
+    found.textContent = '';
+    tree.replaceChildren(list(all));
+    fill(tree.firstChild, search ? { search } : {});
+    // Above a keyboard on the screen.
+    if (search) box.scrollIntoView();
+  }
+
+  async function loadChoices() {
+    const asked = scene;
+    try {
+      const switches = await allOf(ask, { only: 'switches' });
+      const doors = await allOf(ask, { only: 'hinges' });
+      if (asked !== scene) return;
+      addChoices(say('Variants', 'Varianty'), variants(switches).map(variant));
+      addChoices(say('Doors', 'Dveře'), doors.map(door));
+      refresh();
+    } catch (error) {
+      report(error);
+    }
+  }
+
+  function addChoices(title, controls) {
+    if (controls.length > 0) choices.append(element('h3', {}, title), ...controls);
+  }
+
+  function variant({ title, switches }) {
+    const present = () => switches.map(({ id, activeChild }) => state().nodes[id]?.activeChild ?? activeChild);
+    const used = [...present(), ...switches.map(({ activeChild }) => activeChild)];
+    const options = switches[0].choices.map((name, i) => [String(i), name || i + 1]);
+    if (used.includes(-1)) options.push(['-1', say('None', 'Nic')]);
+    if (used.includes(-2)) options.push(['-2', say('All', 'Vše')]);
+    const set = async (value) => {
+      for (let i = 0; i < switches.length; i += MOST_SWITCHED) {
+        const some = switches.slice(i, i + MOST_SWITCHED);
+        await change({ nodes: Object.fromEntries(some.map(({ id }) => [id, { activeChild: Number(value) }])) });
+      }
+    };
+    const control = options.length > MOST_SEGMENTS ? selection(title, set) : choice(title, options, set);
+    return follow(control.element, () => {
+      const values = new Set(present());
+      // Where they differ, none of the options is the case.
+      control.show(values.size > 1 ? '' : String(...values), options);
+    });
+  }
+
+  function door(node) {
+    const control = toggle(nameOf(node), (open) => swing(node, Number(open)));
+    return follow(control.element, ({ nodes }) => control.show(Boolean(nodes[node.id]?.matrix)));
+  }
+
+  /** The last swing of each door, by id: {part}, how far it got, from 0 closed to 1. */
+  const swings = new Map();
+
+  async function swing({ id, hinge }, to) {
+    const from = state().nodes[id]?.matrix ? swings.get(id)?.part || 1 : 0;
+    const mine = { part: from };
+    swings.set(id, mine);
+    const start = performance.now();
+    const lasts = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : SWING_MS;
+    let share = 0;
+    while (share < 1) {
+      const now = await new Promise(requestAnimationFrame);
+      if (swings.get(id) !== mine) return;
+      share = Math.min(Math.max((now - start) / lasts, 0), 1);
+      mine.part = from + (to - from) * share * share * (3 - 2 * share);
+      await change({ nodes: { [id]: { matrix: mine.part > 0 ? opened(hinge, mine.part) : null } } });
+    }
+  }
+
+  return {
+    name: 'parts',
+    title: say('Parts', 'Díly'),
+    content: [choices, element('div', { className: 'control' }, element('h3', {}, all), asInFile), box, found, tree],
+    unfolded: look,
+    show(now) {
+      const before = shown;
+      shown = now.state;
+      if (['scene', 'nodes', 'selection'].some((member) => shown[member] !== before[member])) look();
+    },
+  };
+}
+
+function list(label) {
+  return element('ul', { className: 'tree', ariaLabel: label });
+}
+
+function tool(icon, label, act) {
+  return button(label, act, { icon, quiet: true, only: true });
+}
+
+function nameOf({ id, name }) {
+  return name || `#${id}`;
+}
+
+/** Promises all nodes that a `tree` query finds, whose pages are asked for one after the other. */
+async function allOf(ask, query) {
+  const { nodes, next } = await ask({ type: 'tree', ...query });
+  return next === undefined ? nodes : [...nodes, ...(await allOf(ask, { ...query, after: next }))];
+}
+
+/** What there is to choose, as {title, switches}: those that offer the same names together, if none is empty. */
+export function variants(switches) {
+  const groups = new Map();
+  for (const node of switches) {
+    const { id, choices = [] } = node;
+    if (choices.length < 2) continue;
+    const key = choices.every(Boolean) ? JSON.stringify(choices) : id;
+    if (!groups.has(key)) groups.set(key, []);
+    groups.get(key).push(node);
+  }
+  return [...groups.values()].map((group) => ({ title: titleOf(group), switches: group }));
+}
+
+function titleOf(group) {
+  const name = nameOf(group[0]);
+  if (group.every((node) => nameOf(node) === name)) return name;
+  return say(`${group.length} parts`, `Dílů: ${group.length}`);
+}
+
+/** The matrix of a node with that hinge, opened by a part from 0 to 1: closed · rotation, 16 numbers, row by row. */
+export function opened({ axis, degrees, closed }, part) {
+  const matrix = new DOMMatrix(transposed(closed)).rotateAxisAngleSelf(...axis, part * degrees);
+  return transposed([...matrix.toFloat64Array()]);
+}
+
+/** A DOMMatrix is read and told column by column. */
+function transposed(matrix) {
+  return matrix.map((_, i) => matrix[4 * (i % 4) + Math.floor(i / 4)]);
+}

@@ -1,0 +1,157 @@
+/** `buttons` */
+const RIGHT = 2;
+const MIDDLE = 4;
+
+/** Pixels, lines and pages of a wheel's step. */
+const WHEEL_STEPS = [100, 3, 1 / 3];
+/** What moves the camera otherwise: drags begin anew there. */
+const OTHER_MOVES = new Set(['keydown', 'patch', 'fit', 'fly']);
+
+/**
+ * @typedef {{scale: number, x: number, y: number}} Similarity a point p of the picture, measured from the view's
+ *   middle in its CSS pixels, goes to scale · p + (x, y)
+ */
+const NONE = { scale: 1, x: 0, y: 0 };
+
+/**
+ * What messages will do to the picture that does not show them yet: two fingers, the wheel, and in the style `vrut`
+ * right and middle drags, as in the server's Gestures but without limits. All else waits for the next picture.
+ */
+export class Prediction {
+  #navigation = {};
+  #steers = false;
+  /** The header of the picture shown. */
+  #shown = null;
+  /** From the picture shown to what the last message makes of it, and where the drag began. */
+  #now = NONE;
+  #start = NONE;
+  /** Where the messages lead that the picture does not show: {id, now}. */
+  #pending = [];
+  /** The pressed pointers: {touches, buttons, start, place}. */
+  #pressed = new Map();
+  #lastId = 0;
+  /** Nothing is told before a picture shows this message. */
+  #blindUntil = 0;
+
+  /** @returns {?Similarity} where the picture shown is to be moved; null: it is in its place */
+  get transform() {
+    const { scale, x, y } = this.#now;
+    const isMoved = scale !== 1 || x !== 0 || y !== 0;
+    return isMoved && this.#steers && this.#shown?.handled >= this.#blindUntil ? this.#now : null;
+  }
+
+  /** The state document as last heard, and whether this page steers. */
+  follow({ navigation = {} }, steers) {
+    this.#navigation = navigation;
+    if (this.#steers && !steers) this.forget();
+    this.#steers = steers;
+  }
+
+  sent(message) {
+    const { id, type, deltaY, deltaMode } = message;
+    this.#lastId = id;
+    const before = this.#now;
+    if (type.startsWith('pointer')) this.#pointer(message);
+    if (type === 'wheel') {
+      this.#now = zoomed(before, 1.1 ** (-deltaY / WHEEL_STEPS[deltaMode]), this.#navigation.zoomSpeed);
+    }
+    if (type === 'wheel' || OTHER_MOVES.has(type)) this.#restart();
+    if (this.#now !== before) this.#pending.push({ id, now: this.#now });
+  }
+
+  drawn(header) {
+    const before = this.#shown;
+    this.#shown = header;
+    const { handled, view } = header;
+    const isOtherView = view.width !== before?.view.width || view.height !== before.view.height;
+    if (isOtherView || (handled === before.handled && poseOf(header) !== poseOf(before))) {
+      this.#giveUp();
+      return;
+    }
+    const base = this.#pending.findLast(({ id }) => id <= handled)?.now ?? NONE;
+    this.#pending = this.#pending.filter(({ id }) => id > handled);
+    for (const step of this.#pending) step.now = since(base, step.now);
+    this.#now = since(base, this.#now);
+    this.#start = since(base, this.#start);
+  }
+
+  /** The connection is lost, or the server does not take this page's input. */
+  forget() {
+    this.#pressed.clear();
+    this.#giveUp();
+  }
+
+  /** What is not shown yet is left to the pictures. */
+  #giveUp() {
+    this.#pending = [];
+    this.#now = NONE;
+    this.#blindUntil = this.#lastId;
+    this.#restart();
+  }
+
+  #restart() {
+    this.#start = this.#now;
+    for (const held of this.#pressed.values()) held.start = held.place;
+  }
+
+  #pointer({ type, pointerId, pointerType, x, y, buttons }) {
+    const pressed = this.#pressed;
+    const place = { x, y };
+    if (type === 'pointerdown') {
+      pressed.delete(pointerId);
+      if (pressed.size === 2) return; // a third finger
+      pressed.set(pointerId, { touches: pointerType === 'touch', buttons, place });
+      this.#restart();
+      return;
+    }
+    const held = pressed.get(pointerId);
+    if (!held) return;
+    if (type !== 'pointercancel') {
+      held.place = place;
+      this.#now = this.#dragged();
+    }
+    if (type !== 'pointermove' || buttons === 0) pressed.delete(pointerId);
+    else if (buttons === held.buttons) return;
+    held.buttons = buttons;
+    this.#restart();
+  }
+
+  #dragged() {
+    const { panSpeed, zoomSpeed, style } = this.#navigation;
+    const [a, b] = this.#pressed.values();
+    const x = a.place.x - a.start.x;
+    const y = a.place.y - a.start.y;
+    if (a.touches && b?.touches) {
+      const pinched = zoomed(this.#start, span(a.place, b.place) / span(a.start, b.start), zoomSpeed);
+      return panned(pinched, (x + b.place.x - b.start.x) / 2, (y + b.place.y - b.start.y) / 2, panSpeed);
+    }
+    if (b || style !== 'vrut') return this.#start;
+    if (a.buttons === RIGHT) return panned(this.#start, x, y, panSpeed);
+    if (a.buttons === MIDDLE) return zoomed(this.#start, 4 ** (-y / this.#shown?.view.height), zoomSpeed);
+    return this.#start;
+  }
+}
+
+function panned({ scale, x, y }, right, down, speed) {
+  return { scale, x: x + right * speed, y: y + down * speed };
+}
+
+function zoomed({ scale, x, y }, ratio, speed) {
+  const factor = ratio ** speed;
+  return { scale: scale * factor, x: x * factor, y: y * factor };
+}
+
+/** From where `base` leads to where `now` does. */
+function since(base, now) {
+  const scale = now.scale / base.scale;
+  return { scale, x: now.x - scale * base.x, y: now.y - scale * base.y };
+}
+
+/** Fingers on the same pixel would divide by zero. */
+function span(a, b) {
+  return Math.max(Math.hypot(a.x - b.x, a.y - b.y), 1);
+}
+
+function poseOf({ camera: { eye, focus, up, fov } }) {
+  return String([eye, focus, up, fov]);
+}

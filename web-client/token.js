@@ -1,0 +1,19 @@
+import { tokenFrom } from './connection.js';
+import { recall, remember } from './memory.js';
+
+/** The token to say hello with: the address's, or else, as an installed page has none there, the last accepted. */
+export class Token {
+  constructor(hash) {
+    const token = tokenFrom(hash);
+    this.inAddress = token !== undefined;
+    this.value = token ?? recall('token') ?? undefined;
+  }
+
+  accepted() {
+    if (this.inAddress) remember('token', this.value);
+  }
+
+  refused() {
+    if (recall('token') === this.value) remember('token', null);
+  }
+}

@@ -1,0 +1,129 @@
+import { button, byName, element, joined } from './controls.js';
+import { rows } from './rows.js';
+import { say } from './texts.js';
+
+const FLIGHT_MS = 600;
+
+/** Where to look from, and at what: saved views, cameras, markers. @returns {import('./menu.js').Section} */
+export function viewsSection(page) {
+  const { ask, report, state } = page;
+  const tell = (message) => ask(message).catch(report);
+  const fly = (camera) => tell({ type: 'fly', keyframes: [{ at: FLIGHT_MS, camera }] });
+  const parts = joined([savedViews, cameras, markers].map((part) => part({ ...page, tell, fly })));
+  const home = button(say('Home', 'Výchozí pohled'), () => fly(state().views.home), { icon: 'home' });
+  const fit = button('', () => tell({ type: 'fit', node: state().selection.node }), { icon: 'fit' });
+  return {
+    name: 'views',
+    title: say('Views', 'Pohledy'),
+    content: [element('div', { className: 'buttons' }, home, fit), ...parts.content],
+    show(now) {
+      fit.lastChild.data = now.state.selection.node === undefined
+        ? say('Fit the scene', 'Celá scéna') : say('Fit the part', 'Celý díl');
+      parts.show(now);
+    },
+  };
+}
+
+function savedViews({ tell, fly, change, report, state }) {
+  const list = places(say('Saved views', 'Uložené pohledy'),
+    say('No view is saved yet.', 'Zatím není uložen žádný pohled.'),
+    (name) => fly(state().views[name]), (name) => change({ views: { [name]: null } }));
+  const entry = field(say('Name of the view', 'Název pohledu'), say('Save view', 'Uložit pohled'), (name) => {
+    // What is there would stay as it is.
+    if (Object.hasOwn(state().views, name)) {
+      return report(new Error(say(`There is a view “${name}” already.`, `Pohled „${name}“ už existuje.`)));
+    }
+    return tell({ type: 'patch', patch: { views: { [name]: {} } } });
+  });
+  return {
+    content: [...list.content, entry.element],
+    show({ state: { views } }) {
+      const names = Object.keys(views).filter((name) => name !== 'home');
+      list.show(names.map((name) => [name, { text: name }]));
+      entry.show(unusedName(say('View', 'Pohled'), names));
+    },
+  };
+}
+
+function cameras({ change }) {
+  const list = places(say('Cameras of the scene', 'Kamery scény'),
+    say('The scene has no cameras.', 'Scéna nemá kamery.'), (id) => change({ camera: { node: Number(id) } }));
+  return {
+    ...list,
+    show({ state: { cameras: all, camera } }) {
+      const entries = Object.entries(all);
+      list.show(entries.map(([id, { name }]) => [id, { text: name || `#${id}`, used: camera.node === Number(id) }]));
+    },
+  };
+}
+
+function markers({ tell, fly, change, report, state, header }) {
+  const list = places(say('Markers', 'Značky'), say('There is no marker yet.', 'Zatím tu není žádná značka.'),
+    (name) => fly(lookingAt(state().camera, header().markers[name])), (name) => change({ markers: { [name]: null } }));
+  const mark = async (text) => {
+    const { frame, view } = header() ?? {};
+    const picked = view && await tell({ type: 'pick', x: view.width / 2, y: view.height / 2, frame });
+    if (!picked) return false;
+    if (!picked.point) {
+      return report(new Error(say('There is no part in the middle of the view.', 'Uprostřed pohledu není žádný díl.')));
+    }
+    const name = unusedName('marker', Object.keys(state().markers));
+    return tell({ type: 'patch', patch: { markers: { [name]: { ...placeOf(picked), text } } } });
+  };
+  const entry = field(say('Text of the marker', 'Text značky'), say('Mark the middle', 'Označit střed'), mark);
+  return {
+    content: [...list.content, entry.element],
+    show({ state: { markers: all }, header: drawn }) {
+      const entries = Object.entries(all)
+        .map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.markers?.[name] }]);
+      list.show(entries);
+      entry.show(unusedName(say('Marker', 'Značka'), entries.map(([, { text }]) => text)));
+    },
+  };
+}
+
+/** A list of buttons that go there, and with `remove` those that delete. */
+function places(title, none, go, remove) {
+  const list = rows(title, none, (key) => {
+    const there = button('', () => go(key));
+    const away = button('', () => remove(key), { icon: 'remove', quiet: true, only: true });
+    const show = ({ text, used, lost = false }) => {
+      there.lastChild.data = text;
+      Object.assign(there, { ariaPressed: used, disabled: lost });
+      away.ariaLabel = away.title = say(`Delete ${text}`, `Smazat ${text}`);
+    };
+    return { children: remove ? [there, away] : [there], show };
+  });
+  return {
+    content: [element('h3', {}, title), list.element],
+    show: (entries) => list.show(entries.sort(([, a], [, b]) => byName(a.text, b.text))),
+  };
+}
+
+/** Adds what is typed, or else what it shows; `add` gives nothing where that fails. */
+function field(label, action, add) {
+  const input = element('input', { ariaLabel: label });
+  const form = element('form', { className: 'entry' }, input, element('button', {}, action));
+  form.onsubmit = async (event) => {
+    event.preventDefault();
+    if (await add(input.value.trim() || input.placeholder)) input.value = '';
+  };
+  return { element: form, show: (placeholder) => Object.assign(input, { placeholder }) };
+}
+
+/** Where a marker is to be: if the server tells it, in the part's own space, to move with the part. */
+export function placeOf({ node, point, local }) {
+  return local ? { node, point: local } : { point };
+}
+
+/** The camera looking at a place and turning about it, in the same direction and from as far. */
+export function lookingAt({ eye, focus }, place) {
+  return { eye: eye.map((x, i) => x + (place[i] - focus[i])), focus: place, center: place };
+}
+
+/** A word with the first number that none of the names has. */
+export function unusedName(word, names) {
+  let number = 1;
+  while (names.includes(`${word} ${number}`)) number += 1;
+  return `${word} ${number}`;
+}
