@@ -2,8 +2,6 @@
 
 #include <spdlog/spdlog.h>
 
-#include <future>
-
 #include "codec.hpp"
 #include "renderer.hpp"
 
@@ -18,6 +16,7 @@ constexpr int kMostSnapshots = 2;  // of a client, waiting
 constexpr std::chrono::milliseconds kFlightStep{16};
 constexpr std::size_t kBegunRemembered = 16;
 constexpr std::chrono::seconds kBetweenListings{1};  // of the folder of scenes
+constexpr std::chrono::milliseconds kWaitsForListing{20};
 
 /// "" where it is of none.
 std::string client_of(const EngineEvent& event) {
@@ -257,13 +256,20 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     return std::nullopt;
 }
 
-/// Listed anew once a second at most: a walk takes up to 100 ms, and clients may ask by the thousand.
+/// Listed anew once a second at most, and not by this thread: the folder may lie on a slow disk. Where that
+/// takes long, the list before is told.
 const std::vector<std::string>& Engine::scenes() {
     const Clock::time_point now = Clock::now();
-    if (!scenes_listed_ || now - *scenes_listed_ >= kBetweenListings) {
-        scenes_ = library_.names();
-        scenes_listed_ = Clock::now();
+    std::chrono::milliseconds patience{0};
+    if (!listing_.valid() && now >= list_again_) {
+        std::packaged_task<std::vector<std::string>()> walk([library = library_] { return library.names(); });
+        listing_ = walk.get_future();
+        std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
+        list_again_ = now + kBetweenListings;
+        patience = kWaitsForListing;
     }
+    if (listing_.valid() && listing_.wait_for(patience) == std::future_status::ready)
+        scenes_ = listing_.get();
     return scenes_;
 }
 

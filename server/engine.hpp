@@ -3,6 +3,7 @@
 #include <atomic>
 #include <deque>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <string>
@@ -144,8 +145,9 @@ private:
     LoadedScene with_notices(LoadedScene scene) const;
 
     SceneLibrary library_;
-    std::vector<std::string> scenes_;  ///< as they were listed last
-    std::optional<Clock::time_point> scenes_listed_;
+    std::vector<std::string> scenes_;                ///< as they were listed last
+    std::future<std::vector<std::string>> listing_;  ///< one that is being made
+    Clock::time_point list_again_{};
     std::filesystem::path record_folder_;
     Metrics& metrics_;
     EngineCallbacks callbacks_;

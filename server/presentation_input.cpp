@@ -14,6 +14,7 @@ namespace code = protocol::error_code;
 namespace {
 
 constexpr std::size_t kLongestPath = 32;
+constexpr double kLeastDeterminant = 1e-12;  // below it a node is flattened, as for the picture
 
 PointerInput input_of(const std::string& client, const protocol::Pointer& pointer) {
     PointerInput input;
@@ -104,9 +105,11 @@ void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     if (const auto& hit = seen->hit) {
         const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
         picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
-        const glm::dmat4 node_from_world = glm::inverse(scene_->world[static_cast<std::size_t>(hit->node)]);
-        const glm::dvec3 local(node_from_world * glm::dvec4(hit->point, 1));
-        if (std::isfinite(local.x + local.y + local.z)) picked.local = local;  // else it is flat
+        const glm::dmat4& world_from_node = scene_->world[static_cast<std::size_t>(hit->node)];
+        if (std::abs(relative_determinant(glm::dmat3(world_from_node))) > kLeastDeterminant) {
+            const glm::dvec3 local(glm::inverse(world_from_node) * glm::dvec4(hit->point, 1));
+            if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
+        }
     }
     answer_with(said, picked);
 }

@@ -49,6 +49,12 @@ tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) 
     return file;
 }
 
+/// What is opened is the link's target, which may have another ending.
+bool SceneLibrary::leads_to_scene(const std::string& link) const {
+    const auto file = find(link);
+    return file && has_reader(*file);
+}
+
 std::vector<std::string> SceneLibrary::names() const {
     std::vector<std::string> names;
     if (folder_.empty()) return names;
@@ -67,7 +73,7 @@ std::vector<std::string> SceneLibrary::names() const {
             const bool link = entry->is_symlink(ignored);
             if (!link && entry->is_directory(ignored))
                 folders.push_back(below);
-            else if (has_reader(below) && (link ? find(name).has_value() : entry->is_regular_file(ignored)))
+            else if (link ? leads_to_scene(name) : has_reader(below) && entry->is_regular_file(ignored))
                 names.push_back(name);
         }
     }

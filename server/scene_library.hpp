@@ -31,6 +31,8 @@ public:
     std::vector<std::string> names() const;
 
 private:
+    bool leads_to_scene(const std::string& link) const;
+
     std::filesystem::path folder_;
 };
 

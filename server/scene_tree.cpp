@@ -9,6 +9,7 @@ namespace {
 
 constexpr std::size_t kMostNodes = 500, kMostBytes = std::size_t{64} * 1024;  // of a page
 constexpr int kMostVisited = 5'000;
+constexpr std::size_t kMostChoiceBytes = std::size_t{16} * 1024;  // of one switch
 
 const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_cast<std::size_t>(index)]; }
 
@@ -63,6 +64,19 @@ bool is_wanted(const Node& node, const protocol::Tree& tree) {
     return tree.search.empty() || holds(node.name, tree.search);
 }
 
+/// The children's names; none where there are too many of them, or too much to read.
+std::optional<std::vector<std::string>> choices_of(const Scene& scene, const Node& node) {
+    if (node.children.size() > protocol::kMaxChoices) return std::nullopt;
+    std::vector<std::string> names;
+    std::size_t bytes = 0;
+    for (const Index child : node.children) {
+        bytes += at(scene, child).name.size();
+        if (bytes > kMostChoiceBytes) return std::nullopt;
+        names.push_back(at(scene, child).name);
+    }
+    return names;
+}
+
 protocol::TreeNode describe(const PlacedScene& placed, Index index) {
     const Scene& scene = *placed.scene;
     const Node& node = at(scene, index);
@@ -78,10 +92,7 @@ protocol::TreeNode describe(const PlacedScene& placed, Index index) {
     if (node.hinge) described.hinge = {unit_axis(*node.hinge), node.hinge->degrees, node.matrix};
     if (const auto* data = std::get_if<SwitchData>(&node.data)) {
         described.active_child = data->active_child;
-        if (node.children.size() <= protocol::kMaxChoices) {
-            described.choices.emplace();
-            for (const Index child : node.children) described.choices->push_back(at(scene, child).name);
-        }
+        described.choices = choices_of(scene, node);
     }
     if (const auto* data = std::get_if<GeometryData>(&node.data)) {
         if (data->geometry != kNone)

@@ -108,10 +108,13 @@ TEST_CASE("of links those are named that stay in the folder, and no folders") {
     fs::create_symlink(folder / "room.vrut", folder / "inside.vrut");
     fs::create_directory_symlink(outer.path(), folder / "up");
     fs::create_directory_symlink(folder, folder / "loop");
-    CHECK(SceneLibrary(folder).names() == std::vector<std::string>{"inside.vrut", "room.vrut"});
+    outer.write("scenes/notes.txt", "no scene");
+    fs::create_symlink(folder / "notes.txt", folder / "notes.vrut");  // what is opened is the target
+    fs::create_symlink(folder / "room.vrut", folder / "current");
+    CHECK(SceneLibrary(folder).names() == std::vector<std::string>{"current", "inside.vrut", "room.vrut"});
     fs::create_directory_symlink(folder, outer.path() / "link");
     CHECK(SceneLibrary(outer.path() / "link").names() ==
-          std::vector<std::string>{"inside.vrut", "room.vrut"});
+          std::vector<std::string>{"current", "inside.vrut", "room.vrut"});
 }
 
 TEST_CASE("no more names come than a list may have, and a walk ends") {

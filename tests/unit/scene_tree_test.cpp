@@ -230,6 +230,9 @@ TEST_CASE("a switch of very many children is no choice") {
     for (Id id = 2; id < 2 + static_cast<Id>(protocol::kMaxChoices); ++id) nodes.push_back(part(id, 1));
     CHECK(page_of(placed(nodes), asked(R"("only":"switches")")).nodes[0].choices->size() ==
           protocol::kMaxChoices);
+    auto long_winded = nodes;
+    long_winded[1].node.name = std::string(17'000, 'x');
+    CHECK(!page_of(placed(long_winded), asked(R"("only":"switches")")).nodes[0].choices);
     nodes.push_back(part(1000, 1));
     CHECK(!page_of(placed(nodes), asked(R"("only":"switches")")).nodes[0].choices);
 }

@@ -285,7 +285,24 @@ test('a marker at what was picked goes with its part', async (t) => {
   near(local, [(point[0] - 1) / 2, point[1] / 2, point[2] / 2], 'in the space of the node, which is twice as large');
   await client.patch({ markers: { Bolt: { node, point: local } } });
   near((await now()).markers.Bolt, point, 'where it was picked');
+  const FLAT = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1];
+  for (const angle of [0.1, 0.2, 0.3, 0.4]) {
+    // By rounding its determinant may be anything near zero.
+    await client.patch({ nodes: { 4: { matrix: times(times(turned(angle), FLAT), turned(angle)) } } });
+    const picked = await client.ask({ type: 'pick', x: 256, y: 150 });
+    assert.deepEqual([picked.node, picked.local], [4, undefined], 'a flattened part has no space of its own');
+  }
   await client.patch({ markers: null, nodes: null });
 });
+
+/** About y and x. */
+function turned(angle) {
+  const [c, s] = [Math.cos(angle), Math.sin(angle)];
+  return times([c, 0, s, 0, 0, 1, 0, 0, -s, 0, c, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, c, -s, 0, 0, s, c, 0, 0, 0, 0, 1]);
+}
+
+function times(a, b) {
+  return a.map((_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[i - (i % 4) + k] * b[4 * k + (i % 4)], 0));
+}
 
 schemaTest(server);
