@@ -1,12 +1,12 @@
 /** Keeps the screen on while that is wanted and the page is to be seen, where the browser can. */
 export class Awake {
   #wanted = false;
-  /** A promise of the lock, or of null where it is refused. */
+  /** A promise of the lock. */
   #lock = null;
 
   constructor() {
-    // The browser takes a lock back from a page that is hidden.
-    document.addEventListener('visibilitychange', () => this.#update());
+    // A hidden page loses its lock; Safari gives one to a touch only.
+    for (const type of ['visibilitychange', 'touchend']) document.addEventListener(type, () => this.#update());
   }
 
   set wanted(wanted) {
@@ -16,7 +16,9 @@ export class Awake {
 
   #update() {
     if (this.#wanted && !document.hidden) {
-      this.#lock ??= navigator.wakeLock?.request('screen').catch(() => null);
+      this.#lock ??= navigator.wakeLock?.request('screen').catch(() => {
+        this.#lock = null;
+      });
     } else {
       this.#lock?.then((lock) => lock?.release());
       this.#lock = null;

@@ -5,7 +5,7 @@ const LARGEST_SIDE = 8192;
 const MEASURES_EVERY_MS = 500;
 const KEEPS_FILE_MS = 60_000;
 
-/** Who steers, how pictures come, and what the server does besides. @returns {import('./menu.js').Section} */
+/** Who steers, how pictures come, and what the server does besides. */
 export function connectionSection({ change, ask, report, meter, state, header }) {
   const tell = (message) => ask(message).catch(report);
   const others = scenes(tell);
@@ -24,8 +24,8 @@ function steering(tell) {
     watchers: say('Of these only watching', 'Z toho jen sleduje'),
   });
   const control = (action) => () => tell({ type: 'control', action });
-  const take = button(say('Take and keep', 'Převzít řízení'), control('take'), { icon: 'hand' });
-  const release = button(say('Release', 'Vrátit řízení'), control('release'));
+  const take = button(say('Take and keep', 'Převzít a podržet'), control('take'), { icon: 'hand' });
+  const release = button(say('Release', 'Uvolnit řízení'), control('release'));
   const heading = element('h3', {}, say('Walls', 'Stěny'));
   const walls = element('dl', { className: 'facts' });
   return {
@@ -33,8 +33,8 @@ function steering(tell) {
     show({ state, stats, client, steers, revision }) {
       const { hosts = {}, ...counts } = stats ?? {};
       about.show({ ...counts, holder: holderWords(state.control, client) });
-      take.disabled = steers && state.control.kept;
-      release.disabled = !steers;
+      take.ariaDisabled = steers && state.control.kept;
+      release.ariaDisabled = !steers;
       const lines = Object.entries(hosts).map(([id, host]) =>
         fact(host.name || clientWords(id), element('dd', {}, hostWords(host, revision))));
       heading.hidden = lines.length === 0;
@@ -133,7 +133,7 @@ function scenes(tell) {
 export function holderWords({ holder, name, kept } = {}, client) {
   if (!holder) return say('Nobody', 'Nikdo');
   if (holder !== client) return name || clientWords(holder);
-  return kept ? say('You, until you release it', 'Vy, dokud řízení nevrátíte') : say('You', 'Vy');
+  return kept ? say('You, until you release it', 'Vy, dokud řízení neuvolníte') : say('You', 'Vy');
 }
 
 function clientWords(id) {

@@ -65,7 +65,7 @@ export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPict
     case 'waiting':
       return [
         whole(reason || (hadOpened
-          ? say('The connection to the server is lost.', 'Spojení se serverem se ztratilo.')
+          ? say('The connection to the server is lost.', 'Spojení se serverem bylo přerušeno.')
           : say('The server does not answer.', 'Server neodpovídá.'))),
         hadOpened || seconds === 0
           ? say('Trying again…', 'Zkouší se znovu…')

@@ -40,7 +40,9 @@ const connection = new Connection({
   url: socketAddress(document.baseURI),
   hello: {
     role: roleFrom(location.hash),
-    name: /iPad|iPhone|Android|Windows|Mac|Linux/.exec(navigator.userAgent)?.[0],
+    // An iPad says that it is a Mac.
+    name: /iPhone|Android|Windows|Mac|Linux(?!; A)/.exec(navigator.userAgent)?.[0]
+      .replace('Mac', navigator.maxTouchPoints > 1 ? 'iPad' : 'Mac'),
     token: token.value,
   },
   on: {
@@ -52,9 +54,10 @@ const connection = new Connection({
       input.enabled = awake.wanted = controls;
       meter.forgetSent();
       prediction.forget();
-      if (phase.name === 'refused') token.refused();
+      lines.hold('loading', '');
       if (phase.name === 'open') {
-        token.accepted();
+        // A link to watch is not to take the presenter's place.
+        if (controls || !recall('token')) token.accepted();
         find('menu-button').hidden = !controls;
         if (!controls) menu.close();
       }

@@ -7,10 +7,10 @@ import { language, say } from './texts.js';
  *
  * @typedef {{state: ?object, revision: number, header: ?object, stats: ?object, client?: string, steers: boolean}} Now
  *
- * A folding part of the menu, told when it has been opened and before it is built anew.
+ * A folding part of the menu, told when it has been opened.
  *
  * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now) => void,
- *   unfolded?: () => void, dispose?: () => void}} Section
+ *   unfolded?: () => void}} Section
  */
 
 /** The panel of folding sections, and the button that opens it. */
@@ -66,7 +66,6 @@ export class Menu {
 
   /** Makes everything anew, in the language in force. */
   rebuild() {
-    for (const section of this.#sections) section.dispose?.();
     this.#sections = this.#build();
     this.#button.title = say('Menu', 'Nabídka');
     this.#panel.ariaLabel = this.#button.title;

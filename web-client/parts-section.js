@@ -3,7 +3,7 @@ import { say } from './texts.js';
 
 const MOST_SEGMENTS = 5;
 const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB
-const MOST_ROWS = 50; // that are added before somebody asks for more, unless a page has more of them
+const MOST_ROWS = 50; // before somebody asks for more, or as a page has them
 const SEARCH_AFTER_MS = 250;
 const SWING_MS = 600;
 
@@ -17,9 +17,10 @@ export function partsSection({ ask, change, report, state }) {
   const all = say('All parts', 'Všechny díly');
   const choices = element('div', { className: 'choices' });
   const tree = element('div');
-  const asInFile = button(say('As in the file', 'Jako v souboru'), () => {
+  const asInFile = button(say('As in the file', 'Jako v souboru'), async () => {
     swings.clear();
-    change({ nodes: null });
+    await change({}); // by itself, or what waits with it would take its place
+    ask({ type: 'patch', patch: { nodes: null } }).catch(report);
   });
 
   function look() {
@@ -45,7 +46,7 @@ export function partsSection({ ask, change, report, state }) {
       if (made.isConnected) show(state());
       else followers.delete(made);
     }
-    asInFile.disabled = Object.keys(state().nodes).length === 0;
+    asInFile.ariaDisabled = Object.keys(state().nodes).length === 0;
   }
 
   /** Adds rows of what a `tree` message finds, and one for more of them; a list that is gone is left alone. */
@@ -122,7 +123,7 @@ export function partsSection({ ask, change, report, state }) {
 
   let timer;
   const field = element('input', {
-    type: 'search', className: 'field', placeholder: say('Search', 'Hledat'), ariaLabel: say('Search', 'Hledat'),
+    type: 'search', placeholder: say('Search', 'Hledat'), ariaLabel: say('Search', 'Hledat'),
     autocomplete: 'off',
     oninput() {
       clearTimeout(timer);
@@ -202,7 +203,7 @@ export function partsSection({ ask, change, report, state }) {
   const swings = new Map();
 
   async function swing({ id, hinge }, to) {
-    const from = state().nodes[id]?.matrix ? swings.get(id)?.part || 1 : 0;
+    const from = state().nodes[id]?.matrix ? swings.get(id)?.part ?? 1 : 0;
     const mine = { part: from };
     swings.set(id, mine);
     const start = performance.now();
@@ -210,7 +211,7 @@ export function partsSection({ ask, change, report, state }) {
     let share = 0;
     while (share < 1) {
       const now = await new Promise(requestAnimationFrame);
-      if (swings.get(id) !== mine) return;
+      if (swings.get(id) !== mine || state().scene !== scene) return;
       share = Math.min(Math.max((now - start) / lasts, 0), 1);
       mine.part = from + (to - from) * share * share * (3 - 2 * share);
       await change({ nodes: { [id]: { matrix: mine.part > 0 ? opened(hinge, mine.part) : null } } });

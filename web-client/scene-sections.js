@@ -3,7 +3,7 @@ import { say, written } from './texts.js';
 
 const STYLES = [['vrut', 'VRUT'], ['maya', 'Maya'], ['catia', 'CATIA'], ['cinema4d', 'Cinema 4D']];
 
-/** The five sections of the thesis (chapter 6.9), bound to the state. @returns {import('./menu.js').Section[]} */
+/** The five sections of the thesis (chapter 6.9), bound to the state. */
 export function sceneSections({ change, state }) {
   return [scene(), renderer(change), camera(change), light(change, state), background(change, state)];
 }

@@ -15,9 +15,9 @@ export function say(english, czech) {
   return current === 'cs' ? czech : english;
 }
 
-/** Says words by their key in a table of [English, Czech]; `{name}` in them stands for a value. */
+/** Says words by their key in a table of [English, Czech]. */
 export function texts(table) {
-  return (key, values = {}) => say(...table[key]).replace(/\{(\w+)\}/g, (_, name) => values[name]);
+  return (key) => say(...table[key]);
 }
 
 /** A number as the language writes it; `digits` behind the decimal sign, at most. */

@@ -12,8 +12,4 @@ export class Token {
   accepted() {
     if (this.inAddress) remember('token', this.value);
   }
-
-  refused() {
-    if (recall('token') === this.value) remember('token', null);
-  }
 }

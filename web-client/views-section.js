@@ -4,7 +4,7 @@ import { say } from './texts.js';
 
 const FLIGHT_MS = 600;
 
-/** Where to look from, and at what: saved views, cameras, markers. @returns {import('./menu.js').Section} */
+/** Where to look from, and at what: saved views, cameras, markers. */
 export function viewsSection(page) {
   const { ask, report, state } = page;
   const tell = (message) => ask(message).catch(report);

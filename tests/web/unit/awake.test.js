@@ -22,6 +22,7 @@ function setUp() {
   const wakeLock = {
     async request(type) {
       assert.equal(type, 'screen');
+      if (page.refuses) throw new Error('NotAllowedError');
       const lock = Object.assign(new EventTarget(), { released: false });
       lock.release = async () => {
         lock.released = true;
@@ -82,4 +83,18 @@ test('a browser without locks, or that refuses one, is left alone', async () => 
     await settled();
     restore();
   }
+});
+
+test('a browser that wants a touch first is asked again after one', async () => {
+  const page = setUp();
+  page.refuses = true;
+  page.awake.wanted = true;
+  await settled();
+  page.refuses = false;
+  page.document.dispatchEvent(new Event('touchend'));
+  await settled();
+  assert.equal(page.held().length, 1);
+  page.document.dispatchEvent(new Event('touchend'));
+  await settled();
+  assert.equal(page.locks.length, 1);
 });

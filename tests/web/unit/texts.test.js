@@ -21,11 +21,11 @@ const LITERAL = /('(?:[^'\\\n]|\\.)*'|`(?:[^`\\]|\\.)*`)/.source;
 const PAIR = new RegExp(`\\bsay\\(\\s*${LITERAL},\\s*${LITERAL},?\\s*\\)`, 'g');
 
 test('words are said in the language in force', () => {
-  const say = texts({ hello: ['Hello {name}, {name}', 'Ahoj {name}'] });
-  assert.equal(say('hello', { name: 'Jan' }), 'Hello Jan, Jan');
+  const word = texts({ hello: ['Hello', 'Ahoj'] });
+  assert.equal(word('hello'), 'Hello');
   setLanguage('cs');
   assert.equal(language(), 'cs');
-  assert.equal(say('hello', { name: '$1' }), 'Ahoj $1');
+  assert.equal(word('hello'), 'Ahoj');
   setLanguage('de');
   assert.equal(language(), 'en');
 });
@@ -49,7 +49,6 @@ test('every module with words was found', () => {
 });
 
 const sorted = (parts) => [...new Set(parts)].sort();
-const placeholders = (text) => sorted([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name));
 const values = (literal) => sorted(literal.match(/\$\{[^}]*\}/g) ?? []);
 
 for (const { name, source } of importing('say')) {
@@ -69,7 +68,6 @@ for (const [module, table] of tables) {
     for (const [key, words] of Object.entries(table)) {
       assert.equal(words.length, 2, key);
       for (const text of words) assert.ok(typeof text === 'string' && text.trim() === text && text !== '', `${key}: '${text}'`);
-      assert.deepEqual(placeholders(words[0]), placeholders(words[1]), key);
     }
   });
 

@@ -19,7 +19,6 @@ test('there may be none', () => {
   assert.equal(token.value, undefined);
   assert.equal(token.inAddress, false);
   token.accepted();
-  token.refused();
   assert.equal(storage.items.size, 0);
 });
 
@@ -34,19 +33,15 @@ test('the address\'s is remembered once the server has accepted it', () => {
   assert.equal(new Token('#watch').value, 'new');
 });
 
-test('the remembered one is forgotten when it is refused', () => {
+test('without one in the address the remembered one is said', () => {
   remember('token', 'old');
   const token = new Token('');
   assert.equal(token.value, 'old');
   assert.equal(token.inAddress, false);
-  token.refused();
-  assert.equal(new Token('').value, undefined);
 });
 
 test('a wrong one in the address does not cost the good one', () => {
   remember('token', 'good');
-  new Token('#token=wrong').refused();
+  assert.equal(new Token('#token=wrong').value, 'wrong');
   assert.equal(new Token('').value, 'good');
-  new Token('#token=good').refused();
-  assert.equal(new Token('').value, undefined);
 });
