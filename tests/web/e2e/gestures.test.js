@@ -1,0 +1,159 @@
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import { assertPanned, assertTurned, assertZoomed, pose } from './camera.js';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, difference, launchBrowser } from './tablet.js';
+
+const SIZES = {
+  'a tablet': { width: 1180, height: 820, pixelRatio: 2 },
+  'an upright tablet': { width: 820, height: 1180, pixelRatio: 2 },
+  'a phone': { width: 390, height: 844, pixelRatio: 3 },
+};
+/** Of 255: by less than this a picture differs from itself, refined or compressed anew. */
+const VISIBLE = 6;
+const LONGER_THAN_A_TAP_MS = 400;
+
+let browser;
+
+before(async () => {
+  if (!browserIsMissing) browser = await launchBrowser();
+});
+
+after(() => browser?.close());
+
+for (const [name, size] of Object.entries(SIZES)) {
+  describe(`gestures on ${name}`, { skip: browserIsMissing }, () => {
+    const { width, height } = size;
+    const [x, y] = [width / 2, height / 2];
+    const shorter = Math.min(width, height);
+    let server;
+    let tablet;
+
+    before(async () => {
+      server = await Server.start();
+      tablet = await Tablet.open(browser, server.address, size);
+      await tablet.wire.until('control', () => tablet.wire.state?.control.holder);
+      await tablet.wire.stillOf(0);
+    });
+
+    after(async () => {
+      await tablet?.page.context().close();
+      await server?.stop();
+    });
+
+    const state = () => tablet.wire.state;
+
+    /** Does something; gives the cameras before and after, once the state is as expected. */
+    async function moves(act, expected = (now, old) => JSON.stringify(now.camera) !== JSON.stringify(old.camera)) {
+      const old = state();
+      const sent = tablet.wire.sent.length;
+      await act();
+      await tablet.wire.until(`what comes of ${act}`, () => expected(state(), old));
+      // A drag comes in several changes: its last message has been answered for with the next one's answer.
+      const id = tablet.wire.sent.slice(sent).findLast((message) => message.id)?.id ?? 0;
+      await tablet.wire.until('a frame of it', () => tablet.wire.frames.at(-1).handled >= id);
+      return { before: old.camera, after: state().camera };
+    }
+
+    /** The same, which is to be seen. */
+    async function changes(act, expected) {
+      const seen = await tablet.glance(tablet.wire.revision);
+      const cameras = await moves(act, expected);
+      const by = difference(seen, await tablet.glance(tablet.wire.revision));
+      assert.ok(by > VISIBLE, `the picture has changed by ${by} after ${act}`);
+      return cameras;
+    }
+
+    const tap = async (...place) => {
+      await tablet.finger('touchStart', [{ id: 0, x: place[0], y: place[1] }]);
+      await tablet.finger('touchEnd', []);
+    };
+    const press = (key) => tablet.page.keyboard.press(key);
+    const across = (dx, dy) => [x + dx * shorter, y + dy * shorter];
+
+    test('one finger turns', async () => {
+      const stroke = [{ from: [x, y], to: across(0.2, 0.05) }];
+      assertTurned(await changes(() => tablet.stroke(stroke)), { right: 36, down: 9 });
+    });
+
+    test('two fingers move and zoom', async () => {
+      const aside = (part) => [{ from: across(-0.2, 0), to: across(part - 0.2, -part) }, { from: across(0.2, 0), to: across(part + 0.2, -part) }];
+      assertPanned(await changes(() => tablet.stroke(aside(0.1))), [0.1 * shorter, -0.1 * shorter], height);
+      const spread = [{ from: across(-0.2, 0), to: across(-0.3, 0) }, { from: across(0.2, 0), to: across(0.3, 0) }];
+      assertZoomed(await changes(() => tablet.stroke(spread)), 1.5);
+    });
+
+    test('a double tap chooses a part, which is named', async () => {
+      await changes(async () => {
+        await tap(x, y);
+        await tap(x, y);
+      }, (now) => now.selection.node !== undefined);
+      const part = await tablet.page.locator('#part').textContent();
+      assert.ok(part.includes(state().selection.name), part);
+      await moves(() => press('Escape'), (now) => now.selection.node === undefined);
+      await tablet.page.locator('#part:empty').waitFor({ state: 'attached' });
+    });
+
+    test('one finger rests, another taps: that is looked at', async () => {
+      const { before: old, after: now } = await changes(async () => {
+        const resting = { id: 0, x: x - 0.3 * shorter, y: y + 0.3 * shorter };
+        await tablet.finger('touchStart', [resting]);
+        await new Promise((resolve) => setTimeout(resolve, LONGER_THAN_A_TAP_MS));
+        const [tapX, tapY] = across(0.1, 0);
+        const tapping = { id: 1, x: tapX, y: tapY };
+        await tablet.finger('touchStart', [resting, tapping]);
+        await tablet.finger('touchEnd', [tapping]);
+        await tablet.finger('touchEnd', []);
+      });
+      assert.deepEqual(now.focus, now.center);
+      assert.notDeepEqual(now.focus, old.focus);
+    });
+
+    test('the mouse turns, moves and zooms', async () => {
+      const drag = (button, to) => () => tablet.mouse(button, { from: [x, y], to });
+      assertTurned(await changes(drag('left', across(-0.1, 0))), { right: -18, down: 0 });
+      assertPanned(await moves(drag('right', [x - 30, y + 20])), [-30, 20], height);
+      assertZoomed(await moves(drag('middle', [x, y + height / 10])), 4 ** -0.1);
+      const { deltaY } = (await tablet.wheel(-100)).last;
+      assert.ok(deltaY < 0);
+    });
+
+    test('a double click with the right button sets the centre, with the middle one it looks there', async () => {
+      const twice = (button, place) => () => tablet.page.mouse.dblclick(...place, { button });
+      const right = await moves(twice('right', [x, y]));
+      assert.notDeepEqual(right.after.center, right.before.center);
+      assert.deepEqual(pose(right.after), pose(right.before));
+      const middle = await moves(twice('middle', across(0.05, 0)));
+      assert.deepEqual(middle.after.focus, middle.after.center);
+    });
+
+    test('a pen does as the mouse', async () => {
+      const pen = (type, place, buttons) => tablet.devtools.send('Input.dispatchMouseEvent', {
+        type, x: place[0], y: place[1], button: 'left', buttons, clickCount: 1, pointerType: 'pen',
+      });
+      const turned = await moves(async () => {
+        await pen('mousePressed', [x, y], 1);
+        await pen('mouseMoved', across(0.1, 0), 1);
+        await pen('mouseReleased', across(0.1, 0), 0);
+      });
+      assert.equal(tablet.wire.sent.findLast(({ type }) => type === 'pointerup').pointerType, 'pen');
+      assertTurned(turned, { right: 18, down: 0 });
+    });
+
+    test('keys turn, move, zoom, fit, go home and choose the drawing', async () => {
+      assertTurned(await moves(() => press('ArrowLeft')), { right: -5, down: 0 });
+      assertPanned(await moves(() => press('Shift+ArrowUp')), [0, -0.05 * height], height);
+      assertZoomed(await moves(() => press('+')), 1.1);
+      assertZoomed(await moves(() => press('-')), 1 / 1.1);
+      await changes(() => press('w'), (now) => now.renderer.wireframe);
+      await moves(() => press('w'), (now) => !now.renderer.wireframe);
+      await changes(() => press('s'), (now) => now.renderer.mode === 'stylized');
+      await moves(() => press('s'), (now) => now.renderer.mode === 'realistic');
+      await moves(() => press('f'));
+      const { after: home } = await moves(() => press('Home'));
+      assert.deepEqual(pose(home), pose(state().views.home));
+    });
+
+    test('in all this the browser had nothing to complain of', () => assert.deepEqual(tablet.complaints, []));
+  });
+}
