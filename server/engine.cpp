@@ -15,8 +15,8 @@ constexpr int kMostSnapshots = 2;  // of a client, waiting
 /// At most, for those who follow the camera without frames.
 constexpr std::chrono::milliseconds kFlightStep{16};
 constexpr std::size_t kBegunRemembered = 16;
-constexpr std::chrono::seconds kBetweenListings{1};  // of the folder of scenes
-constexpr std::chrono::milliseconds kWaitsForListing{20};
+constexpr std::chrono::seconds kBetweenListings{1};         // of the folder of scenes
+constexpr std::chrono::milliseconds kWaitsForListing{100};  // a loaded machine starts a thread late
 
 /// "" where it is of none.
 std::string client_of(const EngineEvent& event) {
