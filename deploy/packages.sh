@@ -10,15 +10,16 @@ BUILD_PACKAGES=(
     g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
     libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
     libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev zlib1g-dev libssl-dev libqrencode-dev
-    libosd-dev
+    libosd-dev libassimp-dev libmeshoptimizer-dev
 )
-# To draw: EGL, and Mesa's drivers, with one that draws in software where there is no GPU.
+# To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; assimp, which reads
+# glTF; and meshoptimizer.
 # shellcheck disable=SC2034
-RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri)
+RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri libassimp5 libmeshoptimizer2d)
 # To test: doctest, two browsers and what steers them, and what checks the source.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
-    doctest-dev nodejs:node npm:npm chromium:chromium firefox-esr:firefox-esr python3-websockets curl:curl
+    doctest-dev nodejs:node npm:npm chromium:chromium firefox-esr:firefox-esr python3-websockets curl:curl gnuplot-nox:gnuplot
     clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.

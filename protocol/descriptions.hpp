@@ -304,6 +304,7 @@ void describe(V& v, const Quality*) {
     v.required("detail", &Quality::detail, kDuration);
     v.required("jpegQuality", &Quality::jpeg_quality, kJpegQuality);
     v.required("subsampling", &Quality::subsampling, word("4:2:0", "4:4:4"));
+    v.optional("error", &Quality::error, Number{0, 1});
 }
 
 template <class V>

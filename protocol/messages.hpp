@@ -290,6 +290,8 @@ struct Quality {
     double detail = 0;  ///< pixels of error allowed in the meshes
     int jpeg_quality = 90;
     Subsampling subsampling = Subsampling::yuv444;
+    std::optional<double> error =
+        {};  ///< mean FLIP against full accuracy, as measured for this level; none: not known
     bool operator==(const Quality&) const = default;
 };
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <optional>
 
+#include "detail_plan.hpp"
 #include "frustum.hpp"
 #include "mirror_plan.hpp"
 #include "transparency_plan.hpp"
@@ -105,7 +106,8 @@ Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShap
     mark_hidden_twins(transparent, layers.opaque, scene);
     std::optional<GlassShapes> own;
     if (!shapes) shapes = &own.emplace(scene);
-    layers.transparent = order_transparent(transparent, scene, view.light, *shapes);
+    layers.transparent =
+        order_transparent(transparent, scene, view.light, view.methods.transparency, *shapes);
     return layers;
 }
 
@@ -206,6 +208,8 @@ FramePlan plan_frame(const View& view, GlassShapes* shapes) {
     if (view.wireframe) return plan;
     plan.scene = layers_of(std::move(items), all, view, shapes);
     plan.over = layers_of(plan.selected, all, view, shapes);
+    choose_levels(plan, view);
+    leave_out_backs(plan, view);
     return plan;
 }
 

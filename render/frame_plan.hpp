@@ -11,7 +11,10 @@
 
 namespace vrut {
 
-enum class Sides { front, both };
+struct DetailLevel;
+
+/// Closed: both, but the backs are not drawn, for fronts of the same part hide them.
+enum class Sides { front, both, closed };
 
 /// One geometry node to be drawn.
 struct DrawItem {
@@ -27,6 +30,8 @@ struct DrawItem {
     std::optional<glm::dvec4> kept;
     /// Its triangles from far to near, numbered as TriangleOrder does; null: as in the file.
     std::shared_ptr<const std::vector<unsigned>> order;
+    /// What is drawn of the geometry, of the view's; null: every triangle.
+    const DetailLevel* level = nullptr;
 };
 
 /// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "gpu_textures.hpp"
+#include "simplify.hpp"
 
 namespace vrut {
 
@@ -183,6 +184,17 @@ const GpuGeometry& GpuScene::geometry(Index index) {
         ++uploads_;
     }
     return geometry;
+}
+
+const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
+    if (!item.level) return geometry(item.geometry);
+    GpuGeometry& level = levels_[{item.geometry, item.level->number}];
+    if (!level.vertex_array) {
+        level =
+            upload(geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
+        ++uploads_;
+    }
+    return level;
 }
 
 const GpuEdges& GpuScene::edges(Index index) {

@@ -46,19 +46,22 @@ public:
     explicit GpuScene(std::shared_ptr<const Scene> scene);
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const GpuGeometry& geometry(Index index);
+    /// Of an item: its level's, if it has one.
+    const GpuGeometry& geometry(const DrawItem& item);
     const GpuEdges& edges(Index index);
     /// Its triangles in an item's order, which is not null.
     const GpuTriangles& ordered(const DrawItem& item);
     const GlTexture& texture(Index index);
     /// Of the six textures (upload_cube_map()).
     const GlTexture& cube_map(const std::array<Index, 6>& textures);
-    /// Geometries, edges, textures and cube maps uploaded so far.
+    /// Geometries, their levels and edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
     std::shared_ptr<const Scene> scene_;
     std::vector<GpuGeometry> geometries_;
-    std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
+    std::map<std::pair<Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
+    std::vector<std::optional<GpuEdges>> edges_;           // after the geometries, whose vertices they use
     std::map<std::pair<Index, std::size_t>, GpuTriangles> ordered_;  // by the number of triangles, too
     std::vector<GlTexture> textures_;
     std::map<std::array<Index, 6>, GlTexture> cube_maps_;

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "colors.hpp"
 #include "context.hpp"
@@ -27,6 +28,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int kKeptWithoutLayers = 100;  // pictures
+
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
@@ -36,11 +39,12 @@ void add(const std::vector<std::uint8_t>& sample, Accumulation& sum) {
     ++sum.samples;
 }
 
-void average(const Accumulation& sum, std::vector<std::uint8_t>& rgba) {
-    // Division in float is vectorised, and exact here: the sums are integers far below 2^24.
-    const auto count = static_cast<float>(sum.samples), half = std::floor(count / 2);
+void average(std::span<const std::uint32_t> sums, int samples, std::span<std::uint8_t> rgba) {
+    // Division in float is vectorised, where bytes cannot lie over what holds them, and exact here: the sums
+    // are integers far below 2^24.
+    const auto count = static_cast<float>(samples), half = std::floor(count / 2);
     for (std::size_t k = 0; k < rgba.size(); ++k)
-        rgba[k] = static_cast<std::uint8_t>((static_cast<float>(sum.sums[k]) + half) / count);
+        rgba[k] = static_cast<std::uint8_t>((static_cast<float>(sums[k]) + half) / count);
 }
 
 }  // namespace
@@ -59,6 +63,12 @@ struct Renderer::Impl {
             return;
         target.reset();  // the old one's memory is free before the new one takes its own
         target.emplace(width, height, deep);
+    }
+
+    /// What turns has panes now that only pixels order, now not: room for them is kept for a while.
+    void keep_room_for_layers(bool needed) {
+        pictures_without_layers = needed ? 0 : pictures_without_layers + 1;
+        if (pictures_without_layers > kKeptWithoutLayers) pixel_sort.release();
     }
 
     void use_scene(const std::shared_ptr<const Scene>& wanted) {
@@ -133,6 +143,7 @@ struct Renderer::Impl {
     OpaquePass opaque;
     TransparentPass transparent;
     PixelSortPass pixel_sort;
+    int pictures_without_layers = 0;  // since the last with them
     MirrorPass mirrors;
     EdgePass edges;
     OutlinePass outline;
@@ -161,7 +172,7 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
     const bool has_glass = has_transparent(plan.scene) || has_transparent(plan.over);
     impl_->use_target(view.width, view.height, has_glass);
-    if (!has_exact_group(plan.scene) && !has_exact_group(plan.over)) impl_->pixel_sort.release();
+    impl_->keep_room_for_layers(has_exact_group(plan.scene) || has_exact_group(plan.over));
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
     const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
     Accumulation& sum = kept ? *kept : impl_->accumulation;
@@ -174,6 +185,7 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
         if (i > first && interrupted && interrupted()) return false;
         impl_->draw(plan, view, near, sample_offset(i, view.samples), stats);
         wait_for_gl();
+        ++stats.samples;
         stats.render_ms += milliseconds_since(start);
         stats.uploads = (impl_->scene ? impl_->scene->uploads() : 0) - uploads_before;
 
@@ -181,12 +193,13 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
         std::vector<std::uint8_t>& pixels = view.samples > 1 ? impl_->sample : image.rgba;
         pixels.resize(image.rgba.size());
         impl_->target->read(pixels);
+        ++stats.readbacks;
         if (view.samples > 1) add(pixels, sum);
         stats.readback_ms += milliseconds_since(start);
         start = Clock::now();
     }
     if (view.samples > 1) {
-        average(sum, image.rgba);
+        average(sum.sums, sum.samples, image.rgba);
         stats.readback_ms += milliseconds_since(start);
     }
     if (kept) *kept = {};

@@ -267,10 +267,11 @@ bool Stack::shows_through_itself(unsigned pane, DrawItem& item) const {
 }  // namespace
 
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
-                                                const Light& light, GlassShapes& shapes) {
+                                                const Light& light, Methods::Transparency method,
+                                                GlassShapes& shapes) {
     Stack stack(items, scene, light, shapes);
     std::vector<std::vector<unsigned>> order;
-    const bool ordered = stack.compare_all();
+    const bool ordered = stack.compare_all(), sorted = method == Methods::Transparency::sorted;
     if (ordered) {
         order = stack.groups();
     } else {
@@ -283,11 +284,11 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
         groups.back().items.push_back(item);
     };
     for (std::vector<unsigned>& members : order) {
-        const bool exact = ordered && members.size() > 1 && stack.risk(members) > kVisible;
+        const bool exact = ordered && !sorted && members.size() > 1 && stack.risk(members) > kVisible;
         if (!exact) stack.sort_by_distance(members);
         for (const unsigned member : members) {
             DrawItem item = items[member];
-            const bool exact_alone = !exact && stack.shows_through_itself(member, item);
+            const bool exact_alone = !exact && stack.shows_through_itself(member, item) && !sorted;
             add(item, exact || exact_alone, exact_alone || (exact && member == members.front()));
         }
     }

@@ -10,10 +10,11 @@ namespace vrut {
 /// Transparent items, given by rising id, in groups from far to near as the eye (the origin of their view
 /// space) sees them. What lies before what is told by a plane between two boxes: the one on the eye's side is
 /// in front. Items that no such plane parts, and rings of items, become an exact group if drawing them in the
-/// wrong order could change a colour by more than 1/255. Above kMostPairs pairs that overlap in the width of
-/// the screen, all are drawn by their distance.
+/// wrong order could change a colour by more than 1/255; with Transparency::sorted they are drawn by their
+/// distance. So is everything above kMostPairs pairs that overlap in the width of the screen.
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
-                                                const Light& light, GlassShapes& shapes);
+                                                const Light& light, Methods::Transparency method,
+                                                GlassShapes& shapes);
 
 inline constexpr std::size_t kMostPairs = std::size_t{1} << 20;
 

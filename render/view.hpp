@@ -38,12 +38,30 @@ struct Mark {
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
 enum class DrawMode { realistic, stylized };
 
+class DetailLevels;
+
+/// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
+/// default is the most accurate.
+struct Methods {
+    enum class Light { pixel, vertex };         ///< where Phong's equation is evaluated
+    enum class Transparency { exact, sorted };  ///< right at each pixel, or part by part from far to near
+    Light light = Light::pixel;
+    Transparency transparency = Transparency::exact;
+
+    bool operator==(const Methods&) const = default;
+};
+
 /// What a picture shows, in pixels of the picture.
 struct View {
     std::shared_ptr<const PlacedScene> scene;  ///< null: the background only; views are equal by its address
     Camera camera;
     int width = 1280, height = 720;
     int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
+    double detail =
+        0;  ///< how far, in pixels, the surfaces drawn may lie from the scene's; 0: every triangle
+    /// Of the scene, for `detail`, and to leave out triangles that are hidden; null: none are made.
+    std::shared_ptr<const DetailLevels> levels;
+    Methods methods;
     Light light;
     DrawMode mode = DrawMode::realistic;
     bool wireframe = false;  ///< the edges of all triangles, and no faces
@@ -65,6 +83,8 @@ struct Accumulation {
 struct FrameStats {
     int passes = 0;
     int draws = 0;
+    int samples = 0;    ///< drawn
+    int readbacks = 0;  ///< of pixels, from the GPU into memory
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;
     int uploads = 0;         ///< geometries, edges, textures and cube maps brought to the GPU

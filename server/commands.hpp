@@ -26,6 +26,7 @@ struct RenderArguments {
     std::filesystem::path scene, output;
     int width = 1280, height = 720;
     int samples = 4;
+    double detail = 0;
     int jpeg_quality = 90;
     std::filesystem::path camera_file;
     std::optional<glm::dvec3> eye, focus, up;
@@ -61,6 +62,17 @@ struct CompareArguments {
     bool json = false;
 };
 void compare_command(const CompareArguments& arguments);
+
+struct ChartArguments {
+    std::vector<std::filesystem::path> scenes;  ///< empty: the car
+    std::filesystem::path out;
+    bool calibrate = false;  ///< the server's table alone
+    int width = 1280, height = 720;
+    int frames = 12;  ///< of each setting
+    std::uint64_t most_triangles = 10'000'000;
+    std::optional<int> device;
+};
+void chart_command(ChartArguments arguments);
 
 /// Where the program's scenes may lie: where it is installed, and beside its sources.
 std::vector<std::filesystem::path> scene_folders();

@@ -102,6 +102,7 @@ void Encoder::run() {
         encoded->header.timing.encode_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - start).count();
         ++metrics_.frames_encoded;
+        metrics_.bytes_encoded += encoded->file.size();
         give_spare(std::move(image));
         on_encoded_(encoded);
     }

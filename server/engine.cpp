@@ -2,7 +2,11 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "codec.hpp"
+#include "level_store.hpp"
 #include "renderer.hpp"
 
 namespace vrut {
@@ -29,6 +33,9 @@ std::string client_of(const EngineEvent& event) {
         },
         event);
 }
+
+/// Whatever its nodes' states are.
+std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
 
 /// The earlier of two times, where there are any.
 std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a,
@@ -105,6 +112,7 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
 }
 
 void Engine::run(LoadedScene scene) {
+    use(levels_of(scene.sha256, description_));
     PresentationOptions options;
     options.record_folder = record_folder_;
     options.load = [this](const std::string& name) { return load(name); };
@@ -116,7 +124,7 @@ void Engine::run(LoadedScene scene) {
     FrameStats stats;
     View small = presentation_->visible();
     small.width = small.height = 64;
-    painter_.paint(small, image, stats, {}, nullptr);
+    paint(small, image, stats);
 
     while (!mailbox_.closed()) step();
 }
@@ -210,7 +218,36 @@ void Engine::handle(const FrameSent& sent) {
     Client& client = found->second;
     client.last_frame = std::max(client.last_frame, sent.frame);
     client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
-    client.sent = sent;
+    if (sent.frame > client.newest_sent) client.sent.push_back(sent);
+    client.newest_sent = std::max(client.newest_sent, sent.frame);
+    if (client.sent.size() > protocol::kMaxGrants) client.sent.pop_front();
+    was_delivered(sent.frame);
+}
+
+/// The first picture of a scene is not kept waiting by coarser surfaces that are made for later ones.
+void Engine::was_delivered(std::int64_t frame) {
+    const auto& placed = presentation_->visible().scene;
+    const auto simplifies = [](const protocol::Level& level) { return level.quality.detail > 0; };
+    if (detail_ || frame < scene_since_ || !placed ||
+        std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies))
+        return;
+    try {
+        detail_ = std::make_shared<const DetailLevels>(placed->scene);
+    } catch (const std::exception& error) {  // no memory, or no thread
+        spdlog::warn("all triangles are drawn at all levels: {}", error.what());
+        scene_since_ = std::numeric_limits<std::int64_t>::max();  // it is not tried again for this scene
+    }
+}
+
+/// For the scene that is shown from now on.
+void Engine::use(const protocol::LevelTable& table) {
+    choice_.emplace(table);
+    at_rest_.clear();
+    for (const protocol::Level& level : table.levels)
+        if (level.quality.level == protocol::Quality::Level::still) at_rest_.push_back(level);
+    begun_.clear();
+    detail_.reset();
+    scene_since_ = next_frame_;
 }
 
 void Engine::handle(const SnapshotSent& sent) {
@@ -237,6 +274,7 @@ void Engine::handle(const SceneLoaded& loaded) {
     protocol::Loading told{loaded.name, 1, {}, {}};
     if (loaded.scene) {
         presentation_->show(with_notices(*loaded.scene), time_of(Clock::now()));
+        use(loaded.levels);
         last_change_ = Clock::now();
         told.done = true;
         spdlog::info("{}: {} triangles", loaded.name, loaded.scene->placed->scene->triangle_count());
@@ -251,7 +289,7 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     const auto path = library_.find(name);
     if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
-    loader_.start(*path, name);
+    loader_.start(*path, name, description_);
     tell({name, 0, {}, {}});
     return std::nullopt;
 }
@@ -296,8 +334,12 @@ void Engine::handle(const ClientSaid& said) {
 void Engine::grant(Client& client, const ClientSaid& said) {
     ++metrics_.frames_granted;
     client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
-    if (presentation_->holder() == said.client) measure(client, said.arrival);
-    client.sent.reset();
+    if (client.sent.empty()) return;
+    // It comes when the oldest has arrived, not the newest, which may be on its way still.
+    const FrameSent answered = client.sent.front();
+    client.sent.pop_front();
+    client.tells = true;
+    if (presentation_->holder() == said.client) measure(answered, said.arrival);
 }
 
 void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client) {
@@ -328,7 +370,7 @@ void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message,
 
 PictureSize Engine::present_size() const {
     const protocol::Resize& view = presentation_->view_size();
-    return picture_size(view, quality_of(kStillLevel, view, limits_, false).scale);
+    return picture_size(view, quality_of(kStill, view, limits_, false).scale);
 }
 
 /// Hands over what there is to tell.
@@ -388,26 +430,26 @@ PacingDecision Engine::pace() {
     input.encoder_free = encoder_.is_free();
     input.last_change = last_change_;
     input.now = Clock::now();
-    input.level = level_;
-    for (int level = 0; level < kStillLevel; ++level) {
-        const protocol::Resize& view = presentation_->view_size();
-        const PictureSize size = picture_size(view, quality_of(level, view, limits_, false).scale);
-        input.expected_ms[static_cast<std::size_t>(level)] =
-            times_.expected(level, static_cast<double>(size.width) * size.height, level_, input.now);
-    }
-    input.target_ms = presentation_->state().quality.latency_target_ms;
-    input.preference = presentation_->state().quality.preference;
     return decide(input);
 }
 
 /// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
-void Engine::measure(const Client& client, Clock::time_point asked) {
+void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
     constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
-    if (!client.sent) return;
     for (const Begun& begun : begun_)
-        if (begun.frame == client.sent->frame && asked > begun.at && asked - begun.at < kAsleep)
-            times_.add(begun.level, std::chrono::duration<double, std::milli>(asked - begun.at).count(),
-                       begun.pixels, asked);
+        if (begun.frame == sent.frame && asked > begun.at && asked - begun.at < kAsleep) {
+            const double all = std::chrono::duration<double, std::milli>(asked - begun.at).count();
+            const double server = std::min(begun.drawn_ms + sent.encode_ms, all);
+            choice_->took(begun.level, {server, all - server}, begun.pixels, asked);
+        }
+}
+
+bool Engine::paint(const View& view, Image& image, FrameStats& stats,
+                   const std::function<bool()>& interrupted, Accumulation* kept) {
+    const bool whole = painter_.paint(view, image, stats, interrupted, kept);
+    metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
+    metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
+    return whole;
 }
 
 void Engine::promise(std::int64_t frame) {
@@ -419,19 +461,42 @@ void Engine::promise(std::int64_t frame) {
     }
 }
 
+/// With the error that the table has for such a picture.
+protocol::Quality Engine::quality_at_rest(int samples) const {
+    protocol::Quality quality = quality_of(kStill, presentation_->view_size(), limits_, thin_lines());
+    quality.samples = samples;
+    if (thin_lines()) return quality;
+    for (const protocol::Level& level : at_rest_) {
+        quality.error = level.quality.error;
+        if (level.quality == quality) return quality;
+    }
+    quality.error.reset();
+    return quality;
+}
+
+std::size_t Engine::choose_level() {
+    const protocol::QualityState& wanted = presentation_->state().quality;
+    const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
+    return choice_->choose({presentation_->view_size(), limits_, target}, Clock::now());
+}
+
 void Engine::draw(const PacingDecision& decision) {
     // What is drawn is what stands here now, whatever comes in meanwhile.
     const Clock::time_point begin = Clock::now();
     const View visible = presentation_->visible();
     const protocol::Resize view_size = presentation_->view_size();
-    const bool still = decision.level == kStillLevel;
-    protocol::Quality quality = quality_of(decision.level, view_size, limits_, thin_lines());
-    quality.samples = decision.samples;
+    const bool still = decision.still_samples > 0;
+    const std::size_t level = still ? 0 : choose_level();
+    const protocol::Quality quality =
+        still ? quality_at_rest(decision.still_samples)
+              : quality_of(choice_->levels()[level].quality, view_size, limits_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
     View view = visible;
     view.width = size.width;
     view.height = size.height;
     view.samples = quality.samples;
+    view.detail = quality.detail;
+    view.levels = detail_;
 
     Picture picture;
     protocol::FrameHeader& header = picture.header;
@@ -444,33 +509,39 @@ void Engine::draw(const PacingDecision& decision) {
 
     Image image = encoder_.take_spare();
     FrameStats stats;
+    // A moving picture is finished though the camera has moved on: while it moves on and on, none would be.
     const auto interrupted = [&] {
         attend();
-        return mailbox_.closed() || presentation_->visible() != visible ||
-               presentation_->view_size() != view_size;
+        const View& now = presentation_->visible();
+        return mailbox_.closed() || scene_of(now) != scene_of(visible) ||
+               (still && (now != visible || presentation_->view_size() != view_size));
     };
-    if (!painter_.paint(view, image, stats, interrupted, nullptr)) {
+    if (!still) presentation_->remember(next_frame_++);  // with the camera as it is now
+    if (!paint(view, image, stats, interrupted)) {
         ++metrics_.frames_interrupted;
         encoder_.give_spare(std::move(image));
         return;
     }
-    ++next_frame_;
+    if (still) presentation_->remember(next_frame_++);
     ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
     stats_.drawn(quality, stats.render_ms, Clock::now());
-    drawn_ = {header.frame, visible, view_size, still ? quality.samples : 0};
-    if (!still) {
-        level_ = decision.level;
-        begun_.push_back({header.frame, level_, static_cast<double>(size.width) * size.height, begin});
-        if (begun_.size() > kBegunRemembered) begun_.pop_front();
-        const auto holder = clients_.find(presentation_->holder().value_or(""));
-        if (holder == clients_.end() || !holder->second.sent)  // nobody tells when it has arrived
-            times_.add(level_, stats.render_ms + stats.readback_ms, begun_.back().pixels, Clock::now());
-    }
-    presentation_->remember(drawn_.frame);
+    drawn_ = {header.frame, visible, view_size, decision.still_samples};
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
+    if (!still)
+        note({header.frame, level, static_cast<double>(size.width) * size.height,
+              stats.render_ms + stats.readback_ms, begin});
     promise(drawn_.frame);
     encoder_.offer(std::move(picture), std::move(image));
+}
+
+/// Remembers a moving frame, to measure it when the next is asked for.
+void Engine::note(const Begun& begun) {
+    begun_.push_back(begun);
+    if (begun_.size() > kBegunRemembered) begun_.pop_front();
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    if (holder == clients_.end() || !holder->second.tells)  // nobody tells when it has arrived
+        choice_->took(begun.level, {begun.drawn_ms}, begun.pixels, Clock::now());
 }
 
 /// Draws on the first snapshot that waits, a sample at least; it gives way to the live picture.
@@ -480,8 +551,7 @@ void Engine::draw_snapshot() {
     snapshots_.pop_front();
     View& view = snapshot.order.view;
     protocol::FrameHeader& header = snapshot.order.header;
-    header.quality = quality_of(kStillLevel, {}, limits_, true);
-    header.quality.scale = 1;
+    header.quality = kStill;
     header.quality.jpeg_quality = snapshot.order.jpeg_quality;
     view.samples = header.quality.samples;
 
@@ -491,7 +561,7 @@ void Engine::draw_snapshot() {
         attend();
         return mailbox_.closed() || pace().action == PacingDecision::Action::draw;
     };
-    const bool whole = painter_.paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
+    const bool whole = paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
     header.timing.render_ms += stats.render_ms;
     header.timing.readback_ms += stats.readback_ms;
     const bool is_client = header.snapshot.has_value();

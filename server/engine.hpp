@@ -10,7 +10,9 @@
 #include <thread>
 #include <vector>
 
+#include "detail_levels.hpp"
 #include "encoder.hpp"
+#include "level_choice.hpp"
 #include "live_stats.hpp"
 #include "mailbox.hpp"
 #include "metrics.hpp"
@@ -93,10 +95,18 @@ public:
 private:
     struct Client {
         int grants = 0;
-        std::int64_t last_frame = 0;    ///< newest that it has been promised
-        std::int64_t handled = 0;       ///< highest message id
-        int snapshots = 0;              ///< asked for and not sent yet
-        std::optional<FrameSent> sent;  ///< the newest, until it asks for the next
+        std::int64_t last_frame = 0;  ///< newest that it has been promised
+        std::int64_t handled = 0;     ///< highest message id
+        int snapshots = 0;            ///< asked for and not sent yet
+        std::deque<FrameSent> sent;   ///< each until it is answered: until another is asked for
+        std::int64_t newest_sent = 0;
+        bool tells = false;  ///< has asked for another picture after one
+    };
+    struct Begun {
+        std::int64_t frame = 0;
+        std::size_t level = 0;
+        double pixels = 0, drawn_ms = 0;
+        Clock::time_point at;
     };
     struct Snapshot {
         PictureOrder order;
@@ -139,7 +149,14 @@ private:
     void draw(const PacingDecision& decision);
     void draw_snapshot();
     void promise(std::int64_t frame);
-    void measure(const Client& client, Clock::time_point asked);
+    void measure(const FrameSent& sent, Clock::time_point asked);
+    bool paint(const View& view, Image& image, FrameStats& stats,
+               const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
+    void use(const protocol::LevelTable& table);
+    void was_delivered(std::int64_t frame);
+    protocol::Quality quality_at_rest(int samples) const;
+    std::size_t choose_level();
+    void note(const Begun& begun);
 
     void run(LoadedScene scene);
     LoadedScene with_notices(LoadedScene scene) const;
@@ -179,15 +196,11 @@ private:
         int still_samples = 0;  ///< 0: a moving one
     } drawn_;
     std::int64_t next_frame_ = 1;
-    struct Begun {
-        std::int64_t frame = 0;
-        int level = 0;
-        double pixels = 0;
-        Clock::time_point at;
-    };
     std::deque<Begun> begun_;  ///< the last moving frames
-    MeasuredTimes times_;
-    int level_ = kFirstLevel;
+    std::optional<LevelChoice> choice_;
+    std::vector<protocol::Level> at_rest_;        ///< of the table
+    std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first picture was delivered
+    std::int64_t scene_since_ = 1;                ///< first frame of the scene shown
 
     std::thread thread_;  // last: it uses all of the above
 };

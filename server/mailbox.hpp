@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "level_table.hpp"
 #include "messages.hpp"
 #include "pacing.hpp"
 #include "scene_state.hpp"
@@ -46,6 +47,7 @@ struct FrameSent {
     std::string client;
     std::int64_t frame = 0;
     int unused_grants = 0;  ///< where it is one frame for two grants
+    double encode_ms = 0;
 };
 
 struct SnapshotSent {
@@ -66,6 +68,7 @@ struct SceneLoading {
 struct SceneLoaded {
     std::string name;
     tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
+    protocol::LevelTable levels = {};              ///< of the scene on this machine
 };
 
 using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent, SnapshotSent, PictureAsked,

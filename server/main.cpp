@@ -45,6 +45,19 @@ void add_device(CLI::App& command, std::optional<int>& device) {
         ->check(CLI::NonNegativeNumber);
 }
 
+void add_size(CLI::App& command, int& width, int& height) {
+    command.add_option_function<std::string>(
+        "--size",
+        [&width, &height](const std::string& text) {
+            const auto size = parse_numbers<int, 2>("--size", text, 'x', "WIDTHxHEIGHT");
+            if (size[0] < 1 || size[1] < 1)
+                throw CLI::ValidationError("--size", "a picture has a pixel at least");
+            width = size[0];
+            height = size[1];
+        },
+        "Pixels (default: 1280x720)");
+}
+
 void add_serve(CLI::App& app, vrut::ServeArguments& arguments) {
     CLI::App* command = app.add_subcommand("serve", "Serve a scene to tablets, hosts and scripts");
     command->add_option("scene", arguments.scene, "Scene file (default: the car)");
@@ -112,19 +125,16 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
     CLI::App* command = app.add_subcommand("render", "Draw one picture of a scene");
     command->add_option("scene", arguments.scene, "Scene file")->required();
     command->add_option("-o,--output", arguments.output, "Picture, ending in .png or .jpg")->required();
-    command->add_option_function<std::string>(
-        "--size",
-        [&arguments](const std::string& text) {
-            const auto size = parse_numbers<int, 2>("--size", text, 'x', "WIDTHxHEIGHT");
-            if (size[0] < 1 || size[1] < 1)
-                throw CLI::ValidationError("--size", "a picture has a pixel at least");
-            arguments.width = size[0];
-            arguments.height = size[1];
-        },
-        "Pixels (default: 1280x720)");
+    add_size(*command, arguments.width, arguments.height);
     command->add_option("--samples", arguments.samples, "Samples a pixel; 1: its centre")
         ->check(CLI::Range(1, 4096))
         ->capture_default_str();
+    auto* detail =
+        command
+            ->add_option("--detail", arguments.detail,
+                         "How far, in pixels, drawn surfaces may lie from the scene's; 0: every triangle")
+            ->check(CLI::Range(0.0, 1000.0))
+            ->capture_default_str();
     command->add_option("--camera", arguments.camera_file, "JSON file with the state document's camera");
     add_vector(*command, "--eye", arguments.eye, "Where the eye is: x,y,z");
     add_vector(*command, "--focus", arguments.focus, "What it looks at: x,y,z");
@@ -136,8 +146,10 @@ void add_render(CLI::App& app, vrut::RenderArguments& arguments) {
     command->add_option("--jpeg-quality", arguments.jpeg_quality, "1 to 100")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
-    auto* reference = command->add_flag("--reference", arguments.reference,
-                                        "By the reference renderer, in double precision and without a GPU");
+    auto* reference = command
+                          ->add_flag("--reference", arguments.reference,
+                                     "By the reference renderer, in double precision and without a GPU")
+                          ->excludes(detail);
     command->add_option("--float", arguments.unrounded, "Its unrounded values too, as a PFM picture")
         ->needs(reference);
     command->add_option("--ids", arguments.ids, "The node ids at the pixels' centres too, as a PNG picture");
@@ -174,6 +186,30 @@ void add_compare(CLI::App& app, vrut::CompareArguments& arguments) {
     command->callback([&arguments] { vrut::compare_command(arguments); });
 }
 
+void add_chart(CLI::App& app, vrut::ChartArguments& arguments) {
+    CLI::App* command = app.add_subcommand("chart", "Measure speed against accuracy, and draw charts of it");
+    command->add_option("scenes", arguments.scenes, "Scene files (default: the car)");
+    auto* out = command->add_option("--out", arguments.out,
+                                    "Folder for CSV, SVG and a page; what is in it is not measured again");
+    auto* calibrate = command->add_flag(
+        "--calibrate", arguments.calibrate,
+        "Measure the levels that a server of the scene draws with, on this machine, and store them");
+    out->excludes(calibrate);
+    add_size(*command, arguments.width, arguments.height);
+    command->add_option("--frames", arguments.frames, "Frames of each setting, on one orbit")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command->add_option("--triangles", arguments.most_triangles, "Of the largest scene made for the charts")
+        ->capture_default_str();
+    add_device(*command, arguments.device);
+    command->callback([&arguments] {
+        if (!arguments.calibrate && arguments.out.empty()) throw CLI::RequiredError("--out");
+        if (arguments.calibrate && arguments.scenes.size() > 1)
+            throw CLI::ValidationError("--calibrate", "one scene at a time");
+        vrut::chart_command(arguments);
+    });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -190,11 +226,13 @@ int main(int argc, char** argv) try {
     vrut::ReplayArguments replay;
     vrut::InfoArguments info;
     vrut::CompareArguments compare;
+    vrut::ChartArguments chart;
     add_serve(app, serve);
     add_render(app, render);
     add_replay(app, replay);
     add_info(app, info);
     add_compare(app, compare);
+    add_chart(app, chart);
     try {
         app.parse(argc, argv);
         return 0;

@@ -17,7 +17,10 @@ std::string Metrics::text() const {
     add("frames_rendered_still_total", "Pictures drawn at rest.", frames_rendered_still);
     add("frames_interrupted_total", "Pictures given up because what was to be seen had changed.",
         frames_interrupted);
+    add("samples_drawn_total", "Samples drawn, for pictures of any kind.", samples_drawn);
+    add("readbacks_total", "Times that pixels were read back from what draws.", readbacks);
     add("frames_encoded_total", "Pictures encoded.", frames_encoded);
+    add("bytes_encoded_total", "Bytes of encoded pictures.", bytes_encoded);
     add("frames_sent_total", "Frames handed to sockets.", frames_sent);
     add("frames_replaced_total", "Frames that gave way to newer ones before they were sent.",
         frames_replaced);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "commands.hpp"
+#include "detail_levels.hpp"
 #include "images.hpp"
 #include "presentation.hpp"
 #include "reference.hpp"
@@ -75,6 +76,7 @@ View view_of(const RenderArguments& arguments) {
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;
+    view.detail = arguments.detail;
     return view;
 }
 
@@ -116,7 +118,12 @@ void trace_picture(const RenderArguments& arguments, const View& view) {
         write_file(arguments.unrounded, encode_pfm(picture.width, picture.height, picture.color));
 }
 
-void draw_picture(const RenderArguments& arguments, const View& view) {
+void draw_picture(const RenderArguments& arguments, View view) {
+    if (view.detail > 0) {
+        const auto levels = std::make_shared<const DetailLevels>(view.scene->scene);
+        levels->wait();
+        view.levels = levels;
+    }
     Renderer renderer(arguments.device);
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +

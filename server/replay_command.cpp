@@ -64,7 +64,7 @@ public:
     void write(std::int64_t frame, const Presentation& presentation) {
         PictureLimits limits;
         limits.max_side = std::min(limits.max_side, renderer_.max_size());
-        const protocol::Quality quality = quality_of(kStillLevel, presentation.view_size(), limits, true);
+        const protocol::Quality quality = quality_of(kStill, presentation.view_size(), limits, true);
         const PictureSize size = picture_size(presentation.view_size(), quality.scale);
         View view = presentation.visible();
         view.width = size.width;

@@ -82,25 +82,52 @@ std::vector<std::string> SceneLibrary::names() const {
     return names;
 }
 
+namespace {
+
+class Sha256 {
+public:
+    Sha256() : good_(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1) {}
+    void add(std::string_view bytes) {
+        good_ = good_ && EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1;
+    }
+    /// In hexadecimal. Throws std::runtime_error.
+    std::string digest() {
+        unsigned char digest[EVP_MAX_MD_SIZE];
+        unsigned length = 0;
+        if (!good_ || EVP_DigestFinal_ex(context_.get(), digest, &length) != 1)
+            throw std::runtime_error("SHA-256 cannot be computed");
+        std::string text;
+        for (unsigned i = 0; i < length; ++i) {
+            constexpr char kDigits[] = "0123456789abcdef";
+            text += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
+        }
+        return text;
+    }
+
+private:
+    std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), EVP_MD_CTX_free};
+    bool good_;
+};
+
+}  // namespace
+
 std::string sha256_of(const fs::path& path) {
-    const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
     std::ifstream stream(path, std::ios::binary);
     std::vector<char> block(1 << 20);
-    bool good = context && stream && EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) == 1;
-    while (good && stream) {
+    const bool opened = stream.good();
+    Sha256 sum;
+    while (stream) {
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-        good = EVP_DigestUpdate(context.get(), block.data(), static_cast<std::size_t>(stream.gcount())) == 1;
+        sum.add({block.data(), static_cast<std::size_t>(stream.gcount())});
     }
-    unsigned char digest[EVP_MAX_MD_SIZE];
-    unsigned length = 0;
-    if (!good || stream.bad() || EVP_DigestFinal_ex(context.get(), digest, &length) != 1)
-        throw std::runtime_error(path.string() + " cannot be read");
-    std::string text;
-    for (unsigned i = 0; i < length; ++i) {
-        constexpr char kDigits[] = "0123456789abcdef";
-        text += {kDigits[digest[i] >> 4], kDigits[digest[i] & 15]};
-    }
-    return text;
+    if (!opened || stream.bad()) throw std::runtime_error(path.string() + " cannot be read");
+    return sum.digest();
+}
+
+std::string sha256_of_text(std::string_view text) {
+    Sha256 sum;
+    sum.add(text);
+    return sum.digest();
 }
 
 }  // namespace vrut

@@ -38,5 +38,6 @@ private:
 
 /// SHA-256 of a file in hexadecimal. Throws std::runtime_error.
 std::string sha256_of(const std::filesystem::path& path);
+std::string sha256_of_text(std::string_view text);
 
 }  // namespace vrut

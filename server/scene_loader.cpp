@@ -1,5 +1,6 @@
 #include "scene_loader.hpp"
 
+#include "level_store.hpp"
 #include "scene_library.hpp"
 
 namespace vrut {
@@ -15,10 +16,11 @@ SceneLoader::~SceneLoader() {
     finish();
 }
 
-void SceneLoader::start(const std::filesystem::path& path, const std::string& name) {
+void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
+                        const std::string& renderer) {
     finish();
     busy_ = true;
-    thread_ = std::thread([this, path, name] {
+    thread_ = std::thread([this, path, name, renderer] {
         constexpr std::chrono::milliseconds kBetweenReports{100};
         Clock::time_point last = Clock::now();
         const auto progress = [&](double fraction) {
@@ -28,7 +30,10 @@ void SceneLoader::start(const std::filesystem::path& path, const std::string& na
             mailbox_.push(SceneLoading{name, fraction});
         };
         try {
-            mailbox_.push(SceneLoaded{name, load_scene(path, name, progress)});
+            auto scene = load_scene(path, name, progress);
+            protocol::LevelTable levels;
+            if (scene) levels = levels_of(scene->sha256, renderer);
+            mailbox_.push(SceneLoaded{name, std::move(scene), std::move(levels)});
         } catch (const Closing&) {
         } catch (const std::exception& error) {
             mailbox_.push(SceneLoaded{name, tl::unexpected(std::string(error.what()))});

@@ -16,7 +16,8 @@ public:
 
     /// From start() until finish().
     bool busy() const { return busy_; }
-    void start(const std::filesystem::path& path, const std::string& name);
+    /// With the levels that are kept for what draws.
+    void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer);
     /// To be called when SceneLoaded has come.
     void finish();
 

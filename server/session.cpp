@@ -281,7 +281,8 @@ void Session::send_frame() {
     int grants = 0;
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
-    hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1});
+    hub_.engine->mailbox().push(
+        FrameSent{client_, last_frame_, grants - 1, picture_->header.timing.encode_ms});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);

@@ -92,7 +92,7 @@ build() { # PRESET CMAKE-BUILD-ARGUMENTS...
 }
 
 tests() { # PRESET CTEST-ARGUMENTS...
-    ctest --preset "$1" --no-tests=error "${@:2}" </dev/null
+    ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null
 }
 
 # Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.

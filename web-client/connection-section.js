@@ -140,26 +140,28 @@ function clientWords(id) {
   return say(`Client ${id}`, `Klient ${id}`);
 }
 
-/** How far a host of `stats` is behind the present revision. */
+/** How far a host is behind. */
 export function hostWords({ revision: shown, lagMs }, revision) {
   const count = written(revision - shown);
   const words = shown < revision ? say(`${count} behind`, `pozadu o ${count}`) : say('up to date', 'aktuální');
   return lagMs === undefined ? words : `${words} · ${written(lagMs)} ms`;
 }
 
-/** By the `quality` of a picture's header. */
-export function qualityWords({ level, scale, samples, detail, jpegQuality }) {
-  const percent = written(100 * scale);
+/** By a header's `quality`. */
+export function qualityWords({ level, scale, samples, detail, jpegQuality, error }) {
+  const [percent, pixels] = [written(100 * scale), written(detail, 2)];
+  const flip = error > 0 && error < 1e-3 ? `< ${written(1e-3, 3)}` : written(error, 3);
   return [
     level === 'still' ? say('Still', 'V klidu') : say('Moving', 'V pohybu'),
     samples > 1 && say(`${samples} samples`, `vzorků: ${samples}`),
     scale < 1 ? say(`${percent} % size`, `velikost ${percent} %`) : say('full size', 'plná velikost'),
-    detail > 0 && say('simplified', 'zjednodušeno'),
+    detail > 0 && say(`detail ${pixels} px`, `detaily ${pixels} px`),
     `JPEG ${jpegQuality}`,
+    error >= 0 && say(`error ${flip}`, `chyba ${flip}`),
   ].filter(Boolean).join(' · ');
 }
 
-/** All pixels of the view, or as many as the server draws. */
+/** As many pixels as the server draws. */
 export function snapshotSize({ width, height, pixelRatio }) {
   const scale = Math.min(pixelRatio, LARGEST_SIDE / width, LARGEST_SIDE / height);
   const side = (length) => Math.max(1, Math.round(length * scale));

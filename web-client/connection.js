@@ -198,7 +198,7 @@ export class Connection {
     for (let i = 0; i < GRANTS; i += 1) this.#post({ type: 'frame' });
   }
 
-  /** A frame's grant is given back when it is drawn, so that a slow page is sent no more than it can show. */
+  /** A frame's grant is given back once it is drawn: a slow page is sent no more than it can show. */
   async #receiveFrame(socket, data) {
     this.#retries = 0;
     const header = frameHeader(data);

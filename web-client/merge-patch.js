@@ -1,4 +1,4 @@
-/** JSON Merge Patch (RFC 7396) as a new document; with `keepsNull` both are patches, and it does what both do. */
+/** JSON Merge Patch (RFC 7396) as a new document; with `keepsNull` of two patches, one that does both. */
 export function mergePatch(target, patch, keepsNull = false) {
   if (!isObject(patch)) return patch;
   // A Map and fromEntries, because a member may be called "__proto__".

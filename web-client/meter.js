@@ -5,7 +5,7 @@ const LONGEST_MS = 10_000;
 /** Presses and releases only begin and end what moves the picture. */
 const MOVING = new Set(['pointermove', 'wheel', 'keydown']);
 
-/** Measures what a user feels: the time from a hand's move to its picture in ms, and how many pictures come. */
+/** Measures what a user feels: the ms from a hand's move to its picture, and how many pictures come. */
 export class Meter {
   /** When what no frame covers yet was sent, by id. */
   #waiting = new Map();

@@ -7,7 +7,7 @@ const MOST_ROWS = 50; // before somebody asks for more, or as a page has them
 const SEARCH_AFTER_MS = 250;
 const SWING_MS = 600;
 
-/** The scene's variants, doors and parts, asked for when somebody looks at them, and anew with each whole state. */
+/** The scene's variants, doors and parts, asked for when looked at, and anew with each whole state. */
 export function partsSection({ ask, change, report, state }) {
   let shown = {};
   let scene;
@@ -49,7 +49,7 @@ export function partsSection({ ask, change, report, state }) {
     asInFile.ariaDisabled = Object.keys(state().nodes).length === 0;
   }
 
-  /** Adds rows of what a `tree` message finds, and one for more of them; a list that is gone is left alone. */
+  /** Adds rows of what a `tree` message finds, and one for more; a list that is gone is left alone. */
   async function fill(rows, query) {
     const enough = rows.childElementCount + MOST_ROWS;
     let { after } = query;
@@ -95,7 +95,7 @@ export function partsSection({ ask, change, report, state }) {
     let before;
     return follow(item, ({ nodes, selection: { node: selected } }) => {
       const changed = nodes[id]?.active;
-      // The answer told what was the case then; an entry differs from the file, which so has the other.
+      // The answer told what was so then; an entry differs from the file, which has the other.
       if (changed !== undefined) node.active = !changed;
       active = changed ?? node.active;
       const now = `${active} ${selected === id}`;
@@ -243,13 +243,13 @@ function nameOf({ id, name }) {
   return name || `#${id}`;
 }
 
-/** Promises all nodes that a `tree` query finds, whose pages are asked for one after the other. */
+/** Promises all nodes that a `tree` query finds, page after page. */
 async function allOf(ask, query) {
   const { nodes, next } = await ask({ type: 'tree', ...query });
   return next === undefined ? nodes : [...nodes, ...(await allOf(ask, { ...query, after: next }))];
 }
 
-/** What there is to choose, as {title, switches}: those that offer the same names together, if none is empty. */
+/** What there is to choose, as {title, switches}: those of the same names together, if none is empty. */
 export function variants(switches) {
   const groups = new Map();
   for (const node of switches) {

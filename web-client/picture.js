@@ -1,4 +1,4 @@
-/** Shows frames on a canvas, none after a newer one; `data-frame`, `data-level` and `data-revision` say which. */
+/** Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. */
 export class Picture {
   /** The header of the frame last drawn; null before the first. */
   header = null;

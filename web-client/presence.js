@@ -14,7 +14,7 @@ const word = texts({
   still: ['Still', 'V klidu'],
 });
 
-/** What is to be seen at all times, as keys of words: the connection, who steers, and the picture's kind. */
+/** What is always to be seen, as keys of words: the connection, who steers, and the picture's kind. */
 export function presence({ phase, role, client, state, header }) {
   if (phase.name !== 'open') return { connection: phase.name };
   const { holder, kept } = state?.control ?? {};

@@ -1,7 +1,7 @@
 import { tokenFrom } from './connection.js';
 import { recall, remember } from './memory.js';
 
-/** The token to say hello with: the address's, or else, as an installed page has none there, the last accepted. */
+/** The token to say hello with: the address's, or, as an installed page has none there, the last accepted. */
 export class Token {
   constructor(hash) {
     const token = tokenFrom(hash);

@@ -1,6 +1,6 @@
 const LARGEST_SIDE = 8192;
 
-/** Tells an element's {width, height} in CSS pixels and the pixelRatio, within the protocol's limits, and changes. */
+/** Tells an element's {width, height} in CSS pixels and pixelRatio, within the protocol's limits, and changes. */
 export function watchViewSize(element, tell, window = globalThis.window) {
   let last = '';
 

@@ -1,5 +1,6 @@
 #include "file_bytes.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -12,6 +13,26 @@ std::optional<std::string> file_fault(const std::filesystem::path& path) {
     if (!std::filesystem::exists(status)) return "there is no such file";
     if (!std::filesystem::is_regular_file(status)) return "it is not a file";
     return std::nullopt;
+}
+
+tl::expected<std::filesystem::path, std::string> find_below(const std::filesystem::path& folder,
+                                                            const std::string& name) {
+    namespace fs = std::filesystem;
+    const fs::path relative(name);
+    const std::string outside = "the files of a scene lie in the folder of the scene's file or below it";
+    if (name.empty() || name.find('\0') != std::string::npos)
+        return tl::unexpected(std::string("its name is none"));
+    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
+        return tl::unexpected(outside);
+    std::error_code error;
+    const fs::path root = fs::canonical(folder.empty() ? "." : folder, error);
+    const fs::path file = error ? fs::path() : fs::canonical(root / relative, error);
+    if (error == std::errc::no_such_file_or_directory)
+        return tl::unexpected(std::string("there is no such file"));
+    if (error) return tl::unexpected("it cannot be found: " + error.message());
+    if (std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end())
+        return tl::unexpected(outside);
+    return file;
 }
 
 tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path, std::uintmax_t most) {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "assimp_scene.hpp"
 #include "file_bytes.hpp"
-#include "scene_pictures.hpp"
 #include "vrut_text.hpp"
 
 namespace vrut {
@@ -12,11 +12,13 @@ namespace {
 
 struct Format {
     const char* extension;
-    PartsResult (*read)(std::string_view bytes, const std::string& file, const ReadProgress& progress);
+    PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
 };
 
 constexpr Format kFormats[] = {
-    {".vrut", read_vrut_parts},
+    {".vrut", read_vrut_file},
+    {".glb", read_assimp_scene},
+    {".gltf", read_assimp_scene},
 };
 
 /// null: none reads this ending, in whatever case.
@@ -57,11 +59,8 @@ ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& pro
     if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
     if (format == nullptr)
         return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
-    const auto bytes = read_bytes(path);
-    if (!bytes) return tl::unexpected(file + ": " + bytes.error());
-    auto parts = format->read(*bytes, file, progress);
+    auto parts = format->read(path, progress);
     if (!parts) return tl::unexpected(parts.error());
-    read_pictures(*parts, path, progress);
     return build_scene(*std::move(parts), file);
 }
 

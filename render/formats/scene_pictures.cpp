@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "file_bytes.hpp"
 #include "notices.hpp"
 #include "picture_file.hpp"
 #include "tokenizer.hpp"
@@ -16,31 +17,6 @@ namespace fs = std::filesystem;
 
 using TextureResult = tl::expected<Index, std::string>;
 
-/// The file that `name` means, links followed, or why it is none that may be read.
-tl::expected<fs::path, std::string> find_below(const fs::path& folder, const std::string& name) {
-    const fs::path relative(name);
-    const std::string outside = "pictures lie in the folder of the scene's file or below it";
-    if (name.empty() || name.find('\0') != std::string::npos)
-        return tl::unexpected(std::string("its name is none"));
-    if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
-        return tl::unexpected(outside);
-    std::error_code error;
-    const fs::path root = fs::canonical(folder.empty() ? "." : folder, error);
-    const fs::path file = error ? fs::path() : fs::canonical(root / relative, error);
-    if (error == std::errc::no_such_file_or_directory)
-        return tl::unexpected(std::string("there is no such file"));
-    if (error) return tl::unexpected("it cannot be found: " + error.message());
-    if (std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first != root.end())
-        return tl::unexpected(outside);
-    return file;
-}
-
-bool has_transparent_pixel(const Image& image) {
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
-        if (image.rgba[i] < 255) return true;
-    return false;
-}
-
 class PictureReader {
 public:
     PictureReader(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
@@ -48,7 +24,10 @@ public:
         : textures_(parts.textures),
           folder_(scene_file.parent_path()),
           progress_(progress),
-          pixels_left_(max_pixels) {}
+          pixels_left_(max_pixels) {
+        for (const Texture& texture : textures_)
+            pixels_left_ -= std::min<std::uint64_t>(pixels_left_, texture.image.rgba.size() / 4);
+    }
 
     TextureResult read(const std::string& name) {
         const auto file = find_below(folder_, name);
@@ -96,6 +75,12 @@ CubeResult read_cube(PictureReader& reader, const std::vector<Texture>& textures
 }
 
 }  // namespace
+
+bool has_transparent_pixel(const Image& image) {
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+        if (image.rgba[i] < 255) return true;
+    return false;
+}
 
 void read_pictures(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
                    std::uint64_t max_pixels) {

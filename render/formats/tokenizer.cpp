@@ -21,8 +21,8 @@ bool continues_utf8(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0
 
 }  // namespace
 
-std::string excerpt(std::string_view text) {
-    std::size_t length = std::min<std::size_t>(text.size(), 40);
+std::string excerpt(std::string_view text, std::size_t most) {
+    std::size_t length = std::min(text.size(), most);
     while (length > 0 && length < text.size() && continues_utf8(text[length])) --length;
     std::string result(text.substr(0, length));
     for (char& c : result)

@@ -14,8 +14,8 @@ struct ParseError : std::runtime_error {
     std::size_t line;
 };
 
-/// What a sentence repeats of the file: printable, at most 40 bytes, and whole characters.
-std::string excerpt(std::string_view text);
+/// What a sentence repeats of the file: printable, at most so many bytes, and whole characters.
+std::string excerpt(std::string_view text, std::size_t most = 40);
 
 struct Token {
     enum class Kind { word, number, string, end_of_file };

@@ -5,7 +5,9 @@
 #include <span>
 #include <unordered_map>
 
+#include "file_bytes.hpp"
 #include "notices.hpp"
+#include "scene_pictures.hpp"
 #include "tokenizer.hpp"
 #include "utf8.hpp"
 
@@ -403,6 +405,15 @@ PartsResult read_vrut_parts(std::string_view text, const std::string& file, cons
     } catch (const ParseError& error) {
         return at_line(error.line, error.what());
     }
+}
+
+PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) {
+    const std::string file = path.string();
+    const auto bytes = read_bytes(path);
+    if (!bytes) return tl::unexpected(file + ": " + bytes.error());
+    auto parts = read_vrut_parts(*bytes, file, progress);
+    if (parts) read_pictures(*parts, path, progress);
+    return parts;
 }
 
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {

@@ -11,6 +11,9 @@ namespace vrut {
 PartsResult read_vrut_parts(std::string_view text, const std::string& file,
                             const ReadProgress& progress = {});
 
+/// The same from a file, with the pictures that it names.
+PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress = {});
+
 /// The same, as a scene without the pictures that it names.
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
 

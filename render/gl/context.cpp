@@ -2,6 +2,7 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <array>
@@ -63,6 +64,17 @@ std::vector<EGLDeviceEXT> all_devices() {
     if (!query(count, devices.data(), &count)) return {};
     devices.resize(static_cast<std::size_t>(count));
     return devices;
+}
+
+/// What Mesa's llvmpipe notes of a picture's triangles it takes from the heap: tens of megabytes where there
+/// are millions. By default glibc gives them back after each picture, and the kernel clears them for the
+/// next.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+    constexpr int kKept = 256 << 20;
+    mallopt(M_TRIM_THRESHOLD, kKept);
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that glibc chooses itself, until one of the two is set
+#endif
 }
 
 bool is_software(EGLDeviceEXT device) {
@@ -194,6 +206,7 @@ void GlContext::describe(const Candidate& candidate) {
     // The surfaceless platform does not say which device it took.
     software_ = candidate.software || renderer.find("llvmpipe") != std::string::npos ||
                 renderer.find("softpipe") != std::string::npos;
+    if (software_) keep_freed_memory();
     GLint texture = 0, renderbuffer = 0, viewport[2] = {0, 0};
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
     glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);

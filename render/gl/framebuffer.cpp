@@ -6,6 +6,16 @@
 
 namespace vrut {
 
+namespace {
+
+/// (v + 128) / 257, since 65535 / 255 = 257, in a form that is vectorised.
+void round_to_bytes(std::span<const std::uint16_t> deep, std::span<std::uint8_t> bytes) {
+    for (std::size_t k = 0; k < bytes.size(); ++k)
+        bytes[k] = static_cast<std::uint8_t>((deep[k] * 255U + 32895U) >> 16);
+}
+
+}  // namespace
+
 Framebuffer::Framebuffer(int width, int height, bool deep)
     : width_(width),
       height_(height),
@@ -35,8 +45,7 @@ void Framebuffer::read(std::span<std::uint8_t> pixels) {
     }
     deep_pixels_.resize(pixels.size());
     glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_SHORT, deep_pixels_.data());
-    for (std::size_t k = 0; k < pixels.size(); ++k)  // 65535 / 255 = 257
-        pixels[k] = static_cast<std::uint8_t>((deep_pixels_[k] + 128U) / 257U);
+    round_to_bytes(deep_pixels_, pixels);
 }
 
 void wait_for_gl() {

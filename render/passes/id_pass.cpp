@@ -40,7 +40,7 @@ std::vector<Index> IdPass::draw(std::span<const DrawItem> items, GpuScene& scene
     program_.use(clip_from_view);
     FrameStats stats;
     for (const DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuGeometry& geometry = scene.geometry(item);
         set_place(item, geometry);
         program_.set_number(item.node);
         cull_sides(item);

@@ -13,7 +13,7 @@ std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene
     glDepthMask(GL_FALSE);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < mirrors.size(); ++i) {
-        const GpuGeometry& geometry = scene.geometry(mirrors[i].surface.geometry);
+        const GpuGeometry& geometry = scene.geometry(mirrors[i].surface);
         set_place(mirrors[i].surface, geometry);
         cull_sides(mirrors[i].surface);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, queries_[i].get());
@@ -52,7 +52,7 @@ const Framebuffer& MirrorPass::open(const MirrorItem& mirror, GpuScene& scene,
     glDepthRange(0, 0);
     glDisable(GL_BLEND);
     mask_.use(background, clip_from_view);
-    const GpuGeometry& geometry = scene.geometry(mirror.surface.geometry);
+    const GpuGeometry& geometry = scene.geometry(mirror.surface);
     set_place(mirror.surface, geometry);
     cull_sides(mirror.surface);
     draw_triangles(geometry, stats);
@@ -67,7 +67,7 @@ void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuf
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(mirror.surface.behind_twin ? GL_GREATER : GL_GEQUAL);
     glDisable(GL_BLEND);
-    const GpuGeometry& geometry = scene.geometry(mirror.surface.geometry);
+    const GpuGeometry& geometry = scene.geometry(mirror.surface);
     programs.use(SurfacePrograms::Shape::mirror, mirror.surface, geometry,
                  scene.scene()->material(mirror.surface.material));
     glBindTextureUnit(SurfacePrograms::kReflectionUnit, target_->color().get());

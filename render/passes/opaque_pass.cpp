@@ -17,7 +17,7 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode
         glPolygonOffset(-1, -16);
     }
     for (const DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::Shape::faces, item, geometry,
                      stylized ? stylized_faces() : scene.scene()->material(item.material));
         cull_sides(item);
@@ -35,7 +35,7 @@ void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     cover_.use(glm::dvec3(0), clip_from_view);
     for (const DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuGeometry& geometry = scene.geometry(item);
         set_place(item, geometry);
         cull_sides(item);
         draw_triangles(geometry, stats);

@@ -138,7 +138,7 @@ void OutlinePass::cover(std::span<const DrawItem> items, std::span<const PixelBo
     glClearColor(1, 1, 1, 1);
     cover_.use(glm::dvec3(1), clip_from_view);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const GpuGeometry& geometry = scene.geometry(items[i].geometry);
+        const GpuGeometry& geometry = scene.geometry(items[i]);
         set_place(items[i], geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.

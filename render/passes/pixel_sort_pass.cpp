@@ -140,7 +140,7 @@ std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const Pixe
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < items.size(); ++i) {
         const DrawItem& item = items[i];
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::Shape::layered_glass, item, geometry,
                      scene.scene()->material(item.material));
         set_order(static_cast<GLuint>(i));

@@ -47,6 +47,44 @@ layout(std140, binding = 0) uniform Sight {
 };
 )";
 
+// For the stage that evaluates it. The eye is the origin. After the sight's block, and what the light's kind
+// defines.
+constexpr std::string_view kPhong = R"(
+layout(location = 8) uniform float shininess;
+
+float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
+
+// smoothstep of the cosine. What it is short of 1 is half the square of a difference, which keeps its digits in
+// the narrowest cone.
+float in_cone(vec3 from_light) {
+    vec3 off = from_light - light_direction.xyz;
+    float t = clamp((cone.y - dot(off, off) / 2) / max(cone.y - cone.x, 1e-12), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+// How much light the matte and the shiny part of a surface send to the eye, which is at a distance d.
+vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d) {
+#if defined(HEADLIGHT)
+    vec3 to_light = to_eye;
+    float intensity = attenuated(d);
+#elif defined(DIRECTIONAL)
+    vec3 to_light = -light_direction.xyz;
+    float intensity = 1;
+#else
+    vec3 light_offset = light_position.xyz - at;
+    float light_distance = length(light_offset);
+    vec3 to_light = light_offset / max(light_distance, 1e-30);
+    float intensity = attenuated(light_distance);
+#ifdef SPOT
+    intensity *= in_cone(-to_light);
+#endif
+#endif
+    float lambert = max(dot(to_light, n), 0);
+    float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
+    return lambert * intensity * vec2(1, pow(highlight, shininess));
+}
+)";
+
 // After the sight's block.
 constexpr std::string_view kVertexShader = R"(
 layout(location = 1) uniform mat4 view_from_local;
@@ -57,8 +95,14 @@ out float gl_ClipDistance[1];
 #endif
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef LIT_AT_VERTEX
+layout(location = 9) uniform bool both_sides;
+out vec2 light;
+#endif
+#ifdef NEEDS_NORMAL
 out vec3 view_position;
 out vec3 view_normal;
+#endif
 invariant gl_Position;  // one depth in all programs
 #ifdef TEXTURED
 layout(location = 2) in vec2 texcoord;
@@ -75,19 +119,26 @@ void main() {
     vec4 p = view_from_local * vec4(position, 1);
     vec3 n = normal_matrix * normal;
     float size = length(n);
+    n = size > 0 ? n / size : vec3(0);
+#ifdef NEEDS_NORMAL
     view_position = p.xyz;
-    view_normal = size > 0 ? n / size : vec3(0);
+    view_normal = n;
+#endif
+#ifdef LIT_AT_VERTEX
+    float d = max(length(p.xyz), 1e-30);
+    vec3 to_eye = -p.xyz / d;
+    if (size == 0) n = to_eye;  // a vertex knows no face
+    light = phong(p.xyz, both_sides && dot(n, to_eye) < 0 ? -n : n, to_eye, d);
+#endif
     gl_Position = clip_from_view * p;
 }
 )";
 
-// The eye is the origin. After the sight's block, and what the light's kind and the shape define.
+// After the sight's block, and what the shape and its light define.
 constexpr std::string_view kFragmentShader = R"(
 layout(location = 5) uniform vec3 base;
 layout(location = 6) uniform vec3 diffuse;
 layout(location = 7) uniform vec3 specular;
-layout(location = 8) uniform float shininess;
-layout(location = 9) uniform bool both_sides;
 #ifdef MIRROR
 layout(location = 10) uniform float reflectivity;
 layout(binding = 2) uniform sampler2D reflection;
@@ -101,8 +152,14 @@ layout(early_fragment_tests) in;
 #else
 out vec4 color;
 #endif
+#ifdef LIT_AT_VERTEX
+in vec2 light;
+#endif
+#ifdef NEEDS_NORMAL
+layout(location = 9) uniform bool both_sides;
 in vec3 view_position;
 in vec3 view_normal;
+#endif
 #ifdef TEXTURED
 layout(binding = 0) uniform sampler2D image;
 in vec2 place;
@@ -112,57 +169,37 @@ layout(location = 10) uniform float reflectivity;
 layout(binding = 1) uniform samplerCube panorama;
 #endif
 
-float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
-
-// smoothstep of the cosine. What it is short of 1 is half the square of a difference, which keeps its digits in
-// the narrowest cone.
-float in_cone(vec3 from_light) {
-    vec3 off = from_light - light_direction.xyz;
-    float t = clamp((cone.y - dot(off, off) / 2) / max(cone.y - cone.x, 1e-12), 0, 1);
-    return t * t * (3 - 2 * t);
-}
-
-void main() {
-    float d = length(view_position);
-    vec3 to_eye = -view_position / d;
+#ifdef NEEDS_NORMAL
+vec3 normal_to(vec3 to_eye) {
     vec3 n = view_normal;
 #ifdef EDGES
     if (dot(n, n) < 1e-12) n = to_eye;
-    n = normalize(n);
-    if (dot(n, to_eye) < 0) n = -n;
 #else
     // A normal that vanishes (flattened parts, opposite neighbours) takes the face's, which faces the viewer.
     vec3 across = dFdx(view_position), upwards = dFdy(view_position);
     if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
+#endif
     n = normalize(n);
-    if (both_sides && dot(n, to_eye) < 0) n = -n;
+    return both_sides && dot(n, to_eye) < 0 ? -n : n;
+}
 #endif
 
-#if defined(HEADLIGHT)
-    vec3 to_light = to_eye;
-    float intensity = attenuated(d);
-#elif defined(DIRECTIONAL)
-    vec3 to_light = -light_direction.xyz;
-    float intensity = 1;
-#else
-    vec3 light_offset = light_position.xyz - view_position;
-    float light_distance = length(light_offset);
-    vec3 to_light = light_offset / max(light_distance, 1e-30);
-    float intensity = attenuated(light_distance);
-#ifdef SPOT
-    intensity *= in_cone(-to_light);
+void main() {
+#ifdef NEEDS_NORMAL
+    float d = length(view_position);
+    vec3 to_eye = -view_position / d;
+    vec3 n = normal_to(to_eye);
 #endif
+#ifndef LIT_AT_VERTEX
+    vec2 light = phong(view_position, n, to_eye, d);
 #endif
-    float lambert = max(dot(to_light, n), 0);
-    float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
 #ifdef TEXTURED
     vec4 texel = filtered(image, place);
     vec3 matte = texel.rgb;
 #else
     vec3 matte = diffuse;
 #endif
-    vec3 lit = matte + specular * pow(highlight, shininess);
-    vec3 own = clamp(base + lit * light_color.rgb * (lambert * intensity), 0, 1);
+    vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
 #ifdef ENVIRONMENT
     vec3 seen = world_from_view * reflect(-to_eye, n);
     own = mix(own, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
@@ -323,16 +360,22 @@ GlProgram SurfacePrograms::make(const Variant& variant) {
     define(layered, "LAYERED");
     define(variant.shape == Shape::mirror, "MIRROR");
     define(variant.clipped, "CLIPPED");
+    const bool at_vertex = variant.lit_at == Methods::Light::vertex;
+    define(at_vertex, "LIT_AT_VERTEX");
+    define(!at_vertex || variant.environment, "NEEDS_NORMAL");
     head += kSightBlock;
     std::string needed(variant.textured || variant.environment ? kTextureFilter : std::string_view());
     if (layered) needed += std::string(kLayerLists) + std::string(kAddLayer);
-    return make_program(head + std::string(kVertexShader), head + needed + std::string(kFragmentShader));
+    const std::string phong(kPhong), none;
+    return make_program(head + (at_vertex ? phong : none) + std::string(kVertexShader),
+                        head + (at_vertex ? none : phong) + needed + std::string(kFragmentShader));
 }
 
 void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
     scene_ = scene;
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, sight);
+    lit_at_ = view.methods.light;
     if (!sight_) sight_ = make_changing_buffer(sizeof(SightBlock));
     const SightBlock block = block_of(sight, view);
     glNamedBufferSubData(sight_.get(), 0, sizeof block, &block);
@@ -341,7 +384,8 @@ void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scen
 
 void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& geometry,
                           const Material& material) {
-    const Variant variant{shape, light_, item.texture != kNone, item.environment, item.kept.has_value()};
+    const Variant variant{shape,  light_, item.texture != kNone, item.environment, item.kept.has_value(),
+                          lit_at_};
     GlProgram& program = programs_[variant];
     if (!program) program = make(variant);
     glUseProgram(program.get());
@@ -357,7 +401,7 @@ void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& 
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
-    glUniform1i(both_sides_at, item.sides == Sides::both);
+    glUniform1i(both_sides_at, item.sides != Sides::front || shape == Shape::edges);
     if (shape == Shape::glass || shape == Shape::layered_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
     if (shape == Shape::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));

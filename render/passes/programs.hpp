@@ -17,8 +17,9 @@ struct Sight {
     glm::dmat4 view_from_world{1};
 };
 
-/// Phong light per pixel (Macků 2016, eq. 6.4–6.9 in their robust form). A program is compiled for what
-/// surfaces and lights ask of it, when they first do.
+/// Phong light (Macků 2016, eq. 6.4–6.9 in their robust form) per pixel, or per vertex: then what light adds
+/// to the matte and to the shiny part of a surface is interpolated, and the rest is done at the pixel as
+/// ever. A program is compiled for what surfaces and lights ask of it, when they first do.
 class SurfacePrograms {
 public:
     enum class Shape {
@@ -43,10 +44,11 @@ private:
         bool textured = false;
         bool environment = false;
         bool clipped = false;
+        Methods::Light lit_at = Methods::Light::pixel;
 
         bool operator<(const Variant& other) const {
             const auto key = [](const Variant& v) {
-                return std::tie(v.shape, v.light, v.textured, v.environment, v.clipped);
+                return std::tie(v.shape, v.light, v.textured, v.environment, v.clipped, v.lit_at);
             };
             return key(*this) < key(other);
         }
@@ -55,6 +57,7 @@ private:
     static GlProgram make(const Variant& variant);
 
     LightKind light_ = LightKind::headlight;
+    Methods::Light lit_at_ = Methods::Light::pixel;
     std::map<Variant, GlProgram> programs_;
     GlBuffer sight_;
     GpuScene* scene_ = nullptr;

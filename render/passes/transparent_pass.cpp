@@ -11,7 +11,7 @@ void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, Sur
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     for (const DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::Shape::glass, item, geometry, scene.scene()->material(item.material));
         glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
         cull_sides(item, item.order != nullptr);

@@ -55,6 +55,7 @@ test('wrong usage is told in a sentence, with status 2', () => {
   fails(2, /--size/, 'render', CAR, '-o', file('x.png'), '--size', '0x5');
   fails(2, /--samples/, 'render', CAR, '-o', file('x.png'), '--samples', '0');
   fails(2, /--eye: .*'1,2'/, 'render', CAR, '-o', file('x.png'), '--eye', '1,2');
+  fails(2, /--detail/, 'render', CAR, '-o', file('x.png'), '--detail', '-1');
   fails(2, /--fov/, 'render', CAR, '-o', file('x.png'), '--fov', '180');
   fails(2, /'8080'/, 'serve', '--listen', '8080');
   fails(2, /--log-level/, 'serve', '--log-level', 'loud');
@@ -246,4 +247,10 @@ test('compare tells how far pictures are apart', () => {
   fails(1, /neither PNG nor JPEG/, 'compare', CAR, file('a.png'));
   fails(1, /map\.jpg/, 'compare', file('a.png'), file('b.png'), '--map', file('map.jpg'));
   fails(2, /b is required/, 'compare', file('a.png'));
+});
+
+test('with pixels of detail fewer triangles are drawn', () => {
+  const triangles = (detail) =>
+    JSON.parse(succeeds('render', CAR, '-o', file('x.png'), '--size', '160x90', '--detail', detail, '--stats')).triangles;
+  assert.ok(triangles('1') < triangles('0'));
 });

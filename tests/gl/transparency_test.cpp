@@ -338,6 +338,25 @@ TEST_CASE("layers that do not fit into the budget are made in parts of the pictu
     CHECK(studio.check(scene, row).surfaces > 50);
 }
 
+TEST_CASE("room for layers stays while panes cross in some pictures and not in others, and is given back") {
+    Studio studio;
+    const auto crossing = scene_of({{1, quad(2), glass({1, 0, 0}, 0.5, true), turned_by(20, {0, 1, 0})},
+                                    {2, quad(2), glass({0, 0, 1}, 0.5, true), turned_by(-20, {0, 1, 0})}});
+    const View towards = odd_view({0, 0.3, 6}), away = odd_view({0, 0.3, 6}, {0, 0.3, 12});
+    studio.draw(crossing, towards);
+    studio.draw(crossing, away);
+    const long objects = live_gl_objects();
+    for (int i = 0; i < 3; ++i) {
+        studio.draw(crossing, towards);
+        studio.draw(crossing, away);
+        CHECK(live_gl_objects() == objects);
+    }
+    studio.draw(crossing, towards);
+    CHECK(live_gl_objects() == objects);
+    for (int i = 0; i <= 100; ++i) studio.draw(crossing, away);
+    CHECK(live_gl_objects() == objects - 2);
+}
+
 TEST_CASE("the reference sees the same in rings and bodies of glass") {
     Studio studio;
     std::vector<Part> parts = ring_of_three();

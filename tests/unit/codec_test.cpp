@@ -440,13 +440,14 @@ TEST_CASE("what the server measures, as a message") {
         R"({"bytesPerSecond":0.0,"clients":0,"framesPerSecond":0.0,"hosts":{},"type":"stats","watchers":0})");
     Stats stats;
     stats.renderer = {1, 2, 3};
-    stats.quality = {Quality::Level::moving, 0.5, 1, 2, 75, Quality::Subsampling::yuv420};
+    stats.quality = {Quality::Level::moving, 0.5, 1, 2, 75, Quality::Subsampling::yuv420, 0.03125};
     stats.hosts["c2"] = {"Wall", 12, 3.5};
     stats.hosts["c3"] = {"", 0, {}};
-    CHECK(encode(stats) ==
-          R"({"bytesPerSecond":0.0,"clients":0,"framesPerSecond":0.0,)"
-          R"("hosts":{"c2":{"lagMs":3.5,"name":"Wall","revision":12},"c3":{"name":"","revision":0}},)"
-          R"("quality":{"detail":2.0,"jpegQuality":75,"level":"moving","samples":1,"scale":0.5,)"
-          R"("subsampling":"4:2:0"},"renderer":{"meanRenderMs":1.0,"medianRenderMs":2.0,)"
-          R"("p95RenderMs":3.0},"type":"stats","watchers":0})");
+    CHECK(
+        encode(stats) ==
+        R"({"bytesPerSecond":0.0,"clients":0,"framesPerSecond":0.0,)"
+        R"("hosts":{"c2":{"lagMs":3.5,"name":"Wall","revision":12},"c3":{"name":"","revision":0}},)"
+        R"("quality":{"detail":2.0,"error":0.03125,"jpegQuality":75,"level":"moving","samples":1,"scale":0.5,)"
+        R"("subsampling":"4:2:0"},"renderer":{"meanRenderMs":1.0,"medianRenderMs":2.0,)"
+        R"("p95RenderMs":3.0},"type":"stats","watchers":0})");
 }

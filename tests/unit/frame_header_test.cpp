@@ -20,6 +20,7 @@ TEST_CASE("the header says what the contract asks for") {
     CHECK(json["camera"]["viewMatrix"][3] == 5);
     CHECK(json["quality"]["level"] == "moving");
     CHECK(json["quality"]["subsampling"] == "4:2:0");
+    CHECK_FALSE(json["quality"].contains("error"));
     CHECK_FALSE(json["timing"].contains("sinceInputMs"));
     for (const char* member : {"revision", "handled", "width", "height", "view", "renderer"})
         CHECK(json.contains(member));
@@ -28,11 +29,13 @@ TEST_CASE("the header says what the contract asks for") {
     CHECK_FALSE(json["camera"].contains("node"));
 
     header.timing.since_input_ms = 2.5;
+    header.quality.error = 0.031;
     header.snapshot = 17;
     header.camera.pose.node = 4;
     header.camera.pose.name = "Driver";
     json = nlohmann::json::parse(encode(header));
     CHECK(json["timing"]["sinceInputMs"] == 2.5);
+    CHECK(json["quality"]["error"] == 0.031);
     CHECK(json["snapshot"] == 17);
     CHECK(json["camera"]["node"] == 4);
     CHECK(json["camera"]["name"] == "Driver");

@@ -181,6 +181,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     const json plain = json::parse(encode(header));
     header.snapshot = 17, header.camera.pose = state.camera, header.timing.since_input_ms = 2.5;
     header.markers["Scratch"] = {1, 2, 3};
+    header.quality.error = 0.031;
     const json all = {{"serverMessage", messages},
                       {"frameHeader", {plain, json::parse(encode(header))}},
                       {"stateDocument", {first->json(), second->json()}}};

@@ -111,7 +111,7 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     test('the mouse turns, moves and zooms', async () => {
       const drag = (button, to) => () => tablet.mouse(button, { from: [x, y], to });
-      assertTurned(await changes(drag('left', across(-0.1, 0))), { right: -18, down: 0 });
+      assertTurned(await changes(drag('left', across(-0.1, -0.05))), { right: -18, down: -9 });
       assertPanned(await moves(drag('right', [x - 30, y + 20])), [-30, 20], height);
       assertZoomed(await moves(drag('middle', [x, y + height / 10])), 4 ** -0.1);
       const { deltaY } = (await tablet.wheel(-100)).last;

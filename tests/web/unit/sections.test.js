@@ -50,10 +50,13 @@ describe('connection', () => {
   test('which kind of picture it is', () => {
     const still = { level: 'still', scale: 1, samples: 16, detail: 0, jpegQuality: 95 };
     assert.equal(qualityWords(still), 'Still · 16 samples · full size · JPEG 95');
-    const moving = { level: 'moving', scale: 0.67, samples: 1, detail: 2, jpegQuality: 70 };
-    assert.equal(qualityWords(moving), 'Moving · 67 % size · simplified · JPEG 70');
+    assert.equal(qualityWords({ ...still, error: 0 }), 'Still · 16 samples · full size · JPEG 95 · error 0');
+    assert.match(qualityWords({ ...still, error: 0.0004 }), / · error < 0\.001$/);
+    const moving = { level: 'moving', scale: 0.67, samples: 1, detail: 0.5, jpegQuality: 70, error: 0.0314 };
+    assert.equal(qualityWords(moving), 'Moving · 67 % size · detail 0.5 px · JPEG 70 · error 0.031');
     setLanguage('cs');
     assert.equal(qualityWords(still), 'V klidu · vzorků: 16 · plná velikost · JPEG 95');
+    assert.equal(qualityWords(moving), 'V pohybu · velikost 67 % · detaily 0,5 px · JPEG 70 · chyba 0,031');
   });
 
   test('a picture to keep has all pixels of the view, as far as the server draws them', () => {

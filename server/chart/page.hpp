@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "charts.hpp"
+
+namespace vrut::chart {
+
+/// What a page says at its head.
+struct PageHead {
+    std::string title;
+    std::vector<std::string> sentences;  ///< of the machine, the renderer, the version
+};
+
+/// Text as HTML has it, in elements and attributes.
+std::string escaped(const std::string& text);
+/// An SVG file of gnuplot's as a part of a page: its ids begin with `name`, and it names no address.
+std::string inlined(std::string svg, const std::string& name);
+
+/// One HTML page that needs nothing else; `svgs` has the drawn chart of each of the sections' plots, one
+/// after the other.
+std::string page_of(const PageHead& head, const std::vector<Section>& sections,
+                    const std::vector<std::string>& svgs);
+
+}  // namespace vrut::chart

@@ -1,0 +1,32 @@
+#include "progress.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace vrut::chart {
+
+Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+    if (terminal_ && percent_ >= 0) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::show(double part, const std::string& what) {
+    constexpr int kWidth = 30;
+    const int percent = static_cast<int>(100 * std::clamp(part, 0.0, 1.0));
+    if (what == what_ && (!terminal_ || percent == percent_)) return;
+    percent_ = percent;
+    what_ = what;
+    if (!terminal_) {
+        std::fprintf(stderr, "%3d %% %s\n", percent, what.c_str());
+        return;
+    }
+    std::string bar(kWidth, '.');
+    std::fill_n(bar.begin(), kWidth * percent / 100, '#');
+    std::fprintf(stderr, "\r[%s] %3d %% %.*s\033[K", bar.c_str(), percent, 60, what.c_str());
+    std::fflush(stderr);
+}
+
+}  // namespace vrut::chart

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+
+namespace vrut::chart {
+
+/// How far long work is, on standard error: a bar on a terminal, elsewhere a line for each thing begun.
+class Progress {
+public:
+    Progress();
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// `part` of the whole, 0 to 1.
+    void show(double part, const std::string& what);
+
+private:
+    bool terminal_;
+    int percent_ = -1;
+    std::string what_;
+};
+
+}  // namespace vrut::chart

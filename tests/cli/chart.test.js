@@ -1,0 +1,93 @@
+// Charts from the command line: what is written, what is measured again, and what is refused before measuring.
+'use strict';
+const assert = require('node:assert/strict');
+const { spawnSync } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, test } = require('node:test');
+
+const PROGRAM = process.env.VRUT_PREVIEW;
+const SCENE = path.join(process.env.VRUT_SCENES, 'teaching', 'glass-crossing.vrut');
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-chart-'));
+after(() => fs.rmSync(folder, { recursive: true }));
+
+const out = path.join(folder, 'it\'s "out" $(x)');
+const SMALL = ['--size', '64x48', '--frames', '1', '--triangles', '20000'];
+const environment = { ...process.env, XDG_STATE_HOME: path.join(folder, 'state') };
+const run = (options, env = environment) => spawnSync(PROGRAM, ['chart', ...options], { encoding: 'utf8', env });
+const measurements = () => fs.readFileSync(path.join(out, 'measurements.csv'), 'utf8').trim().split('\n');
+
+function fails(status, culprit, options, env) {
+  const result = run(options, env);
+  assert.equal(result.status, status, result.stderr);
+  assert.match(result.stderr, culprit);
+  assert.equal(result.stderr.trim().split('\n').length, 1, result.stderr);
+}
+
+/** Fails where an element is not closed, or closed where it was not opened. */
+function checkNesting(svg) {
+  const open = [];
+  for (const [, end, name, alone] of svg.matchAll(/<(\/?)([a-zA-Z]+)(?:[^<>"']|"[^"]*"|'[^']*')*?(\/?)>/g)) {
+    if (end) assert.equal(open.pop(), name);
+    else if (!alone) open.push(name);
+  }
+  assert.deepEqual(open, []);
+}
+
+test('charts of a scene, and nothing is measured twice', () => {
+  const first = run([SCENE, '--out', out, ...SMALL]);
+  assert.equal(first.status, 0, first.stderr);
+  assert.match(first.stderr, /\d+ % glass-crossing, stylized/);
+  const rows = measurements();
+  assert.match(rows[0], /^chart,scene,sha256,renderer,.*,ms_median,.*,bytes_p95,flip_mean,.*,maximum,wrong$/);
+  for (const chart of ['modes', 'table-7-1', 'antialiasing', 'lighting', 'transparency', 'jpeg', 'pixels', 'picking', 'triangles'])
+    assert.ok(rows.some((row) => row.startsWith(`${chart},`)), chart);
+  // Its panes have no coarser surfaces.
+  assert.ok(!rows.some((row) => row.startsWith('detail,')));
+
+  const files = fs.readdirSync(out);
+  const svgs = files.filter((name) => name.endsWith('.svg'));
+  for (const name of ['realistic-time', 'stylized-wireframe-bytes-maximum', 'picking', 'transparency', 'lighting', 'jpeg'])
+    assert.ok(svgs.includes(`glass-crossing-${name}.svg`), name);
+  for (const name of svgs) checkNesting(fs.readFileSync(path.join(out, name), 'utf8').replace(/<\?xml.*?\?>/, ''));
+
+  const page = fs.readFileSync(path.join(out, 'index.html'), 'utf8');
+  assert.equal(page.split('<svg').length - 1, svgs.length);
+  assert.doesNotMatch(page, /https?:|<script|<link|src=/);
+  assert.match(page, /Drawn by .* on .*threads/);
+
+  const second = run([SCENE, '--out', out, ...SMALL]);
+  assert.equal(second.status, 0, second.stderr);
+  assert.doesNotMatch(second.stderr, /realistic|stylized|picking|triangles every|triangles detail/);
+  assert.deepEqual(measurements(), rows);
+});
+
+test('the levels of a scene are measured and kept', () => {
+  const result = run(['--calibrate', SCENE, '--size', '160x120']);
+  assert.equal(result.status, 0, result.stderr);
+  const [head, ...levels] = result.stdout.trim().split('\n');
+  assert.match(head, /160 x 120/);
+  assert.ok(levels.length >= 2 && levels.length <= 9);
+  for (const level of levels) assert.match(level, /^scale .* ms .* kB  FLIP \d.*\.$/);
+  assert.match(levels.at(-1), /^scale 1, 16 samples, JPEG 90 4:4:4 .*At rest/);
+  assert.equal(new Set(levels.map((level) => level.indexOf('  FLIP'))).size, 1, result.stdout);
+  assert.equal(fs.readdirSync(path.join(environment.XDG_STATE_HOME, 'vrut-preview', 'levels')).length, 1);
+});
+
+test('what cannot be done is told before anything is measured', () => {
+  fails(2, /--out/, [SCENE]);
+  fails(2, /--calibrate/, ['--calibrate', SCENE, SCENE]);
+  fails(2, /--frames/, [SCENE, '--out', out, '--frames', '0']);
+  fails(1, /no-scene\.vrut/, [path.join(folder, 'no-scene.vrut'), '--out', path.join(folder, 'none')]);
+  assert.equal(fs.existsSync(path.join(folder, 'none')), false);
+  fails(1, /--size.* pixels a side/, [SCENE, '--out', path.join(folder, 'none'), '--size', '8193x100']);
+  fails(1, /--size.* pixels a side/, ['--calibrate', SCENE, '--size', '100x8193']);
+  assert.equal(fs.existsSync(path.join(folder, 'none')), false);
+  const twice = run([SCENE, SCENE, '--out', path.join(folder, 'twice'), ...SMALL]);
+  assert.equal(twice.status, 1, twice.stderr);
+  assert.match(twice.stderr, /the same scene/);
+  fs.writeFileSync(path.join(folder, 'file'), '');
+  fails(1, /file/, [SCENE, '--out', path.join(folder, 'file', 'x')]);
+  fails(1, /gnuplot.*install/, [SCENE, '--out', path.join(folder, 'none')], { ...environment, PATH: folder });
+});

@@ -1,0 +1,24 @@
+#include <unistd.h>
+
+#include <cstdint>
+#include <fstream>
+#include <string_view>
+
+#include "assimp_scene.hpp"
+
+/// assimp 5.2 does not free what it had decoded of a base64 with a letter that is none.
+extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    // By its ending assimp takes a file for text or binary.
+    const auto path =
+        std::filesystem::temp_directory_path() /
+        ("vrut-fuzz-" + std::to_string(getpid()) + (bytes.starts_with("glTF") ? ".glb" : ".gltf"));
+    std::ofstream(path, std::ios::binary) << bytes;
+    auto parts = vrut::read_assimp_scene(path);
+    auto scene = parts ? vrut::build_scene(*std::move(parts), "fuzz.gltf") : tl::unexpected(parts.error());
+    if (scene) vrut::place(*std::move(scene));
+    std::filesystem::remove(path);
+    return 0;
+}

@@ -1,0 +1,268 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "detail_levels.hpp"
+#include "detail_plan.hpp"
+#include "difference.hpp"
+#include "projection.hpp"
+#include "read_scene.hpp"
+#include "renderer.hpp"
+#include "shapes.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
+
+Material seen_through(Material material) {
+    material.diffuse.a = 0.4;
+    return material;
+}
+
+Material mirroring(Material material) {
+    material.reflectivity = 0.9;
+    return material;
+}
+
+/// A square in the plane z = 0 of many triangles.
+Geometry sheet(double half, unsigned cells) {
+    Geometry geometry;
+    for (unsigned row = 0; row <= cells; ++row)
+        for (unsigned column = 0; column <= cells; ++column)
+            geometry.positions.push_back(
+                {half * (2.0 * column / cells - 1), half * (2.0 * row / cells - 1), 0});
+    for (unsigned row = 0; row < cells; ++row)
+        for (unsigned column = 0; column < cells; ++column) {
+            const unsigned a = row * (cells + 1) + column, b = a + cells + 1;
+            geometry.triangles.emplace_back(a, a + 1, b + 1);
+            geometry.triangles.emplace_back(a, b + 1, b);
+        }
+    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
+    return geometry;
+}
+
+View simplified(View view, const std::shared_ptr<const PlacedScene>& scene, double pixels = 0.5) {
+    const auto levels = std::make_shared<const DetailLevels>(scene->scene);
+    levels->wait();
+    view.scene = scene;
+    view.levels = levels;
+    view.detail = pixels;
+    return view;
+}
+
+View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    View view;
+    view.camera.eye = eye;
+    view.camera.focus = focus;
+    view.camera = with_orthogonal_up(view.camera);
+    view.width = 480;
+    view.height = 320;
+    view.samples = 4;
+    return view;
+}
+
+struct Saving {
+    std::uint64_t all = 0, drawn = 0;
+    double left() const { return static_cast<double>(drawn) / static_cast<double>(all); }
+};
+
+/// Draws with and without levels and compares.
+Saving check(View view, const std::shared_ptr<const PlacedScene>& scene) {
+    Renderer renderer;
+    Image whole, coarse;
+    FrameStats all, left;
+    view.scene = scene;
+    CHECK(renderer.render(view, whole, all));
+    CHECK(renderer.render(simplified(view, scene), coarse, left));
+    const Difference apart = difference(whole, coarse);
+    CHECK(apart.psnr() >= 45);
+    CHECK(apart.share_above(8) <= 0.002);
+    CHECK(renderer.take_messages().empty());
+    return {all.triangles, left.triangles};
+}
+
+}  // namespace
+
+TEST_CASE("with fewer triangles the picture hardly changes") {
+    const View view = view_from({1, 2, 6});
+    const auto ball = scene_of({{1, sphere(1.5, 100), kPaint, glm::dmat4(1)}});
+    CHECK(check(view, ball).left() < 0.55);
+    const auto flat = scene_of({{1, sphere(1.5, 100, false), kPaint, glm::dmat4(1)}});
+    CHECK(check(view, flat).left() <= 1);  // each triangle has a shade of its own, and is seen
+    CHECK(check(view_from({3, 6, 18}), flat).left() < 0.55);
+    const auto both = scene_of({{1, sphere(1.5, 80), seen_through(kPaint), glm::dmat4(1)},
+                                {2, sphere(0.7, 80), kPaint, moved_by({0.4, 0, 0})}});
+    CHECK(check(view, both).left() < 0.8);
+    const auto mirrored = scene_of({{1, sphere(0.7, 80), kPaint, moved_by({0, 0, 1.2})},
+                                    {2, sheet(2, 40), mirroring(kPaint), glm::dmat4(1)}});
+    CHECK(check(view, mirrored).left() < 0.5);
+}
+
+TEST_CASE("the car with fewer triangles") {
+    auto read = read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
+    REQUIRE(read);
+    const auto car = std::make_shared<const PlacedScene>(place(*std::move(read)));
+    CHECK(check(view_from({4, 2, 5}, {0, 0.7, 0}), car).left() < 1);
+}
+
+TEST_CASE("a selected part among simplified ones is drawn whole") {
+    const auto scene = scene_of(
+        {{1, sphere(1, 60), kPaint, glm::dmat4(1)}, {2, sphere(1, 60), kPaint, moved_by({1.5, 0, -1})}});
+    View view = view_from({1, 2, 6});
+    view.selected = scene->scene->find_node(2);
+    CHECK(check(view, scene).left() < 0.9);
+    const FramePlan plan = plan_frame(simplified(view, scene));
+    REQUIRE(plan.selected.size() == 1);
+    CHECK(plan.selected[0].level == nullptr);
+    REQUIRE(plan.scene.opaque.size() == 1);
+    CHECK(plan.scene.opaque[0].level != nullptr);
+}
+
+TEST_CASE("glass over a solid twin is whole, and so is the twin") {
+    for (const Geometry& geometry : {sphere(1, 100), sheet(1, 40)}) {
+        SceneParts parts;
+        parts.geometries = {geometry};
+        parts.materials = {kPaint, seen_through(material_of({0.1, 0.1, 0.9}))};
+        for (Id id = 1; id <= 3; ++id) {
+            const glm::dmat4 matrix = id < 3 ? glm::dmat4(1) : moved_by({2.5, 0, -2});
+            parts.nodes.push_back(
+                {Node{id, {}, NodeType::geometry, kNone, {}, true, matrix, GeometryData{0, id == 2 ? 1 : 0}},
+                 0});
+        }
+        const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+        CHECK(check(view_from({1, 2, 6}), scene).left() < 1);
+    }
+}
+
+TEST_CASE("what is painted on a part stays where it is") {
+    Geometry painted = sheet(1.5, 40);
+    for (const glm::dvec3& p : painted.positions)
+        painted.texcoords.emplace_back(p.x + 0.2 * std::sin(5 * p.y), p.y + 0.2 * std::sin(5 * p.x));
+    Image stripes;
+    stripes.resize(8, 8);
+    for (std::size_t i = 0; i < stripes.rgba.size(); ++i)
+        stripes.rgba[i] = i % 4 == 3 || i / 8 % 2 == 0 ? 255 : 0;
+    Material material = kPaint;
+    material.texture = 0;
+    const auto scene = scene_of({{1, painted, material, glm::dmat4(1)}}, {{"stripes.png", stripes, false}});
+    CHECK(check(view_from({1, 2, 6}), scene).left() == 1);
+}
+
+TEST_CASE("a level is chosen by what its error is in the picture") {
+    const auto scene = scene_of({{1, sphere(1, 60), kPaint, glm::dmat4(1)}});
+    View view = simplified(view_from({0, 0, 6}), scene);
+    const auto chosen = [&](double distance, double detail) {
+        view.camera.eye = {0, 0, distance};
+        view.detail = detail;
+        const FramePlan plan = plan_frame(view);
+        if (plan.scene.opaque.empty()) return -1;
+        const DetailLevel* level = plan.scene.opaque[0].level;
+        if (!level) return 0;
+        // Straight ahead, the nearest point is this far away.
+        const double pixels = view.height / 2.0 / std::tan(view.camera.fov * kRadiansPerDegree / 2);
+        CHECK(level->error * pixels / (distance - 1) <= detail);
+        return level->number;
+    };
+    CHECK(chosen(6, 0) == 0);
+    CHECK(chosen(6, 1e-9) == 0);
+    int before = 0;
+    for (const double detail : {0.05, 0.2, 0.5, 1.0, 4.0}) {
+        const int level = chosen(6, detail);
+        CHECK(level >= before);
+        before = level;
+    }
+    CHECK(before >= 3);
+    CHECK(chosen(100, 0.5) > chosen(3, 0.5));
+    CHECK(chosen(1.01, 0.5) <= chosen(3, 0.5));
+    CHECK(chosen(0.5, 1000) == 0);  // within the box
+    view.wireframe = true;
+    CHECK(plan_frame(view).edges[0].level == nullptr);
+    view.wireframe = false;
+    view.mode = DrawMode::stylized;
+    view.camera.eye = {0, 0, 6};
+    CHECK(plan_frame(view).scene.opaque[0].level == nullptr);
+}
+
+TEST_CASE("no step in a part is seen longer than is said of it") {
+    View view = view_from({0, 0, 0}, {0, 0, -1});
+    const Bounds box{{2, -1, -1}, {4, 1, 1}};
+    const glm::dmat4 matrix = moved_by({0, 0, -6}) * turned_by(20, {0, 1, 0}) * scaled_by({1, 2, 0.5});
+    const double most = most_pixels(matrix, box, view);
+    const glm::dmat4 clip = reversed_clip_from_view(view, 0.1);
+    const auto pixel = [&](const glm::dvec3& at) {
+        const glm::dvec4 p = clip * matrix * glm::dvec4(at, 1);
+        return glm::dvec2(p) / p.w * glm::dvec2(view.width, view.height) / 2.0;
+    };
+    double longest = 0;
+    for (const glm::dvec3& corner : corners(box))
+        for (const glm::dvec3& step :
+             {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}, {0.6, 0, 0.8}, {0.6, 0, -0.8}}) {
+            const glm::dvec3 to = corner + 1e-4 * step * glm::sign(box.center() - corner + 1e-9);
+            longest = std::max(longest, glm::distance(pixel(corner), pixel(to)) / 1e-4);
+        }
+    CHECK(longest <= most * 1.001);
+    CHECK(longest > most / 3);
+    CHECK(std::isinf(most_pixels(glm::dmat4(1), {glm::dvec3(-1), glm::dvec3(1)}, view)));
+}
+
+namespace {
+
+Material two_sided(Material material) {
+    material.two_sided = true;
+    return material;
+}
+
+/// A sphere whose seam and poles meet to the last bit.
+Geometry closed_sphere(double radius, int rings) {
+    Geometry geometry = sphere(radius, rings);
+    for (glm::dvec3& position : geometry.positions) position = glm::round(position * 0x1p30) / 0x1p30;
+    return geometry;
+}
+
+/// Draws every triangle with and without what is known about closed parts.
+FramePlan check_backs(View view, const std::shared_ptr<const PlacedScene>& scene) {
+    Renderer renderer;
+    Image all, left;
+    FrameStats stats;
+    view.scene = scene;
+    CHECK(renderer.render(view, all, stats));
+    view = simplified(view, scene, 0);
+    CHECK(renderer.render(view, left, stats));
+    CHECK(difference(all, left).share_above(1) == 0);
+    return plan_frame(view);
+}
+
+}  // namespace
+
+TEST_CASE("backs of closed parts are left out where they are hidden") {
+    const auto sides = [](const FramePlan& plan) { return plan.scene.opaque.at(0).sides; };
+    const Geometry whole = closed_sphere(1, 12);
+    const auto ball = scene_of({{1, whole, two_sided(kPaint), glm::dmat4(1)}});
+    CHECK(sides(check_backs(view_from({1, 2, 5}), ball)) == Sides::closed);
+    CHECK(sides(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == Sides::both);
+    CHECK(sides(check_backs(view_from({0, 0, 1 + 1e-7}), ball)) == Sides::both);
+    const auto plain = scene_of({{1, whole, kPaint, glm::dmat4(1)}});
+    CHECK(sides(check_backs(view_from({1, 2, 5}), plain)) == Sides::front);
+    const auto turned = scene_of({{1, turned_inside_out(whole), two_sided(kPaint), glm::dmat4(1)}});
+    CHECK(sides(check_backs(view_from({1, 2, 5}), turned)) == Sides::both);
+    const auto flat = scene_of({{1, whole, two_sided(kPaint), scaled_by({1, 1, 0})}});
+    CHECK(sides(check_backs(view_from({1, 2, 5}), flat)) == Sides::both);
+    Geometry dark = whole;  // the normals face inwards, and are turned to the viewer
+    for (glm::vec3& normal : dark.normals) normal = -normal;
+    const auto other = scene_of({{1, dark, two_sided(kPaint), scaled_by({-1, 1, 2})}});
+    CHECK(sides(check_backs(view_from({1, 2, 5}), other)) == Sides::closed);
+}
+
+TEST_CASE("what a mirror cuts is drawn from both sides in it") {
+    const auto scene = scene_of({{1, closed_sphere(0.7, 24), two_sided(kPaint), moved_by({0, 0, 1.2})},
+                                 {2, closed_sphere(0.7, 24), two_sided(kPaint), moved_by({1, 1, 0.3})},
+                                 {3, sheet(2, 4), mirroring(kPaint), glm::dmat4(1)}});
+    const FramePlan plan = check_backs(view_from({1, 2, 6}), scene);
+    REQUIRE(plan.scene.mirrors.size() == 1);
+    const auto& reflected = plan.scene.mirrors[0].reflected.opaque;
+    REQUIRE(reflected.size() == 2);
+    CHECK(reflected[0].sides == Sides::closed);
+    CHECK(reflected[1].sides == Sides::both);
+}

@@ -1,0 +1,239 @@
+#include <doctest/doctest.h>
+#include <pthread.h>
+
+#include <array>
+#include <atomic>
+#include <set>
+
+#include "../unit/environment_variable.hpp"
+#include "../unit/temporary_folder.hpp"
+#include "level_store.hpp"
+#include "test_client.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+using protocol::Quality;
+
+namespace {
+
+constexpr int kSide = 100;  // of the view in pixels
+constexpr const char *kScene = "ab12", *kRenderer = "a painter that waits";
+
+/// Draws nothing, and takes `whole_ms` for a picture of the whole size, and less in proportion to its pixels.
+PainterFactory painter_that_waits(const std::atomic<double>& whole_ms) {
+    return [&whole_ms] {
+        Painter painter{kRenderer, false, 16384, {}};
+        painter.paint = [&whole_ms](const View& view, Image& image, FrameStats& stats,
+                                    const std::function<bool()>& interrupted, Accumulation* kept) {
+            stats = {};
+            stats.samples = view.samples;
+            stats.readbacks = 1;
+            stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
+            for (int sample = 0; sample < view.samples; ++sample) {
+                if (sample > 0 && interrupted && interrupted()) return false;
+                std::this_thread::sleep_for(
+                    std::chrono::duration<double, std::milli>(stats.render_ms / view.samples));
+            }
+            image.resize(view.width, view.height);
+            if (kept) *kept = {};
+            return true;
+        };
+        return painter;
+    };
+}
+
+protocol::LevelTable table() {
+    protocol::LevelTable made{kScene, kRenderer, kSide, kSide, {}};
+    for (const double scale : {0.25, 0.35, 0.5, 0.71, 1.0})
+        made.levels.push_back(
+            {{Quality::Level::moving, scale, 1, 0, 75, Quality::Subsampling::yuv420, 0.1 * (1.25 - scale)},
+             200 * scale * scale,
+             20'000 * scale * scale,
+             ""});
+    made.levels.push_back({kStill, 3000, 30'000, ""});
+    made.levels.back().quality.error = 0.001;
+    return made;
+}
+
+/// The quickest level and the most accurate.
+protocol::LevelTable ends_of_table() {
+    protocol::LevelTable ends = table();
+    ends.levels = {ends.levels[0], ends.levels[4]};
+    return ends;
+}
+
+LoadedScene measured_scene() {
+    LoadedScene scene = scene_of("vrut-text 1");
+    scene.sha256 = kScene;
+    return scene;
+}
+
+/// A server that finds the table above, and a client that moves the camera.
+struct Drag {
+    struct Kept {
+        TemporaryFolder folder;
+        EnvironmentVariable state{"XDG_STATE_HOME", folder.path().c_str()};
+        explicit Kept(const protocol::LevelTable& levels) { store_levels(levels); }
+    } kept;
+    std::atomic<double> whole_ms{1};
+    TestServer server{measured_scene(), painter_that_waits(whole_ms)};
+    TestClient client{server.port()};
+    int id = 0;
+
+    explicit Drag(const protocol::LevelTable& levels = table()) : kept(levels) {
+        client.join();
+        client.send({{"type", "resize"}, {"width", kSide}, {"height", kSide}, {"pixelRatio", 1}});
+    }
+    void change(const Json& patch) {
+        client.send({{"type", "patch"}, {"id", ++id}, {"patch", patch}});
+        client.wait_for("ok");
+    }
+    void move(int grants) {
+        client.send({{"type", "patch"}, {"id", ++id}, {"patch", {{"camera", {{"eye", {id, 1, 9}}}}}}});
+        for (int i = 0; i < grants; ++i) client.send({{"type", "frame"}});
+    }
+    /// The quality of the last of so many pictures, each asked for when the one before has come.
+    Json moves(int pictures) {
+        Json header;
+        for (int i = 0; i < pictures; ++i) {
+            move(1);
+            header = client.wait_for("frame");
+        }
+        return header["quality"];
+    }
+    /// The scale of the first picture between two, however many a loaded machine needs, within limits.
+    double moves_until(double least, double most = 1) {
+        double scale = -1;
+        for (int i = 0; i < 100 && !(scale >= least && scale <= most); ++i) scale = moves(1)["scale"];
+        return scale;
+    }
+    /// The quality of a picture asked for once, while the camera moves on and on.
+    Json moves_on() {
+        client.send({{"type", "frame"}});
+        const auto end = std::chrono::steady_clock::now() + 5s;
+        while (std::chrono::steady_clock::now() < end) {
+            move(0);
+            const auto message = client.receive(2ms);
+            if (message && message->binary) return message->json()["quality"];
+        }
+        return {};
+    }
+};
+
+}  // namespace
+
+TEST_CASE("while things move the most accurate level is drawn that holds the target") {
+    Drag drag;
+    drag.change({{"quality", {{"latencyTargetMs", 100}}}});
+    drag.whole_ms = 10;
+    CHECK(drag.moves_until(1.0) == 1.0);
+    drag.whole_ms = 1000;  // 63 ms at a quarter of the size, and more than 100 at the next
+    CHECK(drag.moves_until(0, 0.25) == 0.25);
+}
+
+TEST_CASE("pictures of several samples come while the camera moves, and are judged by what they took") {
+    protocol::LevelTable sampled = ends_of_table();
+    sampled.levels[1].quality.samples = 4;
+    Drag drag{sampled};
+    drag.change({{"quality", {{"latencyTargetMs", 300}}}});
+    drag.whole_ms = 400;  // and 25 at a quarter of the size
+    CHECK(drag.moves_on()["samples"] == 4);
+    Json quality;
+    for (int i = 0; i < 40 && quality["samples"] != 1; ++i) quality = drag.moves_on();
+    CHECK(quality["samples"] == 1);
+    CHECK(drag.server.metrics().frames_interrupted == 0);
+}
+
+TEST_CASE("with two pictures on their way each is measured until it has arrived") {
+    Drag drag{ends_of_table()};
+    drag.change({{"quality", {{"latencyTargetMs", 300}}}});
+    drag.whole_ms = 30;
+    drag.move(2);
+    CHECK(eventually([&] { return drag.server.metrics().frames_sent == 1; }));
+    drag.move(0);
+    Json quality;
+    for (int i = 0; i < 12 && quality["scale"] != 0.25; ++i) {
+        quality = drag.client.wait_for("frame")["quality"];
+        std::this_thread::sleep_for(200ms);  // it shows one while the next waits
+        drag.move(1);
+    }
+    CHECK(quality["scale"] == 0.25);
+}
+
+TEST_CASE("preference moves along the levels, from the quickest to the most accurate") {
+    Drag drag;
+    drag.whole_ms = 200;
+    drag.change({{"quality", {{"latencyTargetMs", 100}}}});
+    std::set<double> scales;
+    double last = 0;
+    for (const double preference : {0.0, 0.35, 0.5, 0.65, 0.8, 1.0}) {
+        CAPTURE(preference);
+        drag.change({{"quality", {{"preference", preference}}}});
+        drag.moves(6);
+        const double scale = drag.moves_until(last);
+        CHECK(scale >= last);
+        scales.insert(last = scale);
+    }
+    CHECK(scales.size() >= 4);
+    CHECK(scales.contains(0.25));
+    CHECK(scales.contains(1));
+}
+
+TEST_CASE("where no thread can be had for coarser surfaces, pictures come without them") {
+    protocol::LevelTable coarse = ends_of_table();
+    coarse.levels[0].quality.detail = 2;
+    Drag drag{coarse};
+    pthread_attr_t usual, huge;
+    REQUIRE(pthread_getattr_default_np(&usual) == 0);
+    REQUIRE(pthread_getattr_default_np(&huge) == 0);
+    REQUIRE(pthread_attr_setstacksize(&huge, std::size_t{1} << 50) ==
+            0);  // of a new thread: more than there is
+    REQUIRE(pthread_setattr_default_np(&huge) == 0);
+    const bool came = !drag.moves(3).empty();
+    pthread_setattr_default_np(&usual);
+    CHECK(came);
+}
+
+TEST_CASE("the error that was measured is told with each picture") {
+    Drag drag;
+    drag.change({{"quality", {{"preference", 1}}}});
+    const Json most = drag.moves(2);
+    CHECK(most["level"] == "moving");
+    CHECK(most["error"].get<double>() == doctest::Approx(0.025));
+    drag.change({{"quality", {{"preference", 0}}}});
+    CHECK(drag.moves(2)["error"].get<double>() == doctest::Approx(0.1));
+    CHECK(drag.client.wait_for_still()["quality"]["error"] == 0.001);
+    drag.change({{"renderer", {{"mode", "stylized"}}}});  // of which nothing was measured
+    CHECK_FALSE(drag.moves(2).contains("error"));
+    CHECK_FALSE(drag.client.wait_for_still()["quality"].contains("error"));
+}
+
+TEST_CASE("at rest nothing is drawn, read back or encoded, with and without grants") {
+    Drag drag;
+    const auto counted = [&] {
+        const Metrics& metrics = drag.server.metrics();
+        return std::array<std::uint64_t, 7>{metrics.frames_rendered(),  metrics.frames_interrupted,
+                                            metrics.snapshots_rendered, metrics.samples_drawn,
+                                            metrics.readbacks,          metrics.frames_encoded,
+                                            metrics.bytes_encoded};
+    };
+    drag.moves(2);
+    // Nobody waits: not even the picture at rest is drawn.
+    drag.change({{"camera", {{"eye", {5.5, 1, 9}}}}});
+    const auto before = counted();
+    std::this_thread::sleep_for(500ms);
+    CHECK(counted() == before);
+    // What was asked for is counted...
+    const Json still = drag.client.wait_for_still();
+    CHECK(still["quality"]["samples"] == 16);
+    const auto drawn = counted();
+    CHECK(drawn[0] == before[0] + 2);
+    CHECK(drawn[3] == before[3] + 4 + 16);
+    CHECK(drawn[4] == before[4] + 2);
+    CHECK(drawn[5] == before[5] + 2);
+    CHECK(drawn[6] > before[6]);
+    // ...and then nothing more is, whoever waits.
+    for (int i = 0; i < 2; ++i) drag.client.send({{"type", "frame"}});
+    std::this_thread::sleep_for(500ms);
+    CHECK(counted() == drawn);
+}

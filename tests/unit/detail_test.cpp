@@ -1,0 +1,348 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "closed.hpp"
+#include "detail_levels.hpp"
+#include "read_scene.hpp"
+#include "simplify.hpp"
+
+using namespace vrut;
+
+namespace {
+
+const std::atomic<bool> kGoOn{false};
+
+/// A grid over the unit square, bent to a surface.
+Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3(double, double)>& at) {
+    Geometry geometry;
+    for (unsigned row = 0; row <= rows; ++row)
+        for (unsigned column = 0; column <= columns; ++column) {
+            geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
+            geometry.bounds.add(geometry.positions.back());
+        }
+    for (unsigned row = 0; row < rows; ++row)
+        for (unsigned column = 0; column < columns; ++column) {
+            const unsigned a = row * (columns + 1) + column, b = a + columns + 1;
+            geometry.triangles.emplace_back(a, a + 1, b + 1);
+            geometry.triangles.emplace_back(a, b + 1, b);
+        }
+    return geometry;
+}
+
+/// cos and sin of a part of a full turn, the same at 0 and 1.
+glm::dvec2 turn(double part) {
+    const double angle = 2 * std::numbers::pi * (part < 1 ? part : 0);
+    return {std::cos(angle), std::sin(angle)};
+}
+
+Geometry ball(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        const double up = std::numbers::pi * v, ring = v > 0 && v < 1 ? std::sin(up) : 0;
+        return glm::dvec3(ring * turn(u), v < 1 ? std::cos(up) : -1);
+    });
+}
+
+Geometry torus(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        const glm::dvec2 across = turn(v);
+        return glm::dvec3((1 + 0.3 * across.x) * turn(u), 0.3 * across.y);
+    });
+}
+
+/// Bends in one direction only, with creases.
+Geometry corrugated(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        return glm::dvec3(u, 0.02 * std::abs(std::sin(20 * u)) + 0.001 * std::sin(90 * v), v);
+    });
+}
+
+Geometry mapped(Geometry geometry, const glm::dvec3& scale, const glm::dvec3& offset) {
+    geometry.bounds = {};
+    for (glm::dvec3& position : geometry.positions) {
+        position = position * scale + offset;
+        geometry.bounds.add(position);
+    }
+    return geometry;
+}
+
+Geometry with_normals(Geometry geometry) {
+    geometry.normals.assign(geometry.positions.size(), glm::vec3(0));
+    for (const glm::uvec3& t : geometry.triangles) {
+        const auto& p = geometry.positions;
+        for (int k = 0; k < 3; ++k)
+            geometry.normals[t[k]] += glm::vec3(glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]));
+    }
+    return geometry;
+}
+
+/// Every triangle with corners of its own.
+Geometry exploded(const Geometry& geometry) {
+    Geometry result;
+    result.bounds = geometry.bounds;
+    for (const glm::uvec3& triangle : geometry.triangles) {
+        const auto first = static_cast<unsigned>(result.positions.size());
+        for (int k = 0; k < 3; ++k) result.positions.push_back(geometry.positions[triangle[k]]);
+        result.triangles.emplace_back(first, first + 1, first + 2);
+    }
+    return result;
+}
+
+double distance_to_edge(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+    const double squared = glm::dot(b - a, b - a);
+    const double along = squared > 0 ? std::clamp(glm::dot(p - a, b - a) / squared, 0.0, 1.0) : 0;
+    return glm::distance(p, glm::mix(a, b, along));
+}
+
+double distance_to(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const glm::dvec3 normal = glm::cross(b - a, c - a);
+    const auto inside = [&](const glm::dvec3& from, const glm::dvec3& to) {
+        return glm::dot(glm::cross(to - from, p - from), normal) >= 0;
+    };
+    if (glm::length(normal) > 0 && inside(a, b) && inside(b, c) && inside(c, a))
+        return std::abs(glm::dot(normal, p - a)) / glm::length(normal);
+    return std::min({distance_to_edge(p, a, b), distance_to_edge(p, b, c), distance_to_edge(p, c, a)});
+}
+
+/// Points of some triangles, at their corners, along their edges and within, and how far the furthest of them
+/// is from others: one side of Hausdorff's distance.
+double furthest(const Geometry& geometry, const std::vector<glm::uvec3>& from,
+                const std::vector<glm::uvec3>& to) {
+    const std::vector<glm::dvec3>& p = geometry.positions;
+    double result = 0;
+    const std::size_t step = 1 + from.size() * to.size() / 100'000;
+    for (std::size_t i = 0; i < from.size(); i += step)
+        for (int u = 0; u <= 4; ++u)
+            for (int v = 0; u + v <= 4; ++v) {
+                const glm::uvec3& t = from[i];
+                const glm::dvec3 point =
+                    (p[t.x] * (4.0 - u - v) + p[t.y] * (1.0 * u) + p[t.z] * (1.0 * v)) / 4.0;
+                double nearest = 1e300;
+                for (std::size_t k = 0; k < to.size() && nearest > result; ++k)
+                    nearest = std::min(nearest, distance_to(point, p[to[k].x], p[to[k].y], p[to[k].z]));
+                result = std::max(result, nearest);
+            }
+    return result;
+}
+
+void check_bounds(const Geometry& geometry, std::size_t least_levels) {
+    const auto levels = simplify(geometry, kGoOn);
+    CHECK(levels.size() >= least_levels);
+    std::size_t triangles = geometry.triangles.size();
+    double error = 0;
+    for (const DetailLevel& level : levels) {
+        CAPTURE(level.triangles.size());
+        CHECK(level.triangles.size() < triangles);
+        CHECK(level.error >= error);
+        triangles = level.triangles.size();
+        error = level.error;
+        CHECK(furthest(geometry, geometry.triangles, level.triangles) <= error);
+        CHECK(furthest(geometry, level.triangles, geometry.triangles) <= error);
+    }
+}
+
+std::shared_ptr<const Scene> scene_of(std::vector<Geometry> geometries) {
+    SceneParts parts;
+    for (std::size_t i = 0; i < geometries.size(); ++i) geometries[i].id = static_cast<Id>(i + 1);
+    parts.geometries = std::move(geometries);
+    return std::make_shared<const Scene>(*Scene::build(std::move(parts)));
+}
+
+}  // namespace
+
+TEST_CASE("no surface lies further from the one it stands for than its level says") {
+    SUBCASE("ball") { check_bounds(ball(48, 24), 5); }
+    SUBCASE("ball with normals") { check_bounds(with_normals(ball(48, 24)), 3); }
+    SUBCASE("ball of many triangles") { check_bounds(with_normals(ball(128, 64)), 5); }
+    SUBCASE("torus") { check_bounds(torus(48, 24), 4); }
+    SUBCASE("creases and a border") { check_bounds(corrugated(60, 20), 3); }
+    SUBCASE("triangles of their own") { check_bounds(exploded(torus(40, 20)), 4); }
+    SUBCASE("noise") {
+        std::mt19937 random(3);
+        std::uniform_real_distribution<double> height(0, 0.05);
+        check_bounds(surface(30, 30, [&](double u, double v) { return glm::dvec3(u, height(random), v); }),
+                     2);
+    }
+    SUBCASE("far from the origin, tiny and flattened, huge") {
+        check_bounds(mapped(torus(40, 20), glm::dvec3(1), {1e7, -2e8, 3e7}), 4);
+        check_bounds(mapped(torus(40, 20), {1e-12, 1e-12, 1e-15}, glm::dvec3(0)), 4);
+        check_bounds(mapped(torus(40, 20), glm::dvec3(1e50), glm::dvec3(0)), 4);
+    }
+}
+
+TEST_CASE("no level of the car's parts lies further off than it says") {
+    const auto car = read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
+    REQUIRE(car);
+    for (const Geometry& geometry : car->geometries())
+        if (geometry.triangles.size() < 1500) check_bounds(geometry, 0);
+}
+
+TEST_CASE("an even surface keeps its plane and its outline") {
+    const Geometry geometry = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
+    auto levels = simplify(geometry, kGoOn);
+    std::erase_if(levels, [](const DetailLevel& level) { return level.error > 2e-5; });
+    REQUIRE(levels.size() >= 2);
+    const Geometry coarse = geometry_of(geometry, levels.back());
+    CHECK(coarse.triangles.size() <= 800);
+    CHECK(coarse.positions.size() <= 800);
+    CHECK(coarse.normals.empty());
+    CHECK(coarse.bounds.max == geometry.bounds.max);
+    double area = 0;
+    for (const glm::uvec3& t : coarse.triangles) {
+        const auto& p = coarse.positions;
+        const glm::dvec3 doubled = glm::cross(p[t.y] - p[t.x], p[t.z] - p[t.x]);
+        area -= doubled.y / 2;
+    }
+    CHECK(area == doctest::Approx(1));
+}
+
+TEST_CASE("what normals pretend counts as a distance") {
+    Geometry plane = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
+    for (const glm::dvec3& position : plane.positions)
+        plane.normals.push_back({0.2F * std::sin(20 * static_cast<float>(position.x)), 1, 0});
+    const auto levels = simplify(plane, kGoOn);
+    REQUIRE(levels.size() >= 3);
+    CHECK(levels[2].error > 1e-3);
+    CHECK(levels[2].error < 0.2);  // no edge is longer than 1, and a shade is off by 0.4 at most
+    plane.normals.assign(plane.positions.size(), {0, 1, 0});
+    CHECK(simplify(plane, kGoOn)[2].error < 2e-5);
+}
+
+TEST_CASE("a seam does not open") {
+    // A tube whose ends meet in two rows of vertices, with texture coordinates of their own.
+    Geometry tube = surface(40, 20, [](double u, double v) { return glm::dvec3(turn(u), v); });
+    for (unsigned i = 0; i < tube.positions.size(); ++i) {
+        const unsigned row = i / 41, column = i % 41;
+        tube.texcoords.emplace_back(static_cast<float>(column) / 40, static_cast<float>(row) / 20);
+    }
+    const auto levels = simplify(with_normals(tube), kGoOn);
+    REQUIRE(levels.size() >= 3);
+    for (const DetailLevel& level : levels) {
+        std::vector<double> left, right;  // heights of the seam's vertices
+        for (const glm::uvec3& triangle : level.triangles)
+            for (int k = 0; k < 3; ++k) {
+                const unsigned column = triangle[k] % 41;
+                if (column == 0) left.push_back(tube.positions[triangle[k]].z);
+                if (column == 40) right.push_back(tube.positions[triangle[k]].z);
+            }
+        for (std::vector<double>* heights : {&left, &right}) {
+            std::sort(heights->begin(), heights->end());
+            heights->erase(std::unique(heights->begin(), heights->end()), heights->end());
+        }
+        CHECK(left == right);
+    }
+}
+
+TEST_CASE("what cannot be simplified has no levels") {
+    CHECK(simplify({}, kGoOn).empty());
+    Geometry few = ball(4, 4);
+    CHECK(simplify(few, kGoOn).empty());
+    Geometry point = ball(20, 20);
+    for (glm::dvec3& position : point.positions) position = {1, 2, 3};
+    point.bounds = {{1, 2, 3}, {1, 2, 3}};
+    CHECK(simplify(point, kGoOn).empty());
+    Geometry line = surface(20, 20, [](double u, double) { return glm::dvec3(u, 0, 0); });
+    for (const DetailLevel& level : simplify(line, kGoOn)) CHECK(level.error <= 2e-5);
+    Geometry beyond = mapped(ball(20, 20), glm::dvec3(1e308), glm::dvec3(0));
+    CHECK(simplify(beyond, kGoOn).empty());
+    Geometry apart;  // triangles that nothing joins
+    for (unsigned i = 0; i < 300; ++i) {
+        for (const glm::dvec3& corner : {glm::dvec3(0), {1, 0, 0}, {0, 1, 0}})
+            apart.positions.push_back(corner + glm::dvec3(0, 0, i));
+        apart.bounds.add(apart.positions.back());
+        apart.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    for (const DetailLevel& level : simplify(apart, kGoOn))
+        CHECK(furthest(apart, apart.triangles, level.triangles) <= level.error);
+}
+
+TEST_CASE("levels are made in the background, for each geometry") {
+    const auto scene = scene_of({ball(48, 24), {}, torus(40, 20)});
+    const DetailLevels levels(scene);
+    levels.wait();
+    CHECK(levels.done());
+    CHECK(levels.of(0).size() >= 4);
+    CHECK(levels.of(1).empty());
+    CHECK(levels.of(2).size() >= 4);
+    for (std::size_t i = 0; i < levels.of(2).size(); ++i)
+        CHECK(levels.of(2)[i].number == static_cast<int>(i) + 1);
+    CHECK(levels.of(0).back().triangles == simplify(scene->geometries()[0], kGoOn).back().triangles);
+}
+
+TEST_CASE("levels can be given up while they are made") {
+    const auto scene = scene_of(std::vector<Geometry>(400, torus(120, 60)));
+    const DetailLevels none(scene_of({}));
+    none.wait();
+    {
+        const DetailLevels levels(scene);
+        while (levels.of(0).empty()) std::this_thread::yield();
+        CHECK_FALSE(levels.done());
+    }
+    std::atomic<bool> stopped{true};
+    CHECK(simplify(torus(40, 20), stopped).empty());
+}
+
+namespace {
+
+Geometry together(Geometry a, const Geometry& b, const glm::dvec3& offset) {
+    const auto first = static_cast<unsigned>(a.positions.size());
+    for (const glm::dvec3& position : b.positions) a.positions.push_back(position + offset);
+    for (const glm::uvec3& triangle : b.triangles) a.triangles.push_back(triangle + first);
+    return a;
+}
+
+Geometry inside_out(Geometry geometry) {
+    for (glm::uvec3& triangle : geometry.triangles) std::swap(triangle.y, triangle.z);
+    return geometry;
+}
+
+bool closed(const Geometry& geometry) { return is_closed(geometry, kGoOn); }
+
+/// As seen from outside, whichever way the grid runs.
+Geometry solid_ball() {
+    const Geometry made = ball(12, 8);
+    return closed(made) ? made : inside_out(made);
+}
+
+}  // namespace
+
+TEST_CASE("a surface is closed where it has an inside and all triangles face away from it") {
+    const Geometry whole = solid_ball();  // its seam and poles have several vertices in one place
+    CHECK(closed(whole));
+    CHECK_FALSE(closed(inside_out(whole)));
+    CHECK(closed(torus(12, 8)) != closed(inside_out(torus(12, 8))));
+    CHECK_FALSE(closed(Geometry{}));
+    CHECK_FALSE(closed(corrugated(8, 8)));
+    Geometry open = whole, turned = whole, doubled = whole;
+    open.triangles.erase(open.triangles.begin() + 50);
+    CHECK_FALSE(closed(open));
+    std::swap(turned.triangles[50].x, turned.triangles[50].y);
+    CHECK_FALSE(closed(turned));
+    doubled.triangles.push_back(doubled.triangles[50]);
+    CHECK_FALSE(closed(doubled));
+    Geometry sheet = open;
+    sheet.triangles = {whole.triangles[50], whole.triangles[50]};
+    std::swap(sheet.triangles[1].x, sheet.triangles[1].y);
+    CHECK_FALSE(closed(sheet));  // no volume
+    const std::atomic<bool> stop{true};
+    CHECK_FALSE(is_closed(whole, stop));
+}
+
+TEST_CASE("every piece of a closed surface is") {
+    const Geometry whole = solid_ball();
+    CHECK(closed(together(whole, whole, {3, 0, 0})));
+    CHECK_FALSE(closed(together(whole, inside_out(whole), {3, 0, 0})));
+    CHECK_FALSE(closed(together(whole, whole, {0, 0, 0})));  // four triangles at each edge
+    // They touch in a point.
+    Geometry tip;
+    tip.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    tip.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+    Geometry other = inside_out(tip);
+    for (glm::dvec3& position : other.positions) position *= -0.5;  // turns it once more
+    CHECK(closed(tip));
+    CHECK(closed(together(tip, other, {0, 0, 0})));
+    CHECK_FALSE(closed(together(tip, inside_out(other), {0, 0, 0})));
+}

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdlib>
+#include <optional>
+#include <string>
+
+/// A variable of the environment as a test wants it; null: it is not set.
+class EnvironmentVariable {
+public:
+    EnvironmentVariable(const char* name, const char* value) : name_(name) {
+        if (const char* before = std::getenv(name)) before_ = before;
+        set(value);
+    }
+    ~EnvironmentVariable() { set(before_ ? before_->c_str() : nullptr); }
+    EnvironmentVariable(const EnvironmentVariable&) = delete;
+    EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+
+private:
+    void set(const char* value) { value ? setenv(name_, value, 1) : unsetenv(name_); }
+
+    const char* name_;
+    std::optional<std::string> before_;
+};
