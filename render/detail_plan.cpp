@@ -39,7 +39,10 @@ public:
         for (MirrorItem& mirror : layers.mirrors) choose(mirror.surface, whole);
         choose_in_mirrors(layers);
         for (TransparentGroup& group : layers.transparent)
-            for (DrawItem& item : group.items) choose_for_glass(item, whole);
+            for (DrawItem& item : group.items) {
+                if (item.behind_twin) item.order = nullptr;  // nothing of it is seen
+                choose(item, whole);
+            }
     }
 
     void choose_in_mirrors(Layers& layers) const {
@@ -49,38 +52,35 @@ public:
 private:
     using Whole = std::multimap<Index, glm::dmat4>;  ///< matrices by geometry
 
-    /// A simplified surface has other triangles to be put in order, and they may overlap a little, which is
-    /// seen where they are blended.
-    bool stays_whole(const DrawItem& glass) const {
-        return view_.methods.transparency == Methods::Transparency::exact || glass.order;
+    bool has_levels(const DrawItem& item) const {
+        return !levels_[static_cast<std::size_t>(item.geometry)].empty();
     }
 
-    /// Where glass keeps every triangle, what else is there has to, so that their depths are equal.
+    /// What keeps every triangle: textured parts, since the bound is of places and not of what is painted on
+    /// them, and glass whose triangles have an order. What stands in the same place has to as well, so that
+    /// their depths are equal.
     Whole kept_whole(const Layers& layers) const {
         Whole whole;
+        const auto look_at = [&](const DrawItem& item, bool ordered) {
+            if ((item.texture != kNone || ordered) && has_levels(item))
+                whole.emplace(item.geometry, item.view_from_node);
+        };
+        for (const DrawItem& item : layers.opaque) look_at(item, false);
+        for (const MirrorItem& mirror : layers.mirrors) look_at(mirror.surface, false);
         for (const TransparentGroup& group : layers.transparent)
             for (const DrawItem& item : group.items)
-                if (!item.behind_twin && stays_whole(item)) whole.emplace(item.geometry, item.view_from_node);
+                look_at(item, item.order && !item.behind_twin && !group.exact);
         return whole;
     }
 
-    /// The bound is of places, not of what is painted on them: textured parts keep every triangle.
     void choose(DrawItem& item, const Whole& whole) const {
-        const auto levels = levels_[static_cast<std::size_t>(item.geometry)];
-        if (levels.empty() || item.texture != kNone) return;
         const auto [first, last] = whole.equal_range(item.geometry);
         if (std::any_of(first, last, [&](const auto& twin) { return twin.second == item.view_from_node; }))
             return;
         const Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const double most = view_.detail / most_pixels(item.view_from_node, box, view_);
-        for (const DetailLevel& level : levels)
+        for (const DetailLevel& level : levels_[static_cast<std::size_t>(item.geometry)])
             if (level.error <= most) item.level = &level;
-    }
-
-    /// Behind its twin nothing is seen, and the depth has to be the twin's.
-    void choose_for_glass(DrawItem& item, const Whole& whole) const {
-        if (item.behind_twin) item.order = nullptr;
-        if (item.behind_twin || !stays_whole(item)) choose(item, whole);
     }
 
     const View& view_;

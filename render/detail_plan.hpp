@@ -9,8 +9,8 @@ namespace vrut {
 double most_pixels(const glm::dmat4& view_from_node, const Bounds& box, const View& view);
 
 /// Gives faces the coarsest levels of detail whose surfaces are, in pixels, no further from the scene's than
-/// the view allows. What is selected, what is textured and glass that is to be exact keep every triangle.
-/// Parts with one geometry and one matrix get one level, so that their depths are equal.
+/// the view allows. What is selected, what is textured and glass whose triangles have an order keep every
+/// triangle. Parts with one geometry and one matrix get one level, so that their depths are equal.
 void choose_levels(FramePlan& plan, const View& view);
 
 /// Two-sided opaque parts that are closed are seen from outside only: their backs need not be drawn. The

@@ -144,7 +144,7 @@ export class Connection {
     }
     const longest = Math.min(LAST_RETRY_MS, FIRST_RETRY_MS * 2 ** this.#retries);
     this.#retries += 1;
-    // The pages of a room are not all to come back in the same instant.
+    // The pages of a room are not to come back all at once.
     const retryMs = longest * (0.5 + 0.5 * Math.random());
     this.#setTimer(retryMs, () => this.start());
     this.#setPhase({ name: 'waiting', retryMs, hadOpened, reason: this.#refusal });

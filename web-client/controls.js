@@ -18,7 +18,7 @@ export function element(tag, properties = {}, ...children) {
  * @typedef {{element: HTMLElement, show: (...value: *) => void}} Control
  */
 
-/** `tell` says what the user does; what is shown waits `during` that, or it would jump back. */
+/** `tell` says what the user does; what is shown waits `during` that and for its news, or it would jump back. */
 function patient(made, apply, tell) {
   let waiting = 0;
   let latest = [];
@@ -29,6 +29,7 @@ function patient(made, apply, tell) {
   const during = async (end) => {
     waiting += 1;
     await end;
+    await new Promise(requestAnimationFrame);
     waiting -= 1;
     show(...latest);
   };
@@ -123,7 +124,7 @@ export function numbers(label, labels, change) {
   const inputs = labels.map(() => element('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal' }));
   for (const [i, input] of inputs.entries()) {
     input.onchange = () => {
-      if (input.valueAsNumber >= 0) change(latest.with(i, input.valueAsNumber));
+      if (input.valueAsNumber >= 0) change(latest = latest.with(i, input.valueAsNumber));
       else input.value = latest[i];
     };
   }

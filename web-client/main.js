@@ -149,13 +149,13 @@ const menu = new Menu({
   },
 });
 
-/** While frames are late the last picture goes with the fingers, and its labels with it. */
+/** While frames are late, the last picture and its labels go with the fingers. */
 function follow() {
   picture.move(prediction.transform);
   labels.show(picture.header, connection.state?.markers, picture.mapping(), prediction.transform);
 }
 
-/** Says why something was refused, and shows what is the case instead. */
+/** Says why something was refused, and shows what is so instead. */
 function report(error) {
   if (error.message) lines.pass(error.message);
   show();
@@ -163,7 +163,7 @@ function report(error) {
 
 let nextShow;
 
-/** Everything is brought up to date in the next display frame. */
+/** Everything is updated in the next display frame. */
 function show() {
   cancelAnimationFrame(nextShow);
   nextShow = requestAnimationFrame(() => {
@@ -182,7 +182,7 @@ function showPart({ node, name, path = [] }) {
   const title = names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`);
   const above = names.slice(0, -2).join(' › ');
   const part = find('part');
-  // Only a change: a screen reader would read the same words again.
+  // Only a change: a screen reader would read it again.
   if (part.textContent === title + above) return;
   part.replaceChildren(...(title ? [title, element('small', {}, above)] : []));
 }

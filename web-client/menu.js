@@ -3,11 +3,11 @@ import { recall, remember } from './memory.js';
 import { language, say } from './texts.js';
 
 /**
- * What the page knows: the state, the header of the frame last drawn, what the server measures, this page's id.
+ * What the page knows: the state, the last drawn frame's header, what the server measures, this page's id.
  *
  * @typedef {{state: ?object, revision: number, header: ?object, stats: ?object, client?: string, steers: boolean}} Now
  *
- * A folding part of the menu, told when it has been opened.
+ * A folding part of the menu, told when it is opened.
  *
  * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now) => void,
  *   unfolded?: () => void}} Section

@@ -69,13 +69,13 @@ struct Saving {
 };
 
 /// Draws with and without levels and compares.
-Saving check(View view, const std::shared_ptr<const PlacedScene>& scene) {
+Saving check(View view, const std::shared_ptr<const PlacedScene>& scene, double pixels = 0.5) {
     Renderer renderer;
     Image whole, coarse;
     FrameStats all, left;
     view.scene = scene;
     CHECK(renderer.render(view, whole, all));
-    CHECK(renderer.render(simplified(view, scene), coarse, left));
+    CHECK(renderer.render(simplified(view, scene, pixels), coarse, left));
     const Difference apart = difference(whole, coarse);
     CHECK(apart.psnr() >= 45);
     CHECK(apart.share_above(8) <= 0.002);
@@ -120,20 +120,36 @@ TEST_CASE("a selected part among simplified ones is drawn whole") {
     CHECK(plan.scene.opaque[0].level != nullptr);
 }
 
-TEST_CASE("glass over a solid twin is whole, and so is the twin") {
-    for (const Geometry& geometry : {sphere(1, 100), sheet(1, 40)}) {
+TEST_CASE("parts in one place have one level, glass and solid, painted and plain") {
+    const auto twins = [](Geometry geometry, const Material& one, const Material& other) {
+        geometry.texcoords.resize(geometry.positions.size());
         SceneParts parts;
         parts.geometries = {geometry};
-        parts.materials = {kPaint, seen_through(material_of({0.1, 0.1, 0.9}))};
+        parts.materials = {one, other};
+        Image white;
+        white.resize(1, 1);
+        white.rgba = {255, 255, 255, 255};
+        parts.textures = {{"white.png", white, false}};
         for (Id id = 1; id <= 3; ++id) {
             const glm::dmat4 matrix = id < 3 ? glm::dmat4(1) : moved_by({2.5, 0, -2});
             parts.nodes.push_back(
                 {Node{id, {}, NodeType::geometry, kNone, {}, true, matrix, GeometryData{0, id == 2 ? 1 : 0}},
                  0});
         }
-        const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
-        CHECK(check(view_from({1, 2, 6}), scene).left() < 1);
-    }
+        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    };
+    const Material blue = material_of({0.1, 0.1, 0.9});
+    Material painted = blue;
+    painted.texture = 0;
+    constexpr double kFine = 0.25;  // most of these outlines are dark against a light background
+    const View view = view_from({1, 2, 6});
+    CHECK(check(view, twins(sphere(1, 100), kPaint, seen_through(blue)), kFine).left() < 0.6);
+    CHECK(check(view, twins(sphere(1, 100), seen_through(blue), kPaint), kFine).left() < 0.6);
+    CHECK(check(view, twins(sphere(1, 100), seen_through(kPaint), seen_through(blue)), kFine).left() < 0.6);
+    CHECK(check(view, twins(sheet(1, 20), kPaint, seen_through(blue)), kFine).left() < 1);
+    const double alone = check(view, twins(sphere(1, 100), kPaint, painted), kFine).left();
+    CHECK(alone > 0.6);  // the third of them, which has no twin
+    CHECK(alone < 0.9);
 }
 
 TEST_CASE("what is painted on a part stays where it is") {

@@ -160,6 +160,36 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       await changes(() => renderer.getByText('Show selection').tap(), (state) => !state.renderer.showSelection, seen);
     });
 
+    test('a control does not jump back before the next display frame tells the news', async () => {
+      const seenChecked = await within('renderer', 'Wireframe').evaluate(async (input) => {
+        const { requestAnimationFrame: request, cancelAnimationFrame: cancel } = window;
+        const waiting = new Map();
+        let last = 0;
+        const display = () => {
+          const now = [...waiting.values()];
+          waiting.clear();
+          for (const act of now) act(performance.now());
+        };
+        window.requestAnimationFrame = (act) => {
+          last += 1;
+          waiting.set(last, act);
+          return last;
+        };
+        window.cancelAnimationFrame = (id) => waiting.delete(id);
+        const checked = [];
+        input.click();
+        const timers = [setInterval(display, 400), setInterval(() => checked.push(input.checked), 5)];
+        await new Promise((resolve) => setTimeout(resolve, 1000));
+        timers.forEach(clearInterval);
+        Object.assign(window, { requestAnimationFrame: request, cancelAnimationFrame: cancel });
+        display();
+        return checked;
+      });
+      assert.ok(seenChecked.length > 20 && !seenChecked.includes(false), String(seenChecked));
+      await tablet.wire.until('wireframe', () => tablet.wire.state.renderer.wireframe);
+      await changes(() => within('renderer', 'Wireframe').press('Space'), (state) => !state.renderer.wireframe);
+    });
+
     test('the camera', async () => {
       await changes(async () => {
         const slider = within('camera', 'Field of view');
@@ -194,6 +224,13 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       await page.keyboard.press('Enter');
       await page.waitForFunction(() => document.querySelectorAll('.numbers input')[1].value === '12');
       assert.deepEqual(key().attenuation, [1, 12, 0]);
+      // The second before the server has said anything to the first.
+      await changes(() => section('light').locator('.numbers input').evaluateAll((fields) => {
+        for (const [i, value] of [[1, '5'], [2, '3']]) {
+          fields[i].value = value;
+          fields[i].dispatchEvent(new Event('change'));
+        }
+      }), () => key().attenuation.join() === '1,5,3');
     });
 
     test('the background', async () => {
