@@ -6,21 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "stars.hpp"
 #include "triangle_tree.hpp"
 
 namespace vrut {
-
-/// Which triangles meet in a vertex.
-class Stars {
-public:
-    Stars(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
-    std::span<const unsigned> of(unsigned vertex) const {
-        return std::span(triangles_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
-    }
-
-private:
-    std::vector<unsigned> first_, triangles_;
-};
 
 /// Measures how far a surface moves while its edges are collapsed, step by step: the distance of all its
 /// vertices and, as far as those lie apart, of edges' and triangles' middles from the new surface, and of the

@@ -1,12 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
-#include <numbers>
 #include <random>
 
-#include "closed.hpp"
 #include "detail_levels.hpp"
+#include "grid_surfaces.hpp"
 #include "read_scene.hpp"
 #include "simplify.hpp"
 
@@ -15,50 +13,6 @@ using namespace vrut;
 namespace {
 
 const std::atomic<bool> kGoOn{false};
-
-/// A grid over the unit square, bent to a surface.
-Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3(double, double)>& at) {
-    Geometry geometry;
-    for (unsigned row = 0; row <= rows; ++row)
-        for (unsigned column = 0; column <= columns; ++column) {
-            geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
-            geometry.bounds.add(geometry.positions.back());
-        }
-    for (unsigned row = 0; row < rows; ++row)
-        for (unsigned column = 0; column < columns; ++column) {
-            const unsigned a = row * (columns + 1) + column, b = a + columns + 1;
-            geometry.triangles.emplace_back(a, a + 1, b + 1);
-            geometry.triangles.emplace_back(a, b + 1, b);
-        }
-    return geometry;
-}
-
-/// cos and sin of a part of a full turn, the same at 0 and 1.
-glm::dvec2 turn(double part) {
-    const double angle = 2 * std::numbers::pi * (part < 1 ? part : 0);
-    return {std::cos(angle), std::sin(angle)};
-}
-
-Geometry ball(unsigned columns, unsigned rows) {
-    return surface(columns, rows, [](double u, double v) {
-        const double up = std::numbers::pi * v, ring = v > 0 && v < 1 ? std::sin(up) : 0;
-        return glm::dvec3(ring * turn(u), v < 1 ? std::cos(up) : -1);
-    });
-}
-
-Geometry torus(unsigned columns, unsigned rows) {
-    return surface(columns, rows, [](double u, double v) {
-        const glm::dvec2 across = turn(v);
-        return glm::dvec3((1 + 0.3 * across.x) * turn(u), 0.3 * across.y);
-    });
-}
-
-/// Bends in one direction only, with creases.
-Geometry corrugated(unsigned columns, unsigned rows) {
-    return surface(columns, rows, [](double u, double v) {
-        return glm::dvec3(u, 0.02 * std::abs(std::sin(20 * u)) + 0.001 * std::sin(90 * v), v);
-    });
-}
 
 Geometry mapped(Geometry geometry, const glm::dvec3& scale, const glm::dvec3& offset) {
     geometry.bounds = {};
@@ -283,66 +237,4 @@ TEST_CASE("levels can be given up while they are made") {
     }
     std::atomic<bool> stopped{true};
     CHECK(simplify(torus(40, 20), stopped).empty());
-}
-
-namespace {
-
-Geometry together(Geometry a, const Geometry& b, const glm::dvec3& offset) {
-    const auto first = static_cast<unsigned>(a.positions.size());
-    for (const glm::dvec3& position : b.positions) a.positions.push_back(position + offset);
-    for (const glm::uvec3& triangle : b.triangles) a.triangles.push_back(triangle + first);
-    return a;
-}
-
-Geometry inside_out(Geometry geometry) {
-    for (glm::uvec3& triangle : geometry.triangles) std::swap(triangle.y, triangle.z);
-    return geometry;
-}
-
-bool closed(const Geometry& geometry) { return is_closed(geometry, kGoOn); }
-
-/// As seen from outside, whichever way the grid runs.
-Geometry solid_ball() {
-    const Geometry made = ball(12, 8);
-    return closed(made) ? made : inside_out(made);
-}
-
-}  // namespace
-
-TEST_CASE("a surface is closed where it has an inside and all triangles face away from it") {
-    const Geometry whole = solid_ball();  // its seam and poles have several vertices in one place
-    CHECK(closed(whole));
-    CHECK_FALSE(closed(inside_out(whole)));
-    CHECK(closed(torus(12, 8)) != closed(inside_out(torus(12, 8))));
-    CHECK_FALSE(closed(Geometry{}));
-    CHECK_FALSE(closed(corrugated(8, 8)));
-    Geometry open = whole, turned = whole, doubled = whole;
-    open.triangles.erase(open.triangles.begin() + 50);
-    CHECK_FALSE(closed(open));
-    std::swap(turned.triangles[50].x, turned.triangles[50].y);
-    CHECK_FALSE(closed(turned));
-    doubled.triangles.push_back(doubled.triangles[50]);
-    CHECK_FALSE(closed(doubled));
-    Geometry sheet = open;
-    sheet.triangles = {whole.triangles[50], whole.triangles[50]};
-    std::swap(sheet.triangles[1].x, sheet.triangles[1].y);
-    CHECK_FALSE(closed(sheet));  // no volume
-    const std::atomic<bool> stop{true};
-    CHECK_FALSE(is_closed(whole, stop));
-}
-
-TEST_CASE("every piece of a closed surface is") {
-    const Geometry whole = solid_ball();
-    CHECK(closed(together(whole, whole, {3, 0, 0})));
-    CHECK_FALSE(closed(together(whole, inside_out(whole), {3, 0, 0})));
-    CHECK_FALSE(closed(together(whole, whole, {0, 0, 0})));  // four triangles at each edge
-    // They touch in a point.
-    Geometry tip;
-    tip.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    tip.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    Geometry other = inside_out(tip);
-    for (glm::dvec3& position : other.positions) position *= -0.5;  // turns it once more
-    CHECK(closed(tip));
-    CHECK(closed(together(tip, other, {0, 0, 0})));
-    CHECK_FALSE(closed(together(tip, inside_out(other), {0, 0, 0})));
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "deviation.hpp"
+#include "stars.hpp"
 
 namespace vrut {
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "scene.hpp"
+
+namespace vrut {
+
+/// A grid over the unit square, bent to a surface.
+inline Geometry surface(unsigned columns, unsigned rows,
+                        const std::function<glm::dvec3(double, double)>& at) {
+    Geometry geometry;
+    for (unsigned row = 0; row <= rows; ++row)
+        for (unsigned column = 0; column <= columns; ++column) {
+            geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
+            geometry.bounds.add(geometry.positions.back());
+        }
+    for (unsigned row = 0; row < rows; ++row)
+        for (unsigned column = 0; column < columns; ++column) {
+            const unsigned a = row * (columns + 1) + column, b = a + columns + 1;
+            geometry.triangles.emplace_back(a, a + 1, b + 1);
+            geometry.triangles.emplace_back(a, b + 1, b);
+        }
+    return geometry;
+}
+
+/// cos and sin of a part of a full turn, the same at 0 and 1.
+inline glm::dvec2 turn(double part) {
+    const double angle = 2 * std::numbers::pi * (part < 1 ? part : 0);
+    return {std::cos(angle), std::sin(angle)};
+}
+
+inline Geometry ball(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        const double up = std::numbers::pi * v, ring = v > 0 && v < 1 ? std::sin(up) : 0;
+        return glm::dvec3(ring * turn(u), v < 1 ? std::cos(up) : -1);
+    });
+}
+
+inline Geometry torus(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        const glm::dvec2 across = turn(v);
+        return glm::dvec3((1 + 0.3 * across.x) * turn(u), 0.3 * across.y);
+    });
+}
+
+/// Bends in one direction only, with creases.
+inline Geometry corrugated(unsigned columns, unsigned rows) {
+    return surface(columns, rows, [](double u, double v) {
+        return glm::dvec3(u, 0.02 * std::abs(std::sin(20 * u)) + 0.001 * std::sin(90 * v), v);
+    });
+}
+
+}  // namespace vrut
