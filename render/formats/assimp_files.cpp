@@ -81,6 +81,15 @@ std::string name_of_address(const std::filesystem::path& folder, const std::stri
     return find_below(folder, address) ? address : without_percent_codes(address);
 }
 
+std::string name_of_foreign_address(const std::filesystem::path& folder, const std::string& address) {
+    std::string name = name_of_address(folder, address);
+    if (find_below(folder, name)) return name;
+    std::replace(name.begin(), name.end(), '\\', '/');
+    if (find_below(folder, name)) return name;
+    const std::string last = name.substr(name.rfind('/') + 1);
+    return find_below(folder, last) ? last : name;
+}
+
 SceneFiles::SceneFiles(std::filesystem::path scene_file, std::string head)
     : scene_file_(std::move(scene_file)),
       head_(std::move(head)),

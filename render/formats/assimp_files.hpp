@@ -12,6 +12,10 @@ namespace vrut {
 /// where there is none by that name, without codes such as `%20` for a space.
 std::string name_of_address(const std::filesystem::path& folder, const std::string& address);
 
+/// The same of formats that keep the paths of the machine where the file was made, with `\` between folders:
+/// where there is no such file, the one of that name beside the scene's.
+std::string name_of_foreign_address(const std::filesystem::path& folder, const std::string& address);
+
 /// What assimp may open of the disk: one scene's file, by the name main_name(), and what lies in its folder
 /// or below it, links followed.
 class SceneFiles : public Assimp::IOSystem {

@@ -1,18 +1,25 @@
 #include "assimp_scene.hpp"
 
 #include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <atomic>
 #include <cmath>
+#include <map>
 #include <memory>
-#include <stdexcept>
-#include <unordered_map>
 
+#include "assimp_axes.hpp"
 #include "assimp_files.hpp"
+#include "assimp_lights.hpp"
 #include "assimp_materials.hpp"
+#include "assimp_meshes.hpp"
+#include "assimp_pictures.hpp"
 #include "assimp_text.hpp"
+#include "closed.hpp"
 #include "gltf_check.hpp"
 #include "scene_pictures.hpp"
 #include "tokenizer.hpp"
@@ -21,101 +28,29 @@ namespace vrut {
 
 namespace {
 
-// As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU.
-constexpr float kMaxCoordinate = 1e15F;
-
-/// Why the file's scene is none, without the file's name.
-struct Refused : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-bool is_coordinate(float value) { return std::abs(value) <= kMaxCoordinate; }  // and no NaN
-
-template <class Vector>
-void require_coordinates(const Vector& vector, const char* what, const aiMesh& mesh) {
-    if (!is_coordinate(vector.x) || !is_coordinate(vector.y) || !is_coordinate(vector.z))
-        throw Refused("a " + std::string(what) + " of mesh '" + excerpt(text_of(mesh.mName)) +
-                      "' is not a number from -1e15 to 1e15");
-}
-
-/// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
-template <class T>
-void release(T*& array) {
-    delete[] array;
-    array = nullptr;
-}
-
-void take_vertices(aiMesh& mesh, Geometry& geometry) {
-    geometry.positions.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "vertex", mesh);
-        geometry.bounds.add(geometry.positions.emplace_back(v->x, v->y, v->z));
-    }
-    release(mesh.mVertices);
-}
-
-void take_normals(aiMesh& mesh, Geometry& geometry) {
-    if (!mesh.HasNormals()) return;
-    geometry.normals.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "normal", mesh);
-        geometry.normals.emplace_back(v->x, v->y, v->z);
-    }
-    release(mesh.mNormals);
-}
-
-/// assimp has turned v upwards already, as we have it.
-void take_texcoords(aiMesh& mesh, Geometry& geometry) {
-    if (!mesh.HasTextureCoords(0)) return;
-    geometry.texcoords.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mTextureCoords[0]; v != mesh.mTextureCoords[0] + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "texture coordinate", mesh);
-        geometry.texcoords.emplace_back(v->x, v->y);
-    }
-    release(mesh.mTextureCoords[0]);
-}
-
-void take_triangles(aiMesh& mesh, Geometry& geometry) {
-    geometry.triangles.reserve(mesh.mNumFaces);
-    for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
-        if (face->mNumIndices != 3) continue;
-        const unsigned* i = face->mIndices;
-        if (std::max({i[0], i[1], i[2]}) >= mesh.mNumVertices)
-            throw Refused("mesh '" + excerpt(text_of(mesh.mName)) + "' has an index out of range");
-        geometry.triangles.emplace_back(i[0], i[1], i[2]);
-    }
-    release(mesh.mFaces);
-    mesh.mNumFaces = 0;
-}
-
-void tell_lost_parts(const aiMesh& mesh, Losses& losses) {
-    if (mesh.HasBones()) losses.add("a skin is not shown: the mesh stands as it was modelled");
-    if (mesh.mNumAnimMeshes > 0) losses.add("the shapes that a mesh can take on are not shown");
-    if (mesh.HasVertexColors(0)) losses.add("a mesh's colours at its vertices are not shown");
-    if (mesh.HasTextureCoords(1)) losses.add("a mesh's further texture coordinates are not read");
-    if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
-        losses.add("a mesh of points or lines is not shown");
-}
-
 /// Builds the parts of a scene, and frees what it has taken over from assimp's.
 class AssimpConverter {
 public:
-    AssimpConverter(aiScene& scene, Losses losses, const std::filesystem::path& path,
+    AssimpConverter(aiScene& scene, AssimpFormat format, Losses losses, const std::filesystem::path& path,
                     const ReadProgress& progress)
-        : scene_(scene), path_(path), progress_(progress), losses_(std::move(losses)) {}
+        : scene_(scene), format_(format), path_(path), progress_(progress), losses_(std::move(losses)) {}
 
     SceneParts convert() {
         parts_.name = path_.stem().string();
+        parts_.unit = unit_of(scene_, format_);
         for (unsigned i = 0; i < scene_.mNumCameras; ++i)
             cameras_.emplace(scene_.mCameras[i]->mName.C_Str(), i);
         for (unsigned i = 0; i < scene_.mNumLights; ++i) lights_.emplace(scene_.mLights[i]->mName.C_Str(), i);
         convert_materials();
         convert_meshes();
         convert_nodes();
-        if (scene_.mNumAnimations > 0) losses_.add("an animation is not shown", scene_.mNumAnimations);
+        losses_.add("a camera or light that no node of its own has is not read",
+                    cameras_.size() + lights_.size());
+        losses_.add("an animation is not shown", scene_.mNumAnimations);
         losses_.append_to(parts_.notices, path_.string());
         read_pictures(parts_, path_, progress_);
         make_pictures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
+        if (format_ != AssimpFormat::gltf) find_single_sided();
         return std::move(parts_);
     }
 
@@ -125,14 +60,18 @@ private:
     /// Only those that meshes have: assimp adds one of its own.
     void convert_materials() {
         std::vector<bool> used(scene_.mNumMaterials);
-        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) used.at(scene_.mMeshes[i]->mMaterialIndex) = true;
+        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+            if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw Refused("a mesh has no material");
+            used[scene_.mMeshes[i]->mMaterialIndex] = true;
+        }
         materials_.assign(scene_.mNumMaterials, kNone);
         for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
             if (!used[i]) continue;
             materials_[i] = static_cast<Index>(parts_.materials.size());
-            parts_.materials.push_back(convert_material(*scene_.mMaterials[i], path_.parent_path(), losses_));
+            parts_.materials.push_back(
+                convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, losses_));
             parts_.materials.back().id = materials_[i];
-            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i]));
+            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i], format_));
         }
         read_embedded_pictures(scene_, parts_.materials, parts_.textures, path_.string(), parts_.notices);
     }
@@ -140,23 +79,40 @@ private:
     void convert_meshes() {
         for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
             if (progress_) progress_(0.5 + 0.5 * i / scene_.mNumMeshes);
-            geometries_.push_back(take_geometry(*scene_.mMeshes[i]));
+            geometries_.push_back(add_geometry(*scene_.mMeshes[i]));
         }
         if (parts_.geometries.empty()) throw Refused("it has no triangles to show");
     }
 
     /// kNone: there is nothing in it that could be drawn.
-    Index take_geometry(aiMesh& mesh) {
+    Index add_geometry(aiMesh& mesh) {
         tell_lost_parts(mesh, losses_);
         if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return kNone;
-        Geometry geometry;
-        take_triangles(mesh, geometry);
-        take_vertices(mesh, geometry);
-        take_normals(mesh, geometry);
-        take_texcoords(mesh, geometry);
+        Geometry geometry = take_geometry(mesh, format_);
+        if (geometry.triangles.empty()) return kNone;
         geometry.id = static_cast<Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));
         return static_cast<Index>(parts_.geometries.size() - 1);
+    }
+
+    /// Those that may be drawn from one side and look the same: opaque, and on closed parts only.
+    void find_single_sided() {
+        const std::atomic<bool> go_on{false};
+        std::vector<bool> open(parts_.materials.size());
+        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+            const auto material = static_cast<std::size_t>(materials_[scene_.mMeshes[i]->mMaterialIndex]);
+            if (geometries_[i] != kNone && !open[material])
+                open[material] =
+                    !is_closed(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
+        }
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            Material& material = parts_.materials[i];
+            const bool transparent =
+                material.diffuse.a < 1 ||
+                (material.texture != kNone &&
+                 parts_.textures[static_cast<std::size_t>(material.texture)].transparent);
+            material.two_sided = open[i] || transparent;
+        }
     }
 
     // --- nodes
@@ -166,44 +122,62 @@ private:
         struct Place {
             const aiNode* node;
             Id parent;
+            glm::dmat4 matrix;  // parent from node
         };
         std::vector<Place> open;
-        const auto open_children = [&](const aiNode& node, Id id) {
-            for (unsigned i = node.mNumChildren; i-- > 0;) open.push_back({node.mChildren[i], id});
+        const auto open_children = [&](const aiNode& node, Id id, const glm::dmat4& matrix) {
+            for (unsigned i = node.mNumChildren; i-- > 0;)
+                open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
         };
         const aiNode& root = *scene_.mRootNode;
-        if (is_made_up(root))
-            open_children(root, 0);
+        const glm::dmat4 matrix = upright_from_file(scene_, format_) * matrix_of(root);
+        if (is_made_up(root, matrix))
+            open_children(root, 0, glm::dmat4(1));
         else
-            open.push_back({&root, 0});
+            open.push_back({&root, 0, matrix});
         while (!open.empty()) {
             const Place place = open.back();
             open.pop_back();
-            open_children(*place.node, add_node(*place.node, place.parent));
+            if (is_step(*place.node))
+                open_children(*place.node, place.parent, place.matrix);
+            else
+                open_children(*place.node, add_node(*place.node, place.parent, place.matrix), glm::dmat4(1));
         }
     }
 
-    /// Whether assimp added this root to hold several.
-    bool is_made_up(const aiNode& root) const {
-        return root.mNumMeshes == 0 && root.mTransformation.IsIdentity() && text_of(root.mName) == "ROOT" &&
-               cameras_.count("ROOT") == 0 && lights_.count("ROOT") == 0;
+    /// Whether assimp added this root to hold what the file has.
+    bool is_made_up(const aiNode& root, const glm::dmat4& matrix) const {
+        return root.mNumMeshes == 0 && matrix == glm::dmat4(1) && cameras_.count(root.mName.C_Str()) == 0 &&
+               lights_.count(root.mName.C_Str()) == 0 &&
+               (format_ != AssimpFormat::gltf || text_of(root.mName) == "ROOT");
+    }
+
+    /// Whether it is one of the many that assimp makes of a single node's turns, pivots and shifts in FBX.
+    bool is_step(const aiNode& node) const {
+        return format_ == AssimpFormat::fbx &&
+               std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos;
     }
 
     /// What a node shows: it alone is the node itself, several hang below it.
-    Id add_node(const aiNode& from, Id parent) {
+    Id add_node(const aiNode& from, Id parent, const glm::dmat4& matrix) {
         std::vector<Node> contents;
         for (unsigned i = 0; i < from.mNumMeshes; ++i) add_mesh(from.mMeshes[i], contents);
-        add_camera(from, contents);
-        add_light(from, contents);
-        const bool alone = contents.size() == 1 && from.mNumChildren == 0;
+        add_named(cameras_, scene_.mCameras, convert_camera, from, contents);
+        add_named(lights_, scene_.mLights, convert_light, from, contents);
+        const bool alone =
+            contents.size() == 1 && from.mNumChildren == 0 && contents.front().matrix == glm::dmat4(1);
         Node node = alone ? std::move(contents.front()) : Node{};
         node.name = text_of(from.mName);
-        node.matrix = matrix_of(from);
+        if (node.name.empty() && is_one_part()) node.name = parts_.name;
+        node.matrix = matrix;
         const Id id = add(std::move(node), parent);
         if (!alone)
             for (Node& content : contents) add(std::move(content), id);
         return id;
     }
+
+    /// A format of one part, which often has no name.
+    bool is_one_part() const { return format_ == AssimpFormat::stl || format_ == AssimpFormat::ply; }
 
     Id add(Node node, Id parent) {
         node.id = static_cast<Id>(parts_.nodes.size()) + 1;
@@ -212,59 +186,25 @@ private:
     }
 
     void add_mesh(unsigned mesh, std::vector<Node>& contents) const {
-        if (geometries_.at(mesh) == kNone) return;
+        if (mesh >= geometries_.size()) throw Refused("a node has a mesh that there is not");
+        if (geometries_[mesh] == kNone) return;
         Node& node = contents.emplace_back();
         node.name = text_of(scene_.mMeshes[mesh]->mName);
         node.type = NodeType::geometry;
-        node.data = GeometryData{geometries_[mesh], materials_.at(scene_.mMeshes[mesh]->mMaterialIndex)};
+        node.data = GeometryData{geometries_[mesh], materials_[scene_.mMeshes[mesh]->mMaterialIndex]};
     }
 
-    /// assimp knows cameras and lights by their nodes' names; of nodes with one name the first has them.
-    void add_camera(const aiNode& from, std::vector<Node>& contents) {
-        const auto found = cameras_.find(from.mName.C_Str());
-        if (found == cameras_.end()) return;
-        const aiCamera& camera = *scene_.mCameras[found->second];
-        cameras_.erase(found);
-        if (camera.mHorizontalFOV <= 0) {
-            losses_.add("a camera without perspective is not read");
-            return;
-        }
-        // Its horizontal angle is the file's vertical one times the aspect.
-        const double fov = camera.mHorizontalFOV / (camera.mAspect > 0 ? camera.mAspect : 1);
-        if (!std::isfinite(fov)) {
-            losses_.add("a camera whose field of view is no number is not read");
-            return;
-        }
-        Node& node = contents.emplace_back();
-        node.name = "camera";
-        node.type = NodeType::camera;
-        // Not its position, into which assimp 5.2 puts the node's own a second time.
-        node.data.emplace<CameraData>().fov = std::clamp(glm::degrees(fov), 1.0, 170.0);
-    }
+    using Names = std::multimap<std::string, unsigned>;
 
-    void add_light(const aiNode& from, std::vector<Node>& contents) {
-        const auto found = lights_.find(from.mName.C_Str());
-        if (found == lights_.end()) return;
-        const aiLight& light = *scene_.mLights[found->second];
-        lights_.erase(found);
-        Node& node = contents.emplace_back();
-        node.name = "light";
-        node.type = NodeType::light;
-        node.data = light_data(light);
-        losses_.add("a light shines with full colour at any distance: its strength and range are not read");
-    }
-
-    static LightData light_data(const aiLight& from) {
-        LightData light;
-        light.type = from.mType == aiLightSource_DIRECTIONAL ? LightData::Type::directional
-                     : from.mType == aiLightSource_SPOT      ? LightData::Type::spot
-                                                             : LightData::Type::point;
-        const aiColor3D color = from.mColorDiffuse;  // times the strength
-        const float most = std::max({color.r, color.g, color.b});
-        if (std::isfinite(most))
-            light.color = glm::dvec4(displayed_color(most > 0 ? color * (1 / most) : color), 1);
-        light.angle = std::clamp(2 * glm::degrees(double{from.mAngleOuterCone}), 0.0, 180.0);
-        return light;
+    /// assimp knows cameras and lights by their nodes' names; of nodes with one name each has the next.
+    template <class T, class Conversion>
+    void add_named(Names& names, T* const* all, Conversion conversion, const aiNode& from,
+                   std::vector<Node>& contents) {
+        const auto found = names.find(from.mName.C_Str());
+        if (found == names.end()) return;
+        const unsigned number = found->second;
+        names.erase(found);
+        if (auto node = conversion(*all[number], format_, losses_)) contents.push_back(*std::move(node));
     }
 
     static glm::dmat4 matrix_of(const aiNode& node) {
@@ -284,13 +224,14 @@ private:
     }
 
     aiScene& scene_;
+    const AssimpFormat format_;
     const std::filesystem::path& path_;
     const ReadProgress& progress_;
     SceneParts parts_;
     Losses losses_;
     std::vector<Index> materials_, geometries_;  // ours for each of assimp's
     std::vector<bool> ignore_alpha_;             // for each of ours
-    std::unordered_map<std::string, unsigned> cameras_, lights_;
+    Names cameras_, lights_;
 };
 
 /// assimp takes what it knows best for a file that it does not know by its ending: only this reader is left
@@ -312,29 +253,58 @@ std::uint64_t count_triangles(const aiScene& scene) {
     return count;
 }
 
-std::unique_ptr<aiScene> import(const std::filesystem::path& path, std::string head) {
+/// Polygons become triangles, once their indices are known to be in range.
+void check_and_triangulate(Assimp::Importer& importer) {
+    const aiScene& scene = *importer.GetScene();
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_indices(*scene.mMeshes[i]);
+    if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
+        throw Refused("its polygons cannot be cut into triangles");
+}
+
+std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) {
+    if (!files.refusal().empty()) return files.refusal();
+    const std::string_view error = importer.GetErrorString();
+    if (error.starts_with("No suitable reader")) return "it does not begin as a file with this ending does";
+    if (error.starts_with("FBX-Tokenize") && error.find("block offset is out of range") != error.npos)
+        return "its blocks do not lie where it says: it is cut off, or it was written by assimp 5.2, whose "
+               "binary FBX "
+               "cannot be read";
+    return "it cannot be read: " + excerpt(error, 300);
+}
+
+std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format, std::string head,
+                                Losses& losses) {
     Assimp::Importer importer;
-    leave_only(importer, "glTF2 Importer");
+    leave_only(importer, importer_name(format));
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     auto* files = new SceneFiles(path, std::move(head));
     importer.SetIOHandler(files);  // which it deletes
-    if (importer.ReadFile(files->main_name(), 0) == nullptr)
-        throw Refused(!files->refusal().empty()
-                          ? files->refusal()
-                          : "it cannot be read: " + excerpt(importer.GetErrorString(), 300));
+    if (importer.ReadFile(files->main_name(), 0) == nullptr) throw Refused(fault_of(importer, *files));
+    if (!files->refusal().empty()) losses.add(files->refusal());
+    if (format != AssimpFormat::gltf) check_and_triangulate(importer);
     return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
+}
+
+std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, Losses& losses) {
+    auto checked = check_gltf(path);
+    if (!checked) throw Refused(checked.error());
+    losses = std::move(checked->losses);
+    auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), losses);
+    if (count_triangles(*scene) != checked->triangles) throw Refused("a mesh has an index out of range");
+    return scene;
 }
 
 }  // namespace
 
-PartsResult read_assimp_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,
+                              const ReadProgress& progress) {
     try {
         if (progress) progress(0);
-        auto checked = check_gltf(path);
-        if (!checked) throw Refused(checked.error());
-        const auto scene = import(path, std::move(checked->head));
-        if (count_triangles(*scene) != checked->triangles) throw Refused("a mesh has an index out of range");
+        Losses losses;
+        const auto scene =
+            format == AssimpFormat::gltf ? import_gltf(path, losses) : import(path, format, {}, losses);
         if (progress) progress(0.5);
-        return AssimpConverter(*scene, std::move(checked->losses), path, progress).convert();
+        return AssimpConverter(*scene, format, std::move(losses), path, progress).convert();
     } catch (const Refused& refused) {
         return tl::unexpected(path.string() + ": " + refused.what());
     }

@@ -17,8 +17,13 @@ struct Format {
 
 constexpr Format kFormats[] = {
     {".vrut", read_vrut_file},
-    {".glb", read_assimp_scene},
-    {".gltf", read_assimp_scene},
+    {".glb", read_assimp_scene<AssimpFormat::gltf>},
+    {".gltf", read_assimp_scene<AssimpFormat::gltf>},
+    {".obj", read_assimp_scene<AssimpFormat::obj>},
+    {".stl", read_assimp_scene<AssimpFormat::stl>},
+    {".ply", read_assimp_scene<AssimpFormat::ply>},
+    {".dae", read_assimp_scene<AssimpFormat::collada>},
+    {".fbx", read_assimp_scene<AssimpFormat::fbx>},
 };
 
 /// null: none reads this ending, in whatever case.

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <assimp/mesh.h>
+
+#include <stdexcept>
+#include <string>
+
+#include "assimp_format.hpp"
+#include "losses.hpp"
+#include "scene.hpp"
+
+namespace vrut {
+
+/// Why the file's scene is none, without the file's name.
+struct Refused : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU. No
+/// NaN.
+inline bool is_coordinate(float value) { return value >= -1e15F && value <= 1e15F; }
+
+/// Throws Refused where a face names a vertex that there is not.
+void check_indices(const aiMesh& mesh);
+
+/// The mesh's triangles, by the rules that assimp_scene.hpp tells; frees what it has taken over. The mesh is
+/// checked. Throws Refused.
+Geometry take_geometry(aiMesh& mesh, AssimpFormat format);
+
+void tell_lost_parts(const aiMesh& mesh, Losses& losses);
+
+}  // namespace vrut
