@@ -12,11 +12,16 @@ namespace vrut {
 
 namespace {
 
+std::string called(const aiMesh& mesh) {
+    const std::string name = text_of(mesh.mName);
+    return name.empty() ? "the mesh" : "mesh '" + excerpt(name) + "'";
+}
+
 template <class Vector>
 void require_coordinates(const Vector& vector, const char* what, const aiMesh& mesh) {
     if (!is_coordinate(vector.x) || !is_coordinate(vector.y) || !is_coordinate(vector.z))
-        throw Refused("a " + std::string(what) + " of mesh '" + excerpt(text_of(mesh.mName)) +
-                      "' is not a number from -1e15 to 1e15");
+        throw Refused("a " + std::string(what) + " of " + called(mesh) +
+                      " is not a number from -1e15 to 1e15");
 }
 
 /// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
@@ -102,12 +107,14 @@ void weld(Geometry& geometry) {
 
 }  // namespace
 
-void check_indices(const aiMesh& mesh) {
-    if (!mesh.HasPositions()) throw Refused("mesh '" + excerpt(text_of(mesh.mName)) + "' has no vertices");
-    for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face)
+void check_faces(const aiMesh& mesh) {
+    if (!mesh.HasPositions()) throw Refused(called(mesh) + " has no vertices");
+    for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
+        if (face->mNumIndices == 0) throw Refused(called(mesh) + " has a face without corners");
         for (unsigned i = 0; i < face->mNumIndices; ++i)
             if (face->mIndices[i] >= mesh.mNumVertices)
-                throw Refused("mesh '" + excerpt(text_of(mesh.mName)) + "' has an index out of range");
+                throw Refused(called(mesh) + " has an index out of range");
+    }
 }
 
 Geometry take_geometry(aiMesh& mesh, AssimpFormat format) {

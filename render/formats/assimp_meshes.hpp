@@ -20,8 +20,9 @@ struct Refused : std::runtime_error {
 /// NaN.
 inline bool is_coordinate(float value) { return value >= -1e15F && value <= 1e15F; }
 
-/// Throws Refused where a face names a vertex that there is not.
-void check_indices(const aiMesh& mesh);
+/// Throws Refused where a face has no corners or names a vertex that there is not: assimp would crash on
+/// them.
+void check_faces(const aiMesh& mesh);
 
 /// The mesh's triangles, by the rules that assimp_scene.hpp tells; frees what it has taken over. The mesh is
 /// checked. Throws Refused.

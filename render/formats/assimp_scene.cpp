@@ -253,22 +253,25 @@ std::uint64_t count_triangles(const aiScene& scene) {
     return count;
 }
 
-/// Polygons become triangles, once their indices are known to be in range.
+/// Polygons become triangles, once they are known to be some.
 void check_and_triangulate(Assimp::Importer& importer) {
     const aiScene& scene = *importer.GetScene();
-    for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_indices(*scene.mMeshes[i]);
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_faces(*scene.mMeshes[i]);
     if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
         throw Refused("its polygons cannot be cut into triangles");
 }
 
 std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) {
     if (!files.refusal().empty()) return files.refusal();
-    const std::string_view error = importer.GetErrorString();
-    if (error.starts_with("No suitable reader")) return "it does not begin as a file with this ending does";
-    if (error.starts_with("FBX-Tokenize") && error.find("block offset is out of range") != error.npos)
-        return "its blocks do not lie where it says: it is cut off, or it was written by assimp 5.2, whose "
-               "binary FBX "
-               "cannot be read";
+    const std::string error = importer.GetErrorString();
+    constexpr std::pair<const char*, const char*> kKnown[] = {
+        {"No suitable reader", "it does not begin as a file with this ending does"},
+        {"STL storage representation", "it is neither text nor as long as its number of triangles asks for"},
+        {"block offset is out of range",
+         "it is cut off, or it is binary FBX written by assimp 5.2, which does not read that itself"},
+    };
+    for (const auto& [part, meaning] : kKnown)
+        if (error.find(part) != std::string::npos) return meaning;
     return "it cannot be read: " + excerpt(error, 300);
 }
 

@@ -3,8 +3,7 @@
 #include <cstring>
 
 #include "picture_bytes.hpp"
-#include "read_scene.hpp"
-#include "temporary_folder.hpp"
+#include "scene_queries.hpp"
 
 using namespace vrut;
 namespace fs = std::filesystem;
@@ -26,51 +25,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
+void check_refused(const std::string& text, const std::string& why, const std::string& name = "car.gltf") {
+    check_refused_file(name, text, why);
+}
+
 std::string car_with(const std::string& from, const std::string& to) {
     return replaced(car_text(), from, to);
-}
-
-Scene read_well(const fs::path& path) {
-    auto scene = read_scene(path);
-    REQUIRE_MESSAGE(scene, scene.error());
-    return *std::move(scene);
-}
-
-const Node& node_of(const Scene& scene, const std::string& name) {
-    for (const Node& node : scene.nodes())
-        if (node.name == name) return node;
-    FAIL("no node " << name);
-    return scene.nodes()[0];
-}
-
-const Node& parent_of(const Scene& scene, const Node& node) {
-    return scene.nodes()[static_cast<std::size_t>(node.parent)];
-}
-
-const Material& material_of(const Scene& scene, const std::string& name) {
-    for (const Material& material : scene.materials())
-        if (material.name == name) return material;
-    FAIL("no material " << name);
-    return scene.materials()[0];
-}
-
-bool is_near(const glm::dvec4& a, const glm::dvec4& b) { return glm::distance(a, b) < 1e-6; }
-
-bool has_notice(const Scene& scene, const std::string& part) {
-    for (const std::string& notice : scene.notices())
-        if (notice.find(part) != std::string::npos) return true;
-    return false;
-}
-
-/// That the text is refused in one line that names the file and says that.
-void check_refused(const std::string& text, const std::string& why, const std::string& name = "car.gltf") {
-    const TemporaryFolder folder;
-    const fs::path path = folder.write(name, text);
-    const auto scene = read_scene(path);
-    REQUIRE_MESSAGE(!scene, "expected: " << why);
-    CHECK_MESSAGE(scene.error().starts_with(path.string() + ": "), scene.error());
-    CHECK_MESSAGE(scene.error().find(why) != std::string::npos, scene.error());
-    CHECK(scene.error().find('\n') == std::string::npos);
 }
 
 std::string decoded_base64(std::string_view text) {
