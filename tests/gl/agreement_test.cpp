@@ -74,8 +74,19 @@ std::vector<bool> edges_of(Studio& studio, View view) {
     return edges;
 }
 
-/// Draws the scene as it is and in all its variants, each in both modes, against one reference. All numbers
-/// are printed where VRUT_AGREEMENT is set.
+/// Draws a variant of the scene that is judged. All numbers are printed where VRUT_AGREEMENT is set.
+void check_drawing(Studio& studio, const std::string& what, const Variant& variant, const Judge& judge,
+                   const std::vector<Id>& expected) {
+    const std::vector<Index> nodes = studio.renderer().node_ids(variant.view);
+    const Agreement result =
+        agreement(judge, studio.draw(variant.view.scene, variant.view), edges_of(studio, variant.view),
+                  ids_of(variant.view, nodes, variant.ids), expected);
+    if (std::getenv("VRUT_AGREEMENT") != nullptr)
+        std::printf("%s: %s\n", what.c_str(), line_of(result).c_str());
+    CHECK_MESSAGE(violations(result).empty(), what << ": " << violations(result));
+}
+
+/// Draws the scene as it is and in all its variants, each in both modes, against one reference.
 void check_agreement(Studio& studio, const std::string& name, View view) {
     for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
         view.mode = mode;
@@ -84,17 +95,9 @@ void check_agreement(Studio& studio, const std::string& name, View view) {
         const std::vector<Id> expected = ids_of(view, judge.picture.node, 1);
         std::vector<Variant> variants = variants_of(view);
         variants.insert(variants.begin(), {"as it is", view});
-        for (const Variant& variant : variants) {
-            const std::string what =
-                name + (mode == DrawMode::stylized ? ", stylized, " : ", ") + variant.name;
-            const std::vector<Index> nodes = studio.renderer().node_ids(variant.view);
-            const Agreement result =
-                agreement(judge, studio.draw(variant.view.scene, variant.view),
-                          edges_of(studio, variant.view), ids_of(variant.view, nodes, variant.ids), expected);
-            if (std::getenv("VRUT_AGREEMENT") != nullptr)
-                std::printf("%s: %s\n", what.c_str(), line_of(result).c_str());
-            CHECK_MESSAGE(violations(result).empty(), what << ": " << violations(result));
-        }
+        for (const Variant& variant : variants)
+            check_drawing(studio, name + (mode == DrawMode::stylized ? ", stylized, " : ", ") + variant.name,
+                          variant, judge, expected);
     }
 }
 
@@ -132,4 +135,21 @@ TEST_CASE("teaching scenes are drawn as the reference has them, whatever their s
 TEST_CASE("the car is drawn as the reference has it") {
     Studio studio;
     check_agreement(studio, "car", view_of_file(VRUT_CARS "/car.vrut", 640, 400));
+}
+
+TEST_CASE("models of other programs are drawn as the reference has them") {
+    const char* const models = std::getenv("VRUT_TEST_MODELS");
+    if (models == nullptr) {
+        MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
+        return;
+    }
+    Studio studio;
+    for (const char* file :
+         {"bmw_m6/bmw_m6.glb", "hatchback/hatchback/meshes/hatchback.obj", "jeep/2013_ASCII/jeep1.fbx",
+          "jeep/2013_BINARY/jeep1.fbx", "racing/vehicle-motorcycle.glb", "racing/vehicle-truck-green.glb",
+          "racing/vehicle-truck-red.glb"}) {
+        const View view = view_of_file(fs::path(models) / file, 640, 400);
+        const Judge judge = judge_of(view);
+        check_drawing(studio, file, {"as it is", view}, judge, ids_of(view, judge.picture.node, 1));
+    }
 }

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <cstring>
+#include <cstdlib>
 
 #include "picture_bytes.hpp"
 #include "scene_queries.hpp"
@@ -343,4 +343,29 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
          "a vertex of mesh 'Door' is not a number"},
     };
     for (const auto& [file, text, why] : kFiles) check_refused_file(file, text, why);
+}
+
+TEST_CASE("models of other programs are read whole") {
+    const char* const models = std::getenv("VRUT_TEST_MODELS");
+    if (models == nullptr) {
+        MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
+        return;
+    }
+    const struct {
+        const char* file;
+        std::uint64_t triangles;
+        std::size_t geometries, materials, textures;
+    } kModels[] = {
+        {"bmw_m6/bmw_m6.glb", 791'468, 110, 24, 0},
+        {"hatchback/hatchback/meshes/hatchback.obj", 788, 4, 2, 0},  // its pictures lie elsewhere
+        {"jeep/2013_ASCII/jeep1.fbx", 2'032, 7, 2, 1},
+        {"jeep/2013_BINARY/jeep1.fbx", 2'032, 7, 2, 1},
+    };
+    for (const auto& [file, triangles, geometries, materials, textures] : kModels) {
+        const Scene scene = read_well(fs::path(models) / file);
+        CHECK_MESSAGE(scene.triangle_count() == triangles, file);
+        CHECK_MESSAGE(scene.geometries().size() == geometries, file);
+        CHECK_MESSAGE(scene.materials().size() == materials, file);
+        CHECK_MESSAGE(scene.textures().size() == textures, file);
+    }
 }
