@@ -17,9 +17,11 @@ std::string called(const aiMesh& mesh) {
     return name.empty() ? "the mesh" : "mesh '" + excerpt(name) + "'";
 }
 
-template <class Vector>
-void require_coordinates(const Vector& vector, const char* what, const aiMesh& mesh) {
-    if (!is_coordinate(vector.x) || !is_coordinate(vector.y) || !is_coordinate(vector.z))
+void require_coordinates(const aiVector3D* vectors, const char* what, const aiMesh& mesh) {
+    bool all = true;  // without an early end, so that several are looked at at once
+    for (const aiVector3D* v = vectors; v != vectors + mesh.mNumVertices; ++v)
+        all &= is_coordinate(v->x) & is_coordinate(v->y) & is_coordinate(v->z);
+    if (!all)
         throw Refused("a " + std::string(what) + " of " + called(mesh) +
                       " is not a number from -1e15 to 1e15");
 }
@@ -32,42 +34,42 @@ void release(T*& array) {
 }
 
 void take_vertices(aiMesh& mesh, Geometry& geometry) {
+    require_coordinates(mesh.mVertices, "vertex", mesh);
     geometry.positions.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "vertex", mesh);
+    for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v)
         geometry.bounds.add(geometry.positions.emplace_back(v->x, v->y, v->z));
-    }
     release(mesh.mVertices);
 }
 
 void take_normals(aiMesh& mesh, Geometry& geometry) {
     if (!mesh.HasNormals()) return;
+    require_coordinates(mesh.mNormals, "normal", mesh);
     geometry.normals.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "normal", mesh);
+    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v)
         geometry.normals.emplace_back(v->x, v->y, v->z);
-    }
     release(mesh.mNormals);
 }
 
 /// assimp has turned v upwards already, as we have it.
 void take_texcoords(aiMesh& mesh, Geometry& geometry) {
     if (!mesh.HasTextureCoords(0)) return;
+    require_coordinates(mesh.mTextureCoords[0], "texture coordinate", mesh);
     geometry.texcoords.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mTextureCoords[0]; v != mesh.mTextureCoords[0] + mesh.mNumVertices; ++v) {
-        require_coordinates(*v, "texture coordinate", mesh);
+    for (const aiVector3D* v = mesh.mTextureCoords[0]; v != mesh.mTextureCoords[0] + mesh.mNumVertices; ++v)
         geometry.texcoords.emplace_back(v->x, v->y);
-    }
     release(mesh.mTextureCoords[0]);
 }
 
 void take_triangles(aiMesh& mesh, Geometry& geometry) {
     geometry.triangles.reserve(mesh.mNumFaces);
+    unsigned last = 0;
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
         if (face->mNumIndices != 3) continue;
         const unsigned* i = face->mIndices;
         geometry.triangles.emplace_back(i[0], i[1], i[2]);
+        last = std::max({last, i[0], i[1], i[2]});
     }
+    if (last >= mesh.mNumVertices) throw Refused(called(mesh) + " has an index out of range");
     release(mesh.mFaces);
     mesh.mNumFaces = 0;
 }

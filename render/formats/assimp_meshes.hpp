@@ -2,6 +2,7 @@
 
 #include <assimp/mesh.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -18,7 +19,7 @@ struct Refused : std::runtime_error {
 
 /// As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU. No
 /// NaN.
-inline bool is_coordinate(float value) { return value >= -1e15F && value <= 1e15F; }
+inline bool is_coordinate(float value) { return std::abs(value) <= 1e15F; }
 
 /// Throws Refused where a face has no corners or names a vertex that there is not: assimp would crash on
 /// them.

@@ -7,11 +7,6 @@ glm::dvec3 Bounds::center() const { return empty() ? glm::dvec3(0) : min * 0.5 +
 glm::dvec3 Bounds::half_extent() const { return empty() ? glm::dvec3(0) : max * 0.5 - min * 0.5; }
 double Bounds::radius() const { return glm::length(half_extent()); }
 
-void Bounds::add(const glm::dvec3& point) {
-    min = glm::min(min, point);
-    max = glm::max(max, point);
-}
-
 void Bounds::add(const Bounds& other) {
     if (other.empty()) return;
     add(other.min);

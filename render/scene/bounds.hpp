@@ -17,7 +17,10 @@ struct Bounds {
     /// Radius of the sphere around the box; 0 when empty.
     double radius() const;
 
-    void add(const glm::dvec3& point);
+    void add(const glm::dvec3& point) {
+        min = glm::min(min, point);
+        max = glm::max(max, point);
+    }
     void add(const Bounds& other);
 };
 
