@@ -5,12 +5,13 @@
 #include <glm/glm.hpp>
 
 #include "assimp_format.hpp"
+#include "losses.hpp"
 
 namespace vrut {
 
 /// Turns the file's axes so that y is up, where it says that another is and assimp 5.2 leaves them as they
 /// are.
-glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format);
+glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Losses& losses);
 
 /// Metres per unit, where the file tells and assimp 5.2 has not scaled by it; else 1.
 double unit_of(const aiScene& scene, AssimpFormat format);

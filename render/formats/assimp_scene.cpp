@@ -130,7 +130,7 @@ private:
                 open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
         };
         const aiNode& root = *scene_.mRootNode;
-        const glm::dmat4 matrix = upright_from_file(scene_, format_) * matrix_of(root);
+        const glm::dmat4 matrix = upright_from_file(scene_, format_, losses_) * matrix_of(root);
         if (is_made_up(root, matrix))
             open_children(root, 0, glm::dmat4(1));
         else
