@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 
 namespace vrut {
 
@@ -35,16 +34,25 @@ tl::expected<std::filesystem::path, std::string> find_below(const std::filesyste
     return file;
 }
 
-tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path, std::uintmax_t most) {
+tl::expected<FileReader, std::string> FileReader::open(const std::filesystem::path& path) {
     if (auto fault = file_fault(path)) return tl::unexpected(*std::move(fault));
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream stream(path, std::ios::binary);
     if (error || !stream) return tl::unexpected(std::string("it cannot be opened: ") + std::strerror(errno));
-    if (size > most) return tl::unexpected("it is larger than " + std::to_string(most) + " bytes");
-    std::string bytes(static_cast<std::size_t>(size), '\0');
-    if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
-        return tl::unexpected(std::string("it cannot be read to its end"));
+    return FileReader(std::move(stream), size);
+}
+
+bool FileReader::read(char* to, std::size_t count) {
+    return static_cast<bool>(stream_.read(to, static_cast<std::streamsize>(count)));
+}
+
+tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path, std::uintmax_t most) {
+    auto file = FileReader::open(path);
+    if (!file) return tl::unexpected(file.error());
+    if (file->size() > most) return tl::unexpected("it is larger than " + std::to_string(most) + " bytes");
+    std::string bytes(static_cast<std::size_t>(file->size()), '\0');
+    if (!file->read(bytes.data(), bytes.size())) return tl::unexpected(std::string(kCutShort));
     return bytes;
 }
 

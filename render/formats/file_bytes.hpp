@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <tl/expected.hpp>
 
 namespace vrut {
@@ -15,6 +17,27 @@ std::optional<std::string> file_fault(const std::filesystem::path& path);
 /// none that may be read: what lies outside of the folder is not.
 tl::expected<std::filesystem::path, std::string> find_below(const std::filesystem::path& folder,
                                                             const std::string& name);
+
+/// Of a file that ends before its size, as when someone cuts it short meanwhile.
+inline constexpr std::string_view kCutShort = "it cannot be read to its end";
+
+/// A file read from its start, block by block. It is not mapped: were it cut short meanwhile, that would end the
+/// process (SIGBUS), and its bytes would count among the process's memory.
+class FileReader {
+public:
+    /// Or why it cannot be read, without its name.
+    static tl::expected<FileReader, std::string> open(const std::filesystem::path& path);
+
+    std::uintmax_t size() const { return size_; }
+    /// Whether there were so many bytes more.
+    bool read(char* to, std::size_t count);
+
+private:
+    FileReader(std::ifstream stream, std::uintmax_t size) : stream_(std::move(stream)), size_(size) {}
+
+    std::ifstream stream_;
+    std::uintmax_t size_;
+};
 
 /// A whole file, or why it cannot be read, without its name. Files of more than `most` bytes are refused.
 tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path,

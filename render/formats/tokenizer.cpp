@@ -1,15 +1,17 @@
 #include "tokenizer.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <utility>
 
 namespace vrut {
 
 namespace {
 
-bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\f' || c == '\v'; }
-bool ends_bare(char c) { return is_space(c) || c == '"' || c == '#'; }
-bool starts_number(char c) { return (c >= '0' && c <= '9') || c == '-' || c == '+' || c == '.'; }
+// Long enough that a thread for each costs little, and short enough to stay in the cache.
+constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
+static_assert(kChunkBytes > 2 * kMaxTokenBytes, "each chunk gets somewhere");
 
 std::string compact(double value) {
     char buffer[32];
@@ -17,115 +19,100 @@ std::string compact(double value) {
     return std::string(buffer, end);
 }
 
-bool continues_utf8(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
+/// Where a chunk that is not the last ends: behind its last line break, where a text is always between two
+/// tokens, or in a longer line before its last character.
+std::size_t end_of_chunk(std::string_view text) {
+    if (const std::size_t line_break = text.rfind('\n'); line_break != std::string_view::npos)
+        return line_break + 1;
+    std::size_t end = text.size() - 1;
+    while (end > 1 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
+    return end;
+}
 
 }  // namespace
 
-std::string excerpt(std::string_view text, std::size_t most) {
-    std::size_t length = std::min(text.size(), most);
-    while (length > 0 && length < text.size() && continues_utf8(text[length])) --length;
-    std::string result(text.substr(0, length));
-    for (char& c : result)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-    return length < text.size() ? result + "…" : result;
+Tokenizer::Tokenizer(TextSource source, unsigned threads)
+    : source_(std::move(source)), threads_(source_.size > kChunkBytes ? std::max(threads, 1U) : 1) {
+    for (unsigned i = 0; i < threads_; ++i) read_ahead({});
 }
 
-Tokenizer::Tokenizer(std::string_view text) : text_(text) { advance(); }
+void Tokenizer::next_chunk() {
+    lines_ += chunk_.lines;
+    next_ = 0;
+    Chunk used = std::exchange(chunk_, ahead_.front().get());
+    ahead_.pop_front();
+    read_ahead(std::move(used));
+}
 
-void Tokenizer::skip_space() {
-    while (position_ < text_.size()) {
-        const char c = text_[position_];
-        if (c == '#') {
-            position_ = std::min(text_.find('\n', position_), text_.size());
-        } else if (is_space(c)) {
-            line_ += c == '\n';
-            ++position_;
-        } else {
-            return;
-        }
+/// What it holds goes on in the next chunk; what it is used for again saves memory.
+void Tokenizer::read_ahead(Chunk chunk) {
+    if (ended_) return;
+    fill(chunk);
+    ended_ = chunk.last;
+    const bool whole_lines = chunk.last || chunk.text[chunk.text.size() - 2] == '\n';
+    if (!whole_lines) {
+        // Only now is known where the next one begins.
+        lex(chunk);
+        ended_ = !chunk.fault.empty();
+        const auto rest = chunk.text.begin() + static_cast<std::ptrdiff_t>(chunk.rest);
+        offset_ -= static_cast<std::size_t>(chunk.text.end() - 1 - rest);
+        carry_.insert(carry_.begin(), rest, chunk.text.end() - 1);
     }
+    const auto launch = threads_ > 1 && whole_lines ? std::launch::async : std::launch::deferred;
+    ahead_.push_back(std::async(
+        launch,
+        [whole_lines](Chunk read) {
+            if (whole_lines) lex(read);
+            return read;
+        },
+        std::move(chunk)));
 }
 
-void Tokenizer::advance() {
-    skip_space();
-    next_ = Token{Token::Kind::end_of_file, {}, 0, line_};
-    if (position_ == text_.size()) return;
-
-    const std::size_t start = position_;
-    if (text_[start] == '"') {
-        for (++position_; position_ < text_.size() && text_[position_] != '"'; ++position_) {
-            if (text_[position_] == '\n') throw ParseError(line_, "expected \" before the end of the line");
-            if (text_[position_] == '\\') {
-                ++position_;
-                if (position_ == text_.size() || (text_[position_] != '"' && text_[position_] != '\\'))
-                    throw ParseError(line_, "expected \\\" or \\\\ in a string, found another escape");
-            }
-        }
-        if (position_ >= text_.size()) throw ParseError(line_, "expected \" before the end of the file");
-        next_.kind = Token::Kind::string;
-        next_.text = text_.substr(start + 1, position_ - start - 1);
-        ++position_;
-        return;
-    }
-    while (position_ < text_.size() && !ends_bare(text_[position_])) ++position_;
-    next_.text = text_.substr(start, position_ - start);
-    next_.kind = Token::Kind::word;
-    if (!starts_number(next_.text[0])) return;
-
-    const char* first = next_.text.data();
-    const char* last = first + next_.text.size();
-    if (next_.text[0] == '+' && !next_.text.starts_with("+-")) ++first;  // from_chars takes no plus
-    const auto [end, error] = std::from_chars(first, last, next_.number);
-    if (error == std::errc::result_out_of_range)
-        throw ParseError(line_,
-                         "expected a number in the range of double, found '" + excerpt(next_.text) + "'");
-    if (error != std::errc() || end != last || !std::isfinite(next_.number))
-        throw ParseError(line_, "expected a number, found '" + excerpt(next_.text) + "'");
-    next_.kind = Token::Kind::number;
+/// The next stretch of the text, and the line break behind it that is none of the text's.
+void Tokenizer::fill(Chunk& chunk) {
+    const std::size_t size = std::min(kChunkBytes, source_.size - offset_);
+    chunk.text.resize(size + 1);
+    const auto fresh = std::copy(carry_.begin(), carry_.end(), chunk.text.begin());
+    source_.read(&*fresh, size - carry_.size());
+    chunk.offset = offset_;
+    chunk.last = offset_ + size == source_.size;
+    const std::size_t end = chunk.last ? size : end_of_chunk({chunk.text.data(), size});
+    carry_.assign(chunk.text.begin() + static_cast<std::ptrdiff_t>(end), chunk.text.end() - 1);
+    offset_ += end;
+    chunk.text.resize(end + 1);
+    chunk.text.back() = '\n';
 }
 
-Token Tokenizer::take() {
-    const Token token = next_;
-    advance();
-    return token;
+void Tokenizer::fail_expected(std::string_view what) {
+    const Token& token = peek();
+    const std::string found = token.kind == Token::Kind::end_of_file ? "the end of the file"
+                              : token.kind == Token::Kind::string    ? "\"" + excerpt(token.text()) + "\""
+                                                                     : "'" + excerpt(token.text()) + "'";
+    throw ParseError(line(), "expected " + std::string(what) + ", found " + found);
 }
 
-void Tokenizer::fail_expected(std::string_view what) const {
-    const std::string found = next_.kind == Token::Kind::end_of_file ? "the end of the file"
-                              : next_.kind == Token::Kind::string    ? "\"" + excerpt(next_.text) + "\""
-                                                                     : "'" + excerpt(next_.text) + "'";
-    throw ParseError(next_.line, "expected " + std::string(what) + ", found " + found);
+void Tokenizer::fail_outside(std::string_view what, double min, double max) {
+    fail_expected(std::string(what) + " (a number from " + compact(min) + " to " + compact(max) + ")");
 }
 
 std::string_view Tokenizer::take_word(std::string_view what) {
-    if (next_.kind != Token::Kind::word) fail_expected(what);
-    return take().text;
+    if (peek().kind != Token::Kind::word) fail_expected(what);
+    return take().text();
 }
 
 std::string Tokenizer::take_string(std::string_view what) {
-    if (next_.kind != Token::Kind::string) fail_expected(std::string(what) + " in quotes");
-    const Token token = take();
+    if (peek().kind != Token::Kind::string) fail_expected(std::string(what) + " in quotes");
+    const std::string_view text = take().text();
     std::string result;
-    result.reserve(token.text.size());
-    for (std::size_t i = 0; i < token.text.size(); ++i) result += token.text[token.text[i] == '\\' ? ++i : i];
+    result.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) result += text[text[i] == '\\' ? ++i : i];
     return result;
 }
 
-double Tokenizer::take_number(std::string_view what) {
-    if (next_.kind != Token::Kind::number) fail_expected(what);
-    return take().number;
-}
-
-double Tokenizer::take_number(std::string_view what, double min, double max) {
-    if (next_.kind != Token::Kind::number || next_.number < min || next_.number > max)
-        fail_expected(std::string(what) + " (a number from " + compact(min) + " to " + compact(max) + ")");
-    return take().number;
-}
-
 std::int64_t Tokenizer::take_integer(std::string_view what, std::int64_t min, std::int64_t max) {
-    const double number = next_.number;
-    if (next_.kind != Token::Kind::number || number != std::floor(number) ||
-        number < static_cast<double>(min) || number > static_cast<double>(max))
+    const Token& token = peek();
+    if (token.kind != Token::Kind::number || token.number != std::floor(token.number) ||
+        token.number < static_cast<double>(min) || token.number > static_cast<double>(max))
         fail_expected(std::string(what) + " (an integer from " + std::to_string(min) + " to " +
                       std::to_string(max) + ")");
     return static_cast<std::int64_t>(take().number);
@@ -135,12 +122,13 @@ bool Tokenizer::take_flag(std::string_view what) { return take_integer(what, 0, 
 
 std::size_t Tokenizer::take_count(std::string_view what, std::size_t bytes_each) {
     // A count is checked against the file before anything is allocated for it.
-    const std::size_t left = (text_.size() - position_) / bytes_each;
-    const Token token = next_;
+    const std::size_t at = line();
+    const std::string_view text = peek().text();
+    const auto end = chunk_.offset + static_cast<std::size_t>(text.data() + text.size() - chunk_.text.data());
     const auto count = static_cast<std::size_t>(take_integer(what, 0, std::int64_t{1} << 32));
-    if (count > left)
-        throw ParseError(token.line, "expected " + std::string(what) + " that fits into the file, found " +
-                                         excerpt(token.text));
+    if (count > (source_.size - end) / bytes_each)
+        throw ParseError(at, "expected " + std::string(what) + " that fits into the file, found " +
+                                 excerpt(text));
     return count;
 }
 

@@ -1,9 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <functional>
+#include <future>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+
+#include "lexer.hpp"
 
 namespace vrut {
 
@@ -14,46 +19,70 @@ struct ParseError : std::runtime_error {
     std::size_t line;
 };
 
-/// What a sentence repeats of the file: printable, at most so many bytes, and whole characters.
-std::string excerpt(std::string_view text, std::size_t most = 40);
-
-struct Token {
-    enum class Kind { word, number, string, end_of_file };
-    Kind kind = Kind::end_of_file;
-    std::string_view text;  ///< as written; of a string what is between the quotes, still escaped
-    double number = 0;
-    std::size_t line = 1;
+/// A text of `size` bytes, which `read` hands out from its start, as many as asked for.
+struct TextSource {
+    std::size_t size = 0;
+    std::function<void(char* to, std::size_t count)> read;
 };
 
-/// Splits scene text into bare words, finite numbers and quoted strings; `#` starts a comment. Views into
-/// `text`, which must outlive it. Throws ParseError.
+/// Scene text as one row of tokens. It is read in chunks, which so many threads split ahead of what is taken;
+/// their number changes nothing but the time. Memory: some megabytes for each of them, whatever the text.
+/// Throws ParseError at the first fault of the text, when it is reached; and what the source throws.
 class Tokenizer {
 public:
-    explicit Tokenizer(std::string_view text);
+    Tokenizer(TextSource source, unsigned threads);
 
-    const Token& peek() const { return next_; }
+    /// The next token, and its line, from 1. A token's text is there until the one behind it is asked for.
+    const Token& peek();
+    std::size_t line() { return 1 + peek().line + lines_; }
     Token take();
 
     // Each takes one token of its kind; `what` names it in the error ("the material's name").
     std::string_view take_word(std::string_view what);
     std::string take_string(std::string_view what);
-    double take_number(std::string_view what);
     double take_number(std::string_view what, double min, double max);
     std::int64_t take_integer(std::string_view what, std::int64_t min, std::int64_t max);
     bool take_flag(std::string_view what);
     /// A number of things that each need at least `bytes_each` of the text that is left.
     std::size_t take_count(std::string_view what, std::size_t bytes_each);
 
-    [[noreturn]] void fail_expected(std::string_view what) const;
+    [[noreturn]] void fail_expected(std::string_view what);
 
 private:
-    void advance();
-    void skip_space();
+    [[noreturn]] void fail_outside(std::string_view what, double min, double max);
+    void next_chunk();
+    void read_ahead(Chunk chunk);
+    void fill(Chunk& chunk);
 
-    std::string_view text_;
-    std::size_t position_ = 0;
-    std::size_t line_ = 1;
-    Token next_;
+    TextSource source_;
+    unsigned threads_;
+    std::size_t offset_ = 0;   // of the chunk that is read next
+    std::vector<char> carry_;  // its first bytes, which are read already
+    bool ended_ = false;       // there is none
+    Chunk chunk_;              // with the next token
+    std::size_t next_ = 0;     // that token's place in it
+    std::size_t lines_ = 0;    // line breaks before it
+    std::deque<std::future<Chunk>> ahead_;
 };
+
+inline const Token& Tokenizer::peek() {
+    while (next_ == chunk_.tokens.size()) next_chunk();
+    const Token& token = chunk_.tokens[next_];
+    if (token.kind == Token::Kind::fault) throw ParseError(1 + lines_ + token.line, chunk_.fault);
+    return token;
+}
+
+inline Token Tokenizer::take() {
+    const Token token = peek();
+    ++next_;
+    return token;
+}
+
+inline double Tokenizer::take_number(std::string_view what, double min, double max) {
+    const Token& token = peek();
+    if (token.kind == Token::Kind::number && token.number >= min && token.number <= max) [[likely]]
+        return ++next_, token.number;
+    fail_outside(what, min, max);
+}
 
 }  // namespace vrut

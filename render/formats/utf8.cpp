@@ -1,12 +1,20 @@
 #include "utf8.hpp"
 
 #include <cstdint>
+#include <cstring>
 
 namespace vrut {
 
 std::size_t find_invalid_utf8(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     for (std::size_t i = 0; i < text.size();) {
+        if (std::uint64_t eight = 0; i + sizeof eight <= text.size()) {
+            std::memcpy(&eight, text.data() + i, sizeof eight);
+            if ((eight & 0x8080808080808080) == 0) {  // ASCII
+                i += sizeof eight;
+                continue;
+            }
+        }
         const unsigned char lead = byte(i);
         if (lead < 0x80) {
             ++i;

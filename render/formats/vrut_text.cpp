@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <functional>
 #include <span>
+#include <thread>
 #include <unordered_map>
 
 #include "file_bytes.hpp"
 #include "notices.hpp"
 #include "scene_pictures.hpp"
 #include "tokenizer.hpp"
-#include "utf8.hpp"
 
 namespace vrut {
 
@@ -46,21 +46,17 @@ struct References {
 
 class VrutTextReader {
 public:
-    VrutTextReader(std::string_view text, const std::string& file, const ReadProgress& progress)
-        : tokens_(text), text_(text), file_(file), progress_(progress) {}
+    VrutTextReader(TextSource source, const std::string& file, unsigned threads)
+        : tokens_(std::move(source), threads), file_(file) {}
 
     SceneParts read() {
-        if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text != "vrut-text")
+        if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text() != "vrut-text")
             tokens_.fail_expected("'vrut-text 1'");
         tokens_.take();
         if (tokens_.peek().kind != Token::Kind::number || tokens_.peek().number != 1)
             tokens_.fail_expected("version 1 of vrut-text");
         tokens_.take();
-        while (tokens_.peek().kind != Token::Kind::end_of_file) {
-            const auto read = tokens_.peek().text.data() - text_.data();
-            if (progress_) progress_(static_cast<double>(read) / static_cast<double>(text_.size()));
-            read_block();
-        }
+        while (tokens_.peek().kind != Token::Kind::end_of_file) read_block();
         resolve_references();
         notices_.append_to(parts_.notices);
         parts_.name = std::filesystem::path(file_).stem().string();
@@ -69,7 +65,7 @@ public:
 
 private:
     void read_block() {
-        const std::size_t line = tokens_.peek().line;
+        const std::size_t line = tokens_.line();
         const std::string_view keyword = tokens_.take_word("'unit', 'material', 'geometry' or 'node'");
         if (keyword == "unit")
             parts_.unit = tokens_.take_number("metres per unit", 1e-12, 1e12);
@@ -87,9 +83,9 @@ private:
     // --- members
 
     void read_members(const std::string& block, std::span<const Member> members) {
-        std::vector<std::string_view> seen;
+        std::vector<const Member*> seen;
         for (;;) {
-            const std::size_t line = tokens_.peek().line;
+            const std::size_t line = tokens_.line();
             const std::string_view name = tokens_.take_word("a member of " + block + " or 'end'");
             if (name == "end") return;
             const auto member = find(members, name);
@@ -97,10 +93,10 @@ private:
                 skip_unknown(block, line, name, members);
                 continue;
             }
-            if (std::find(seen.begin(), seen.end(), name) != seen.end())
+            if (std::find(seen.begin(), seen.end(), &*member) != seen.end())
                 throw ParseError(
                     line, "expected '" + std::string(name) + "' once in " + block + ", found it twice");
-            seen.push_back(name);
+            seen.push_back(&*member);
             member->read();
         }
     }
@@ -116,7 +112,7 @@ private:
             const Token& token = tokens_.peek();
             if (token.kind == Token::Kind::end_of_file) tokens_.fail_expected("'end' of " + block);
             if (token.kind == Token::Kind::word &&
-                (token.text == "end" || find(members, token.text) != members.end()))
+                (token.text() == "end" || find(members, token.text()) != members.end()))
                 return;
             tokens_.take();
         }
@@ -181,14 +177,14 @@ private:
              }},
             {"normals",
              [&] {
-                 normals_line = tokens_.peek().line;
+                 normals_line = tokens_.line();
                  geometry.normals.resize(tokens_.take_count("a count of normals", 6));
                  for (glm::vec3& normal : geometry.normals)
                      normal = glm::vec3(take_point("a normal's coordinate"));
              }},
             {"texcoords",
              [&] {
-                 texcoords_line = tokens_.peek().line;
+                 texcoords_line = tokens_.line();
                  geometry.texcoords.resize(tokens_.take_count("a count of texture coordinates", 4));
                  for (glm::vec2& texcoord : geometry.texcoords)
                      for (int i = 0; i < 2; ++i)
@@ -197,7 +193,7 @@ private:
              }},
             {"triangles",
              [&] {
-                 triangles_line = tokens_.peek().line;
+                 triangles_line = tokens_.line();
                  geometry.triangles.resize(tokens_.take_count("a count of triangles", 6));
                  for (glm::uvec3& triangle : geometry.triangles)
                      for (int i = 0; i < 3; ++i)
@@ -228,7 +224,7 @@ private:
     NodeType take_node_type() {
         const Token& token = tokens_.peek();
         for (const NodeKind& kind : kNodeKinds) {
-            const bool by_word = token.kind == Token::Kind::word && token.text == kind.keyword;
+            const bool by_word = token.kind == Token::Kind::word && token.text() == kind.keyword;
             const bool by_number = token.kind == Token::Kind::number && token.number == kind.number;
             if (by_word || by_number) {
                 tokens_.take();
@@ -267,7 +263,7 @@ private:
         std::size_t line = 0;
         for (int row = 0; row < 4; ++row)
             for (int column = 0; column < 4; ++column) {
-                line = tokens_.peek().line;
+                line = tokens_.line();
                 matrix[column][row] =
                     tokens_.take_number("a matrix element", -kMaxCoordinate, kMaxCoordinate);
             }
@@ -276,7 +272,7 @@ private:
     }
 
     void read_hinge(Hinge& hinge) {
-        const std::size_t line = tokens_.peek().line;
+        const std::size_t line = tokens_.line();
         hinge.axis = take_point("the hinge's axis");
         if (hinge.axis == glm::dvec3(0))
             throw ParseError(line, "expected a hinge's axis that is not zero, found 0 0 0");
@@ -346,7 +342,7 @@ private:
     }
 
     LightData::Type take_light_type() {
-        const std::size_t line = tokens_.peek().line;
+        const std::size_t line = tokens_.line();
         const std::string_view word = tokens_.take_word("point, directional or spot");
         if (word == "point") return LightData::Type::point;
         if (word == "directional") return LightData::Type::directional;
@@ -381,39 +377,67 @@ private:
     }
 
     Tokenizer tokens_;
-    std::string_view text_;
     const std::string& file_;
-    const ReadProgress& progress_;
     SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
     std::unordered_map<Id, Index> material_ids_, geometry_ids_;
     Notices notices_;
 };
 
-}  // namespace
+// More would wait for the one that takes the tokens.
+unsigned reading_threads() { return std::min(std::thread::hardware_concurrency(), 8U); }
 
-PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress) {
-    const auto at_line = [&](std::size_t line, const std::string& what) {
-        return tl::unexpected(file + ":" + std::to_string(line) + ": " + what);
-    };
-    if (const std::size_t invalid = find_invalid_utf8(text); invalid != std::string_view::npos)
-        return at_line(1 + static_cast<std::size_t>(std::count(
-                               text.begin(), text.begin() + static_cast<std::ptrdiff_t>(invalid), '\n')),
-                       "expected UTF-8, found another byte");
+/// Thrown where a file ends before its size.
+struct CutShort {};
+
+TextSource source_of(std::string_view text) {
+    return {text.size(), [text](char* to, std::size_t count) mutable {
+                text.copy(to, count);
+                text.remove_prefix(count);
+            }};
+}
+
+TextSource source_of(FileReader& file) {
+    return {static_cast<std::size_t>(file.size()), [&file](char* to, std::size_t count) {
+                if (!file.read(to, count)) throw CutShort();
+            }};
+}
+
+/// Which tells how much of it was handed out.
+TextSource telling(TextSource source, const ReadProgress& progress) {
+    if (!progress) return source;
+    return {source.size, [source, progress, done = std::size_t{0}](char* to, std::size_t count) mutable {
+                progress(static_cast<double>(done) / static_cast<double>(source.size));
+                source.read(to, count);
+                done += count;
+            }};
+}
+
+PartsResult read_parts(const TextSource& source, const std::string& file, const ReadProgress& progress,
+                       unsigned threads) {
     try {
-        return VrutTextReader(text, file, progress).read();
+        return VrutTextReader(telling(source, progress), file, threads).read();
     } catch (const ParseError& error) {
-        return at_line(error.line, error.what());
+        return tl::unexpected(file + ":" + std::to_string(error.line) + ": " + error.what());
     }
 }
 
-PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) {
+}  // namespace
+
+PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress,
+                            unsigned threads) {
+    return read_parts(source_of(text), file, progress, threads > 0 ? threads : reading_threads());
+}
+
+PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) try {
     const std::string file = path.string();
-    const auto bytes = read_bytes(path);
-    if (!bytes) return tl::unexpected(file + ": " + bytes.error());
-    auto parts = read_vrut_parts(*bytes, file, progress);
+    auto reader = FileReader::open(path);
+    if (!reader) return tl::unexpected(file + ": " + reader.error());
+    auto parts = read_parts(source_of(*reader), file, progress, reading_threads());
     if (parts) read_pictures(*parts, path, progress);
     return parts;
+} catch (const CutShort&) {
+    return tl::unexpected(path.string() + ": " + std::string(kCutShort));
 }
 
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {

@@ -8,8 +8,10 @@ namespace vrut {
 
 /// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
 /// Nodes of type assembly and geometry may have a hinge: `hinge X Y Z DEGREES`, see Hinge.
-PartsResult read_vrut_parts(std::string_view text, const std::string& file,
-                            const ReadProgress& progress = {});
+/// So many threads split the text into its tokens, 0: as many as there are, up to a few; what is read, and
+/// what is refused in which sentence, depends on none of this.
+PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress = {},
+                            unsigned threads = 0);
 
 /// The same from a file, with the pictures that it names.
 PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress = {});
