@@ -118,12 +118,10 @@ private:
     /// Whether what reaches this far may reach into the next chunk.
     bool goes_on(const char* end) const { return end == end_ && !chunk_.last; }
 
-    bool add(Token::Kind kind, const char* end, double number = 0) {
+    [[gnu::always_inline]] bool add(Token::Kind kind, const char* end, double number = 0) {
         const bool quoted = kind == Token::Kind::string;
         const char* const begin = at_ + quoted;
-        if (static_cast<std::size_t>(end - begin) > kMaxTokenBytes)
-            return fault("expected words, numbers and strings of at most " + std::to_string(kMaxTokenBytes) +
-                         " bytes, found a longer one");
+        if (static_cast<std::size_t>(end - begin) > kMaxTokenBytes) return fault_of_length();
         if (goes_on(end)) return false;
         append(kind, begin, end, number);
         at_ += end + quoted - at_;
@@ -133,6 +131,11 @@ private:
     void append(Token::Kind kind, const char* begin, const char* end, double number = 0) {
         chunk_.tokens.push_back({begin, number, static_cast<std::uint32_t>(chunk_.lines),
                                  static_cast<std::uint16_t>(end - begin), kind});
+    }
+
+    bool fault_of_length() {
+        return fault("expected words, numbers and strings of at most " + std::to_string(kMaxTokenBytes) +
+                     " bytes, found a longer one");
     }
 
     bool fault(std::string what) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <utility>
 
 namespace vrut {
@@ -95,6 +94,11 @@ void Tokenizer::fail_outside(std::string_view what, double min, double max) {
     fail_expected(std::string(what) + " (a number from " + compact(min) + " to " + compact(max) + ")");
 }
 
+void Tokenizer::fail_outside(std::string_view what, std::int64_t min, std::int64_t max) {
+    fail_expected(std::string(what) + " (an integer from " + std::to_string(min) + " to " +
+                  std::to_string(max) + ")");
+}
+
 std::string_view Tokenizer::take_word(std::string_view what) {
     if (peek().kind != Token::Kind::word) fail_expected(what);
     return take().text();
@@ -107,15 +111,6 @@ std::string Tokenizer::take_string(std::string_view what) {
     result.reserve(text.size());
     for (std::size_t i = 0; i < text.size(); ++i) result += text[text[i] == '\\' ? ++i : i];
     return result;
-}
-
-std::int64_t Tokenizer::take_integer(std::string_view what, std::int64_t min, std::int64_t max) {
-    const Token& token = peek();
-    if (token.kind != Token::Kind::number || token.number != std::floor(token.number) ||
-        token.number < static_cast<double>(min) || token.number > static_cast<double>(max))
-        fail_expected(std::string(what) + " (an integer from " + std::to_string(min) + " to " +
-                      std::to_string(max) + ")");
-    return static_cast<std::int64_t>(take().number);
 }
 
 bool Tokenizer::take_flag(std::string_view what) { return take_integer(what, 0, 1) != 0; }

@@ -50,6 +50,7 @@ public:
 
 private:
     [[noreturn]] void fail_outside(std::string_view what, double min, double max);
+    [[noreturn]] void fail_outside(std::string_view what, std::int64_t min, std::int64_t max);
     void next_chunk();
     void read_ahead(Chunk chunk);
     void fill(Chunk& chunk);
@@ -82,6 +83,17 @@ inline double Tokenizer::take_number(std::string_view what, double min, double m
     const Token& token = peek();
     if (token.kind == Token::Kind::number && token.number >= min && token.number <= max) [[likely]]
         return ++next_, token.number;
+    fail_outside(what, min, max);
+}
+
+inline std::int64_t Tokenizer::take_integer(std::string_view what, std::int64_t min, std::int64_t max) {
+    const Token& token = peek();
+    if (token.kind == Token::Kind::number && token.number >= static_cast<double>(min) &&
+        token.number <= static_cast<double>(max)) [[likely]] {
+        const auto integer = static_cast<std::int64_t>(token.number);
+        if (static_cast<double>(integer) == token.number) [[likely]]
+            return ++next_, integer;
+    }
     fail_outside(what, min, max);
 }
 
