@@ -39,7 +39,8 @@ public:
         const std::size_t invalid = find_invalid_utf8(text);
         // Of its line nothing is read.
         if (invalid != std::string_view::npos) end_ = begin_ + (text.rfind('\n', invalid) + 1);
-        while (skip_space() && add_token()) {}
+        while (skip_space() && add_token()) {
+        }
         if (chunk_.fault.empty() && invalid != std::string_view::npos)
             fault("expected UTF-8, found another byte");
         if (chunk_.fault.empty() && chunk_.last) append(Token::Kind::end_of_file, at_, at_);

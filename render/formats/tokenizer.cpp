@@ -122,8 +122,8 @@ std::size_t Tokenizer::take_count(std::string_view what, std::size_t bytes_each)
     const auto end = chunk_.offset + static_cast<std::size_t>(text.data() + text.size() - chunk_.text.data());
     const auto count = static_cast<std::size_t>(take_integer(what, 0, std::int64_t{1} << 32));
     if (count > (source_.size - end) / bytes_each)
-        throw ParseError(at, "expected " + std::string(what) + " that fits into the file, found " +
-                                 excerpt(text));
+        throw ParseError(
+            at, "expected " + std::string(what) + " that fits into the file, found " + excerpt(text));
     return count;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <ostream>
 #include <string_view>
 #include <type_traits>
@@ -9,6 +10,14 @@
 namespace vrut {
 
 namespace {
+
+/// To the last bit: a matrix with -0 is none.
+bool is_identity(const glm::dmat4& matrix) {
+    bool negative = false;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) negative |= std::signbit(matrix[column][row]);
+    return matrix == glm::dmat4(1) && !negative;
+}
 
 class VrutTextWriter {
 public:
@@ -57,7 +66,7 @@ private:
         std::string quoted = " \"";
         for (const char c : value) {
             if (c == '"' || c == '\\') quoted += '\\';
-            quoted += c;
+            quoted += c == '\n' ? ' ' : c;
         }
         return text(quoted + '"');
     }
@@ -111,7 +120,7 @@ private:
         if (node.parent != kNone)
             text("  parent").number(scene.nodes()[static_cast<std::size_t>(node.parent)].id);
         if (!node.active) text("  active 0");
-        if (node.matrix != glm::dmat4(1)) {
+        if (!is_identity(node.matrix)) {
             text("\n  matrix");
             for (int row = 0; row < 4; ++row)
                 for (int column = 0; column < 4; ++column) number(node.matrix[column][row]);

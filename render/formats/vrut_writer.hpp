@@ -8,8 +8,9 @@
 namespace vrut {
 
 /// Writes a scene as text, `vrut-text 1`, from which read_vrut_text() makes the same scene: every number in
-/// the fewest digits that give it back. Pictures stay files of their own, and notices are left out.
-/// `comment`, when given, is put at the top, line by line.
+/// the fewest digits that give it back. Pictures stay files of their own, and notices are left out. A line
+/// break in a name, which the text cannot hold and no reading of it gives, becomes a space. `comment`, when
+/// given, is put at the top, line by line.
 void write_vrut_text(const Scene& scene, std::ostream& out, const std::string& comment = {});
 
 }  // namespace vrut

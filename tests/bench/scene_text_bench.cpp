@@ -1,13 +1,15 @@
-// Scene text beside the peer's reader of OBJ: one step of tests/bench/scene_text.mjs, in a process of its own.
+// Scene text beside the peer's reader of OBJ: one step of tests/bench/scene_text.mjs, in a process of its
+// own.
 //   convert FILE.obj FILE.vrut   the same geometry, with the same digits
 //   ours FILE.vrut               reads it as the server does
 //   parts FILE.vrut              the same without linking the scene
 //   peer FILE.obj                assimp reads it, without any of its further steps
 //   sum FILE                     the file's SHA-256, as the server takes it
-// The last four print milliseconds, those of the processor, and by how many megabytes the peak of memory rose; `ours`
-// also what its scene's arrays come to when they are drawn.
-#include <assimp/Importer.hpp>
+// The last four print milliseconds, those of the processor, and by how many megabytes the peak of memory
+// rose; `ours` also what its scene's arrays come to when they are drawn.
 #include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
 #include <chrono>
 #include <ctime>
 #include <fstream>
@@ -101,7 +103,8 @@ void measure(const Work& work) {
     const auto start = std::chrono::steady_clock::now();
     const auto result = work();
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-    std::cout << "ms " << took.count() << " cpu " << processor_milliseconds() - cpu_before << " peak " << peak_megabytes() - before;
+    std::cout << "ms " << took.count() << " cpu " << processor_milliseconds() - cpu_before << " peak "
+              << peak_megabytes() - before;
     if constexpr (std::is_same_v<decltype(result), const Scene>)
         std::cout << " drawn " << drawn_megabytes(result) << " triangles " << result.triangle_count();
     std::cout << std::endl;

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <random>
 
 #include "scene.hpp"
 
@@ -49,6 +50,24 @@ TEST_CASE("the limit is 1e-4 of the radius, from the fitted plane") {
     const double radius = std::sqrt(2.0);
     CHECK(plane_of(sheet(0, {0, 0, 0}, 1e-4 * radius)));
     CHECK_FALSE(plane_of(sheet(0, {0, 0, 0}, 4e-4 * radius)));
+}
+
+TEST_CASE(
+    "what spans any space has no plane, and a sheet within the limit has one, however its corners lie") {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> across(-1, 1);
+    for (int round = 0; round < 200; ++round) {
+        // Heights of both signs, so that they do not tilt the plane.
+        const double height = round % 2 == 0 ? 0.5e-4 : 0.2;
+        std::vector<glm::dvec3> positions;
+        std::vector<glm::uvec3> triangles;
+        for (unsigned i = 0; i < 300; ++i) {
+            positions.emplace_back(across(random), across(random), i % 2 == 0 ? height : -height);
+            if (i >= 2) triangles.emplace_back(i - 2, i - 1, i);
+        }
+        const auto plane = plane_of(geometry_of(positions, triangles));
+        CHECK(plane.has_value() == (round % 2 == 0));
+    }
 }
 
 TEST_CASE("triangles without area do not count, and a sheet with two faces has a plane") {
