@@ -8,8 +8,6 @@ namespace vrut {
 
 namespace {
 
-// Long enough that a thread for each costs little, and short enough to stay in the cache.
-constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 static_assert(kChunkBytes > 2 * kMaxTokenBytes, "each chunk gets somewhere");
 
 std::string compact(double value) {

@@ -25,6 +25,9 @@ struct TextSource {
     std::function<void(char* to, std::size_t count)> read;
 };
 
+/// So much of a text is read at a time: a thread for each costs little, and they stay in the cache.
+inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
+
 /// Scene text as one row of tokens. It is read in chunks, which so many threads split ahead of what is taken;
 /// their number changes nothing but the time. Memory: some megabytes for each of them, whatever the text.
 /// Throws ParseError at the first fault of the text, when it is reached; and what the source throws.

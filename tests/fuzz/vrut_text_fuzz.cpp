@@ -1,9 +1,40 @@
 #include <cstdint>
+#include <cstdlib>
+#include <sstream>
 
+#include "tokenizer.hpp"
 #include "vrut_text.hpp"
+#include "vrut_writer.hpp"
+
+using namespace vrut;
+
+namespace {
+
+ReadResult read(std::string_view text) { return read_vrut_text(text, "fuzz.vrut"); }
+
+std::string written(const ReadResult& scene) {
+    if (!scene) return scene.error();
+    std::ostringstream out;
+    write_vrut_text(*scene, out);
+    return out.str();
+}
+
+void check(bool holds) {
+    if (!holds) std::abort();
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    auto scene = vrut::read_vrut_text({reinterpret_cast<const char*>(data), size}, "fuzz.vrut");
-    if (scene) vrut::place(*std::move(scene));
+    const std::string_view text(reinterpret_cast<const char*>(data), size);
+    auto scene = read(text);
+    const std::string once = written(scene);
+    if (scene) check(written(read(once)) == once);
+    if (size % 16 == 0 && size < kChunkBytes) {
+        // The same where the second chunk begins in the middle of it.
+        const std::string space(kChunkBytes - size / 2, ' ');
+        check(written(read(space + std::string(text))) == once);
+    }
+    if (scene) place(*std::move(scene));
     return 0;
 }
