@@ -35,19 +35,23 @@ public:
         : chunk_(chunk), begin_(chunk.text.data()), at_(begin_), end_(begin_ + chunk.text.size() - 1) {}
 
     void run() {
-        const std::string_view text(begin_, static_cast<std::size_t>(end_ - begin_));
-        const std::size_t invalid = find_invalid_utf8(text);
-        // Of its line nothing is read.
-        if (invalid != std::string_view::npos) end_ = begin_ + (text.rfind('\n', invalid) + 1);
+        const std::size_t invalid = find_invalid_utf8({begin_, static_cast<std::size_t>(end_ - begin_)});
+        const bool valid = invalid == std::string_view::npos;
+        if (!valid) end_before(invalid);
         while (skip_space() && add_token()) {
         }
-        if (chunk_.fault.empty() && invalid != std::string_view::npos)
-            fault("expected UTF-8, found another byte");
+        if (chunk_.fault.empty() && !valid) fault("expected UTF-8, found another byte");
         if (chunk_.fault.empty() && chunk_.last) append(Token::Kind::end_of_file, at_, at_);
         chunk_.rest = static_cast<std::size_t>(at_ - begin_);
     }
 
 private:
+    void end_before(std::size_t offset) {
+        end_ = begin_ + offset;
+        *end_ = '\n';
+        open_ = true;
+    }
+
     /// To the next token, if there is one.
     bool skip_space() {
         for (;;) {
@@ -62,7 +66,7 @@ private:
     bool skip_comment() {
         const void* const line_break = std::memchr(at_, '\n', static_cast<std::size_t>(end_ - at_));
         at_ = line_break ? begin_ + (static_cast<const char*>(line_break) - begin_) : end_;
-        if (!line_break && !chunk_.last) *--at_ = '#';
+        if (!line_break && open_) *--at_ = '#';
         return line_break;
     }
 
@@ -106,7 +110,7 @@ private:
             if (end == end_ || (*end != '"' && *end != '\\'))
                 return fault("expected \\\" or \\\\ in a string, found another escape");
         }
-        if (end == end_ && chunk_.last) return fault("expected \" before the end of the file");
+        if (end == end_ && !open_) return fault("expected \" before the end of the file");
         return add(Token::Kind::string, end);
     }
 
@@ -116,8 +120,8 @@ private:
         return end;
     }
 
-    /// Whether what reaches this far may reach into the next chunk.
-    bool goes_on(const char* end) const { return end == end_ && !chunk_.last; }
+    /// Whether what reaches this far may be cut off there.
+    bool goes_on(const char* end) const { return end == end_ && open_; }
 
     [[gnu::always_inline]] bool add(Token::Kind kind, const char* end, double number = 0) {
         const bool quoted = kind == Token::Kind::string;
@@ -148,7 +152,8 @@ private:
     Chunk& chunk_;
     char* const begin_;
     char* at_;
-    char* end_;
+    char* end_;                 // a line break stands there
+    bool open_ = !chunk_.last;  // something may go on behind it
 };
 
 }  // namespace
