@@ -289,7 +289,7 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     const auto path = library_.find(name);
     if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
-    loader_.start(*path, name, description_);
+    loader_.start(*path, name, description_, library_.limits());
     tell({name, 0, {}, {}});
     return std::nullopt;
 }

@@ -2,7 +2,8 @@
 #include <stdexcept>
 
 #include "commands.hpp"
-#include "read_scene.hpp"
+#include "import_process.hpp"
+#include "progress.hpp"
 #include "report.hpp"
 #include "scene_state.hpp"
 
@@ -56,7 +57,7 @@ void print(const protocol::SceneState& scene, const std::vector<protocol::NodeRe
 }  // namespace
 
 void info_command(const InfoArguments& arguments) {
-    auto scene = read_scene(arguments.scene);
+    auto scene = import_scene(arguments.scene, loading_bar(arguments.scene.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
     const PlacedScene placed = place(*std::move(scene));
     const protocol::SceneState state = *starting_state(placed, 1, all_notices(*placed.scene)).scene.value;

@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "commands.hpp"
+#include "import_process.hpp"
 
 namespace {
 
@@ -213,6 +214,7 @@ void add_chart(CLI::App& app, vrut::ChartArguments& arguments) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+    if (vrut::is_import_process(argc, argv)) vrut::run_import_process(argv);
     // Results go to standard output, what is told on the way to standard error.
     spdlog::set_default_logger(spdlog::stderr_color_mt("vrut-preview"));
     spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");

@@ -10,6 +10,7 @@
 #include "detail_levels.hpp"
 #include "images.hpp"
 #include "presentation.hpp"
+#include "progress.hpp"
 #include "reference.hpp"
 #include "renderer.hpp"
 #include "report.hpp"
@@ -60,7 +61,8 @@ Camera wanted_camera(const RenderArguments& arguments, const Presentation& prese
 }
 
 View view_of(const RenderArguments& arguments) {
-    auto scene = load_scene(arguments.scene, arguments.scene.filename().string());
+    const std::string name = arguments.scene.filename().string();
+    auto scene = load_scene(arguments.scene, name, loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);
     Presentation presentation(*std::move(scene));

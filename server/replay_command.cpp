@@ -6,6 +6,7 @@
 #include "commands.hpp"
 #include "encoder.hpp"
 #include "images.hpp"
+#include "progress.hpp"
 #include "renderer.hpp"
 #include "replay.hpp"
 #include "report.hpp"
@@ -32,7 +33,7 @@ public:
 
     tl::expected<LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
         if (fs::path given = std::exchange(given_, {}); !given.empty()) {
-            auto scene = load_scene(given, name);
+            auto scene = load_scene(given, name, loading_bar(name));
             if (scene && scene->sha256 != sha256)
                 spdlog::warn("{} is not the scene that was recorded", given.string());
             return scene;
@@ -42,7 +43,7 @@ public:
             const fs::path file = folder / name;
             if (!fs::is_regular_file(file)) continue;
             found = true;
-            if (sha256_of(file) == sha256) return load_scene(file, name);
+            if (sha256_of(file) == sha256) return load_scene(file, name, loading_bar(name));
         }
         return tl::unexpected("the scene '" + name + "' " +
                               (found ? "has changed since it was recorded" : "is not found") +

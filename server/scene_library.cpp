@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "read_scene.hpp"
 #include "utf8.hpp"
 
 namespace vrut {
@@ -17,8 +16,9 @@ namespace vrut {
 namespace fs = std::filesystem;
 
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
-                                                  const std::function<void(double)>& progress) {
-    auto scene = read_scene(path, progress);
+                                                  const ReadProgress& progress,
+                                                  const std::optional<ImportLimits>& limits) {
+    auto scene = import_scene(path, progress, limits);
     if (!scene) return tl::unexpected(scene.error());
     if (progress) progress(1);
     LoadedScene loaded;

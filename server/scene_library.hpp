@@ -1,25 +1,32 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
 
+#include "import_process.hpp"
 #include "scene_state.hpp"
 
 namespace vrut {
 
-/// Reads a scene file; `name` is by which it was asked for. Or one sentence on what is wrong.
+/// Reads a scene file (import_scene()); `name` is by which it was asked for. Or one sentence on what is
+/// wrong.
 tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& path, const std::string& name,
-                                                  const std::function<void(double)>& progress = {});
+                                                  const ReadProgress& progress = {},
+                                                  const std::optional<ImportLimits>& limits = {});
 
 /// The folder of scenes that clients may open.
 class SceneLibrary {
 public:
     /// Without a folder there are none.
     SceneLibrary() = default;
-    explicit SceneLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
+    explicit SceneLibrary(std::filesystem::path folder, std::optional<ImportLimits> limits = {})
+        : folder_(std::move(folder)), limits_(limits) {}
+
+    /// Of reading each of its scenes; none: import_limits().
+    const std::optional<ImportLimits>& limits() const { return limits_; }
 
     /// The file of this name, which may lie in a folder below, but nowhere else; or why there is none.
     tl::expected<std::filesystem::path, std::string> find(const std::string& name) const;
@@ -34,6 +41,7 @@ private:
     bool leads_to_scene(const std::string& link) const;
 
     std::filesystem::path folder_;
+    std::optional<ImportLimits> limits_;
 };
 
 /// SHA-256 of a file in hexadecimal. Throws std::runtime_error.

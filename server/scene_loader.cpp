@@ -17,10 +17,10 @@ SceneLoader::~SceneLoader() {
 }
 
 void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
-                        const std::string& renderer) {
+                        const std::string& renderer, const std::optional<ImportLimits>& limits) {
     finish();
     busy_ = true;
-    thread_ = std::thread([this, path, name, renderer] {
+    thread_ = std::thread([this, path, name, renderer, limits] {
         constexpr std::chrono::milliseconds kBetweenReports{100};
         Clock::time_point last = Clock::now();
         const auto progress = [&](double fraction) {
@@ -30,7 +30,7 @@ void SceneLoader::start(const std::filesystem::path& path, const std::string& na
             mailbox_.push(SceneLoading{name, fraction});
         };
         try {
-            auto scene = load_scene(path, name, progress);
+            auto scene = load_scene(path, name, progress, limits);
             protocol::LevelTable levels;
             if (scene) levels = levels_of(scene->sha256, renderer);
             mailbox_.push(SceneLoaded{name, std::move(scene), std::move(levels)});

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "import_process.hpp"
 #include "mailbox.hpp"
 
 namespace vrut {
@@ -17,7 +18,8 @@ public:
     /// From start() until finish().
     bool busy() const { return busy_; }
     /// With the levels that are kept for what draws.
-    void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer);
+    void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
+               const std::optional<ImportLimits>& limits);
     /// To be called when SceneLoaded has come.
     void finish();
 

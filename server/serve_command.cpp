@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "commands.hpp"
+#include "progress.hpp"
 #include "scene_library.hpp"
 #include "server.hpp"
 
@@ -68,7 +69,8 @@ void serve_command(const ServeArguments& arguments) {
     }
 
     const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
-    auto scene = load_scene(path, path.filename().string());
+    const std::string name = path.filename().string();
+    auto scene = load_scene(path, name, loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     const Scene& read = *scene->placed->scene;
     for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);

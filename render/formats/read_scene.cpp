@@ -13,17 +13,18 @@ namespace {
 struct Format {
     const char* extension;
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
+    bool foreign;  ///< its reader is not ours
 };
 
 constexpr Format kFormats[] = {
-    {".vrut", read_vrut_file},
-    {".glb", read_assimp_scene<AssimpFormat::gltf>},
-    {".gltf", read_assimp_scene<AssimpFormat::gltf>},
-    {".obj", read_assimp_scene<AssimpFormat::obj>},
-    {".stl", read_assimp_scene<AssimpFormat::stl>},
-    {".ply", read_assimp_scene<AssimpFormat::ply>},
-    {".dae", read_assimp_scene<AssimpFormat::collada>},
-    {".fbx", read_assimp_scene<AssimpFormat::fbx>},
+    {".vrut", read_vrut_file, false},
+    {".glb", read_assimp_scene<AssimpFormat::gltf>, true},
+    {".gltf", read_assimp_scene<AssimpFormat::gltf>, true},
+    {".obj", read_assimp_scene<AssimpFormat::obj>, true},
+    {".stl", read_assimp_scene<AssimpFormat::stl>, true},
+    {".ply", read_assimp_scene<AssimpFormat::ply>, true},
+    {".dae", read_assimp_scene<AssimpFormat::collada>, true},
+    {".fbx", read_assimp_scene<AssimpFormat::fbx>, true},
 };
 
 /// null: none reads this ending, in whatever case.
@@ -58,15 +59,24 @@ ReadResult build_scene(SceneParts parts, const std::string& file) {
 
 bool has_reader(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
-ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+bool has_foreign_reader(const std::filesystem::path& path) {
+    const Format* const format = format_of(path);
+    return format != nullptr && format->foreign;
+}
+
+PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
     const Format* const format = format_of(path);
     if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
     if (format == nullptr)
         return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
-    auto parts = format->read(path, progress);
+    return format->read(path, progress);
+}
+
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+    auto parts = read_scene_parts(path, progress);
     if (!parts) return tl::unexpected(parts.error());
-    return build_scene(*std::move(parts), file);
+    return build_scene(*std::move(parts), path.string());
 }
 
 }  // namespace vrut

@@ -53,8 +53,9 @@ void require_size(const ChartArguments& arguments, const Renderer& renderer) {
 }
 
 Subject subject_of(const fs::path& path, const ChartArguments& arguments, Progress& progress) {
-    progress.show(0, path.filename().string() + ", loading");
-    auto scene = load_scene(path, path.stem().string());
+    auto scene = load_scene(path, path.stem().string(), [&](double part) {
+        progress.show(part, path.filename().string() + ", loading");
+    });
     if (!scene) throw std::runtime_error(scene.error());
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
     Subject subject{scene->name, scene->sha256,

@@ -1,6 +1,7 @@
 #include "picture_file.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "environment_variable.hpp"
 #include "picture_bytes.hpp"
 #include "temporary_folder.hpp"
 
@@ -144,6 +146,40 @@ std::string claiming_png(std::uint32_t width, std::uint32_t height) {
     return bytes;
 }
 
+std::string big_endian(std::uint32_t value) {
+    std::string bytes(4, '\0');
+    put_big_endian(bytes, 0, value);
+    return bytes;
+}
+
+std::string png_chunk(const std::string& kind, const std::string& data) {
+    const std::string body = kind + data;
+    const auto sum = crc32(0, reinterpret_cast<const Bytef*>(body.data()), static_cast<uInt>(body.size()));
+    return big_endian(static_cast<std::uint32_t>(data.size())) + body +
+           big_endian(static_cast<std::uint32_t>(sum));
+}
+
+/// The file with more before its pixels.
+std::string with_chunk(std::string png, const std::string& chunk) {
+    return png.insert(png.find("IDAT") - 4, chunk);
+}
+
+std::string deflated_zeros(std::size_t size) {
+    const std::vector<Bytef> zeros(size);
+    uLongf length = compressBound(static_cast<uLong>(size));
+    std::string bytes(length, '\0');
+    compress(reinterpret_cast<Bytef*>(bytes.data()), &length, zeros.data(), static_cast<uLong>(size));
+    bytes.resize(length);
+    return bytes;
+}
+
+/// Of this process so far, in KiB.
+long most_memory() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
 /// Left half red, upper right white, lower right blue.
 std::vector<std::uint8_t> three_fields(int width, int height) {
     std::vector<std::uint8_t> rgb;
@@ -203,6 +239,25 @@ TEST_CASE("a gamma that a PNG names changes nothing") {
     CHECK(pixel(image, 1, 0) == Pixel{200, 254, 77, 255});
 }
 
+TEST_CASE("what a PNG says besides its pixels is not unpacked") {
+    const std::string png = flat_png(2, 2, {1, 2, 3, 4});
+    const std::string zeros = deflated_zeros(64 << 20), nothing(1, '\0');
+    const std::string iccp = png_chunk("iCCP", "p" + nothing + nothing + zeros);
+    const std::string ztxt = png_chunk("zTXt", "k" + nothing + nothing + zeros);
+    const std::string itxt = png_chunk("iTXt", "k" + nothing + "\1" + nothing + nothing + nothing + zeros);
+    const long before = most_memory();
+    for (const std::string& chunk : {iccp, ztxt, itxt})
+        CHECK(pixel(decode_well(with_chunk(png, chunk)), 0, 0) == Pixel{1, 2, 3, 4});
+    CHECK(most_memory() - before < 32 << 10);
+
+    // Of an animation the first picture is taken, which other readers see too.
+    const std::string control = big_endian(2) + big_endian(2) + std::string(12, '\0');
+    const std::string animated = with_chunk(
+        with_chunk(png, png_chunk("acTL", big_endian(2) + big_endian(0))),
+        png_chunk("fcTL", big_endian(0) + control) + png_chunk("fdAT", big_endian(2) + "no picture"));
+    CHECK(pixel(decode_well(animated), 1, 1) == Pixel{1, 2, 3, 4});
+}
+
 TEST_CASE("JPEGs in colour and grey, of one and of several scans, are read upright") {
     for (const int flags : {0, TJFLAG_PROGRESSIVE}) {
         const Image image = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), false, flags));
@@ -211,6 +266,12 @@ TEST_CASE("JPEGs in colour and grey, of one and of several scans, are read uprig
         CHECK(is_near(pixel(image, 3, 3), {255, 0, 0, 255}));
         CHECK(is_near(pixel(image, 28, 3), {255, 255, 255, 255}));
         CHECK(is_near(pixel(image, 28, 12), {0, 0, 255, 255}));
+    }
+    {
+        const EnvironmentVariable arithmetic("TJ_ARITHMETIC", "1");  // for the encoder
+        const std::string file = jpeg_bytes(32, 16, three_fields(32, 16));
+        REQUIRE(file.find("\xFF\xC9") != std::string::npos);
+        CHECK(is_near(pixel(decode_well(file), 28, 12), {0, 0, 255, 255}));
     }
     const Image grey = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), true));
     CHECK(is_near(pixel(grey, 3, 3), {76, 76, 76, 255}));  // luma of red

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
-namespace vrut::chart {
+namespace vrut {
 
 /// How far long work is, on standard error: a bar on a terminal, elsewhere a line for each thing begun.
 class Progress {
@@ -21,4 +22,8 @@ private:
     std::string what_;
 };
 
-}  // namespace vrut::chart
+/// What shows how far the reading of a scene is: a bar, from half a second on; empty where standard error is
+/// no terminal.
+std::function<void(double)> loading_bar(const std::string& what);
+
+}  // namespace vrut

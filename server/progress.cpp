@@ -3,9 +3,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <memory>
 
-namespace vrut::chart {
+namespace vrut {
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
@@ -29,4 +31,13 @@ void Progress::show(double part, const std::string& what) {
     std::fflush(stderr);
 }
 
-}  // namespace vrut::chart
+std::function<void(double)> loading_bar(const std::string& what) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds kPatience{500};
+    if (isatty(STDERR_FILENO) != 1) return {};
+    return [bar = std::make_shared<Progress>(), what, kPatience, start = Clock::now()](double part) {
+        if (Clock::now() - start > kPatience) bar->show(part, what);
+    };
+}
+
+}  // namespace vrut
