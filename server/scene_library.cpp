@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <fstream>
+#include <future>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -18,12 +19,13 @@ namespace fs = std::filesystem;
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
                                                   const ReadProgress& progress,
                                                   const std::optional<ImportLimits>& limits) {
+    auto sum = std::async(std::launch::async, sha256_of, path);  // a tenth of the time, while it is read
     auto scene = import_scene(path, progress, limits);
     if (!scene) return tl::unexpected(scene.error());
     if (progress) progress(1);
     LoadedScene loaded;
     loaded.name = name;
-    loaded.sha256 = sha256_of(path);
+    loaded.sha256 = sum.get();
     if (progress) progress(1);
     loaded.notices = all_notices(*scene);
     loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
@@ -112,11 +114,12 @@ private:
 }  // namespace
 
 std::string sha256_of(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
+    std::ifstream stream;
+    if (fs::is_regular_file(path)) stream.open(path, std::ios::binary);  // another may never end
     std::vector<char> block(1 << 20);
-    const bool opened = stream.good();
+    const bool opened = stream.is_open();
     Sha256 sum;
-    while (stream) {
+    while (opened && stream) {
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
         sum.add({block.data(), static_cast<std::size_t>(stream.gcount())});
     }

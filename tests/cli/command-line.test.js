@@ -50,6 +50,7 @@ test('wrong usage is told in a sentence, with status 2', () => {
   fails(2, /subcommand/);
   fails(2, /dance/, 'dance');
   fails(2, /scene/, 'info');
+  fails(2, /'import'/, 'import', CAR);
   fails(2, /--output/, 'render', CAR);
   fails(2, /--size: .*'12'/, 'render', CAR, '-o', file('x.png'), '--size', '12');
   fails(2, /--size/, 'render', CAR, '-o', file('x.png'), '--size', '0x5');
@@ -66,6 +67,9 @@ test('what cannot be done is told in a sentence, with status 1', () => {
   fails(1, /no reader/, 'info', __filename);
   fs.writeFileSync(file('bad.vrut'), 'vrut-text 1\nnode 1 "A" assembly\n  parent 7 end\n');
   fails(1, /bad\.vrut:2: expected parent 7 of node 1/, 'info', file('bad.vrut'));
+  fs.writeFileSync(file('bad.glb'), 'glTF, but not really');
+  fails(1, /bad\.glb: /, 'info', file('bad.glb'));
+  fails(1, /bad\.glb: /, 'render', file('bad.glb'), '-o', file('x.png'));
   fails(1, /picture\.gif/, 'render', CAR, '-o', file('picture.gif'));
   fails(1, /no-such-folder/, 'render', CAR, '-o', file('no-such-folder/x.png'), '--size', '8x8');
   fails(1, /camera\.json/, 'render', CAR, '-o', file('x.png'), '--camera', file('camera.json'));

@@ -1,6 +1,7 @@
 #include "scene_library.hpp"
 
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include "temporary_folder.hpp"
 
@@ -161,4 +162,7 @@ TEST_CASE("a scene is loaded with its name, its digest and what is to be said of
     const auto wrong = load_scene(folder.write("wrong.vrut", "vrut-text 1\nnode x\n"), "wrong");
     REQUIRE_FALSE(wrong);
     CHECK(wrong.error().find("wrong.vrut:2") != std::string::npos);
+    const fs::path pipe = folder.path() / "pipe.vrut";
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    CHECK(load_scene(pipe, "pipe").error() == pipe.string() + ": it is not a file");
 }
