@@ -265,9 +265,11 @@ void pass_cube_map(Stream& stream, BackgroundData& data, const std::vector<Textu
     pass_optional(stream, data.cube_textures, [&](auto& faces) {
         for (Index& face : faces) {
             pass_index(stream, face, textures.size(), 0);
-            const Image& image = textures[static_cast<std::size_t>(face)].image;
-            const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
-            stream.require(image.width == side && image.height == side, "squares of one size");
+            if constexpr (std::is_same_v<Stream, PartsReader>) {
+                const Image& image = textures[static_cast<std::size_t>(face)].image;
+                const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
+                stream.require(image.width == side && image.height == side, "squares of one size");
+            }
         }
     });
     stream.require(data.cube_map || !data.cube_textures, "names of a cube map's pictures");

@@ -156,7 +156,7 @@ TEST_CASE("a file whose reader crashes is refused, and the old scene goes on") {
 TEST_CASE("a file that eats memory is refused, and the old scene goes on") {
     const TemporaryFolder folder;
     write_heap(folder, kTriangles);
-    Room room(folder.path(), {16 << 20, 60s});
+    Room room(folder.path(), {16 << 20, 10s});
     room.open("heap.gltf");
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
     room.expect_refusal("");  // of which the sanitizer makes an end of its own
