@@ -4,6 +4,7 @@
 
 #include "assimp_scene.hpp"
 #include "file_bytes.hpp"
+#include "osb_scene.hpp"
 #include "vrut_text.hpp"
 
 namespace vrut {
@@ -18,6 +19,7 @@ struct Format {
 
 constexpr Format kFormats[] = {
     {".vrut", read_vrut_file, false},
+    {".osb", read_osb_scene, false},
     {".glb", read_assimp_scene<AssimpFormat::gltf>, true},
     {".gltf", read_assimp_scene<AssimpFormat::gltf>, true},
     {".obj", read_assimp_scene<AssimpFormat::obj>, true},
@@ -29,10 +31,7 @@ constexpr Format kFormats[] = {
 
 /// null: none reads this ending, in whatever case.
 const Format* format_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
-        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
-    });
+    const std::string extension = lower_extension(path);
     for (const Format& format : kFormats)
         if (extension == format.extension) return &format;
     return nullptr;
@@ -57,6 +56,14 @@ ReadResult build_scene(SceneParts parts, const std::string& file) {
                           scene.error().message);
 }
 
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
+    });
+    return extension;
+}
+
 bool has_reader(const std::filesystem::path& path) { return format_of(path) != nullptr; }
 
 bool has_foreign_reader(const std::filesystem::path& path) {
@@ -68,6 +75,10 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
     const std::string file = path.string();
     const Format* const format = format_of(path);
     if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
+    if (lower_extension(path) == ".csb")
+        return tl::unexpected(file +
+                              ": the CSB format has no public specification, so that nothing reads it here; "
+                              "OpenSG's own format, .osb, is read");
     if (format == nullptr)
         return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
     return format->read(path, progress);

@@ -21,6 +21,9 @@ using PartsResult = tl::expected<SceneParts, std::string>;
 /// Scene::build with its error as a reader's, of the scene in `file`.
 ReadResult build_scene(SceneParts parts, const std::string& file);
 
+/// The file's ending with its dot, a to z in lower case.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// Whether the file's ending is that of a known format.
 bool has_reader(const std::filesystem::path& path);
 
