@@ -56,6 +56,12 @@ struct InfoArguments {
 };
 void info_command(const InfoArguments& arguments);
 
+struct ConvertArguments {
+    std::filesystem::path in, out;
+};
+/// What the new file does not hold goes to standard error, a line each.
+void convert_command(const ConvertArguments& arguments);
+
 struct CompareArguments {
     std::filesystem::path a, b;
     std::filesystem::path map;  ///< FLIP's errors as a grey PNG; empty: none is written

@@ -1,6 +1,5 @@
 #include "images.hpp"
 
-#include <png.h>
 #include <turbojpeg.h>
 #include <zlib.h>
 
@@ -35,26 +34,6 @@ std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, b
         throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
                                  tjGetErrorStr2(handle_));
     return {scratch_.get(), scratch_.get() + size};
-}
-
-std::vector<std::uint8_t> encode_png(const Image& image) {
-    png_image header{};
-    header.version = PNG_IMAGE_VERSION;
-    header.width = static_cast<png_uint_32>(image.width);
-    header.height = static_cast<png_uint_32>(image.height);
-    header.format = PNG_FORMAT_RGB;
-    std::vector<std::uint8_t> rgb;
-    rgb.reserve(image.rgba.size() / 4 * 3);
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-        rgb.insert(rgb.end(), image.rgba.begin() + static_cast<std::ptrdiff_t>(i),
-                   image.rgba.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-    const int bottom_up = -image.width * 3;
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(header);
-    std::vector<std::uint8_t> png(size);
-    if (!png_image_write_to_memory(&header, png.data(), &size, 0, rgb.data(), bottom_up, nullptr))
-        throw std::runtime_error(std::string("a picture cannot be encoded as PNG: ") + header.message);
-    png.resize(size);
-    return png;
 }
 
 std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm::dvec3> colors) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "image.hpp"
+#include "picture_writer.hpp"
 
 namespace vrut {
 
@@ -28,9 +29,6 @@ private:
     std::unique_ptr<std::uint8_t[]> scratch_;  // of the largest size that was needed
     std::size_t scratch_size_ = 0;
 };
-
-/// An opaque RGB PNG. Throws std::runtime_error.
-std::vector<std::uint8_t> encode_png(const Image& image);
 
 /// RGB in 32-bit floats, rows from the bottom up, as a PFM file.
 std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm::dvec3> colors);

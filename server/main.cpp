@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "import_process.hpp"
+#include "write_scene.hpp"
 
 namespace {
 
@@ -177,6 +178,14 @@ void add_info(CLI::App& app, vrut::InfoArguments& arguments) {
     command->callback([&arguments] { vrut::info_command(arguments); });
 }
 
+void add_convert(CLI::App& app, vrut::ConvertArguments& arguments) {
+    CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
+    command->add_option("in", arguments.in, "Scene file, of any format that is read")->required();
+    command->add_option("out", arguments.out, "File to write, ending in " + vrut::written_extensions())
+        ->required();
+    command->callback([&arguments] { vrut::convert_command(arguments); });
+}
+
 void add_compare(CLI::App& app, vrut::CompareArguments& arguments) {
     CLI::App* command = app.add_subcommand("compare", "Tell how far two pictures are apart");
     command->add_option("a", arguments.a, "Picture (PNG or JPEG)")->required();
@@ -227,12 +236,14 @@ int main(int argc, char** argv) try {
     vrut::RenderArguments render;
     vrut::ReplayArguments replay;
     vrut::InfoArguments info;
+    vrut::ConvertArguments convert;
     vrut::CompareArguments compare;
     vrut::ChartArguments chart;
     add_serve(app, serve);
     add_render(app, render);
     add_replay(app, replay);
     add_info(app, info);
+    add_convert(app, convert);
     add_compare(app, compare);
     add_chart(app, chart);
     try {

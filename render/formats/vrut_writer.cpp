@@ -21,7 +21,8 @@ bool is_identity(const glm::dmat4& matrix) {
 
 class VrutTextWriter {
 public:
-    explicit VrutTextWriter(std::ostream& out) : out_(out) {}
+    VrutTextWriter(std::ostream& out, const std::vector<std::string>& pictures)
+        : out_(out), pictures_(pictures) {}
 
     void write(const Scene& scene, const std::string& comment) {
         text("vrut-text 1\n");
@@ -95,7 +96,8 @@ private:
         text("\n  shininess").number(material.shininess);
         text("  reflectivity").number(material.reflectivity);
         text("  two-sided").number(material.two_sided ? 1 : 0);
-        if (!material.image.empty()) text("\n  image").string(material.image);
+        if (const std::string& image = picture(material.texture, material.image); !image.empty())
+            text("\n  image").string(image);
         text("\nend\n");
     }
 
@@ -104,6 +106,10 @@ private:
         if (rows.empty()) return;
         text("\n  ").text(name).number(rows.size());
         for (const auto& row : rows) text("\n ").numbers(row);
+    }
+
+    const std::string& picture(Index texture, const std::string& own) const {
+        return texture == kNone || pictures_.empty() ? own : pictures_[static_cast<std::size_t>(texture)];
     }
 
     void write_geometry(const Geometry& geometry) {
@@ -171,17 +177,21 @@ private:
         write_material_of(scene, background.material);
         if (!background.cube_map) return;
         text("  cube-map");
-        for (const std::string& face : *background.cube_map) string(face);
+        for (std::size_t i = 0; i < 6; ++i)
+            string(picture(background.cube_textures ? (*background.cube_textures)[i] : kNone,
+                           (*background.cube_map)[i]));
     }
 
     std::ostream& out_;
+    const std::vector<std::string>& pictures_;
     std::string buffer_;
 };
 
 }  // namespace
 
-void write_vrut_text(const Scene& scene, std::ostream& out, const std::string& comment) {
-    VrutTextWriter(out).write(scene, comment);
+void write_vrut_text(const Scene& scene, std::ostream& out, const std::string& comment,
+                     const std::vector<std::string>& pictures) {
+    VrutTextWriter(out, pictures).write(scene, comment);
 }
 
 }  // namespace vrut

@@ -1,0 +1,401 @@
+#include "gltf_writer.hpp"
+
+#include <array>
+#include <bit>
+#include <map>
+#include <ostream>
+
+#include "gltf_material.hpp"
+#include "json_writer.hpp"
+#include "picture_writer.hpp"
+#include "shown_shapes.hpp"
+
+namespace vrut {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
+
+constexpr int kFloat = 5126, kUnsigned = 5125;      // of an accessor's components
+constexpr int kVertices = 34962, kIndices = 34963;  // what a buffer view is for
+constexpr std::string_view kLights = "KHR_lights_punctual";
+constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+std::uint64_t aligned(std::uint64_t size) { return (size + 3) / 4 * 4; }
+
+/// The frame in which a camera looks along -z, with y upwards.
+glm::dmat4 frame_of(const CameraData& camera) {
+    const glm::dvec3 z = glm::normalize(camera.eye - camera.focus);
+    const glm::dvec3 x = glm::normalize(glm::cross(camera.up, z));
+    glm::dmat4 frame(glm::dmat3(x, glm::cross(z, x), z));
+    frame[3] = glm::dvec4(camera.eye, 1);
+    return frame;
+}
+
+/// Accessors of a geometry that is written; kNone for arrays that it lacks.
+struct Accessors {
+    int positions = kNone, normals = kNone, texcoords = kNone, indices = kNone;
+};
+
+class GlbWriter {
+public:
+    GlbWriter(const Scene& scene, Losses& losses) : scene_(scene), losses_(losses) {
+        shapes_ = shown_shapes(scene, losses);
+        for (const ShownShape& shape : shapes_) add_shape(shape);
+        for (const Index material : material_list_)
+            if (const Index texture = scene_.material(material).texture; texture != kNone)
+                pictures_.emplace(texture, 0);
+        int place = 0;
+        for (auto& [texture, own] : pictures_) {
+            own = place++;
+            const Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
+            pngs_.push_back(encode_png(from.image, from.transparent));
+        }
+    }
+
+    /// The JSON chunk; then size() is known.
+    std::string describe() {
+        json_.open_object();
+        write_head();
+        write_nodes();
+        write_cameras_and_lights();
+        write_meshes();
+        write_materials();
+        write_pictures();
+        write_accessors();
+        json_.close();
+        std::string text = json_.text();
+        text.resize(aligned(text.size()), ' ');
+        return text;
+    }
+
+    std::uint64_t size() const { return size_; }
+
+    void write_binary(std::ostream& out, const WriteProgress& progress) const {
+        std::size_t done = 0;
+        for (const Geometry* const geometry : geometries_) {
+            write_geometry(*geometry, out);
+            if (progress) progress(static_cast<double>(++done) / static_cast<double>(geometries_.size()));
+        }
+        for (const auto& png : pngs_) {
+            out.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+            out.write("\0\0\0", static_cast<std::streamsize>(aligned(png.size()) - png.size()));
+        }
+    }
+
+private:
+    // --- what is written, and where
+
+    using Mesh = std::pair<const Geometry*, Index>;  // with a material
+
+    void add_shape(const ShownShape& shape) {
+        const Mesh mesh{shape.geometry, shape.material};
+        if (const auto [found, is_new] = meshes_.emplace(mesh, static_cast<int>(mesh_list_.size())); is_new)
+            mesh_list_.push_back(mesh);
+        mesh_of_node_[shape.node] = meshes_.at(mesh);
+        if (const auto [found, is_new] = materials_.emplace(shape.material, 0); is_new) {
+            found->second = static_cast<int>(material_list_.size());
+            material_list_.push_back(shape.material);
+        }
+        if (accessors_.emplace(shape.geometry, Accessors{}).second) add_geometry(*shape.geometry);
+    }
+
+    void add_geometry(const Geometry& geometry) {
+        geometries_.push_back(&geometry);
+        Accessors& accessors = accessors_.at(&geometry);
+        accessors.positions = accessor_count_++;
+        if (!geometry.normals.empty()) accessors.normals = accessor_count_++;
+        if (!geometry.texcoords.empty()) accessors.texcoords = accessor_count_++;
+        accessors.indices = accessor_count_++;
+        for (const glm::dvec3& position : geometry.positions)
+            if (glm::dvec3(glm::vec3(position)) != position)
+                return losses_.add("a geometry's positions are rounded to single precision");
+    }
+
+    // --- JSON
+
+    void write_head() {
+        json_.open_object("asset").string("2.0", "version").string("vrut-preview", "generator").close();
+        json_.number(0, "scene");
+        bool lights = false, glossiness = false;
+        for (const Node& node : scene_.nodes()) lights = lights || node.type == NodeType::light;
+        for (const Index material : material_list_) {
+            converted_.push_back(gltf_material(scene_, scene_.material(material), losses_));
+            glossiness = glossiness || converted_.back().specular;
+        }
+        if (!lights && !glossiness) return;
+        json_.open_array("extensionsUsed");
+        if (lights) json_.string(kLights);
+        if (glossiness) json_.string(kGlossiness);
+        json_.close();
+    }
+
+    /// Ours without the root, unless it moves them all; cameras that do not look along -z get nodes of their
+    /// own below.
+    void write_nodes() {
+        const std::vector<Node>& nodes = scene_.nodes();
+        const bool has_root = nodes[0].matrix != glm::dmat4(1);
+        const int first = has_root ? 0 : 1;
+        int next = static_cast<int>(nodes.size()) - first;
+        std::vector<std::pair<Index, int>> extra;  // cameras with a frame, and their nodes
+        json_.open_array("nodes");
+        for (std::size_t i = static_cast<std::size_t>(first); i < nodes.size(); ++i) {
+            const auto* const camera = std::get_if<CameraData>(&nodes[i].data);
+            const bool framed = camera != nullptr && frame_of(*camera) != glm::dmat4(1);
+            const bool below = framed && !nodes[i].children.empty();
+            if (below) extra.emplace_back(static_cast<Index>(i), next++);
+            write_node(static_cast<Index>(i), first, framed && !below ? frame_of(*camera) : glm::dmat4(1),
+                       below ? extra.back().second : kNone);
+        }
+        for (const auto& [node, place] : extra) write_extra_camera(node);
+        json_.close();
+        json_.open_array("scenes").open_object().string(nodes[0].name, "name").open_array("nodes");
+        if (has_root) json_.number(0);
+        for (const Index child : nodes[0].children)
+            if (!has_root) json_.number(child - first);
+        json_.close().close().close();
+    }
+
+    void write_node(Index index, int first, const glm::dmat4& frame, int extra_child) {
+        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+        json_.open_object().string(node.name, "name");
+        if (const glm::dmat4 matrix = node.matrix * frame; matrix != glm::dmat4(1))
+            json_.numbers(&matrix[0][0], 16, "matrix");
+        if (!node.children.empty() || extra_child != kNone) {
+            json_.open_array("children");
+            for (const Index child : node.children) json_.number(child - first);
+            if (extra_child != kNone) json_.number(extra_child);
+            json_.close();
+        }
+        if (const auto mesh = mesh_of_node_.find(index); mesh != mesh_of_node_.end())
+            json_.number(mesh->second, "mesh");
+        if (node.type == NodeType::camera && extra_child == kNone) add_camera(index);
+        if (node.type == NodeType::light) add_light(index);
+        json_.close();
+    }
+
+    void write_extra_camera(Index index) {
+        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+        const glm::dmat4 frame = frame_of(std::get<CameraData>(node.data));
+        json_.open_object().string(node.name + " camera", "name").numbers(&frame[0][0], 16, "matrix");
+        add_camera(index);
+        json_.close();
+    }
+
+    void add_camera(Index node) {
+        json_.number(cameras_.size(), "camera");
+        cameras_.push_back(&std::get<CameraData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+    }
+
+    void add_light(Index node) {
+        json_.open_object("extensions").open_object(kLights).number(lights_.size(), "light").close().close();
+        lights_.push_back(&std::get<LightData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+    }
+
+    void write_cameras_and_lights() {
+        if (!cameras_.empty()) json_.open_array("cameras");
+        for (const CameraData* const camera : cameras_) {
+            json_.open_object().string("perspective", "type").open_object("perspective");
+            json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
+            if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
+                losses_.add("a camera's focus is kept as a direction");
+        }
+        if (!cameras_.empty()) json_.close();
+        if (lights_.empty()) return;
+        json_.open_object("extensions").open_object(kLights).open_array("lights");
+        for (const LightData* const light : lights_) write_light(*light);
+        json_.close().close().close();
+    }
+
+    void write_light(const LightData& light) {
+        constexpr std::string_view kTypes[] = {"point", "directional", "spot"};
+        const glm::dvec3 color = linear_color(light.color);
+        json_.open_object().string(kTypes[static_cast<std::size_t>(light.type)], "type");
+        json_.numbers(&color[0], 3, "color");
+        if (light.type == LightData::Type::spot) {
+            const double cone = glm::radians(std::max(light.angle, 0.1));
+            json_.open_object("spot")
+                .number(0.45 * cone, "innerConeAngle")
+                .number(0.5 * cone, "outerConeAngle")
+                .close();
+        }
+        json_.close();
+        if (light.attenuation != glm::dvec3(1, 0, 0) && light.attenuation != glm::dvec3(0))
+            losses_.add("how a light weakens with distance is not kept");
+    }
+
+    void write_meshes() {
+        if (mesh_list_.empty()) return;
+        json_.open_array("meshes");
+        for (const auto& [geometry, material] : mesh_list_) {
+            const Accessors& accessors = accessors_.at(geometry);
+            json_.open_object().open_array("primitives").open_object().open_object("attributes");
+            json_.number(accessors.positions, "POSITION");
+            if (accessors.normals != kNone) json_.number(accessors.normals, "NORMAL");
+            if (accessors.texcoords != kNone) json_.number(accessors.texcoords, "TEXCOORD_0");
+            json_.close().number(accessors.indices, "indices").number(materials_.at(material), "material");
+            json_.close().close().close();
+        }
+        json_.close();
+    }
+
+    void write_materials() {
+        if (material_list_.empty()) return;
+        json_.open_array("materials");
+        for (std::size_t i = 0; i < material_list_.size(); ++i)
+            write_material(scene_.material(material_list_[i]), converted_[i]);
+        json_.close();
+    }
+
+    void write_material(const Material& from, const GltfMaterial& material) {
+        const glm::dvec4 base(material.base, material.alpha);
+        json_.open_object().string(from.name, "name").open_object("pbrMetallicRoughness");
+        json_.numbers(&base[0], 4, "baseColorFactor");
+        json_.number(material.metallic, "metallicFactor").number(material.roughness, "roughnessFactor");
+        write_texture(from, "baseColorTexture");
+        json_.close();
+        if (material.emission != glm::dvec3(0)) json_.numbers(&material.emission[0], 3, "emissiveFactor");
+        if (material.blend) json_.string("BLEND", "alphaMode");
+        if (from.two_sided) json_.boolean(true, "doubleSided");
+        if (material.specular) {
+            json_.open_object("extensions").open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
+            json_.numbers(&(*material.specular)[0], 3, "specularFactor");
+            json_.number(1 - material.roughness, "glossinessFactor");
+            write_texture(from, "diffuseTexture");
+            json_.close().close();
+        }
+        json_.close();
+    }
+
+    void write_texture(const Material& from, std::string_view name) {
+        if (from.texture != kNone)
+            json_.open_object(name).number(pictures_.at(from.texture), "index").close();
+    }
+
+    void write_pictures() {
+        if (pngs_.empty()) return;
+        json_.open_array("textures");
+        for (std::size_t i = 0; i < pngs_.size(); ++i) json_.open_object().number(i, "source").close();
+        json_.close().open_array("images");
+        for (std::size_t i = 0; i < pngs_.size(); ++i)
+            json_.open_object()
+                .number(static_cast<std::size_t>(accessor_count_) + i, "bufferView")
+                .string("image/png", "mimeType")
+                .close();
+        json_.close();
+    }
+
+    /// One accessor for each buffer view, in the order of the bytes; the pictures' views follow.
+    void write_accessors() {
+        JsonWriter views;
+        json_.open_array("accessors");
+        views.open_array();
+        for (const Geometry* const geometry : geometries_) {
+            const std::size_t count = geometry->positions.size();
+            write_accessor(views, kFloat, "VEC3", count, count * 12, kVertices, geometry);
+            if (!geometry->normals.empty())
+                write_accessor(views, kFloat, "VEC3", count, count * 12, kVertices);
+            if (!geometry->texcoords.empty())
+                write_accessor(views, kFloat, "VEC2", count, count * 8, kVertices);
+            const std::size_t corners = geometry->triangles.size() * 3;
+            write_accessor(views, kUnsigned, "SCALAR", corners, corners * 4, kIndices);
+        }
+        json_.close();
+        for (const auto& png : pngs_) write_view(views, png.size()).close();
+        views.close();
+        if (size_ == 0) return;
+        json_.open_array("buffers").open_object().number(size_, "byteLength").close().close();
+        json_.raw(views.text(), "bufferViews");
+    }
+
+    JsonWriter& write_view(JsonWriter& views, std::size_t bytes) {
+        views.open_object().number(0, "buffer").number(size_, "byteOffset").number(bytes, "byteLength");
+        size_ += aligned(bytes);
+        return views;
+    }
+
+    void write_accessor(JsonWriter& views, int component, std::string_view type, std::size_t count,
+                        std::size_t bytes, int target, const Geometry* positions = nullptr) {
+        write_view(views, bytes).number(target, "target").close();
+        json_.open_object().number(next_view_++, "bufferView").number(component, "componentType");
+        json_.number(count, "count").string(type, "type");
+        if (positions != nullptr) {
+            glm::vec3 least(positions->positions[0]), most = least;
+            for (const glm::dvec3& position : positions->positions) {
+                least = glm::min(least, glm::vec3(position));
+                most = glm::max(most, glm::vec3(position));
+            }
+            json_.numbers(&least[0], 3, "min").numbers(&most[0], 3, "max");
+        }
+        json_.close();
+    }
+
+    // --- bytes
+
+    template <class Rows>
+    static void write_rows(const Rows& rows, std::ostream& out) {
+        if (!rows.empty())
+            out.write(reinterpret_cast<const char*>(rows.data()),
+                      static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
+    }
+
+    static void write_geometry(const Geometry& geometry, std::ostream& out) {
+        write_rows(std::vector<glm::vec3>(geometry.positions.begin(), geometry.positions.end()), out);
+        std::vector<glm::vec3> normals;
+        for (const glm::vec3& normal : geometry.normals) {
+            const double length = glm::length(glm::dvec3(normal));
+            normals.emplace_back(length > 0 ? glm::dvec3(normal) / length : glm::dvec3(0));
+        }
+        write_rows(normals, out);
+        std::vector<glm::vec2> texcoords;  // glTF's v goes downwards
+        for (const glm::vec2& texcoord : geometry.texcoords)
+            texcoords.emplace_back(texcoord.x, 1 - texcoord.y);
+        write_rows(texcoords, out);
+        write_rows(geometry.triangles, out);
+    }
+
+    const Scene& scene_;
+    Losses& losses_;
+    std::vector<ShownShape> shapes_;
+    std::map<Mesh, int> meshes_;
+    std::vector<Mesh> mesh_list_;
+    std::map<Index, int> mesh_of_node_, materials_, pictures_;  // places in the file
+    std::vector<Index> material_list_;
+    std::vector<GltfMaterial> converted_;  // for each of them
+    std::vector<const Geometry*> geometries_;
+    std::map<const Geometry*, Accessors> accessors_;
+    std::vector<std::vector<std::uint8_t>> pngs_;
+    std::vector<const CameraData*> cameras_;
+    std::vector<const LightData*> lights_;
+    JsonWriter json_;
+    int accessor_count_ = 0, next_view_ = 0;
+    std::uint64_t size_ = 0;  // of the binary chunk, as far as its views are written
+};
+
+void write_words(std::ostream& out, std::initializer_list<std::uint64_t> words) {
+    for (const std::uint64_t word : words) {
+        const auto value = static_cast<std::uint32_t>(word);
+        out.write(reinterpret_cast<const char*>(&value), 4);
+    }
+}
+
+}  // namespace
+
+void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+               const WriteProgress& progress) {
+    GlbWriter writer(scene, losses);
+    tell_lost_nodes(scene, losses);
+    const std::string json = writer.describe();
+    const std::uint64_t binary = writer.size(), all = 12 + 8 + json.size() + (binary > 0 ? 8 + binary : 0);
+    if (all > UINT32_MAX) throw WriteFault(path.string() + ": a GLB file holds at most 4 GiB");
+    constexpr std::uint32_t kGltf = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+    files.write(path, [&](std::ostream& out) {
+        write_words(out, {kGltf, 2, all, json.size(), kJson});
+        out << json;
+        if (binary == 0) return;
+        write_words(out, {binary, kBinary});
+        writer.write_binary(out, progress);
+    });
+}
+
+}  // namespace vrut

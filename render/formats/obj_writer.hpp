@@ -1,0 +1,16 @@
+#pragma once
+
+#include "losses.hpp"
+#include "output_files.hpp"
+#include "write_scene.hpp"
+
+namespace vrut {
+
+/// Wavefront OBJ with an MTL file of the same stem: each geometry node that shows at the start as an object
+/// in world space, named after it, with positions and texture coordinates to 9 digits; materials with Ka Kd
+/// Ks Ke Ns d and map_Kd. Names are one word and differ: what is not a letter or a digit becomes '_', and a
+/// second one gets its node's or material's id. Throws WriteFault.
+void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+               const WriteProgress& progress);
+
+}  // namespace vrut

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <iosfwd>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace vrut {
+
+/// Why a file cannot be written, in one sentence that names it; caught by write_scene().
+struct WriteFault : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+/// Files that come into being together: each is written beside its place under another name, and commit()
+/// puts all of them there. Without it nothing that was there before is touched.
+class OutputFiles {
+public:
+    OutputFiles() = default;
+    ~OutputFiles();
+    OutputFiles(const OutputFiles&) = delete;
+    OutputFiles& operator=(const OutputFiles&) = delete;
+
+    /// Makes the folder, where it is missing, in a folder that is there. Throws WriteFault.
+    void write(const std::filesystem::path& target, const std::function<void(std::ostream&)>& content);
+    /// Puts the files in their places in the order in which they were written. Throws WriteFault.
+    void commit();
+
+private:
+    struct Staged {
+        std::filesystem::path temporary, target;
+    };
+    std::vector<Staged> staged_;
+    std::vector<std::filesystem::path> made_folders_;
+};
+
+}  // namespace vrut
