@@ -50,13 +50,15 @@ std::pair<double, double> range_of_k(double shininess) {
 
 void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& material, Losses& losses) {
     const glm::dvec3 wanted(from.specular);
-    if (largest(wanted) == 0) return;  // roughness 1 has none
     const auto [least_k, most_k] = range_of_k(from.shininess);
-    if (from.shininess < 1) losses.add("a highlight is as narrow as with shininess 1");
+    if (from.shininess < 1 && largest(wanted) > 0) losses.add("a highlight is as narrow as with shininess 1");
     const Highlight best = fit(wanted, c, least_k, most_k);
-    material.roughness = 1 - best.k;
-    material.metallic = best.k > 0 ? best.q / best.k : 0;
-    if (largest(best.color - wanted) <= kVisible) return;
+    if (largest(best.color - wanted) <= kVisible) {
+        material.roughness = 1 - best.k;
+        material.metallic = best.k > 0 ? best.q / best.k : 0;
+        return;
+    }
+    if (largest(wanted) == 0) return;  // roughness 1 has none
     material.roughness = 1 - most_k;
     material.specular = linear_color(wanted / most_k);
     if (largest(wanted) > most_k + kVisible)

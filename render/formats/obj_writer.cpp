@@ -29,7 +29,7 @@ class ObjWriter {
 public:
     explicit ObjWriter(std::ostream& out) : out_(out) {}
 
-    void begin(const std::string& library) { text("mtllib ").text(library).text("\n"); }
+    void begin(const std::string& library) { text("mtllib ").text(library).text("\n").flush(); }
 
     void write_shape(const ShownShape& shape, const std::string& name, const std::string& material) {
         const Geometry& geometry = *shape.geometry;
@@ -75,7 +75,8 @@ private:
         for (int i = 0; i < N; ++i) {
             char digits[32];
             char* const end =
-                std::to_chars(digits, digits + sizeof digits, value[i], std::chars_format::general, 9).ptr;
+                std::to_chars(digits, digits + sizeof digits, value[i] + 0.0, std::chars_format::general, 9)
+                    .ptr;
             text(" ").text({digits, static_cast<std::size_t>(end - digits)});
         }
         text("\n");

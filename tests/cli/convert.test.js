@@ -1,0 +1,115 @@
+// Conversions: what is written draws the same picture, but for what is told.
+'use strict';
+const assert = require('node:assert/strict');
+const { spawnSync } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const { after, test } = require('node:test');
+
+const PROGRAM = process.env.VRUT_PREVIEW;
+const CAR = process.env.VRUT_CAR;
+const TEACHING = path.join(process.env.VRUT_SCENES, 'teaching');
+const MODELS = process.env.VRUT_TEST_MODELS;
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-preview-'));
+after(() => fs.rmSync(folder, { recursive: true }));
+
+const file = (name) => path.join(folder, name);
+const run = (...options) => spawnSync(PROGRAM, options, { encoding: 'utf8' });
+
+function succeeds(...options) {
+  const result = run(...options);
+  assert.equal(result.status, 0, result.stderr);
+  return result;
+}
+
+function fails(status, culprit, ...options) {
+  const result = run(...options);
+  assert.equal(result.status, status, `${options}: ${result.stderr}`);
+  assert.equal(result.stderr.trim().split('\n').length, 1, result.stderr);
+  assert.match(result.stderr, culprit);
+  assert.equal(result.stdout, '');
+}
+
+// What the conversion tells, of the written file.
+function convert(scene, out) {
+  const { stderr, stdout } = succeeds('convert', scene, out);
+  assert.equal(stdout, '');
+  return stderr.split('\n').filter((line) => line.startsWith(out));
+}
+
+// Backgrounds are lost, as is told: none is drawn.
+function draw(scene, name) {
+  succeeds('render', scene, '-o', file(name), '--size', '320x240', '--samples', '1', '--background', 'none');
+  return file(name);
+}
+
+function compare(before, after) {
+  return JSON.parse(succeeds('compare', before, after, '--json').stdout);
+}
+
+const GLTF_LOOKS = /a tenth of its diffuse|highlight|reflects|picture becomes white/;
+
+// The picture of the scene's GLB file. With no more told than what no picture shows, it is the same but for
+// rounding: positions as floats and colours through two transfer curves move a byte by 1, and a pixel at an
+// edge to its other side. Where materials change as is told, they stay alike: an ambient colour that becomes
+// a tenth of the diffuse one moves a surface by less than 26 of 255, which is 20 dB where it covers everything.
+function checkGlb(scene, before, lost) {
+  const difference = compare(before, draw(file('x.glb'), 'glb.png'));
+  const bound = lost.some((line) => GLTF_LOOKS.test(line)) ? 20 : 45;
+  assert.ok(difference.psnr === null || difference.psnr > bound, `${scene}: ${difference.psnr} dB`);
+}
+
+function checkConversions(scene) {
+  const before = draw(scene, 'before.png');
+  assert.deepEqual(convert(scene, file('x.vrut')), []);
+  assert.equal(compare(before, draw(file('x.vrut'), 'vrut.png')).maximum, 0, scene);
+  checkGlb(scene, before, convert(scene, file('x.glb')));
+  for (const name of ['x.obj', 'x.stl']) {
+    convert(scene, file(name));
+    assert.ok(fs.statSync(file(name)).size > 84, scene);
+  }
+}
+
+test('scenes convert, and draw the same picture', () => {
+  for (const name of ['hierarchy', 'materials', 'matrices', 'texture', 'texture-holes', 'camera', 'light-spot', 'two-sided', 'glass', 'switch'])
+    checkConversions(path.join(TEACHING, `${name}.vrut`));
+  checkConversions(CAR);
+});
+
+test('models convert, and draw the same picture', { skip: MODELS ? false : 'VRUT_TEST_MODELS names no folder' }, () => {
+  // Those in glTF lose nothing in a GLB file: they are drawn the same, to the last pixel but rounding.
+  const models = ['bmw_m6/bmw_m6.glb', 'osb/few_cubes.osb'];
+  for (const name of fs.readdirSync(path.join(MODELS, 'racing')))
+    if (name.endsWith('.glb')) models.push(path.join('racing', name));
+  for (const model of models) checkConversions(path.join(MODELS, model));
+});
+
+test('what is lost is told, a line each', () => {
+  const lost = convert(path.join(TEACHING, 'cube-map.vrut'), file('x.glb'));
+  assert.ok(lost.includes(`${file('x.glb')}: a background is not kept`), lost.join('\n'));
+});
+
+test('wrong usage ends with status 2, and what cannot be done with 1', () => {
+  const scene = path.join(TEACHING, 'triangle.vrut');
+  fails(2, /in is required/, 'convert');
+  fails(2, /out is required/, 'convert', scene);
+  fails(2, /x\.fbx: .*\.vrut, \.obj, \.stl, \.glb/, 'convert', scene, file('x.fbx'));
+  fs.copyFileSync(scene, file('same.vrut'));
+  fails(2, /own file/, 'convert', file('same.vrut'), path.join(folder, '.', 'same.vrut'));
+  assert.deepEqual(fs.readFileSync(file('same.vrut')), fs.readFileSync(scene));
+  fails(1, /none\.vrut: there is no such file/, 'convert', file('none.vrut'), file('x.glb'));
+  fails(1, /y\.glb: it cannot be written/, 'convert', scene, file('a/b/y.glb'));
+  fs.writeFileSync(file('car.csb'), 'anything');
+  fails(1, /CSB format has no public specification/, 'convert', file('car.csb'), file('x.glb'));
+});
+
+test('a file that does not fit leaves the old one', () => {
+  fs.writeFileSync(file('old.obj'), 'old');
+  // In blocks of 1 KiB; the signal would end the program before it could tell.
+  const limited = spawnSync('bash', ['-c', 'trap "" XFSZ; ulimit -f 8; exec "$@"', 'bash', PROGRAM, 'convert', CAR, file('old.obj')], { encoding: 'utf8' });
+  assert.equal(limited.status, 1, limited.stderr);
+  assert.match(limited.stderr, /it cannot be written: File too large\n$/);
+  assert.equal(fs.readFileSync(file('old.obj'), 'utf8'), 'old');
+  assert.deepEqual(fs.readdirSync(folder).filter((name) => name.endsWith('.part') || name === 'old.textures' || name === 'old.mtl'), []);
+});
