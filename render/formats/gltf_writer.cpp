@@ -1,10 +1,10 @@
 #include "gltf_writer.hpp"
 
-#include <array>
-#include <bit>
+#include <cmath>
 #include <map>
 #include <ostream>
 
+#include "gltf_buffer.hpp"
 #include "gltf_material.hpp"
 #include "json_writer.hpp"
 #include "picture_writer.hpp"
@@ -14,14 +14,8 @@ namespace vrut {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
-
-constexpr int kFloat = 5126, kUnsigned = 5125;      // of an accessor's components
-constexpr int kVertices = 34962, kIndices = 34963;  // what a buffer view is for
 constexpr std::string_view kLights = "KHR_lights_punctual";
 constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
-
-std::uint64_t aligned(std::uint64_t size) { return (size + 3) / 4 * 4; }
 
 /// The frame in which a camera looks along -z, with y upwards.
 glm::dmat4 frame_of(const CameraData& camera) {
@@ -32,10 +26,10 @@ glm::dmat4 frame_of(const CameraData& camera) {
     return frame;
 }
 
-/// Accessors of a geometry that is written; kNone for arrays that it lacks.
-struct Accessors {
-    int positions = kNone, normals = kNone, texcoords = kNone, indices = kNone;
-};
+/// Whether the matrix turns, scales and moves, as glTF asks for, and neither shears nor flattens.
+bool keeps_right_angles(const glm::dmat4& matrix) {
+    return std::abs(std::abs(relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
+}
 
 class GlbWriter {
 public:
@@ -49,11 +43,11 @@ public:
         for (auto& [texture, own] : pictures_) {
             own = place++;
             const Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
-            pngs_.push_back(encode_png(from.image, from.transparent));
+            buffer_.add_picture(encode_png(from.image, from.transparent));
         }
     }
 
-    /// The JSON chunk; then size() is known.
+    /// The JSON chunk; after it size(), that of the binary one, is known.
     std::string describe() {
         json_.open_object();
         write_head();
@@ -62,25 +56,17 @@ public:
         write_meshes();
         write_materials();
         write_pictures();
-        write_accessors();
+        size_ = buffer_.describe(json_);
         json_.close();
         std::string text = json_.text();
-        text.resize(aligned(text.size()), ' ');
+        text.resize((text.size() + 3) / 4 * 4, ' ');
         return text;
     }
 
     std::uint64_t size() const { return size_; }
 
     void write_binary(std::ostream& out, const WriteProgress& progress) const {
-        std::size_t done = 0;
-        for (const Geometry* const geometry : geometries_) {
-            write_geometry(*geometry, out);
-            if (progress) progress(static_cast<double>(++done) / static_cast<double>(geometries_.size()));
-        }
-        for (const auto& png : pngs_) {
-            out.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
-            out.write("\0\0\0", static_cast<std::streamsize>(aligned(png.size()) - png.size()));
-        }
+        buffer_.write(out, progress);
     }
 
 private:
@@ -97,16 +83,10 @@ private:
             found->second = static_cast<int>(material_list_.size());
             material_list_.push_back(shape.material);
         }
-        if (accessors_.emplace(shape.geometry, Accessors{}).second) add_geometry(*shape.geometry);
+        if (buffer_.add(*shape.geometry)) tell_rounding(*shape.geometry);
     }
 
-    void add_geometry(const Geometry& geometry) {
-        geometries_.push_back(&geometry);
-        Accessors& accessors = accessors_.at(&geometry);
-        accessors.positions = accessor_count_++;
-        if (!geometry.normals.empty()) accessors.normals = accessor_count_++;
-        if (!geometry.texcoords.empty()) accessors.texcoords = accessor_count_++;
-        accessors.indices = accessor_count_++;
+    void tell_rounding(const Geometry& geometry) {
         for (const glm::dvec3& position : geometry.positions)
             if (glm::dvec3(glm::vec3(position)) != position)
                 return losses_.add("a geometry's positions are rounded to single precision");
@@ -161,6 +141,10 @@ private:
         json_.open_object().string(node.name, "name");
         if (const glm::dmat4 matrix = node.matrix * frame; matrix != glm::dmat4(1))
             json_.numbers(&matrix[0][0], 16, "matrix");
+        if (!keeps_right_angles(node.matrix))
+            losses_.add(
+                "a matrix that shears or flattens is kept, though glTF knows none: other programs may refuse "
+                "it");
         if (!node.children.empty() || extra_child != kNone) {
             json_.open_array("children");
             for (const Index child : node.children) json_.number(child - first);
@@ -228,7 +212,7 @@ private:
         if (mesh_list_.empty()) return;
         json_.open_array("meshes");
         for (const auto& [geometry, material] : mesh_list_) {
-            const Accessors& accessors = accessors_.at(geometry);
+            const GltfBuffer::Accessors& accessors = buffer_.accessors_of(*geometry);
             json_.open_object().open_array("primitives").open_object().open_object("attributes");
             json_.number(accessors.positions, "POSITION");
             if (accessors.normals != kNone) json_.number(accessors.normals, "NORMAL");
@@ -273,85 +257,17 @@ private:
     }
 
     void write_pictures() {
-        if (pngs_.empty()) return;
+        if (buffer_.picture_count() == 0) return;
         json_.open_array("textures");
-        for (std::size_t i = 0; i < pngs_.size(); ++i) json_.open_object().number(i, "source").close();
+        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
+            json_.open_object().number(i, "source").close();
         json_.close().open_array("images");
-        for (std::size_t i = 0; i < pngs_.size(); ++i)
+        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
             json_.open_object()
-                .number(static_cast<std::size_t>(accessor_count_) + i, "bufferView")
+                .number(buffer_.view_of_picture(i), "bufferView")
                 .string("image/png", "mimeType")
                 .close();
         json_.close();
-    }
-
-    /// One accessor for each buffer view, in the order of the bytes; the pictures' views follow.
-    void write_accessors() {
-        JsonWriter views;
-        json_.open_array("accessors");
-        views.open_array();
-        for (const Geometry* const geometry : geometries_) {
-            const std::size_t count = geometry->positions.size();
-            write_accessor(views, kFloat, "VEC3", count, count * 12, kVertices, geometry);
-            if (!geometry->normals.empty())
-                write_accessor(views, kFloat, "VEC3", count, count * 12, kVertices);
-            if (!geometry->texcoords.empty())
-                write_accessor(views, kFloat, "VEC2", count, count * 8, kVertices);
-            const std::size_t corners = geometry->triangles.size() * 3;
-            write_accessor(views, kUnsigned, "SCALAR", corners, corners * 4, kIndices);
-        }
-        json_.close();
-        for (const auto& png : pngs_) write_view(views, png.size()).close();
-        views.close();
-        if (size_ == 0) return;
-        json_.open_array("buffers").open_object().number(size_, "byteLength").close().close();
-        json_.raw(views.text(), "bufferViews");
-    }
-
-    JsonWriter& write_view(JsonWriter& views, std::size_t bytes) {
-        views.open_object().number(0, "buffer").number(size_, "byteOffset").number(bytes, "byteLength");
-        size_ += aligned(bytes);
-        return views;
-    }
-
-    void write_accessor(JsonWriter& views, int component, std::string_view type, std::size_t count,
-                        std::size_t bytes, int target, const Geometry* positions = nullptr) {
-        write_view(views, bytes).number(target, "target").close();
-        json_.open_object().number(next_view_++, "bufferView").number(component, "componentType");
-        json_.number(count, "count").string(type, "type");
-        if (positions != nullptr) {
-            glm::vec3 least(positions->positions[0]), most = least;
-            for (const glm::dvec3& position : positions->positions) {
-                least = glm::min(least, glm::vec3(position));
-                most = glm::max(most, glm::vec3(position));
-            }
-            json_.numbers(&least[0], 3, "min").numbers(&most[0], 3, "max");
-        }
-        json_.close();
-    }
-
-    // --- bytes
-
-    template <class Rows>
-    static void write_rows(const Rows& rows, std::ostream& out) {
-        if (!rows.empty())
-            out.write(reinterpret_cast<const char*>(rows.data()),
-                      static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
-    }
-
-    static void write_geometry(const Geometry& geometry, std::ostream& out) {
-        write_rows(std::vector<glm::vec3>(geometry.positions.begin(), geometry.positions.end()), out);
-        std::vector<glm::vec3> normals;
-        for (const glm::vec3& normal : geometry.normals) {
-            const double length = glm::length(glm::dvec3(normal));
-            normals.emplace_back(length > 0 ? glm::dvec3(normal) / length : glm::dvec3(0));
-        }
-        write_rows(normals, out);
-        std::vector<glm::vec2> texcoords;  // glTF's v goes downwards
-        for (const glm::vec2& texcoord : geometry.texcoords)
-            texcoords.emplace_back(texcoord.x, 1 - texcoord.y);
-        write_rows(texcoords, out);
-        write_rows(geometry.triangles, out);
     }
 
     const Scene& scene_;
@@ -362,14 +278,11 @@ private:
     std::map<Index, int> mesh_of_node_, materials_, pictures_;  // places in the file
     std::vector<Index> material_list_;
     std::vector<GltfMaterial> converted_;  // for each of them
-    std::vector<const Geometry*> geometries_;
-    std::map<const Geometry*, Accessors> accessors_;
-    std::vector<std::vector<std::uint8_t>> pngs_;
+    GltfBuffer buffer_;
     std::vector<const CameraData*> cameras_;
     std::vector<const LightData*> lights_;
     JsonWriter json_;
-    int accessor_count_ = 0, next_view_ = 0;
-    std::uint64_t size_ = 0;  // of the binary chunk, as far as its views are written
+    std::uint64_t size_ = 0;  // of the binary chunk
 };
 
 void write_words(std::ostream& out, std::initializer_list<std::uint64_t> words) {

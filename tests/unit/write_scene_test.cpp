@@ -382,6 +382,21 @@ TEST_CASE("a scene survives a file of its own format, pictures from inside anoth
           scene.textures()[0].image.rgba);
 }
 
+TEST_CASE("a matrix that shears or flattens is kept in a GLB file, and told") {
+    const TemporaryFolder folder;
+    SceneParts parts;
+    Node node;
+    node.id = 1;
+    node.name = "Slanted";
+    SUBCASE("shears") { node.matrix[1][0] = 0.5; }
+    SUBCASE("flattens") { node.matrix[1][1] = 0; }
+    parts.nodes.push_back({node, 0});
+    const Scene scene = *Scene::build(std::move(parts));
+    CHECK(written(scene, folder.path() / "x.glb") ==
+          std::vector<std::string>{"a matrix that shears or flattens is kept, though glTF knows none: other "
+                                   "programs may refuse it"});
+}
+
 TEST_CASE("an empty scene can be written in every format") {
     const TemporaryFolder folder;
     for (const char* name : {"x.vrut", "x.obj", "x.stl", "x.GLB"}) {
