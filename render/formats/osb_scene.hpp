@@ -20,8 +20,7 @@ namespace vrut {
 /// two-sided unless a PolygonChunk culls back faces, and the picture of its SimpleTexturedMaterial or its
 /// TextureChunk as the image: one without compression inside the file, or a file in its folder or below.
 ///
-/// Errors say "FILE: at byte N: expected …, found …". Takes at most 200 times the file's memory, and for real
-/// files about 30 times.
+/// Errors say "FILE: at byte N: expected …, found …". Takes at most 200 times the file's memory.
 PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 /// The same from memory, without the pictures that lie outside; `file` names it in errors and notices.
