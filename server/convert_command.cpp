@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "commands.hpp"
+#include "import_process.hpp"
 #include "progress.hpp"
-#include "read_scene.hpp"
 #include "write_scene.hpp"
 
 namespace vrut {
@@ -24,7 +24,7 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
     std::optional<Progress> bar;
     if (isatty(STDERR_FILENO) == 1) bar.emplace();
     const auto scene =
-        read_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
+        import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
     auto lost = write_scene(*scene, arguments.out,
                             shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()));

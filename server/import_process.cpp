@@ -12,6 +12,7 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -84,7 +85,10 @@ public:
         // Large pages: memory that is used once is half of what a process of its own costs.
         std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
         std::vector<char*> environment{tunables.data()};
-        for (char** variable = environ; *variable != nullptr; ++variable) environment.push_back(*variable);
+        for (char** variable = environ; *variable != nullptr; ++variable)
+            if (!std::string_view(*variable).starts_with(
+                    "VRUT_PREVIEW_"))  // tokens are not for a foreign file
+                environment.push_back(*variable);
         environment.push_back(nullptr);
         pid_t process = 0;
         check_error(

@@ -19,10 +19,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "assimp_scene.hpp"
 #include "detail_levels.hpp"
 #include "difference.hpp"
 #include "images.hpp"
+#include "read_scene.hpp"
 #include "renderer.hpp"
 
 using namespace vrut;
@@ -69,7 +69,7 @@ Material peers_material(Material material) {
 }
 
 std::shared_ptr<const PlacedScene> load(const std::string& file) {
-    auto parts = read_assimp_scene(file);
+    auto parts = read_scene_parts(file);
     if (!parts) throw std::runtime_error(parts.error());
     for (Material& material : parts->materials) material = peers_material(material);
     auto scene = build_scene(*std::move(parts), file);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "../unit/environment_variable.hpp"
 #include "../unit/temporary_folder.hpp"
 #include "import_process.hpp"
 #include "test_client.hpp"
@@ -37,8 +38,9 @@ fs::path write_heap(const TemporaryFolder& folder, std::size_t triangles) {
                                          size + "}]}");
 }
 
-std::string command_line(const std::string& process) {
-    std::ifstream stream("/proc/" + process + "/cmdline", std::ios::binary);
+/// A file of the system's about a process.
+std::string told_of(const std::string& process, const std::string& file) {
+    std::ifstream stream("/proc/" + process + "/" + file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -54,7 +56,7 @@ pid_t child(bool reads = true) {
         std::string state;
         pid_t parent = 0;
         fields >> state >> parent;
-        if (parent == getpid() && (!reads || command_line(name).find("import") != std::string::npos))
+        if (parent == getpid() && (!reads || told_of(name, "cmdline").find("import") != std::string::npos))
             return std::stoi(name);
     }
     return 0;
@@ -143,12 +145,16 @@ TEST_CASE("a foreign scene is put under two who look, and a broken one after it 
 }
 
 TEST_CASE("a file whose reader crashes is refused, and the old scene goes on") {
+    const EnvironmentVariable token("VRUT_PREVIEW_CONTROL_TOKEN", "secret");
     const TemporaryFolder folder;
     write_heap(folder, kTriangles);
     Room room(folder.path(), kAmple);
     room.open("heap.gltf");
     pid_t reader = 0;
     REQUIRE(eventually([&] { return (reader = child()) != 0; }));
+    const std::string environment = told_of(std::to_string(reader), "environ");
+    CHECK(environment.find("GLIBC_TUNABLES") != std::string::npos);
+    CHECK(environment.find("VRUT_PREVIEW_CONTROL_TOKEN") == std::string::npos);
     kill(reader, SIGABRT);
     room.expect_refusal("its reader ended with signal 6 (Aborted)");
 }

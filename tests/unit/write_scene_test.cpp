@@ -347,6 +347,21 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
           "that a material is drawn from both sides is not kept", "a background is not kept",
           "an assembly is not kept: its matrix goes into the vertices"})
         CHECK_MESSAGE(std::find(lost.begin(), lost.end(), told) != lost.end(), told);
+
+    const Scene read = read_well(folder.path() / "all.obj");
+    CHECK(read.triangle_count() == 6);
+    for (const std::string& name : objects)
+        CHECK_MESSAGE(std::any_of(read.nodes().begin(), read.nodes().end(),
+                                  [&](const Node& node) { return node.name == name; }),
+                      name);
+    const auto pane = std::find_if(read.materials().begin(), read.materials().end(),
+                                   [](const Material& material) { return material.name == "Glass"; });
+    REQUIRE(pane != read.materials().end());
+    CHECK(glm::distance(pane->diffuse, glm::dvec4(0.1, 0.2, 0.3, 0.25)) < 1e-6);
+    CHECK(glm::distance(glm::dvec3(pane->specular), glm::dvec3(0.5, 0.6, 0.7)) < 1e-6);
+    CHECK(pane->shininess == 100);
+    REQUIRE(read.textures().size() == 1);
+    CHECK(read.textures()[0].image.rgba == scene.textures()[0].image.rgba);
 }
 
 TEST_CASE("an STL file holds the shown triangles in world space, their fronts outside") {
@@ -365,6 +380,7 @@ TEST_CASE("an STL file holds the shown triangles in world space, their fronts ou
     }
     CHECK(found);
     CHECK(std::find(lost.begin(), lost.end(), "names and materials are not kept") != lost.end());
+    CHECK(read_well(folder.path() / "all.stl").triangle_count() == 6);
 }
 
 TEST_CASE("a scene survives a file of its own format, pictures from inside another file too") {
