@@ -45,7 +45,9 @@ public:
         flush();
     }
 
-    void write_material(const Material& material, const std::string& name, const std::string& picture) {
+    /// `picture` is empty for none; with holes, it is that of the opacity as well.
+    void write_material(const Material& material, const std::string& name, const std::string& picture,
+                        bool holes) {
         text("newmtl ").text(name).text("\nillum 2\n");
         vector("Ka", glm::dvec3(material.ambient));
         vector("Kd", glm::dvec3(material.diffuse));
@@ -54,6 +56,7 @@ public:
         vector("Ns", glm::dvec1(material.shininess));
         vector("d", glm::dvec1(material.diffuse.a));
         if (!picture.empty()) text("map_Kd ").text(picture).text("\n");
+        if (holes) text("map_d ").text(picture).text("\n");
         flush();
     }
 
@@ -153,9 +156,10 @@ void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFile
             if (materials[i].empty()) continue;
             const Material& material =
                 scene.material(i + 1 < materials.size() ? static_cast<Index>(i) : kNone);
-            ObjWriter(out).write_material(
-                material, materials[i],
-                material.texture == kNone ? "" : pictures[static_cast<std::size_t>(material.texture)]);
+            const auto texture = static_cast<std::size_t>(material.texture);
+            const bool pictured = material.texture != kNone;
+            ObjWriter(out).write_material(material, materials[i], pictured ? pictures[texture] : "",
+                                          pictured && scene.textures()[texture].transparent);
         }
     });
     files.write(path, [&](std::ostream& out) {
