@@ -10,11 +10,11 @@ usage() {
     cat <<TEXT
 Usage: tests/run.sh [--all]
 
-Checks the source's format, runs every test of the release build but the long ones, runs clang-tidy, and runs
-the unit, net and replay tests under the address and undefined behaviour sanitizers.
+Checks the source's format, runs every test of the release build but the long ones, runs clang-tidy without its
+analyzer, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
 Debian packages and node modules that are missing are installed first.
 
-  --all     also the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --all     also clang-tidy's analyzer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
   --help    this text
 TEXT
 }
@@ -96,23 +96,23 @@ tests() { # PRESET CTEST-ARGUMENTS...
 }
 
 # Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.
-tidy() {
-    local object file stamp
+tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
+    local object file stamp stamps=build/release/$1
     local -A queued=()  # what several programs compile is looked at once
-    mkdir -p build/release/tidy
+    mkdir -p "$stamps"
     # shellcheck disable=SC2016
     sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
         -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
         while IFS=$'\t' read -r object file; do
             case ${file#"$ROOT"/} in protocol/* | render/* | scenes/* | server/* | tests/*) ;; *) continue ;; esac
             stamp=${file#"$ROOT"/}
-            stamp=build/release/tidy/${stamp//\//+}
+            stamp=$stamps/${stamp//\//+}
             [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
             [ -n "${queued[$file]:-}" ] && continue
             queued[$file]=yes
             printf '%s\0%s\0' "$file" "$stamp"
-        done | xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
-            clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" "$0" 2>&1 |
+        done | arguments=${*:2} xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
+            clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" $arguments "$0" 2>&1 |
                 sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
 }
 
@@ -128,10 +128,11 @@ step "node modules" "npm's message is above: see that there is a network, and st
 step "format" "Run clang-format-14 -i on the files named above." format
 step "build release" "$compile_remedy" build release
 step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
-step "clang-tidy" "Mend what it names above." tidy
+step "clang-tidy" "Mend what it names above." tidy tidy '--checks=-clang-analyzer-*'
 step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
 if $all; then
+    step "clang-tidy with its analyzer" "Mend what it names above." tidy analyzer
     step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
     step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'
