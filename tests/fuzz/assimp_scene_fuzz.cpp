@@ -6,6 +6,9 @@
 
 #include "assimp_scene.hpp"
 
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wreserved-identifier"  // the name is the sanitizer's
+#endif
 /// assimp 5.2 does not free what it had decoded of a base64 with a letter that is none.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
