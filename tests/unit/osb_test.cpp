@@ -345,10 +345,10 @@ TEST_CASE("OSB: a malformed file is told in one sentence with its byte") {
          "expected choice of 4 bytes, found 2 that are left"},
         {"too many fields", many_fields.bytes(), "expected at most 256 fields, found one more"},
     };
-    for (const auto& [what, bytes, error] : cases) {
-        CAPTURE(what);
-        const std::string found = error_of(bytes);
-        CHECK_MESSAGE(found.find(error) != std::string::npos, found);
+    for (const auto& row : cases) {
+        CAPTURE(row.what);
+        const std::string found = error_of(row.bytes);
+        CHECK_MESSAGE(found.find(row.error) != std::string::npos, found);
         CHECK(found.starts_with("x.osb: at byte "));
         CHECK(found.find('\n') == std::string::npos);
     }

@@ -196,10 +196,10 @@ TEST_CASE("parts that no reader would hand over are refused") {
         {"UTF-8", [](SceneParts& p) { p.notices[0] = "\xC3"; }},
     };
     const SceneParts whole = full_parts();
-    for (const auto& [expected, spoil] : kFaults) {
+    for (const auto& fault : kFaults) {
         SceneParts parts = whole;
-        spoil(parts);
+        fault.spoil(parts);
         const std::string why = refusal(bytes_of(std::move(parts)));
-        CHECK_MESSAGE(why.find(expected) != std::string::npos, expected << ": " << why);
+        CHECK_MESSAGE(why.find(fault.expected) != std::string::npos, fault.expected << ": " << why);
     }
 }
