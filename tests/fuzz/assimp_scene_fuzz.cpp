@@ -4,13 +4,8 @@
 #include <fstream>
 #include <string_view>
 
+#include "../assimp_leaks.hpp"
 #include "assimp_scene.hpp"
-
-#ifdef __clang__
-#pragma clang diagnostic ignored "-Wreserved-identifier"  // the name is the sanitizer's
-#endif
-/// assimp 5.2 does not free what it had decoded of a base64 with a letter that is none.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);

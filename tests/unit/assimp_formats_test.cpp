@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "../assimp_leaks.hpp"
 #include "picture_bytes.hpp"
 #include "scene_queries.hpp"
 
