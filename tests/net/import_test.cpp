@@ -44,7 +44,8 @@ std::string told_of(const std::string& process, const std::string& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Processes that this one has started; 0: none. Where `reads`, only one that has begun to.
+/// Processes that this one has started; 0: none. Where `reads`, only one that has become the reader:
+/// before that it is a copy of this program, and one stopped then holds posix_spawn() for ever.
 pid_t child(bool reads = true) {
     for (const auto& entry : fs::directory_iterator("/proc")) {
         const std::string name = entry.path().filename().string();
@@ -56,7 +57,7 @@ pid_t child(bool reads = true) {
         std::string state;
         pid_t parent = 0;
         fields >> state >> parent;
-        if (parent == getpid() && (!reads || told_of(name, "cmdline").find("import") != std::string::npos))
+        if (parent == getpid() && (!reads || told_of(name, "cmdline").starts_with("vrut-preview")))
             return std::stoi(name);
     }
     return 0;
