@@ -41,7 +41,7 @@ public:
         for (TransparentGroup& group : layers.transparent)
             for (DrawItem& item : group.items) {
                 if (item.behind_twin) item.order = nullptr;  // nothing of it is seen
-                choose(item, whole);
+                if (!item.order || group.exact) choose(item, whole);
             }
     }
 
@@ -74,13 +74,15 @@ private:
     }
 
     void choose(DrawItem& item, const Whole& whole) const {
+        if (!has_levels(item)) return;
         const auto [first, last] = whole.equal_range(item.geometry);
-        if (std::any_of(first, last, [&](const auto& twin) { return twin.second == item.view_from_node; }))
-            return;
+        const bool every = !(view_.detail > 0) || std::any_of(first, last, [&](const auto& twin) {
+            return twin.second == item.view_from_node;
+        });
         const Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const double most = view_.detail / most_pixels(item.view_from_node, box, view_);
         for (const DetailLevel& level : levels_[static_cast<std::size_t>(item.geometry)])
-            if (level.error <= most) item.level = &level;
+            if (level.number == 0 || (!every && level.error <= most)) item.level = &level;
     }
 
     const View& view_;
@@ -127,7 +129,7 @@ double most_pixels(const glm::dmat4& view_from_node, const Bounds& box, const Vi
 }
 
 void choose_levels(FramePlan& plan, const View& view) {
-    if (!(view.detail > 0) || !view.levels || view.mode != DrawMode::realistic || view.wireframe) return;
+    if (!view.levels || view.mode != DrawMode::realistic || view.wireframe) return;
     if (view.levels->scene() != view.scene->scene) return;
     const Choice choice(view);
     choice.choose_in(plan.scene);

@@ -9,8 +9,9 @@ namespace vrut {
 double most_pixels(const glm::dmat4& view_from_node, const Bounds& box, const View& view);
 
 /// Gives faces the coarsest levels of detail whose surfaces are, in pixels, no further from the scene's than
-/// the view allows. What is selected, what is textured and glass whose triangles have an order keep every
-/// triangle. Parts with one geometry and one matrix get one level, so that their depths are equal.
+/// the view allows; those that keep every triangle the level 0, if there is one: all in a view whose detail
+/// is 0, and what is textured. What is selected and glass whose triangles have an order take none. Parts with
+/// one geometry and one matrix get one level, so that their depths are equal.
 void choose_levels(FramePlan& plan, const View& view);
 
 /// Two-sided opaque parts that are closed are seen from outside only: their backs need not be drawn. The

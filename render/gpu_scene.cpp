@@ -193,6 +193,8 @@ const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
         level =
             upload(geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
         ++uploads_;
+        // The same in another order: what still needs the file's uploads it again.
+        if (item.level->number == 0) geometries_[static_cast<std::size_t>(item.geometry)] = {};
     }
     return level;
 }

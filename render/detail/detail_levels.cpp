@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cache_order.hpp"
 #include "closed.hpp"
 
 namespace vrut {
@@ -13,6 +14,12 @@ namespace {
 
 /// On Linux a thread has a niceness of its own.
 void give_way() { static_cast<void>(setpriority(PRIO_PROCESS, 0, 10)); }
+
+std::vector<DetailLevel> levels_of(const Geometry& geometry, const std::atomic<bool>& stop) {
+    std::vector<DetailLevel> levels = simplify(geometry, stop);
+    if (auto ordered = cache_ordered(geometry)) levels.insert(levels.begin(), *std::move(ordered));
+    return levels;
+}
 
 }  // namespace
 
@@ -55,7 +62,7 @@ void DetailLevels::make_all() {
     find_closed(order);
     for (const std::size_t at : order) {
         if (stop_) break;
-        chains_[at].levels = simplify(geometries[at], stop_);
+        chains_[at].levels = levels_of(geometries[at], stop_);
         chains_[at].made.store(true, std::memory_order_release);
     }
     done_ = true;

@@ -7,9 +7,9 @@
 
 namespace vrut {
 
-/// A geometry's surface with fewer triangles, between some of its vertices.
+/// A geometry's surface with fewer triangles, between some of its vertices; or with its own in another order.
 struct DetailLevel {
-    int number = 0;  ///< from 1; 0 is the geometry itself
+    int number = 0;  ///< from 1; 0 is the geometry itself, reordered
     /// How far the two surfaces lie apart at most, and their normals make them look apart but for a
     /// twentieth of their area; in the geometry's unit.
     double error = 0;

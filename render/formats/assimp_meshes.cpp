@@ -18,10 +18,10 @@ std::string called(const aiMesh& mesh) {
 }
 
 void require_coordinates(const aiVector3D* vectors, const char* what, const aiMesh& mesh) {
-    bool all = true;  // without an early end, so that several are looked at at once
+    int all = 1;  // without an early end, so that several are looked at at once
     for (const aiVector3D* v = vectors; v != vectors + mesh.mNumVertices; ++v)
-        all &= is_coordinate(v->x) & is_coordinate(v->y) & is_coordinate(v->z);
-    if (!all)
+        all &= int{is_coordinate(v->x)} & int{is_coordinate(v->y)} & int{is_coordinate(v->z)};
+    if (all == 0)
         throw Refused("a " + std::string(what) + " of " + called(mesh) +
                       " is not a number from -1e15 to 1e15");
 }

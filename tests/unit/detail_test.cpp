@@ -3,6 +3,7 @@
 #include <cmath>
 #include <random>
 
+#include "cache_order.hpp"
 #include "detail_levels.hpp"
 #include "grid_surfaces.hpp"
 #include "read_scene.hpp"
@@ -211,6 +212,33 @@ TEST_CASE("what cannot be simplified has no levels") {
     }
     for (const DetailLevel& level : simplify(apart, kGoOn))
         CHECK(furthest(apart, apart.triangles, level.triangles) <= level.error);
+}
+
+TEST_CASE("triangles in a bad order get a better one, and only those") {
+    const Geometry good = with_normals(torus(80, 40));
+    CHECK_FALSE(cache_ordered(good));
+    Geometry bad = good;
+    std::shuffle(bad.triangles.begin(), bad.triangles.end(), std::mt19937(1));
+    const auto level = cache_ordered(bad);
+    REQUIRE(level);
+    CHECK(level->number == 0);
+    CHECK(level->error == 0);
+    const auto sorted = [](std::vector<glm::uvec3> triangles) {
+        std::sort(triangles.begin(), triangles.end(), [](const glm::uvec3& a, const glm::uvec3& b) {
+            return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+        });
+        return triangles;
+    };
+    CHECK(sorted(level->triangles) == sorted(good.triangles));
+    CHECK_FALSE(cache_ordered(geometry_of(bad, *level)));
+    bad.normals.clear();
+    CHECK_FALSE(cache_ordered(bad));  // its triangles share no vertices
+
+    const DetailLevels levels(scene_of({with_normals(bad)}));
+    levels.wait();
+    CHECK(levels.of(0).size() >= 4);
+    for (std::size_t i = 0; i < levels.of(0).size(); ++i)
+        CHECK(levels.of(0)[i].number == static_cast<int>(i));
 }
 
 TEST_CASE("levels are made in the background, for each geometry") {
