@@ -19,8 +19,8 @@ struct Vertex {
 
 struct Arrays {
     std::vector<Vertex> vertices;
-    std::vector<unsigned> corners;  ///< for each vertex the geometry's of which it is made
-    std::vector<glm::uvec3> triangles;
+    std::vector<unsigned> corners;      ///< for each vertex the geometry's of which it is made
+    std::vector<glm::uvec3> triangles;  ///< empty: the geometry's
 };
 
 GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
@@ -39,7 +39,8 @@ GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices)
 }
 
 /// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
-/// its face's, so that the shader need not know the difference.
+/// its face's, so that the shader need not know the difference. Most geometries have none, and keep their
+/// triangles.
 Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
     // Unit, so that float can square them.
@@ -50,14 +51,18 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     };
 
     Arrays arrays;
-    arrays.triangles = geometry.triangles;
-    if (!geometry.normals.empty()) {
+    bool all = !geometry.normals.empty();
+    if (all) {
         arrays.vertices.reserve(geometry.positions.size());
-        for (unsigned i = 0; i < geometry.positions.size(); ++i)
+        for (unsigned i = 0; i < geometry.positions.size(); ++i) {
             arrays.vertices.push_back({position(i), normal(i)});
+            all = all && arrays.vertices.back().normal != glm::vec3(0);
+        }
         arrays.corners.resize(arrays.vertices.size());
         std::iota(arrays.corners.begin(), arrays.corners.end(), 0U);
     }
+    if (all) return arrays;
+    arrays.triangles = geometry.triangles;
     for (glm::uvec3& triangle : arrays.triangles) {
         const glm::uvec3 corners = triangle;
         for (int k = 0; k < 3; ++k) {
@@ -73,6 +78,10 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
         }
     }
     return arrays;
+}
+
+const std::vector<glm::uvec3>& triangles_of(const Arrays& arrays, const Geometry& geometry) {
+    return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
 }
 
 /// Textures repeat, so that whole numbers may be taken off; what is left keeps more digits in float between
@@ -104,8 +113,9 @@ GpuGeometry upload(const Geometry& geometry) {
     result.origin = geometry.bounds.center();
     const Arrays arrays = make_arrays(geometry, result.origin);
     result.vertices = make_buffer(arrays.vertices.data(), arrays.vertices.size() * sizeof(Vertex));
-    result.indices = make_buffer(arrays.triangles.data(), arrays.triangles.size() * sizeof(glm::uvec3));
-    result.index_count = static_cast<GLsizei>(arrays.triangles.size() * 3);
+    const std::vector<glm::uvec3>& triangles = triangles_of(arrays, geometry);
+    result.indices = make_buffer(triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    result.index_count = static_cast<GLsizei>(triangles.size() * 3);
 
     result.vertex_array = vertex_array_of(result.vertices, result.indices);
     if (geometry.texcoords.empty()) return result;
@@ -161,7 +171,8 @@ std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector
 
 GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
     GpuEdges result;
-    const auto edges = unique_edges(geometry, make_arrays(geometry, uploaded.origin).triangles);
+    const Arrays arrays = make_arrays(geometry, uploaded.origin);
+    const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
     if (edges.empty()) return result;
     result.indices = make_buffer(edges.data(), edges.size() * sizeof(glm::uvec2));
     result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
@@ -235,9 +246,8 @@ const GpuTriangles& GpuScene::ordered(const DrawItem& item) {
     if (result.order && (result.order == item.order || *result.order == order)) return result;
     if (!result.vertex_array) {
         const GpuGeometry& uploaded = geometry(item.geometry);
-        result.in_file =
-            make_arrays(scene_->geometries()[static_cast<std::size_t>(item.geometry)], uploaded.origin)
-                .triangles;
+        const Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
+        result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
         result.indices = make_changing_buffer(order.size() * sizeof(glm::uvec3));
         result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
         if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);

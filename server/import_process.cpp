@@ -82,9 +82,7 @@ public:
         std::vector<char*> argv(arguments.size() + 1);  // the last one stays null
         std::transform(arguments.begin(), arguments.end(), argv.begin(),
                        [](std::string& argument) { return argument.data(); });
-        // Large pages: memory that is used once is half of what a process of its own costs.
-        std::string tunables = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
-        std::vector<char*> environment{tunables.data()};
+        std::vector<char*> environment;
         for (char** variable = environ; *variable != nullptr; ++variable)
             if (!std::string_view(*variable).starts_with(
                     "VRUT_PREVIEW_"))  // tokens are not for a foreign file

@@ -9,6 +9,7 @@ import { mkdtempSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
+import { startDisplay } from './display.mjs';
 
 const SKIPPED = 77;
 const SIZE = '1280x720';
@@ -76,16 +77,6 @@ try {
 function skip(why) {
   console.log(`skipped: ${why}`);
   process.exit(SKIPPED);
-}
-
-/** An X server of its own for VTK, which draws in software. @returns {Promise<{process: ChildProcess, name: string}>} */
-async function startDisplay() {
-  const started = spawn('Xvfb', ['-displayfd', '1', '-screen', '0', '1920x1080x24', '-nolisten', 'tcp'], { stdio: ['ignore', 'pipe', 'ignore'] });
-  const name = await new Promise((resolve, reject) => {
-    started.stdout.once('data', (number) => resolve(`:${String(number).trim()}`));
-    started.once('exit', () => reject(new Error('Xvfb does not start')));
-  });
-  return { process: started, name };
 }
 
 /** Adds the rows of one model. */
