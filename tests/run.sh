@@ -116,6 +116,26 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
                 sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
 }
 
+# In the time that tests leave over, in which they wait for pictures and browsers.
+begin_tidy() {
+    rm -f build/tidy.passed
+    set -m  # a process group of its own
+    (
+        chrt --idle --pid 0 "$BASHPID"
+        set -e
+        tidy tidy '--checks=-clang-analyzer-*'
+        touch build/tidy.passed
+    ) >build/tidy.log 2>&1 </dev/null &
+    tidy_process=$!
+    set +m
+    trap 'kill -- "-$tidy_process" 2>/dev/null || true' EXIT
+}
+
+end_tidy() {
+    tail --lines=+1 --follow --pid="$tidy_process" build/tidy.log
+    [ -e build/tidy.passed ]
+}
+
 compile_remedy="The compiler's message is above; if the source is right, remove the folder build and start again."
 if ! mkdir -p build 2>/dev/null || [ ! -w build ]; then
     die "cannot write to $ROOT/build: start this as the folder's owner, or from a copy of your own."
@@ -127,8 +147,9 @@ step "Debian packages" "" packages
 step "node modules" "npm's message is above: see that there is a network, and start again." node_modules
 step "format" "Run clang-format-14 -i on the files named above." format
 step "build release" "$compile_remedy" build release
+begin_tidy
 step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
-step "clang-tidy" "Mend what it names above." tidy tidy '--checks=-clang-analyzer-*'
+step "clang-tidy" "Mend what it names above." end_tidy
 step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
 if $all; then
