@@ -10,6 +10,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "salted_hash.hpp"
+
 namespace vrut {
 
 /// "at byte N: expected …, found …"; caught by the reader, which knows the file's name.
@@ -93,7 +95,7 @@ private:
     std::size_t size_;
     std::vector<OsbField> fields_;
     std::vector<OsbContainer> containers_;
-    std::unordered_map<std::uint32_t, std::size_t> index_of_;
+    std::unordered_map<std::uint32_t, std::size_t, SaltedHash> index_of_;
 };
 
 /// What a Name that is attached to the container calls it: at most 1,000 bytes of UTF-8; empty without one.

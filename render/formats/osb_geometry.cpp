@@ -52,14 +52,6 @@ constexpr ElementType kTexcoords[] = {{"MFVec2f", 8}};
 
 using Corner = std::array<std::uint32_t, 3>;  // indices of a position, a normal and texture coordinates
 
-struct CornerHash {
-    std::size_t operator()(const Corner& corner) const {
-        std::uint64_t hash = corner[0];
-        for (const std::size_t i : {1U, 2U}) hash = (hash ^ hash >> 29) * 0x9E3779B97F4A7C15U + corner[i];
-        return static_cast<std::size_t>((hash ^ hash >> 32) * 0xBF58476D1CE4E5B9U);
-    }
-};
-
 /// What stands where in the indices of a vertex; empty for what is not indexed.
 struct IndexMapping {
     std::size_t stride = 1;
@@ -241,7 +233,7 @@ private:
     std::array<std::optional<OsbArray>, 3> arrays_;  // positions, normals, texture coordinates
     IndexMapping mapping_;
     Geometry geometry_;
-    std::unordered_map<Corner, unsigned, CornerHash> known_;
+    std::unordered_map<Corner, unsigned, SaltedHash> known_;
     std::vector<unsigned> vertices_;  // of the primitive at hand
 };
 

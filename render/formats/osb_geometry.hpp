@@ -27,7 +27,7 @@ private:
     const OsbFile& file_;
     Losses& losses_;
     std::map<std::vector<std::uint32_t>, Index> known_;  // by the arrays' ids and the mapping
-    std::unordered_map<std::uint32_t, Index> known_containers_;
+    std::unordered_map<std::uint32_t, Index, SaltedHash> known_containers_;
     /// What corners and primitives of all geometries together may yet be: each takes a byte of its own,
     /// unless arrays are shared beyond measure.
     std::size_t work_left_;

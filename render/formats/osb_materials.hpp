@@ -26,7 +26,7 @@ private:
 
     const OsbFile& file_;
     Losses& losses_;
-    std::unordered_map<std::uint32_t, Index> known_, known_textures_;
+    std::unordered_map<std::uint32_t, Index, SaltedHash> known_, known_textures_;
 };
 
 }  // namespace vrut

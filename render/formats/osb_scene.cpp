@@ -264,7 +264,7 @@ private:
     OsbGeometries geometries_{file_, losses_};
     OsbMaterials materials_{file_, losses_};
     SceneParts parts_;
-    std::unordered_map<std::uint32_t, Id> ids_;  // ours, of the nodes met
+    std::unordered_map<std::uint32_t, Id, SaltedHash> ids_;  // ours, of the nodes met
     struct Light {
         const OsbContainer* core;
         Id node;

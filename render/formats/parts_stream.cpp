@@ -9,6 +9,7 @@
 #include <unordered_set>
 
 #include "picture_file.hpp"
+#include "salted_hash.hpp"
 #include "scene_pictures.hpp"
 #include "utf8.hpp"
 
@@ -348,7 +349,7 @@ void pass(Stream& stream, Node& node, const SceneParts& parts) {
 
 template <class Stream, class Item>
 void require_ids_once(const Stream& stream, const std::vector<Item>& items) {
-    std::unordered_set<Id> ids;
+    std::unordered_set<Id, SaltedHash> ids;
     for (const Item& item : items) stream.require(ids.insert(item.id).second, "each id once");
 }
 

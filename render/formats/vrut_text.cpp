@@ -8,6 +8,7 @@
 
 #include "file_bytes.hpp"
 #include "notices.hpp"
+#include "salted_hash.hpp"
 #include "scene_pictures.hpp"
 #include "tokenizer.hpp"
 
@@ -380,7 +381,7 @@ private:
     const std::string& file_;
     SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
-    std::unordered_map<Id, Index> material_ids_, geometry_ids_;
+    std::unordered_map<Id, Index, SaltedHash> material_ids_, geometry_ids_;
     Notices notices_;
 };
 

@@ -55,7 +55,7 @@ std::vector<Index> top_down_order(const std::vector<std::vector<Index>>& childre
     return order;
 }
 
-using Places = std::unordered_map<Id, Index>;
+using Places = std::unordered_map<Id, Index, SaltedHash>;
 using PartNodes = std::vector<SceneParts::PartNode>;
 
 tl::expected<Places, Scene::BuildError> places_by_id(const PartNodes& nodes) {

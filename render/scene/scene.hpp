@@ -15,6 +15,7 @@
 #include "bounds.hpp"
 #include "image.hpp"
 #include "plane.hpp"
+#include "salted_hash.hpp"
 
 namespace vrut {
 
@@ -183,7 +184,7 @@ private:
     std::vector<std::optional<Plane>> planes_;
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
-    std::unordered_map<Id, Index> index_of_;
+    std::unordered_map<Id, Index, SaltedHash> index_of_;
 };
 
 /// What of a node can change while its scene is shown; it starts as the file says.

@@ -3,7 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <random>
+#include <unordered_map>
 
 using namespace vrut;
 
@@ -411,6 +413,21 @@ TEST_CASE("a chain of a million nodes is built, placed and given back") {
     const auto ring = chain(1);
     REQUIRE_FALSE(ring);
     CHECK(contains(ring.error().message, "among its own ancestors"));
+}
+
+TEST_CASE("ids that are chosen to be in one place of a table cost no more than others") {
+    constexpr Id kCount = 60'000;
+    const auto seconds = [](Id step) {
+        std::vector<SceneParts::PartNode> nodes;
+        for (Id i = 1; i <= kCount; ++i) nodes.push_back(part(i * step, 0));
+        const auto start = std::chrono::steady_clock::now();
+        CHECK(built(std::move(nodes)).find_node(kCount * step) != kNone);
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    };
+    std::unordered_map<Id, Index> table;
+    table.reserve(kCount + 1);
+    const double others = seconds(1);
+    CHECK(seconds(static_cast<Id>(table.bucket_count())) < 10 * others + 0.2);
 }
 
 TEST_CASE("nodes start as the file says") {
