@@ -21,6 +21,7 @@
 #include "assimp_text.hpp"
 #include "closed.hpp"
 #include "gltf_check.hpp"
+#include "ply_check.hpp"
 #include "scene_pictures.hpp"
 #include "tokenizer.hpp"
 
@@ -297,6 +298,14 @@ std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, Losses& 
     return scene;
 }
 
+std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, AssimpFormat format,
+                                        Losses& losses) {
+    if (format == AssimpFormat::gltf) return import_gltf(path, losses);
+    if (format == AssimpFormat::ply)
+        if (const auto fault = ply_fault(path)) throw Refused(*fault);
+    return import(path, format, {}, losses);
+}
+
 }  // namespace
 
 PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,
@@ -304,8 +313,7 @@ PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat fo
     try {
         if (progress) progress(0);
         Losses losses;
-        const auto scene =
-            format == AssimpFormat::gltf ? import_gltf(path, losses) : import(path, format, {}, losses);
+        const auto scene = import_checked(path, format, losses);
         if (progress) progress(0.5);
         return AssimpConverter(*scene, format, std::move(losses), path, progress).convert();
     } catch (const Refused& refused) {

@@ -82,6 +82,17 @@ std::string cube_obj(bool outwards, bool whole) {
     return text;
 }
 
+/// A triangle's 36 bytes and a face's 13, with the counts that its header tells.
+std::string binary_ply(std::uint64_t vertices, std::uint64_t faces) {
+    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
+                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                       std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::int32_t face[] = {0, 1, 2};
+    text.append(reinterpret_cast<const char*>(corners), sizeof corners).append(1, '\3');
+    return text.append(reinterpret_cast<const char*>(face), sizeof face);
+}
+
 }  // namespace
 
 TEST_CASE("an OBJ scene keeps its objects, normals and places on pictures") {
@@ -171,6 +182,18 @@ TEST_CASE("a PLY scene is one part by its file's name") {
     CHECK(material_of(scene, panel).diffuse == Material().diffuse);
     CHECK(has_notice(scene, "colours at its vertices are not shown"));
     CHECK(scene.notices().size() == 1);
+}
+
+TEST_CASE(
+    "a binary PLY scene is read where its counts fit to the byte, and one of lists and spare lines too") {
+    const TemporaryFolder folder;
+    CHECK(read_well(folder.write("lid.ply", binary_ply(3, 1))).triangle_count() == 1);
+    const std::string text =
+        "PLY\r\nformat ascii 1.0\r\ncomment element vertex 999\r\nobj_info x\r\n"
+        "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
+        "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+        "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2";
+    CHECK(read_well(folder.write("lid.ply", text)).triangle_count() == 1);
 }
 
 TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and in metres") {
@@ -288,9 +311,38 @@ TEST_CASE("the material library and pictures of an OBJ scene lie in its folder")
     CHECK(has_notice(notices_with("paint.mtl", "none.png"),
                      "without its picture 'none.png': there is no such file"));
     CHECK(has_notice(notices_with("none.mtl", "x"), "'none.mtl': there is no such file"));
-    const Scene scene = notices_with("../secret.mtl", "x");
-    CHECK(has_notice(scene, "'../secret.mtl': " + outside));
-    for (const Material& material : scene.materials()) CHECK(material.diffuse != glm::dvec4(1, 0, 0, 1));
+    fs::create_symlink(outer.path() / "secret.mtl", outer.path() / "scenes/link.mtl");
+    for (const std::string& library :
+         {std::string("../secret.mtl"), std::string("link.mtl"), (outer.path() / "secret.mtl").string()}) {
+        const Scene scene = notices_with(library, "x");
+        CHECK_MESSAGE(has_notice(scene, "'" + library + "': " + outside), library);
+        for (const Material& material : scene.materials()) CHECK(material.diffuse != glm::dvec4(1, 0, 0, 1));
+    }
+}
+
+TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
+    const TemporaryFolder outer;
+    outer.write("secret.png", picture());
+    outer.write("scenes/paint.png", picture());
+    fs::create_symlink(outer.path() / "secret.png", outer.path() / "scenes/link.png");
+    for (const auto& [file, own] :
+         {std::pair("panel.dae", "tex/my%20paint.png"), {"panel.fbx", "tex\\paint.png"}}) {
+        const auto with_picture = [&, file = file, own = own](const std::string& image) {
+            std::string text = text_of(file);
+            if (const std::size_t at = text.find("C:\\work\\"); at != std::string::npos) text.erase(at, 8);
+            for (std::size_t at = 0; (at = text.find(own, at)) != std::string::npos; at += image.size())
+                text.replace(at, std::string(own).size(), image);
+            return read_well(outer.write("scenes/" + std::string(file), text));
+        };
+        CAPTURE(file);
+        CHECK(with_picture("paint.png").textures().size() == 1);
+        for (const std::string& image : {std::string("../secret.png"), std::string("link.png"),
+                                         (outer.path() / "secret.png").string()}) {
+            const Scene scene = with_picture(image);
+            CHECK_MESSAGE(has_notice(scene, "in the folder of the scene's file"), image);
+            CHECK_MESSAGE(scene.textures().empty(), image);
+        }
+    }
 }
 
 TEST_CASE("a picture that says that it is huge is not read") {
@@ -319,12 +371,29 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
         {"a.obj", "nothing that a model is made of\n", "no triangles"},
         {"a.obj", triangle, "no triangles"},
         {"a.obj", triangle + "f 1 2 9\n", "index out of range"},
+        {"a.obj", triangle + "f -1 -2 -9\n", "index out of range"},
+        {"a.obj", triangle + "f 99999999999999999999 1 2\n", "index out of range"},
+        {"a.obj", triangle + "f 0 0 0\n", "Invalid face index"},
+        {"a.obj", triangle + "f 1 2", "no triangles"},
         {"a.obj", "v nan 0 0\n" + triangle + "f 1 2 3\n", "a vertex of mesh 'defaultobject' is not a number"},
         {"a.obj", "v 1e300 0 0\n" + triangle + "f 1 2 3\n",
          "a vertex of mesh 'defaultobject' is not a number"},
+        {"a.obj", "v 1e999 0 0\n" + triangle + "f 1 2 3\n", "is not a number from -1e15 to 1e15"},
+        {"a.obj", "v inf 0 0\n" + triangle + "f 1 2 3\n", "is not a number from -1e15 to 1e15"},
         {"a.stl", "", "empty"},
         {"a.stl", std::string(80, 'x') + std::string(4, '\1') + std::string(50, '\0'),
          "as long as its number of triangles"},
+        {"a.stl", std::string(80, 'x') + std::string(4, '\xff') + std::string(50, '\0'),
+         "as long as its number of triangles"},
+        {"a.stl",
+         std::string(80, 'x') + std::string("\x20\x85\xeb\x51") + std::string(64, '\0'),  // 2^36 bytes
+         "too small to hold all facets"},
+        {"a.stl", std::string(80, 'x') + std::string("\2\0\0\0", 4) + std::string(50, '\0'),
+         "as long as its number of triangles"},
+        {"a.stl",
+         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1e999 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+         "endloop\nendfacet\nendsolid a\n",
+         "a vertex of mesh 'a' is not a number"},
         {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "Invalid number of vertices"},
         {"a.ply", "", "empty"},
         {"a.ply", "not a model", "magic number"},
@@ -332,15 +401,39 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
         {"a.ply", with(ply, "4 0 1 2 3", "4 0 1 2 9"), "the mesh has an index out of range"},
         {"a.ply", with(ply, "4 0 1 2 3", "3 0 1 -2"), "the mesh has an index out of range"},
         {"a.ply", with(ply, "1 1 0 0 0.6", "1 1e30 0 0 0.6"), "a vertex of the mesh is not a number"},
+        {"a.ply", ply.substr(0, ply.size() - 20), "an index out of range"},
+        {"a.ply", ply.substr(0, 60), "its header has no 'end_header'"},
+        {"a.ply", ply.substr(0, ply.size() - 100),
+         "line 3: expected a count of 'vertex' that fits into the file"},
+        {"a.ply", with(ply, "vertex 5", "vertex 4000000000"), "line 3: expected a count of 'vertex'"},
+        {"a.ply", with(ply, "vertex 5", "vertex 99999999999999999999"),
+         "line 3: expected a count of 'vertex'"},
+        {"a.ply", with(ply, "vertex 5", "vertex -1"), "line 3: expected a count of 'vertex', found '-1'"},
+        {"a.ply", with(ply, "face 1", "face 4000000000"),
+         "line 13: expected a count of 'face' that fits into the file, found 4000000000"},
+        {"a.ply", with(ply, "element face 1", "element edge 4000000000\nelement face 1"),
+         "line 13: expected a count of 'edge'"},
+        {"a.ply", with(ply, "element face", "element vertex 7\nelement face"),
+         "'vertex' once, found it twice"},
+        {"a.ply", binary_ply(4'000'000'000, 1), "line 3: expected a count of 'vertex'"},
+        {"a.ply", binary_ply(5, 1), "line 3: expected a count of 'vertex' that fits into the file, found 5"},
+        {"a.ply", binary_ply(3, 4'000'000'000), "line 7: expected a count of 'face'"},
         {"a.dae", "", "malformed XML"},
         {"a.dae", dae.substr(0, dae.size() / 2), "malformed XML"},
         {"a.dae", with(dae, "3 3</p>", "9 3</p>"), "Invalid data index"},
+        {"a.dae", with(dae, "0 0 0 1 0 0", "0 0 0 1e999 0 0"), "a vertex of mesh 'Panel' is not a number"},
+        {"a.dae", with(dae, "url=\"#Scene\"", "url=\"#none\""), "Unable to resolve visual_scene"},
+        {"a.dae", with(dae, "<vcount>4<", "<vcount>400<"), "index count"},
         {"a.dae", with(dae, "<translate>1 2 3", "<translate>1 2e30 3"), "the matrix of node 'Car'"},
         {"a.fbx", "", "unexpected end of file"},
         {"a.fbx", "nothing that a model is made of\n", "unexpected token"},
         {"a.fbx", fbx.substr(0, fbx.size() / 2), "FBX-Parser"},
         {"a.fbx", "Kaydara FBX Binary  " + std::string(1, '\0') + "\x1a" + std::string(40, '\x7f'),
          "written by assimp 5.2"},
+        {"a.fbx", with(fbx, "0,1,2,-4", "0,1,9,-4"), "no triangles"},
+        {"a.fbx", with(fbx, "0,1,2,-4", "0,1,2,3"), "no triangles"},
+        {"a.fbx", with(fbx, "0,0,0,1,0,0,1,1,0", "0,0,0,1,0,0,1,1e999,0"),
+         "a vertex of mesh 'Door' is not a number"},
         {"a.fbx", with(fbx, "0,0,0,1,0,0,1,1,0", "0,0,0,1,0,0,1,nan,0"),
          "a vertex of mesh 'Door' is not a number"},
     };
