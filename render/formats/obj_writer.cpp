@@ -1,5 +1,6 @@
 #include "obj_writer.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <ostream>
 #include <set>
@@ -130,13 +131,44 @@ std::vector<std::string> name_materials(const Scene& scene, const std::vector<Sh
     return names;
 }
 
+/// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
+void tell_lost_look(const Scene& scene, const Material& material, Losses& losses) {
+    losses.add("whether a material is drawn from both sides is not kept");
+    if (material.reflectivity > 0) losses.add("that a material reflects is not kept");
+    const bool has_holes =
+        material.texture != kNone && scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
+    if (has_holes && material.diffuse.a < 1)
+        losses.add("a material's opacity beside that of its picture is written, but not read here");
+    if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
+        losses.add("a material's ambient colour is written, but read here as a tenth of its diffuse one");
+    if (material.shininess < 1 && glm::dvec3(material.specular) != glm::dvec3(0))
+        losses.add("a highlight with a shininess below 1 is written, but read here as another or none");
+}
+
 void tell_lost_looks(const Scene& scene, const std::vector<std::string>& names, Losses& losses) {
     for (std::size_t i = 0; i + 1 < names.size(); ++i) {
         const Material& material = scene.materials()[i];
-        if (names[i].empty()) continue;
+        if (names[i].empty()) {
+            losses.add("a material that nothing shows is left out");
+            continue;
+        }
         if (names[i] != material.name) losses.add("a material's name is changed to one word of its own");
-        if (material.two_sided) losses.add("that a material is drawn from both sides is not kept");
-        if (material.reflectivity > 0) losses.add("that a material reflects is not kept");
+        tell_lost_look(scene, material, losses);
+    }
+}
+
+void tell_lost_geometry(const std::vector<ShownShape>& shapes, Losses& losses) {
+    std::set<const Geometry*> written;
+    for (const ShownShape& shape : shapes) {
+        if (!written.insert(shape.geometry).second)
+            losses.add("a geometry that several nodes show is written for each of them");
+        const auto& positions = shape.geometry->positions;
+        const auto is_single = [&](const glm::dvec3& position) {
+            const glm::dvec4 world = shape.world * glm::dvec4(position, 1);
+            return glm::dvec4(glm::vec4(world)) == world;
+        };
+        if (!std::all_of(positions.begin(), positions.end(), is_single))
+            losses.add("a geometry's positions are rounded to nine digits");
     }
 }
 
@@ -149,6 +181,7 @@ void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFile
     tell_lost_nodes(scene, losses);
     tell_lost_tree(scene, losses);
     tell_lost_looks(scene, materials, losses);
+    tell_lost_geometry(shapes, losses);
     const auto pictures = write_pictures(scene, path, files);
     const std::string library = plain_name(path.stem().string()) + ".mtl";
     files.write(path.parent_path() / library, [&](std::ostream& out) {

@@ -46,6 +46,7 @@ void tell_lost_nodes(const Scene& scene, Losses& losses) {
         if (node.type == NodeType::background) losses.add("a background is not kept");
         if (node.type == NodeType::switch_) losses.add("a switch is kept as the child that it chooses");
         if (node.type == NodeType::lod) losses.add("a level of detail is kept as its first child");
+        if (node.type == NodeType::sound) losses.add("a sound is not kept");
     }
     if (scene.unit() != 1) losses.add("how many metres a unit has is not kept");
 }
@@ -54,7 +55,7 @@ void tell_lost_tree(const Scene& scene, Losses& losses) {
     for (const Node& node : scene.nodes()) {
         if (node.type == NodeType::camera) losses.add("a camera is not kept");
         if (node.type == NodeType::light) losses.add("a light is not kept");
-        if (node.type == NodeType::assembly && !node.children.empty())
+        if (node.type == NodeType::assembly)
             losses.add("an assembly is not kept: its matrix goes into the vertices");
     }
 }

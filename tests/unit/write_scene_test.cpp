@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <glm/gtx/transform.hpp>
 #include <iterator>
 #include <map>
@@ -344,8 +345,10 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
     CHECK(picture->rgba == scene.textures()[0].image.rgba);
     for (const char* told :
          {"a camera is not kept", "a light is not kept (3 times)", "that a material reflects is not kept",
-          "that a material is drawn from both sides is not kept", "a background is not kept",
-          "an assembly is not kept: its matrix goes into the vertices"})
+          "whether a material is drawn from both sides is not kept (3 times)",
+          "a material's ambient colour is written, but read here as a tenth of its diffuse one",
+          "a geometry that several nodes show is written for each of them (4 times)",
+          "a background is not kept", "an assembly is not kept: its matrix goes into the vertices"})
         CHECK_MESSAGE(std::find(lost.begin(), lost.end(), told) != lost.end(), told);
 
     const Scene read = read_well(folder.path() / "all.obj");
@@ -360,8 +363,51 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
     CHECK(glm::distance(pane->diffuse, glm::dvec4(0.1, 0.2, 0.3, 0.25)) < 1e-6);
     CHECK(glm::distance(glm::dvec3(pane->specular), glm::dvec3(0.5, 0.6, 0.7)) < 1e-6);
     CHECK(pane->shininess == 100);
+    CHECK(near(pane->ambient, {0.01, 0.02, 0.03, 1}));  // as is told
     REQUIRE(read.textures().size() == 1);
     CHECK(read.textures()[0].image.rgba == scene.textures()[0].image.rgba);
+}
+
+TEST_CASE("what an OBJ file has of a material and its reader does not take is told") {
+    const TemporaryFolder folder;
+    const auto lost = [&](const std::function<void(Material&)>& change) {
+        SceneParts parts;
+        parts.geometries = {corner(1)};
+        parts.textures.push_back({"a.png", {1, 1, {1, 2, 3, 128}}, true});
+        parts.materials = {phong_of({0.8, 0.4, 0.1}, 0.5, 0.4)};
+        parts.materials[0].name = "Paint";
+        change(parts.materials[0]);
+        Node node;
+        node.id = 1;
+        node.name = "Part";
+        node.type = NodeType::geometry;
+        node.data = GeometryData{0, 0};
+        parts.nodes.push_back({node, 0});
+        const Scene scene = *Scene::build(std::move(parts));
+        auto told = written(scene, folder.path() / "x.obj");
+        const Material before = scene.materials()[0],
+                       after = read_well(folder.path() / "x.obj").materials()[0];
+        const bool same = near(before.diffuse, after.diffuse) && near(before.ambient, after.ambient) &&
+                          near(before.specular, after.specular) && near(before.emission, after.emission) &&
+                          std::abs(before.shininess - after.shininess) < 1e-4;
+        CHECK(same == (told.size() == 1));
+        REQUIRE_FALSE(told.empty());
+        CHECK(told.back() == "whether a material is drawn from both sides is not kept");
+        return told.front();
+    };
+    using std::string;
+    const string either = "whether a material is drawn from both sides is not kept";
+    CHECK(lost([](Material&) {}) == either);
+    CHECK(lost([](Material& m) { m.texture = 0; }) == either);
+    CHECK(lost([](Material& m) { m.diffuse.a = 0.5; }) == either);
+    CHECK(lost([](Material& m) { m.texture = 0, m.diffuse.a = 0.5; }) ==
+          "a material's opacity beside that of its picture is written, but not read here");
+    CHECK(lost([](Material& m) {
+              m.ambient = {1, 0, 0, 1};
+          }) == "a material's ambient colour is written, but read here as a tenth of its diffuse one");
+    for (const double shininess : {0.0, 0.5})
+        CHECK(lost([&](Material& m) { m.shininess = shininess; }) ==
+              "a highlight with a shininess below 1 is written, but read here as another or none");
 }
 
 TEST_CASE("an STL file holds the shown triangles in world space, their fronts outside") {
