@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <fstream>
 #include <iostream>
 #include <optional>
 #include <stdexcept>
@@ -20,14 +21,37 @@ std::function<void(double)> shown(std::optional<Progress>& bar, double from, dou
     return [&bar, from, to, what](double part) { bar->show(from + (to - from) * part, what); };
 }
 
+/// The library of materials that a line of OBJ names; empty for other lines.
+std::string material_library(const std::string& line) {
+    constexpr std::string_view kKeyword = "mtllib ";
+    if (!line.starts_with(kKeyword)) return {};
+    const std::size_t first = line.find_first_not_of(' ', kKeyword.size());
+    const std::size_t last = line.find_last_not_of(" \r");
+    return first < last ? line.substr(first, last + 1 - first) : "";
+}
+
+/// The files beside a scene's own that it is read from and that might be written over: pictures, and the
+/// materials of OBJ.
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& in, const Scene& scene) {
+    std::vector<std::filesystem::path> files;
+    for (const Texture& texture : scene.textures()) files.push_back(in.parent_path() / texture.file);
+    if (lower_extension(in) != ".obj") return files;
+    std::ifstream stream(in);
+    for (std::string line; std::getline(stream, line);)
+        if (const std::string library = material_library(line); !library.empty())
+            files.push_back(in.parent_path() / library);
+    return files;
+}
+
 std::vector<std::string> convert(const ConvertArguments& arguments) {
     std::optional<Progress> bar;
     if (isatty(STDERR_FILENO) == 1) bar.emplace();
     const auto scene =
         import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
-    auto lost = write_scene(*scene, arguments.out,
-                            shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()));
+    auto lost =
+        write_scene(*scene, arguments.out, shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),
+                    files_beside(arguments.in, *scene));
     if (!lost) throw std::runtime_error(lost.error());
     std::vector<std::string> told = scene->notices();
     told.insert(told.end(), lost->begin(), lost->end());

@@ -21,6 +21,10 @@ void OutputFiles::write(const fs::path& target, const std::function<void(std::os
     if (!target.parent_path().empty() && fs::create_directory(target.parent_path(), error))
         made_folders_.push_back(target.parent_path());
     if (fs::is_directory(target, error)) throw WriteFault(target.string() + ": it is a folder");
+    for (const fs::path& file : kept_)
+        if (fs::equivalent(file, target, error))
+            throw WriteFault(target.string() +
+                             ": the scene is read from this file, which is not written over");
     const std::string hidden = "." + target.filename().string() + "." + std::to_string(getpid()) + ".part";
     staged_.push_back({target.parent_path() / hidden, target});
     errno = 0;

@@ -18,7 +18,8 @@ struct WriteFault : std::runtime_error {
 /// puts all of them there. Without it nothing that was there before is touched.
 class OutputFiles {
 public:
-    OutputFiles() = default;
+    /// None of `kept` is written over.
+    explicit OutputFiles(std::vector<std::filesystem::path> kept = {}) : kept_(std::move(kept)) {}
     ~OutputFiles();
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
@@ -32,6 +33,7 @@ private:
     struct Staged {
         std::filesystem::path temporary, target;
     };
+    std::vector<std::filesystem::path> kept_;
     std::vector<Staged> staged_;
     std::vector<std::filesystem::path> made_folders_;
 };

@@ -51,14 +51,14 @@ std::string written_extensions() {
     return list;
 }
 
-WriteResult write_scene(const Scene& scene, const std::filesystem::path& path,
-                        const WriteProgress& progress) {
+WriteResult write_scene(const Scene& scene, const std::filesystem::path& path, const WriteProgress& progress,
+                        std::vector<std::filesystem::path> kept) {
     const Format* const format = format_of(path);
     if (format == nullptr)
         return tl::unexpected(path.string() + ": no writer for this ending; known are " +
                               written_extensions());
     try {
-        OutputFiles files;
+        OutputFiles files(std::move(kept));
         Losses losses;
         format->write(scene, path, files, losses, progress);
         files.commit();

@@ -24,8 +24,9 @@ std::string written_extensions();
 
 /// Writes a scene in the format that the file's ending names, and its pictures: inside a GLB file, elsewhere
 /// as PNG files in the folder STEM.textures beside it. Files get their names when all are whole: a failure
-/// leaves what was there before.
+/// leaves what was there before; so does one of `kept` in the place of a file, such as what the scene is read
+/// from.
 WriteResult write_scene(const Scene& scene, const std::filesystem::path& path,
-                        const WriteProgress& progress = {});
+                        const WriteProgress& progress = {}, std::vector<std::filesystem::path> kept = {});
 
 }  // namespace vrut

@@ -107,6 +107,21 @@ test('wrong usage ends with status 2, and what cannot be done with 1', () => {
   fails(1, /CSB format has no public specification/, 'convert', file('car.csb'), file('x.glb'));
 });
 
+test('what a scene is read from is not written over', () => {
+  fs.mkdirSync(file('in/car.textures'), { recursive: true });
+  const letter = path.join(TEACHING, 'textures', 'letter.png');
+  for (const name of ['in/x.png', 'in/car.textures/0-x.png']) fs.copyFileSync(letter, file(name));
+  fs.writeFileSync(file('in/car.mtl'), 'newmtl A\nmap_Kd x.png\nnewmtl B\nmap_Kd car.textures/0-x.png\n');
+  fs.writeFileSync(file('in/my.obj'), 'mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl A\nf 1/1 2/1 3/1\nusemtl B\nf 3/1 2/1 1/1\n');
+  const before = fs.readFileSync(file('in/car.mtl'), 'utf8');
+  fails(1, /car\.textures\/0-x\.png: the scene is read from this file/, 'convert', file('in/my.obj'), file('in/car.vrut'));
+  fs.writeFileSync(file('in/car.mtl'), 'newmtl A\n');
+  fails(1, /car\.mtl: the scene is read from this file/, 'convert', file('in/my.obj'), file('in/car.obj'));
+  assert.deepEqual(fs.readdirSync(file('in')).sort(), ['car.mtl', 'car.textures', 'my.obj', 'x.png']);
+  fs.writeFileSync(file('in/car.mtl'), before);
+  succeeds('convert', file('in/my.obj'), file('in/other.obj'));
+});
+
 test('a file that does not fit leaves the old one', () => {
   fs.writeFileSync(file('old.obj'), 'old');
   // In blocks of 1 KiB; the signal would end the program before it could tell.
