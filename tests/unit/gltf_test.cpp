@@ -205,8 +205,11 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
                 flat_png(2, 2, {1, 2, 3, 255}));  // as the address says, to the letter
     CHECK(read_well(outer.write("scenes/car.gltf", car_with(image, "my%20paint.png"))).textures().size() ==
           1);
-    CHECK(has_notice(read_well(outer.write("scenes/car.gltf", car_with(image, "../paint.png"))),
-                     "without its picture '../paint.png'"));
+    for (const std::string& uri :
+         {std::string("../secret.bin"), std::string("link.bin"), (outer.path() / "secret.bin").string()})
+        CHECK_MESSAGE(has_notice(read_well(outer.write("scenes/car.gltf", car_with(image, uri))),
+                                 "without its picture '" + uri + "': the files of a scene lie in the folder"),
+                      uri);
 }
 
 TEST_CASE("a glTF file that is none is refused in a sentence") {

@@ -268,6 +268,31 @@ TEST_CASE("OSB: switches, levels of detail and lights") {
     CHECK(std::get<LightData>(spot.data).attenuation == glm::dvec3(1, 0.25, 0));
 }
 
+TEST_CASE("OSB: the pictures that it names lie in its folder") {
+    const TemporaryFolder outer;
+    const std::string outside = outer.write("secret.png", "no picture").string();
+    std::filesystem::create_symlink(outside, outer.write("scenes/x", "").parent_path() / "link.png");
+    for (const std::string& name : {std::string("../secret.png"), std::string("link.png"), outside}) {
+        B file;
+        file.node(1, 10).geometry(20, {{kTriangles, 3}}, {0, 0, 0, 1, 0, 0, 0, 1, 0}, {});
+        file.add("Geometry", 10,
+                 {{"material", "SFMaterialPtr", B::u32(50)},
+                  {"types", "SFGeoPTypesPtr", B::u32(21)},
+                  {"positions", "SFGeoPositionsPtr", B::u32(23)}});
+        file.add("SimpleTexturedMaterial", 50, {{"image", "SFImagePtr", B::u32(51)}});
+        file.add("Image", 51, {{"name", "SFString", B::text(name)}});
+        const auto scene = read_scene(outer.write("scenes/x.osb", file.bytes()));
+        REQUIRE_MESSAGE(scene, scene.error());
+        CHECK_MESSAGE(has_notice(*scene, "the files of a scene lie in the folder of the scene's file"), name);
+    }
+}
+
+TEST_CASE("OSB: a child that the file does not have is left out, and told") {
+    const Scene scene = read_well(B().node(1, 0, {2, 3, 9}).node(2, 0).add("Group", 9));
+    CHECK(scene.nodes().size() == 3);
+    CHECK(has_notice(scene, "a child that is no node of the file is left out (2 times)"));
+}
+
 TEST_CASE("OSB: what is not known is skipped and told by its type") {
     B file;
     file.node(1, 20, {2}).node(2, 21);
