@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
 
 namespace vrut {
 
@@ -55,23 +54,37 @@ std::vector<Index> top_down_order(const std::vector<std::vector<Index>>& childre
     return order;
 }
 
-using Places = std::unordered_map<Id, Index, SaltedHash>;
+using Places = Scene::Places;
 using PartNodes = std::vector<SceneParts::PartNode>;
+
+Index place_of(const Places& places, Id id) {
+    const auto found = std::lower_bound(places.begin(), places.end(), std::pair(id, Index{0}));
+    return found == places.end() || found->first != id ? kNone : found->second;
+}
+
+Scene::BuildError fault_at(const PartNodes& nodes, std::size_t i, bool twice) {
+    const Node& node = nodes[i].node;
+    if (twice) return {"expected each node once, found " + std::to_string(node.id) + " twice", i};
+    return {"expected id 0 for the root and no other node, found " + std::string(name_of(node.type)) + " " +
+                std::to_string(node.id),
+            i};
+}
 
 tl::expected<Places, Scene::BuildError> places_by_id(const PartNodes& nodes) {
     Places places;
     places.reserve(nodes.size());
+    std::size_t twice = nodes.size(), root = nodes.size();  // the first at fault
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const Node& node = nodes[i].node;
-        if (!places.emplace(node.id, static_cast<Index>(i)).second)
-            return tl::unexpected(
-                Scene::BuildError{"expected each node once, found " + std::to_string(node.id) + " twice", i});
-        if ((node.id == 0) != (node.type == NodeType::root))
-            return tl::unexpected(Scene::BuildError{"expected id 0 for the root and no other node, found " +
-                                                        std::string(name_of(node.type)) + " " +
-                                                        std::to_string(node.id),
-                                                    i});
+        places.emplace_back(node.id, static_cast<Index>(i));
+        if ((node.id == 0) != (node.type == NodeType::root)) root = std::min(root, i);
     }
+    std::sort(places.begin(), places.end());
+    for (std::size_t i = 1; i < places.size(); ++i)
+        if (places[i].first == places[i - 1].first)
+            twice = std::min(twice, static_cast<std::size_t>(places[i].second));
+    if (const std::size_t first = std::min(twice, root); first < nodes.size())
+        return tl::unexpected(fault_at(nodes, first, twice == first));
     return places;
 }
 
@@ -81,19 +94,16 @@ tl::expected<std::vector<std::vector<Index>>, Scene::BuildError> children_by_id(
     const auto at = [&](Index i) -> const SceneParts::PartNode& {
         return nodes[static_cast<std::size_t>(i)];
     };
-    std::vector<Index> by_id(nodes.size());
-    std::iota(by_id.begin(), by_id.end(), 0);
-    std::sort(by_id.begin(), by_id.end(), [&](Index a, Index b) { return at(a).node.id < at(b).node.id; });
     std::vector<std::vector<Index>> children(nodes.size());
-    for (Index i : by_id) {
-        if (at(i).node.id == 0) continue;
-        const auto parent = places.find(at(i).parent_id);
-        if (parent == places.end())
+    for (const auto& [id, i] : places) {
+        if (id == 0) continue;
+        const Index parent = place_of(places, at(i).parent_id);
+        if (parent == kNone)
             return tl::unexpected(Scene::BuildError{"expected parent " + std::to_string(at(i).parent_id) +
                                                         " of node " + std::to_string(at(i).node.id) +
                                                         " in the file, found none",
                                                     static_cast<std::size_t>(i)});
-        children[static_cast<std::size_t>(parent->second)].push_back(i);
+        children[static_cast<std::size_t>(parent)].push_back(i);
     }
     return children;
 }
@@ -107,7 +117,7 @@ Scene::BuildError find_cycle(const PartNodes& nodes, const Places& places,
     auto culprit = static_cast<std::size_t>(std::find(seen.begin(), seen.end(), false) - seen.begin());
     while (!seen[culprit]) {
         seen[culprit] = true;
-        culprit = static_cast<std::size_t>(places.at(nodes[culprit].parent_id));
+        culprit = static_cast<std::size_t>(place_of(places, nodes[culprit].parent_id));
     }
     return {"expected node " + std::to_string(nodes[culprit].node.id) +
                 " below the root, found it among its own ancestors",
@@ -126,7 +136,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     auto linked = children_by_id(in, *place);
     if (!linked) return tl::unexpected(linked.error());
     auto& children = *linked;
-    const std::vector<Index> order = top_down_order(children, place->at(0));
+    const std::vector<Index> order = top_down_order(children, place_of(*place, 0));
     if (order.size() != in.size()) return tl::unexpected(find_cycle(in, *place, order));
 
     // The same nodes, in that order.
@@ -147,8 +157,9 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
         Node& node = scene.nodes_.emplace_back(std::move(in[static_cast<std::size_t>(old)].node));
         node.children = std::move(children[static_cast<std::size_t>(old)]);
         for (Index& child : node.children) child = new_place[static_cast<std::size_t>(child)];
-        scene.index_of_.emplace(node.id, static_cast<Index>(scene.nodes_.size() - 1));
+        scene.places_.emplace_back(node.id, static_cast<Index>(scene.nodes_.size() - 1));
     }
+    std::sort(scene.places_.begin(), scene.places_.end());
     for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
         for (Index child : scene.nodes_[i].children)
             scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
@@ -165,10 +176,7 @@ bool Scene::is_transparent(const Material& material) const {
            (material.texture != kNone && textures_[static_cast<std::size_t>(material.texture)].transparent);
 }
 
-Index Scene::find_node(Id id) const {
-    const auto found = index_of_.find(id);
-    return found == index_of_.end() ? kNone : found->second;
-}
+Index Scene::find_node(Id id) const { return place_of(places_, id); }
 
 std::uint64_t Scene::triangle_count() const {
     std::uint64_t count = 0;

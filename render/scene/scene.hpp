@@ -8,14 +8,13 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
-#include <unordered_map>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "bounds.hpp"
 #include "image.hpp"
 #include "plane.hpp"
-#include "salted_hash.hpp"
 
 namespace vrut {
 
@@ -149,6 +148,9 @@ public:
         std::size_t node = 0;
     };
 
+    /// Where the node of an id stands, by rising id.
+    using Places = std::vector<std::pair<Id, Index>>;
+
     /// An empty scene: the root alone.
     Scene();
     /// Links nodes to their parents, adds the root where it is left out, orders everything by id.
@@ -184,7 +186,7 @@ private:
     std::vector<std::optional<Plane>> planes_;
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
-    std::unordered_map<Id, Index, SaltedHash> index_of_;
+    Places places_;
 };
 
 /// What of a node can change while its scene is shown; it starts as the file says.
