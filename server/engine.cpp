@@ -246,7 +246,8 @@ void Engine::use(const protocol::LevelTable& table) {
     for (const protocol::Level& level : table.levels)
         if (level.quality.level == protocol::Quality::Level::still) at_rest_.push_back(level);
     begun_.clear();
-    detail_.reset();
+    // Elsewhere, since the level that is being made is waited for.
+    if (detail_) given_up_ = std::async([levels = std::move(detail_)]() mutable { levels.reset(); });
     scene_since_ = next_frame_;
 }
 

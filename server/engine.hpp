@@ -200,6 +200,7 @@ private:
     std::optional<LevelChoice> choice_;
     std::vector<protocol::Level> at_rest_;        ///< of the table
     std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first picture was delivered
+    std::future<void> given_up_;                  ///< of the scenes before
     std::int64_t scene_since_ = 1;                ///< first frame of the scene shown
 
     std::thread thread_;  // last: it uses all of the above
