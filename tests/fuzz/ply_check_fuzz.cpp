@@ -1,0 +1,20 @@
+#include <unistd.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "ply_check.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const auto path =
+        std::filesystem::temp_directory_path() / ("vrut-fuzz-" + std::to_string(getpid()) + ".ply");
+    std::ofstream(path, std::ios::binary) << std::string_view(reinterpret_cast<const char*>(data), size);
+    const auto fault = vrut::ply_fault(path);
+    if (fault && (fault->empty() || fault->find('\n') != std::string::npos))
+        throw std::logic_error("not one sentence");
+    std::filesystem::remove(path);
+    return 0;
+}
