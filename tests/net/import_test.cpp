@@ -247,9 +247,9 @@ TEST_CASE("what crashes assimp, or lets it go on for ever, ends in a sentence") 
                              "</library_controllers>")},
     };
     const TemporaryFolder folder;
-    for (const auto& [file, text] : kFiles) {
-        CAPTURE(file);
-        const fs::path path = folder.write(file, text);
+    for (const auto& tried : kFiles) {
+        CAPTURE(tried.file);
+        const fs::path path = folder.write(tried.file, tried.text);
         const auto scene = import_scene(path, {}, ImportLimits{kAmple.bytes, 2s});
         REQUIRE_FALSE(scene);
         CHECK(scene.error().starts_with(path.string() + ": "));

@@ -325,14 +325,15 @@ TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
     outer.write("secret.png", picture());
     outer.write("scenes/paint.png", picture());
     fs::create_symlink(outer.path() / "secret.png", outer.path() / "scenes/link.png");
-    for (const auto& [file, own] :
+    for (const auto& panel :
          {std::pair("panel.dae", "tex/my%20paint.png"), {"panel.fbx", "tex\\paint.png"}}) {
-        const auto with_picture = [&, file = file, own = own](const std::string& image) {
+        const std::string file = panel.first, own = panel.second;
+        const auto with_picture = [&](const std::string& image) {
             std::string text = text_of(file);
             if (const std::size_t at = text.find("C:\\work\\"); at != std::string::npos) text.erase(at, 8);
             for (std::size_t at = 0; (at = text.find(own, at)) != std::string::npos; at += image.size())
-                text.replace(at, std::string(own).size(), image);
-            return read_well(outer.write("scenes/" + std::string(file), text));
+                text.replace(at, own.size(), image);
+            return read_well(outer.write("scenes/" + file, text));
         };
         CAPTURE(file);
         CHECK(with_picture("paint.png").textures().size() == 1);
