@@ -11,10 +11,10 @@ usage() {
 Usage: tests/run.sh [--all]
 
 Checks the source's format, runs every test of the release build but the long ones, runs clang-tidy without its
-analyzer, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
+analyzer on the program, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
 Debian packages and node modules that are missing are installed first.
 
-  --all     also clang-tidy's analyzer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --all     also clang-tidy on the tests and its analyzer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
   --help    this text
 TEXT
 }
@@ -97,14 +97,15 @@ tests() { # PRESET CTEST-ARGUMENTS...
 
 # Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.
 tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
-    local object file stamp stamps=build/release/$1
+    local object file stamp stamps=build/release/$1 folders='protocol|render|scenes|server'
+    if $all; then folders+='|tests'; fi
     local -A queued=()  # what several programs compile is looked at once
     mkdir -p "$stamps"
     # shellcheck disable=SC2016
     sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
         -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
         while IFS=$'\t' read -r object file; do
-            case ${file#"$ROOT"/} in protocol/* | render/* | scenes/* | server/* | tests/*) ;; *) continue ;; esac
+            [[ ${file#"$ROOT"/} =~ ^($folders)/ ]] || continue
             stamp=${file#"$ROOT"/}
             stamp=$stamps/${stamp//\//+}
             [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
