@@ -14,7 +14,7 @@ Checks the source's format, runs every test of the release build but the long on
 analyzer on the program, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
 Debian packages and node modules that are missing are installed first.
 
-  --all     also clang-tidy on the tests and its analyzer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
   --help    this text
 TEXT
 }
@@ -118,13 +118,13 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
 }
 
 # In the time that tests leave over, in which they wait for pictures and browsers.
-begin_tidy() {
+begin_tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
     rm -f build/tidy.passed
     set -m  # a process group of its own
     (
         chrt --idle --pid 0 "$BASHPID"
         set -e
-        tidy tidy '--checks=-clang-analyzer-*'
+        tidy "$@"
         touch build/tidy.passed
     ) >build/tidy.log 2>&1 </dev/null &
     tidy_process=$!
@@ -148,13 +148,12 @@ step "Debian packages" "" packages
 step "node modules" "npm's message is above: see that there is a network, and start again." node_modules
 step "format" "Run clang-format-14 -i on the files named above." format
 step "build release" "$compile_remedy" build release
-begin_tidy
+if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
 step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
 step "clang-tidy" "Mend what it names above." end_tidy
 step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
 if $all; then
-    step "clang-tidy with its analyzer" "Mend what it names above." tidy analyzer
     step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
     step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'

@@ -35,13 +35,21 @@ std::uint64_t binary_size(const std::string& type) {
     return 1;
 }
 
+/// Lines may end as on Unix, on Windows, and on a Mac of old.
+char line_end_of(const std::string& head) {
+    const std::size_t first = head.find_first_of("\r\n");
+    const bool mac = first + 1 < head.size() && head[first] == '\r' && head[first + 1] != '\n';
+    return mac ? '\r' : '\n';
+}
+
 class PlyHeader {
 public:
     /// Of the beginning of a file.
     explicit PlyHeader(std::string head) {
+        const char line_end = line_end_of(head);
         std::istringstream stream(std::move(head));
         std::string line;
-        while (std::getline(stream, line)) {
+        while (std::getline(stream, line, line_end)) {
             size_ += line.size() + 1;
             ++lines_;
             std::istringstream words(line);

@@ -194,6 +194,10 @@ TEST_CASE(
         "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
         "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2";
     CHECK(read_well(folder.write("lid.ply", text)).triangle_count() == 1);
+    std::string of_old_mac = text_of("panel.ply");
+    std::replace(of_old_mac.begin(), of_old_mac.end(), '\n', '\r');
+    CHECK(read_well(folder.write("lid.ply", of_old_mac)).triangle_count() ==
+          read_panel("panel.ply").triangle_count());
 }
 
 TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and in metres") {
