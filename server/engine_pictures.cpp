@@ -1,0 +1,202 @@
+#include "engine.hpp"
+
+// What it draws, and when.
+namespace vrut {
+
+namespace {
+
+constexpr std::size_t kBegunRemembered = 16;
+
+/// Whatever its nodes' states are.
+std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
+
+}  // namespace
+
+bool Engine::shows_present() const {
+    return drawn_.frame != 0 && presentation_->visible() == drawn_.visible &&
+           presentation_->view_size() == drawn_.view_size;
+}
+
+bool Engine::waits_for_newer(const Client& client) const {
+    if (client.grants == 0) return false;
+    return !shows_present() || client.last_frame != drawn_.frame ||
+           drawn_.still_samples < kStillSamples.back();
+}
+
+bool Engine::thin_lines() const {
+    const protocol::State& state = presentation_->state();
+    return state.renderer.wireframe || state.renderer.mode == protocol::DrawMode::stylized ||
+           (state.renderer.show_selection && state.selection.node);
+}
+
+/// Clients that have not got the newest picture, which shows what is to be seen, get that; no drawing is
+/// needed.
+void Engine::serve_newest() {
+    if (!shows_present()) return;
+    for (auto& [name, client] : clients_) {
+        if (client.grants == 0 || client.last_frame == drawn_.frame) continue;
+        --client.grants;
+        client.last_frame = drawn_.frame;
+        output_.owed.push_back({name, drawn_.frame});
+    }
+}
+
+PacingDecision Engine::pace() {
+    PacingInput input;
+    for (const auto& [name, client] : clients_)
+        input.somebody_waits = input.somebody_waits || waits_for_newer(client);
+    input.changed = !shows_present();
+    input.newest_samples = drawn_.still_samples;
+    input.encoder_free = encoder_.is_free();
+    input.last_change = last_change_;
+    input.now = Clock::now();
+    return decide(input);
+}
+
+/// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
+void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
+    constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
+    for (const Begun& begun : begun_)
+        if (begun.frame == sent.frame && asked > begun.at && asked - begun.at < kAsleep) {
+            const double all = std::chrono::duration<double, std::milli>(asked - begun.at).count();
+            const double server = std::min(begun.drawn_ms + sent.encode_ms, all);
+            choice_->took(begun.level, {server, all - server}, begun.pixels, asked);
+        }
+}
+
+bool Engine::paint(const View& view, Image& image, FrameStats& stats,
+                   const std::function<bool()>& interrupted, Accumulation* kept) {
+    const bool whole = painter_.paint(view, image, stats, interrupted, kept);
+    metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
+    metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
+    return whole;
+}
+
+void Engine::promise(std::int64_t frame) {
+    for (auto& [name, client] : clients_) {
+        if (client.grants == 0) continue;
+        --client.grants;
+        client.last_frame = frame;
+        output_.owed.push_back({name, frame});
+    }
+}
+
+/// With the error that the table has for such a picture.
+protocol::Quality Engine::quality_at_rest(int samples) const {
+    protocol::Quality quality = quality_of(kStill, presentation_->view_size(), limits_, thin_lines());
+    quality.samples = samples;
+    if (thin_lines()) return quality;
+    for (const protocol::Level& level : at_rest_) {
+        quality.error = level.quality.error;
+        if (level.quality == quality) return quality;
+    }
+    quality.error.reset();
+    return quality;
+}
+
+std::size_t Engine::choose_level() {
+    const protocol::QualityState& wanted = presentation_->state().quality;
+    const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
+    return choice_->choose({presentation_->view_size(), limits_, target}, Clock::now());
+}
+
+void Engine::draw(const PacingDecision& decision) {
+    // What is drawn is what stands here now, whatever comes in meanwhile.
+    const Clock::time_point begin = Clock::now();
+    const View visible = presentation_->visible();
+    const protocol::Resize view_size = presentation_->view_size();
+    const bool still = decision.still_samples > 0;
+    const std::size_t level = still ? 0 : choose_level();
+    const protocol::Quality quality =
+        still ? quality_at_rest(decision.still_samples)
+              : quality_of(choice_->levels()[level].quality, view_size, limits_, thin_lines());
+    const PictureSize size = picture_size(view_size, quality.scale);
+    View view = visible;
+    view.width = size.width;
+    view.height = size.height;
+    view.samples = quality.samples;
+    view.detail = quality.detail;
+    view.levels = detail_;
+
+    Picture picture;
+    protocol::FrameHeader& header = picture.header;
+    header = header_of(presentation_->state(), view, view_size);
+    header.frame = next_frame_;
+    header.revision = presentation_->document()->revision();
+    header.quality = quality;
+    picture.newest_input = newest_input_;
+    for (const auto& [name, client] : clients_) picture.handled[name] = client.handled;
+
+    Image image = encoder_.take_spare();
+    FrameStats stats;
+    // A moving picture is finished though the camera has moved on: while it moves on and on, none would be.
+    const auto interrupted = [&] {
+        attend();
+        const View& now = presentation_->visible();
+        return mailbox_.closed() || scene_of(now) != scene_of(visible) ||
+               (still && (now != visible || presentation_->view_size() != view_size));
+    };
+    if (!still) presentation_->remember(next_frame_++);  // with the camera as it is now
+    if (!paint(view, image, stats, interrupted)) {
+        ++metrics_.frames_interrupted;
+        encoder_.give_spare(std::move(image));
+        return;
+    }
+    if (still) presentation_->remember(next_frame_++);
+    ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
+    stats_.drawn(quality, stats.render_ms, Clock::now());
+    drawn_ = {header.frame, visible, view_size, decision.still_samples};
+    header.timing.render_ms = stats.render_ms;
+    header.timing.readback_ms = stats.readback_ms;
+    if (!still)
+        note({header.frame, level, static_cast<double>(size.width) * size.height,
+              stats.render_ms + stats.readback_ms, begin});
+    promise(drawn_.frame);
+    encoder_.offer(std::move(picture), std::move(image));
+}
+
+/// Remembers a moving frame, to measure it when the next is asked for.
+void Engine::note(const Begun& begun) {
+    begun_.push_back(begun);
+    if (begun_.size() > kBegunRemembered) begun_.pop_front();
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    if (holder == clients_.end() || !holder->second.tells)  // nobody tells when it has arrived
+        choice_->took(begun.level, {begun.drawn_ms}, begun.pixels, Clock::now());
+}
+
+/// Draws on the first snapshot that waits, a sample at least; it gives way to the live picture.
+void Engine::draw_snapshot() {
+    const std::string client = snapshots_.front().order.client;
+    Snapshot snapshot = std::move(snapshots_.front());  // while it is drawn, its client may leave
+    snapshots_.pop_front();
+    View& view = snapshot.order.view;
+    protocol::FrameHeader& header = snapshot.order.header;
+    header.quality = kStill;
+    header.quality.jpeg_quality = snapshot.order.jpeg_quality;
+    view.samples = header.quality.samples;
+
+    if (snapshot.image.rgba.empty()) snapshot.image = snapshot_encoder_.take_spare();
+    FrameStats stats;
+    const auto interrupted = [&] {
+        attend();
+        return mailbox_.closed() || pace().action == PacingDecision::Action::draw;
+    };
+    const bool whole = paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
+    header.timing.render_ms += stats.render_ms;
+    header.timing.readback_ms += stats.readback_ms;
+    const bool is_client = header.snapshot.has_value();
+    if (is_client && !clients_.contains(client)) return;  // it has left
+    if (!whole) {
+        snapshots_.push_front(std::move(snapshot));
+        return;
+    }
+    ++metrics_.snapshots_rendered;
+    Picture picture;
+    picture.header = header;
+    picture.header.frame = next_frame_++;
+    picture.format = snapshot.order.format;
+    picture.client = client;
+    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.image));
+}
+
+}  // namespace vrut
