@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -239,6 +240,7 @@ namespace {
 
 /// gnuplot's status, given what it reads. No name or path is part of the command.
 int run_gnuplot(const char* command, const std::string& script) {
+    std::signal(SIGPIPE, SIG_IGN);  // what becomes of it its status tells
     std::FILE* pipe = popen(command, "w");
     if (!pipe) return -1;
     std::fwrite(script.data(), 1, script.size(), pipe);

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer.hpp"
+
+/// Each method is pushed past its limit on purpose: how far it holds, and what takes over there.
+namespace vrut::stability {
+
+/// As much as a test has time for, or all that the page shows.
+enum class Form { brief, whole };
+
+/// A measure over the parameter; both 0 or above.
+struct Curve {
+    std::string title;
+    struct Point {
+        double x = 0, y = 0;
+    };
+    std::vector<Point> points = {};
+};
+
+/// A method, what breaks it, and what takes over.
+struct Study {
+    std::string file;                ///< of its chart: letters, digits and hyphens
+    std::string title;               ///< the method and what it is pushed by
+    std::string parameter, measure;  ///< with their units
+    double bound = 0;                ///< of the measure: what is above it has failed
+    /// The parameter from which the method fails; none: it holds as far as it was measured.
+    std::optional<double> limit = {};
+    Curve method = {};
+    std::optional<Curve> successor = {};  ///< what takes over, where something does
+    std::string takes_over = {};          ///< a sentence on what does, or why nothing needs to
+    std::string cost = {};                ///< a sentence on what that costs
+};
+
+/// Why a study is not as it says, in a sentence; none where it is: the method is within the bound below its
+/// limit and not at the last point beyond it, what takes over is within the bound everywhere, and everything
+/// is a number.
+std::optional<std::string> contradiction(const Study& study);
+
+/// What studies are made with.
+struct Laboratory {
+    Renderer& renderer;
+    Form form = Form::whole;
+
+    /// The first of `points`, which rise, the last, and in between as many as the form has time for.
+    std::vector<double> chosen(std::vector<double> points) const;
+};
+
+/// What there is to study, in the page's order.
+struct Topic {
+    const char* name;
+    Study (*study)(const Laboratory&);
+};
+const std::vector<Topic>& topics();
+
+// By file.
+Study far_positions(const Laboratory& laboratory);
+Study deep_views(const Laboratory& laboratory);
+Study many_moves(const Laboratory& laboratory);
+Study crossing_panes(const Laboratory& laboratory);
+Study large_triangles(const Laboratory& laboratory);
+
+}  // namespace vrut::stability
