@@ -153,6 +153,8 @@ std::string style_of(const Series& series) {
             return "with lines lw 1.6";
         case Series::Look::line:
             return "with linespoints pt 7 ps 0.55 lw 1.6";
+        case Series::Look::rule:
+            return "with lines lw 1.2 dt 2";
     }
     return {};
 }

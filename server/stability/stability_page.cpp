@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "chart/page.hpp"
@@ -15,15 +16,16 @@ using chart::Series;
 
 /// What the chart shows, from the least above 0 to the greatest.
 struct Range {
-    double least = 0, greatest = 0;
+    double least = std::numeric_limits<double>::infinity(), greatest = 0;
     bool has_zero = false;
 
+    void add(double value) {
+        has_zero = has_zero || value == 0;
+        if (value > 0) least = std::min(least, value);
+        greatest = std::max(greatest, value);
+    }
     void add(const Curve& curve) {
-        for (const Curve::Point& point : curve.points) {
-            has_zero = has_zero || point.y == 0;
-            if (point.y > 0) least = std::min(least, point.y);
-            greatest = std::max(greatest, point.y);
-        }
+        for (const Curve::Point& point : curve.points) add(point.y);
     }
 };
 
@@ -37,7 +39,8 @@ Series series_of(const Curve& curve, int color) {
 
 chart::Section section_of(const Study& study) {
     constexpr int kMethod = 1, kSuccessor = 0, kBound = 3;
-    Range range{study.bound, study.bound};
+    Range range;
+    range.add(study.bound);
     range.add(study.method);
     if (study.successor) range.add(*study.successor);
     // What is exact has no place of its own on a logarithmic axis.
@@ -45,10 +48,11 @@ chart::Section section_of(const Study& study) {
         range.has_zero ? std::pow(10, std::floor(std::log10(range.least)) - 1) : range.least;
     Plot plot{"stability-" + study.file, study.title, study.parameter, study.measure, {}, {}};
     if (range.has_zero) plot.floor = lowest;
+    plot.floor_name = "0";
     plot.series.push_back(series_of(study.method, kMethod));
     if (study.successor) plot.series.push_back(series_of(*study.successor, kSuccessor));
     const auto line = [&](double x1, double y1, double x2, double y2, const std::string& label, int color) {
-        plot.series.push_back({Series::Look::stairs, "", {{x1, y1, {}, {}, label}, {x2, y2, {}, {}}}, color});
+        plot.series.push_back({Series::Look::rule, "", {{x1, y1, {}, {}, label}, {x2, y2, {}, {}}}, color});
     };
     const auto& points = study.method.points;
     line(points.front().x, study.bound, points.back().x, study.bound, "bound", kBound);

@@ -23,9 +23,12 @@ std::optional<std::string> contradiction(const Study& study) {
     for (const Curve::Point& point : study.method.points)
         if (point.y > study.bound && !(study.limit && point.x >= *study.limit))
             return at(study.method, point) + ", before its limit";
-    const Curve::Point& last = study.method.points.back();
-    if (study.limit && !(last.x >= *study.limit && last.y > study.bound))
-        return at(study.method, last) + ", beyond its limit, and has not failed";
+    if (study.limit) {
+        const auto first = std::find_if(study.method.points.begin(), study.method.points.end(),
+                                        [&](const Curve::Point& point) { return point.x >= *study.limit; });
+        if (first == study.method.points.end()) return "'" + study.method.title + "' was not pushed so far";
+        if (!(first->y > study.bound)) return at(study.method, *first) + ", and has not failed";
+    }
     if (!study.successor) return std::nullopt;
     for (const Curve::Point& point : study.successor->points)
         if (point.y > study.bound) return at(*study.successor, point) + ", and fails, too";
@@ -44,9 +47,24 @@ const std::vector<Topic>& topics() {
     static const std::vector<Topic> all{
         {"positions far from the origin", far_positions},
         {"depth of the view", deep_views},
-        {"many moves", many_moves},
         {"panes that cross", crossing_panes},
         {"large triangles in light", large_triangles},
+        {"matrices that shrink", small_matrices},
+        {"textures seen small", minified_textures},
+        {"many mirrors", many_mirrors},
+        {"mirrors edge-on", edge_on_mirrors},
+        {"bent mirrors", bent_mirrors},
+        {"picking slivers", slivers},
+        {"thin lines in JPEG", thin_saturated_lines},
+        {"dark gradients in JPEG", dark_gradients},
+        {"many turns", many_moves},
+        {"over the pole", over_the_pole},
+        {"through the focus", through_the_focus},
+        {"the largest numbers", largest_numbers},
+        {"lost moves", moves_lost},
+        {"taps that jitter", jittering_taps},
+        {"clocks that jump", jumping_clocks},
+        {"noisy times", noisy_times},
     };
     return all;
 }

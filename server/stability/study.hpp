@@ -36,7 +36,7 @@ struct Study {
 };
 
 /// Why a study is not as it says, in a sentence; none where it is: the method is within the bound below its
-/// limit and not at the last point beyond it, what takes over is within the bound everywhere, and everything
+/// limit and not at the first point from there on, what takes over is within the bound everywhere, and everything
 /// is a number.
 std::optional<std::string> contradiction(const Study& study);
 
@@ -56,11 +56,32 @@ struct Topic {
 };
 const std::vector<Topic>& topics();
 
-// By file.
+// surfaces.cpp
 Study far_positions(const Laboratory& laboratory);
 Study deep_views(const Laboratory& laboratory);
-Study many_moves(const Laboratory& laboratory);
 Study crossing_panes(const Laboratory& laboratory);
 Study large_triangles(const Laboratory& laboratory);
+// materials.cpp
+Study many_mirrors(const Laboratory& laboratory);
+Study edge_on_mirrors(const Laboratory& laboratory);
+Study bent_mirrors(const Laboratory& laboratory);
+Study minified_textures(const Laboratory& laboratory);
+Study small_matrices(const Laboratory& laboratory);
+// moves.cpp
+Study many_moves(const Laboratory& laboratory);
+Study over_the_pole(const Laboratory& laboratory);
+Study through_the_focus(const Laboratory& laboratory);
+Study largest_numbers(const Laboratory& laboratory);
+// input.cpp
+Study moves_lost(const Laboratory& laboratory);
+Study jittering_taps(const Laboratory& laboratory);
+Study jumping_clocks(const Laboratory& laboratory);
+// picks.cpp
+Study slivers(const Laboratory& laboratory);
+// encoding.cpp
+Study thin_saturated_lines(const Laboratory& laboratory);
+Study dark_gradients(const Laboratory& laboratory);
+// levels.cpp
+Study noisy_times(const Laboratory& laboratory);
 
 }  // namespace vrut::stability

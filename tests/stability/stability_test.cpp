@@ -36,9 +36,11 @@ TEST_CASE("a study that is not as it says is told so") {
     CHECK(with([](Study& study) { study.method.points[0].y = 1.5; }) ==
           "'m' is 1.500000 at 1.000000, before its limit");
     CHECK(with([](Study& study) { study.method.points[1].y = 1; }) ==
-          "'m' is 1.000000 at 10.000000, beyond its limit, and has not failed");
+          "'m' is 1.000000 at 10.000000, and has not failed");
     CHECK(with([](Study& study) { study.successor->points[1].y = 2; }) ==
           "'s' is 2.000000 at 10.000000, and fails, too");
+    CHECK(with([](Study& study) { study.limit = 11; }) == "'m' is 2.000000 at 10.000000, before its limit");
+    CHECK(with([](Study& study) { study.method.points.pop_back(); }) == "'m' was not pushed so far");
     CHECK(with([](Study& study) { study.limit.reset(); }) ==
           "'m' is 2.000000 at 10.000000, before its limit");
 }
