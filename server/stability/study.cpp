@@ -64,6 +64,8 @@ const std::vector<Topic>& topics() {
         {"lost moves", moves_lost},
         {"taps that jitter", jittering_taps},
         {"clocks that jump", jumping_clocks},
+        {"bursts of moves", bursts_of_moves},
+        {"storms of resizes", storms_of_sizes},
         {"noisy times", noisy_times},
     };
     return all;

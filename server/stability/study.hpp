@@ -36,8 +36,8 @@ struct Study {
 };
 
 /// Why a study is not as it says, in a sentence; none where it is: the method is within the bound below its
-/// limit and not at the first point from there on, what takes over is within the bound everywhere, and everything
-/// is a number.
+/// limit and not at the first point from there on, what takes over is within the bound everywhere, and
+/// everything is a number.
 std::optional<std::string> contradiction(const Study& study);
 
 /// What studies are made with.
@@ -81,6 +81,9 @@ Study slivers(const Laboratory& laboratory);
 // encoding.cpp
 Study thin_saturated_lines(const Laboratory& laboratory);
 Study dark_gradients(const Laboratory& laboratory);
+// bursts.cpp
+Study bursts_of_moves(const Laboratory& laboratory);
+Study storms_of_sizes(const Laboratory& laboratory);
 // levels.cpp
 Study noisy_times(const Laboratory& laboratory);
 
