@@ -25,6 +25,8 @@ public:
     bool software() const;
     /// Largest width and height of a picture.
     int max_size() const;
+    /// That live now, in the whole process.
+    long gl_objects() const;
     std::vector<std::string> take_messages();
 
     /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks

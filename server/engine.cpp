@@ -50,7 +50,8 @@ PainterFactory gl_painter(std::optional<int> device) {
                        [renderer](const View& view, Image& image, FrameStats& stats,
                                   const std::function<bool()>& interrupted, Accumulation* kept) {
                            return renderer->render(view, image, stats, interrupted, kept);
-                       }};
+                       },
+                       [renderer] { return renderer->gl_objects(); }};
     };
 }
 
@@ -108,6 +109,7 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
 }
 
 void Engine::run(LoadedScene scene) {
+    heart_.beat();
     use(levels_of(scene.sha256, description_));
     PresentationOptions options;
     options.record_folder = record_folder_;
@@ -164,10 +166,14 @@ void Engine::fly() {
 // --- events
 
 void Engine::receive(std::optional<Clock::time_point> until) {
-    for (EngineEvent& event : mailbox_.wait(until)) {
+    heart_.rest();
+    std::vector<EngineEvent> events = mailbox_.wait(until);
+    heart_.beat();
+    for (EngineEvent& event : events) {
         const std::string client = client_of(event);
-        if (std::holds_alternative<ClientLeft>(event)) waiting_[client].clear();
+        if (std::holds_alternative<ClientLeft>(event)) taken_ -= std::exchange(waiting_[client], {}).size();
         waiting_[client].push_back(std::move(event));
+        ++taken_;
     }
 }
 
@@ -188,6 +194,7 @@ void Engine::handle_waiting() {
         last_handled_ = next->first;
         const EngineEvent event = std::move(next->second.front());
         next->second.pop_front();
+        --taken_;
         if (next->second.empty()) waiting_.erase(next);
         std::visit([&](const auto& what) { handle(what); }, event);
     }
@@ -378,10 +385,13 @@ void Engine::report() {
         output_.by = presentation_->changed_by();
         output_.by_since = presentation_->changed_by_since();
         stats_.made(document->revision(), now);
+        metrics_.scene_nodes = presentation_->state().scene.value->nodes;
+        metrics_.scene_triangles = presentation_->state().scene.value->triangles;
     }
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     output_.answers = presentation_->take_answers();
-    for (const Answer& answer : output_.answers) metrics_.messages_refused += !answer.refusal.empty();
+    for (const Answer& answer : output_.answers)
+        if (!answer.refusal.empty()) ++metrics_.errors[answer.code];
     if (const auto stats = stats_.take(now))
         output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));
     if (!output_.empty()) callbacks_.on_output(std::exchange(output_, {}));

@@ -56,6 +56,9 @@ PacingDecision Engine::pace() {
 /// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
 void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
     constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
+    if (sent.newest_input > measured_input_ && asked - *sent.newest_input < kAsleep)
+        metrics_.input_to_grant.observe(std::chrono::duration<double>(asked - *sent.newest_input).count());
+    measured_input_ = std::max(measured_input_, sent.newest_input.value_or(measured_input_));
     for (const Begun& begun : begun_)
         if (begun.frame == sent.frame && asked > begun.at && asked - begun.at < kAsleep) {
             const double all = std::chrono::duration<double, std::milli>(asked - begun.at).count();
@@ -67,8 +70,10 @@ void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
 bool Engine::paint(const View& view, Image& image, FrameStats& stats,
                    const std::function<bool()>& interrupted, Accumulation* kept) {
     const bool whole = painter_.paint(view, image, stats, interrupted, kept);
+    draws_ = draws_ || whole;
     metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
     metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
+    if (painter_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(painter_.gl_objects());
     return whole;
 }
 
@@ -144,6 +149,8 @@ void Engine::draw(const PacingDecision& decision) {
     }
     if (still) presentation_->remember(next_frame_++);
     ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
+    (still ? metrics_.render_still : metrics_.render_moving).observe(stats.render_ms / 1000);
+    metrics_.readback.observe(stats.readback_ms / 1000);
     stats_.drawn(quality, stats.render_ms, Clock::now());
     drawn_ = {header.frame, visible, view_size, decision.still_samples};
     header.timing.render_ms = stats.render_ms;

@@ -29,6 +29,7 @@ struct Server::Impl {
         listen();
         hub.access = options.access;
         hub.max_clients = options.max_clients;
+        hub.longest_silence = options.longest_silence;
         hub.metrics = &metrics;
         EngineCallbacks callbacks;
         callbacks.on_output = [this](EngineOutput output) {
