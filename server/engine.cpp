@@ -1,12 +1,11 @@
 #include "engine.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "codec.hpp"
 #include "level_store.hpp"
+#include "log.hpp"
 #include "renderer.hpp"
 
 namespace vrut {
@@ -44,8 +43,9 @@ std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a,
 PainterFactory gl_painter(std::optional<int> device) {
     return [device] {
         auto renderer = std::make_shared<Renderer>(device);
-        for (const std::string& sentence : renderer->rejected()) spdlog::warn("passed over {}", sentence);
-        spdlog::info("drawing on {}", renderer->description());
+        for (const std::string& sentence : renderer->rejected())
+            log_warning("device_passed_over", {{"reason", sentence}});
+        log_info("drawing", {{"renderer", renderer->description()}});
         return Painter{renderer->description(), renderer->software(), renderer->max_size(),
                        [renderer](const View& view, Image& image, FrameStats& stats,
                                   const std::function<bool()>& interrupted, Accumulation* kept) {
@@ -237,7 +237,7 @@ void Engine::was_delivered(std::int64_t frame) {
     try {
         detail_ = std::make_shared<const DetailLevels>(placed->scene);
     } catch (const std::exception& error) {  // no memory, or no thread
-        spdlog::warn("all triangles are drawn at all levels: {}", error.what());
+        log_warning("no_coarser_surfaces", {{"reason", error.what()}});
         scene_since_ = std::numeric_limits<std::int64_t>::max();  // it is not tried again for this scene
     }
 }
@@ -281,10 +281,11 @@ void Engine::handle(const SceneLoaded& loaded) {
         use(loaded.levels);
         last_change_ = Clock::now();
         told.done = true;
-        spdlog::info("{}: {} triangles", loaded.name, loaded.scene->placed->scene->triangle_count());
+        log_info("scene_shown",
+                 {{"scene", loaded.name}, {"triangles", loaded.scene->placed->scene->triangle_count()}});
     } else {
         told.refused = loaded.scene.error();
-        spdlog::warn("{}", loaded.scene.error());
+        log_warning("scene_refused", {{"scene", loaded.name}, {"reason", loaded.scene.error()}});
     }
     tell(told);
 }
@@ -391,7 +392,11 @@ void Engine::report() {
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     output_.answers = presentation_->take_answers();
     for (const Answer& answer : output_.answers)
-        if (!answer.refusal.empty()) ++metrics_.errors[answer.code];
+        if (!answer.refusal.empty()) {
+            ++metrics_.errors[answer.code];
+            log_debug("message_refused",
+                      {{"client", answer.client}, {"code", answer.code}, {"reason", answer.refusal}});
+        }
     if (const auto stats = stats_.take(now))
         output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));
     if (!output_.empty()) callbacks_.on_output(std::exchange(output_, {}));

@@ -1,4 +1,5 @@
 #include "engine.hpp"
+#include "log.hpp"
 
 // What it draws, and when.
 namespace vrut {
@@ -153,6 +154,13 @@ void Engine::draw(const PacingDecision& decision) {
     metrics_.readback.observe(stats.readback_ms / 1000);
     stats_.drawn(quality, stats.render_ms, Clock::now());
     drawn_ = {header.frame, visible, view_size, decision.still_samples};
+    log_debug("frame_drawn", {{"frame", header.frame},
+                              {"revision", header.revision},
+                              {"quality", still ? "still" : "moving"},
+                              {"width", size.width},
+                              {"height", size.height},
+                              {"samples", view.samples},
+                              {"ms", stats.render_ms}});
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
     if (!still)

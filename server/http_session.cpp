@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "codec.hpp"
+#include "log.hpp"
 #include "monitoring.hpp"
 #include "page_files.hpp"
 #include "session.hpp"
@@ -227,8 +228,10 @@ private:
         if (!hub_.access.accepts_host(host))
             return send(
                 refuse(request, http::status::forbidden, "this server is to be reached as localhost"));
-        if (!hub_.access.accepts_origin(view(request[http::field::origin]), host))
+        if (!hub_.access.accepts_origin(view(request[http::field::origin]), host)) {
+            log_info("origin_refused", {{"origin", view(request[http::field::origin])}, {"host", host}});
             return send(refuse(request, http::status::forbidden, "pages of this origin may not connect"));
+        }
         if (!speaks_our_subprotocol(request))
             return send(refuse(request, http::status::bad_request, "the subprotocol is vrut-preview.v1"));
         if (hub_.stopping || hub_.connections.size() >= 2 * hub_.max_clients)

@@ -1,10 +1,10 @@
 #include "recorder.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+
+#include "log.hpp"
 
 namespace vrut {
 
@@ -44,7 +44,7 @@ tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
     file_.close();
     file_.open(path_, std::ios::binary | std::ios::trunc);
     size_ = 0;
-    spdlog::info("recording to {}", path_.string());
+    log_info("recording_begun", {{"file", path_.string()}});
     return chosen;
 }
 
@@ -53,8 +53,9 @@ void Recorder::write(const std::string& line) {
     // Whole lines reach the file at once: a log whose end is missing is still a log.
     file_ << line << '\n' << std::flush;
     if (file_ && size_ < largest_) return;
-    spdlog::warn("recording to {} ends: {}", path_.string(),
-                 file_ ? "it has grown too large" : "it cannot be written any more");
+    log_warning("recording_ended",
+                {{"file", path_.string()},
+                 {"reason", file_ ? "it has grown too large" : "it cannot be written any more"}});
     close();
 }
 

@@ -3,12 +3,12 @@
 #include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <spdlog/spdlog.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "codec.hpp"
 #include "images.hpp"
+#include "log.hpp"
 
 namespace vrut {
 
@@ -196,7 +196,8 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
     if (!hub_.loads) loading_ = hub_.loading;  // is no news any more
     ++hub_.metrics->clients_joined;
     ++hub_.metrics->clients[name_of(*role)];
-    spdlog::info("client {} joined as {} from {}", client_, name_of(*role), peer_);
+    log_info("joined",
+             {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
     hub_.engine->mailbox().push(ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
@@ -212,6 +213,8 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
 
 void Session::refuse_and_close(const protocol::Error& error, close_code code) {
     ++hub_.metrics->errors[error.code];
+    log_info("refused",
+             {{"client", client_}, {"peer", peer_}, {"code", error.code}, {"reason", error.message}});
     if (!closing_) close_reason_ = reason_of(error, code);
     answer({client_, protocol::encode(error), 0, error.message});
     close(code, error.message);
@@ -315,6 +318,10 @@ void Session::send_frame() {
         hub_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
     }
     ++hub_.metrics->frames_sent;
+    log_debug("frame_sent", {{"client", client_},
+                             {"frame", last_frame_},
+                             {"bytes", picture_->file.size()},
+                             {"ms", header.timing.since_input_ms.value_or(0)}});
     send_picture(header);
 }
 
@@ -382,7 +389,6 @@ void Session::watch_progress() {
         if (std::exchange(self->acknowledged_, acknowledged) != acknowledged)
             self->progress_at_ = Clock::now();
         if (Clock::now() - self->progress_at_ < kStuck) return self->watch_progress();
-        spdlog::warn("client {} takes nothing and is cut off", self->client_);
         self->drop("stuck");
     });
 }
@@ -401,12 +407,13 @@ void Session::close(close_code code, const std::string& reason) {
 
 void Session::drop(const char* reason) {
     if (std::exchange(dropped_, true)) return;
-    ++hub_.metrics->closes[closing_ ? close_reason_ : reason];
+    reason = closing_ ? close_reason_ : reason;
+    ++hub_.metrics->closes[reason];
     hello_deadline_.cancel();
     write_watch_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
-    spdlog::info("client {} left", client_);
+    log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
     ++hub_.metrics->clients_left;
     --hub_.metrics->clients[name_of(role_)];
     hub_.engine->mailbox().push(ClientLeft{client_});

@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -11,6 +9,7 @@
 #include "commands.hpp"
 #include "experiments.hpp"
 #include "level_store.hpp"
+#include "log.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 #include "scene_library.hpp"
@@ -228,7 +227,7 @@ void calibrate_scene(const ChartArguments& arguments) {
     }
     table.scene = subject.sha256;
     print(table);
-    spdlog::info("kept in {}", store_levels(table).string());
+    log_info("levels_kept", {{"file", store_levels(table).string()}});
 }
 
 void make_folder(const fs::path& folder) {
