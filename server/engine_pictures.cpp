@@ -11,6 +11,22 @@ constexpr std::size_t kBegunRemembered = 16;
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
 
+/// A picture that was drawn, to who watches the server.
+void tell_of(const protocol::FrameHeader& drawn, Metrics& metrics, LiveStats& stats) {
+    const bool still = drawn.quality.level == protocol::Quality::Level::still;
+    ++(still ? metrics.frames_rendered_still : metrics.frames_rendered_moving);
+    (still ? metrics.render_still : metrics.render_moving).observe(drawn.timing.render_ms / 1000);
+    metrics.readback.observe(drawn.timing.readback_ms / 1000);
+    stats.drawn(drawn.quality, drawn.timing.render_ms, Clock::now());
+    log_debug("frame_drawn", {{"frame", drawn.frame},
+                              {"revision", drawn.revision},
+                              {"quality", still ? "still" : "moving"},
+                              {"width", drawn.width},
+                              {"height", drawn.height},
+                              {"samples", drawn.quality.samples},
+                              {"ms", drawn.timing.render_ms}});
+}
+
 }  // namespace
 
 bool Engine::shows_present() const {
@@ -149,20 +165,10 @@ void Engine::draw(const PacingDecision& decision) {
         return;
     }
     if (still) presentation_->remember(next_frame_++);
-    ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
-    (still ? metrics_.render_still : metrics_.render_moving).observe(stats.render_ms / 1000);
-    metrics_.readback.observe(stats.readback_ms / 1000);
-    stats_.drawn(quality, stats.render_ms, Clock::now());
     drawn_ = {header.frame, visible, view_size, decision.still_samples};
-    log_debug("frame_drawn", {{"frame", header.frame},
-                              {"revision", header.revision},
-                              {"quality", still ? "still" : "moving"},
-                              {"width", size.width},
-                              {"height", size.height},
-                              {"samples", view.samples},
-                              {"ms", stats.render_ms}});
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
+    tell_of(header, metrics_, stats_);
     if (!still)
         note({header.frame, level, static_cast<double>(size.width) * size.height,
               stats.render_ms + stats.readback_ms, begin});
