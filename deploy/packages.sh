@@ -23,7 +23,7 @@ RUN_PACKAGES=(
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
     doctest-dev nodejs:node npm:npm chromium:chromium firefox-esr:firefox-esr python3-websockets curl:curl gnuplot-nox:gnuplot
-    haproxy:haproxy openssl:openssl
+    haproxy:haproxy openssl:openssl bubblewrap:bwrap
     clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.
