@@ -25,6 +25,8 @@ test('systemd understands the unit, and scores it well', { skip: missing('system
   const said = output('systemd-analyze', ['security', '--offline=true', '--no-pager', UNIT]);
   const score = Number(/Overall exposure level.*: ([\d.]+)/.exec(said)[1]);
   assert.ok(score > 0 && score <= WORST_SCORE, said);
+  // Left out, standard error would go where standard output goes.
+  assert.deepEqual([settings('StandardOutput'), settings('StandardError')], [[['null']], [['journal']]]);
 });
 
 /** The system calls of a name, which may be a group's. */
