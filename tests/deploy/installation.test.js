@@ -26,7 +26,7 @@ test('what a server needs is installed, and nothing else', () => {
   const scenes = path.join(SOURCE, 'scenes');
   const expected = [
     'bin/vrut-preview', 'lib/systemd/system/vrut-preview.service',
-    ...['LICENSE', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
+    ...['LICENSE', 'README.md', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
     ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
     ...files(path.join(scenes, 'car/textures')).map((name) => `share/vrut-preview/scenes/car/textures/${name}`),
     ...files(path.join(scenes, 'teaching')).filter((name) => !name.endsWith('.py')).map((name) => `share/vrut-preview/scenes/teaching/${name}`),
