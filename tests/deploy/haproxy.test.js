@@ -44,6 +44,25 @@ function makeCertificate() {
   fs.writeFileSync(file('both.pem'), fs.readFileSync(file('certificate.pem')) + fs.readFileSync(file('key.pem'), 'utf8'));
 }
 
+/** In front of a server on loopback. */
+async function startProxy(serverPort) {
+  const [port, plainPort] = [await freePort(), await freePort()];
+  const name = file(`haproxy-${port}.cfg`);
+  fs.writeFileSync(name, configuration([
+    ['bind :80\n', `bind 127.0.0.1:${plainPort}\n`],
+    ['bind :443 ', `bind 127.0.0.1:${port} `],
+    ['/etc/haproxy/vrut-preview.pem', file('both.pem')],
+    ['server local 127.0.0.1:8080 ', `server local 127.0.0.1:${serverPort} `],
+    ['log /dev/log local0 info', 'log stdout format raw local0 info'],
+    ['    user haproxy\n    group haproxy\n    chroot /var/lib/haproxy\n', ''],
+    ['check inter 2s', 'check inter 200ms'],
+    [/^( +timeout [a-z-]+) (\d+)s$/gm, (_, timeout, seconds) => `${timeout} ${100 * seconds}ms`],
+  ]));
+  const haproxy = new Running('/usr/sbin/haproxy', ['-f', name]);
+  await eventually('the proxy', () => get(`https://localhost:${port}/healthz`).then(({ status }) => status === 200, () => false));
+  return { haproxy, port, plainPort, name };
+}
+
 /** @returns {Promise<{status: number, headers: object, text: string}>} */
 function get(url, { method = 'GET', headers = {} } = {}) {
   return new Promise((resolve, reject) => {
@@ -77,6 +96,7 @@ const refusedBecause = (options) => new Promise((resolve) => {
 describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, () => {
   let server;
   let haproxy;
+  let name;
   let port;
   let plainPort;
   const place = () => `localhost:${port}`;
@@ -86,21 +106,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     makeCertificate();
     server = new Running(VRUT_PREVIEW, ['serve', VRUT_CAR, '--listen', '127.0.0.1:0', '--token-file', tokenFile(folder)]);
     const [, own] = await server.printed(/listening on http:\/\/127\.0\.0\.1:(\d+)\//);
-    port = await freePort();
-    plainPort = await freePort();
-    const common = [
-      ['bind :80\n', `bind 127.0.0.1:${plainPort}\n`],
-      ['bind :443 ', `bind 127.0.0.1:${port} `],
-      ['/etc/haproxy/vrut-preview.pem', file('both.pem')],
-      ['server local 127.0.0.1:8080 ', `server local 127.0.0.1:${own} `],
-      ['log /dev/log local0 info', 'log stdout format raw local0 info'],
-      ['    user haproxy\n    group haproxy\n    chroot /var/lib/haproxy\n', ''],
-      ['check inter 2s', 'check inter 200ms'],
-    ];
-    const tenths = [/^( +timeout [a-z-]+) (\d+)s$/gm, (_, name, seconds) => `${name} ${100 * seconds}ms`];
-    fs.writeFileSync(file('haproxy.cfg'), configuration([...common, tenths]));
-    haproxy = new Running('/usr/sbin/haproxy', ['-f', file('haproxy.cfg')]);
-    await eventually('the proxy', () => get(`https://${place()}/healthz`).then(({ status }) => status === 200, () => false));
+    ({ haproxy, port, plainPort, name } = await startProxy(own));
   });
 
   after(() => {
@@ -109,7 +115,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
   });
 
   test('HAProxy has nothing to say against the configuration', () => {
-    const said = output('/usr/sbin/haproxy', ['-c', '-f', file('haproxy.cfg')]);
+    const said = output('/usr/sbin/haproxy', ['-c', '-f', name]);
     assert.doesNotMatch(said, /warning|alert/i);
   });
 
@@ -132,7 +138,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
   test('a WebSocket brings frames, and stays when nothing is said for longer than other connections may', async () => {
     const client = await Client.join(`wss://${place()}/ws`, TOKENS.control, { origin: `https://${place()}` });
     assert.ok((await client.frame()).includes(Buffer.from([0xff, 0xd8, 0xff])));
-    const timeouts = [...fs.readFileSync(file('haproxy.cfg'), 'utf8').matchAll(/timeout (?!tunnel)[a-z-]+ (\d+)ms/g)];
+    const timeouts = [...fs.readFileSync(name, 'utf8').matchAll(/timeout (?!tunnel)[a-z-]+ (\d+)ms/g)];
     const longest = Math.max(...timeouts.map(([, ms]) => Number(ms)));
     await new Promise((resolve) => setTimeout(resolve, longest + 500));
     await client.ask({ type: 'scenes' });
@@ -167,6 +173,23 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     assert.match(await exchange(port, `GET / HTTP/1.1\r\nHost: ${place()}\r\n`), /^HTTP\/1\.1 408 /);
   });
 
+  test('a handshake that comes byte by byte is cut, and so is a request', async () => {
+    const dribble = async (socket, byte) => {
+      const limit = Date.now() + 10_000;
+      const drops = setInterval(() => Date.now() < limit ? socket.write(byte) : socket.destroy(), 100);
+      let text = '';
+      socket.setEncoding('latin1').on('data', (data) => (text += data)).on('error', () => {});
+      await once(socket, 'close');
+      clearInterval(drops);
+      assert.ok(Date.now() < limit, 'it was not cut within 10 s');
+      return text;
+    };
+    const hello = net.connect(port, '127.0.0.1', () => hello.write(Buffer.from('1603010200010001fc0303', 'hex')));
+    await dribble(hello, 'x');
+    const request = tls.connect({ port, host: '127.0.0.1', rejectUnauthorized: false }, () => request.write('GET / HTTP/1.1\r\nX: '));
+    assert.match(await dribble(request, 'x'), /^HTTP\/1\.1 408 /);
+  });
+
   test('requests that are no good do not reach the server', async () => {
     const host = `Host: ${place()}\r\n`;
     const status = async (bytes) => Number(/^HTTP\/1\.1 (\d+) /.exec(await exchange(port, bytes))?.[1]);
@@ -179,6 +202,19 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     assert.equal(await status(`GET / HTTP/1.1\r\n${host}Big: ${'x'.repeat(20_000)}\r\n\r\n`), 400);
     assert.equal(await status(`POST / HTTP/1.1\r\n${host}Content-Length: 0\r\nConnection: close\r\n\r\n`), 405);
     assert.equal((await get(`https://${place()}/`)).status, 200);
+  });
+
+  test('what a client claims of where it comes from goes nowhere, its Host and Origin go on', async () => {
+    const echo = http.createServer((request, response) => response.end(JSON.stringify(request.headers))).listen(0, '127.0.0.1');
+    await once(echo, 'listening');
+    const proxy = await startProxy(echo.address().port);
+    const claims = { 'X-Forwarded-For': '10.0.0.1', 'X-Forwarded-Proto': 'http', 'X-Real-IP': '10.0.0.1', Forwarded: 'for=10.0.0.1', Via: 'me' };
+    const own = { host: 'cave.example', origin: 'https://cave.example' };
+    const { text } = await get(`https://localhost:${proxy.port}/`, { headers: { ...claims, ...own } });
+    assert.deepEqual(JSON.parse(text), own);
+    proxy.haproxy.child.kill('SIGKILL');
+    echo.closeAllConnections();
+    echo.close();
   });
 
   test('the page shows the scene in a browser', async (t) => {

@@ -13,7 +13,7 @@ const prefix = path.join(folder, 'moved');
 
 /** Files below a folder, by their paths in it. */
 const files = (top) => fs.readdirSync(top, { recursive: true, withFileTypes: true })
-  .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.path, entry.name))).sort();
+  .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.parentPath ?? entry.path, entry.name))).sort();
 
 before(() => {
   // As packages are made: installed as if into /usr, which lies somewhere else meanwhile.
@@ -34,7 +34,9 @@ test('what a server needs is installed, and nothing else', () => {
   assert.deepEqual(files(prefix), expected.sort());
 });
 
-test('nothing refers to where it was built', () => {
+const released = /^CMAKE_BUILD_TYPE:\w+=Release$/m.test(fs.readFileSync(path.join(VRUT_BUILD, 'CMakeCache.txt'), 'utf8'));
+
+test('nothing refers to where it was built', { skip: released ? false : 'what helps to find bugs does' }, () => {
   for (const name of files(prefix)) {
     const bytes = fs.readFileSync(path.join(prefix, name));
     for (const place of [SOURCE, VRUT_BUILD, folder]) assert.ok(!bytes.includes(place), `${name} names ${place}`);
