@@ -58,11 +58,10 @@ bool Access::accepts_host(std::string_view host) const {
 }
 
 bool Access::accepts_origin(std::string_view origin, std::string_view host) const {
-    if (origin.empty()) return true;
     if (std::find(allowed_origins.begin(), allowed_origins.end(), origin) != allowed_origins.end())
         return true;
     for (const std::string_view scheme : {"http://", "https://"})
-        if (origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
+        if (!host.empty() && origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
     return false;
 }
 

@@ -22,7 +22,8 @@ struct Access {
     /// Where no token is asked for, a page of another site could otherwise reach the server by a name of its
     /// own that leads to this machine: the request must name the loopback interface.
     bool accepts_host(std::string_view host) const;
-    /// `origin` as a browser sends it; empty where there is none.
+    /// `origin` as a browser sends it, in a request to `host`: the server's own, behind TLS or not, or
+    /// allowed.
     bool accepts_origin(std::string_view origin, std::string_view host) const;
 };
 

@@ -1,13 +1,16 @@
 #include "http_session.hpp"
 
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <charconv>
 #include <memory>
 #include <optional>
 
 #include "codec.hpp"
+#include "http_request.hpp"
+#include "http_response.hpp"
 #include "log.hpp"
 #include "monitoring.hpp"
 #include "page_files.hpp"
@@ -15,49 +18,23 @@
 
 namespace vrut {
 
+namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
 using namespace std::chrono_literals;
 
 namespace {
 
-using Request = http::request<http::string_body>;
-using Response = http::response<http::string_body>;
-
-constexpr auto kDeadline = 5s;  // for a request to come in, and for its answer to go out
-constexpr std::uint32_t kMaxHeader = 8 * 1024;
-constexpr std::uint64_t kMaxBody = 1024;
+constexpr auto kForEnd = 1s;  // for the peer to take the last answer and to close, too
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-std::string_view path_of(const Request& request) {
+std::string_view path_of(const HttpRequest& request) {
     const std::string_view target = view(request.target());
     return target.substr(0, target.find('?'));
 }
 
-Response make_response(const Request& request, http::status status, std::string_view content_type,
-                       std::string body) {
-    Response response(status, request.version());
-    response.set(http::field::content_type, beast::string_view(content_type.data(), content_type.size()));
-    response.set(http::field::cache_control, "no-cache");
-    response.set("X-Content-Type-Options", "nosniff");
-    response.set("Referrer-Policy", "no-referrer");
-    response.set(
-        "Content-Security-Policy",
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self'; "
-        "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");
-    response.keep_alive(request.keep_alive());
-    response.body() = std::move(body);
-    response.prepare_payload();
-    if (request.method() == http::verb::head) response.body().clear();  // its length stays said
-    return response;
-}
-
-Response refuse(const Request& request, http::status status, const std::string& sentence) {
-    return make_response(request, status, "text/plain; charset=utf-8", sentence + "\n");
-}
-
-bool has_token(const Request& request, const Hub& hub) {
+bool has_token(const HttpRequest& request, const Hub& hub) {
     constexpr std::string_view kScheme = "Bearer ";
     const std::string_view header = view(request[http::field::authorization]);
     const std::string_view token = header.starts_with(kScheme) ? header.substr(kScheme.size()) : "";
@@ -65,7 +42,7 @@ bool has_token(const Request& request, const Hub& hub) {
 }
 
 /// Subprotocols are a comma-separated list; a client that offers none gets version 1.
-bool speaks_our_subprotocol(const Request& request) {
+bool speaks_our_subprotocol(const HttpRequest& request) {
     if (request.find(http::field::sec_websocket_protocol) == request.end()) return true;
     std::string_view list = view(request[http::field::sec_websocket_protocol]);
     while (!list.empty()) {
@@ -80,7 +57,7 @@ bool speaks_our_subprotocol(const Request& request) {
 }
 
 /// A whole number of the query, 0 where it is not there; none where it is something else.
-std::optional<std::int64_t> query_number(const Request& request, std::string_view name) {
+std::optional<std::int64_t> query_number(const HttpRequest& request, std::string_view name) {
     std::string_view target = view(request.target());
     target.remove_prefix(std::min(target.find('?'), target.size()));
     while (!target.empty()) {
@@ -99,169 +76,231 @@ std::optional<std::int64_t> query_number(const Request& request, std::string_vie
     return 0;
 }
 
-Response respond(const Request& request, const Hub& hub) {
-    const std::string_view path = path_of(request);
-    if (!hub.access.accepts_host(view(request[http::field::host])))
-        return refuse(request, http::status::forbidden, "this server is to be reached as localhost");
-    if (request.method() != http::verb::get && request.method() != http::verb::head) {
-        Response response =
-            refuse(request, http::status::method_not_allowed, "only GET and HEAD are answered");
-        response.set(http::field::allow, "GET, HEAD");
-        return response;
+/// Why nothing at all is served to whoever sends this request.
+std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access& access) {
+    const std::string_view host = view(request[http::field::host]);
+    if (!access.accepts_host(host))
+        return refusal(http::status::forbidden, "this server is to be reached as localhost");
+    const auto origin = request.find(http::field::origin);
+    if (origin != request.end() && !access.accepts_origin(view(origin->value()), host)) {
+        log_info("origin_refused", {{"origin", view(origin->value())}, {"host", host}});
+        return refusal(http::status::forbidden, "pages of this origin are not served");
     }
+    return std::nullopt;
+}
+
+HttpResponse respond(const HttpRequest& request, const Hub& hub) {
+    const std::string_view path = path_of(request);
     for (const PageFile& file : page_files())
         if (path == file.path || (path == "/" && file.path == "/index.html"))
-            return make_response(request, http::status::ok, file.content_type, std::string(file.bytes));
-    const auto text = [&](const std::string& body) {
-        return make_response(request, http::status::ok, "text/plain; charset=utf-8", body);
-    };
-    const auto state = [&](const std::optional<std::string>& fault, const char* good) {
-        return fault ? refuse(request, http::status::service_unavailable, *fault) : text(good);
+            return {http::status::ok, file.content_type, std::make_shared<const std::string>(file.bytes)};
+    if (path == "/ws")
+        return refusal(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
+    const auto state = [](const std::optional<std::string>& fault, const char* good) {
+        return fault ? refusal(http::status::service_unavailable, *fault)
+                     : text_response(http::status::ok, good);
     };
     if (path == "/healthz") return state(why_unhealthy(hub), "ok\n");
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
-        if (!has_token(request, hub)) {
-            Response response = refuse(request, http::status::unauthorized, "this route asks for a token");
-            response.set(http::field::www_authenticate, "Bearer");
-            return response;
-        }
+        if (!has_token(request, hub))
+            return refusal(http::status::unauthorized, "this route asks for a token");
         if (path == "/protocol.schema.json")
-            return make_response(request, http::status::ok, "application/schema+json",
-                                 protocol::json_schema());
-        if (path == "/frame.jpg") return text({});  // the session's, who can wait for it
+            return {http::status::ok, "application/schema+json",
+                    std::make_shared<const std::string>(protocol::json_schema())};
+        if (path == "/frame.jpg") return {};  // the session's, who can wait for it
         if (path == "/readyz") return state(why_unready(hub), "ready\n");
-        return make_response(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
-                             metrics_text(hub));
+        return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
+                std::make_shared<const std::string>(metrics_text(hub))};
     }
-    return refuse(request, http::status::not_found, "there is nothing at this address");
+    return refusal(http::status::not_found, "there is nothing at this address");
 }
 
+/// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
+/// by another.
 class HttpSession : public std::enable_shared_from_this<HttpSession> {
 public:
-    HttpSession(boost::asio::ip::tcp::socket socket, Hub& hub) : stream_(std::move(socket)), hub_(hub) {}
+    HttpSession(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub)
+        : socket_(std::move(socket)),
+          place_(std::move(place)),
+          deadline_timer_(socket_.get_executor()),
+          hub_(hub) {}
 
-    void read() {
-        parser_.emplace();
-        parser_->header_limit(kMaxHeader);
-        parser_->body_limit(kMaxBody);
-        stream_.expires_after(kDeadline);
-        http::async_read(stream_, buffer_, *parser_,
-                         [self = shared_from_this()](beast::error_code error, std::size_t) {
-                             if (!error) return self->on_request();
-                             if (error.category() == make_error_code(http::error::bad_method).category())
-                                 self->on_bad_request(error);
-                         });
+    void start() {
+        beast::error_code ignored;
+        socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+        expire_after(hub_.deadlines.request);
+        watch();
+        read();
     }
 
 private:
-    void on_bad_request(beast::error_code error) {
-        if (error == http::error::end_of_stream || error == http::error::partial_message) return;
-        const http::status status = error == http::error::header_limit
-                                        ? http::status::request_header_fields_too_large
-                                    : error == http::error::body_limit ? http::status::payload_too_large
-                                                                       : http::status::bad_request;
-        Response response = refuse(Request{}, status, "the request cannot be read: " + error.message());
-        response.keep_alive(false);
-        send(std::move(response));
+    // --- reading
+
+    void next() {
+        if (!answer_buffered()) read();
     }
 
-    void on_request() {
-        Request request = parser_->release();
-        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request))
+    /// What came behind a request is looked at when that is answered.
+    bool answer_buffered() {
+        const auto bytes = incoming_.data();
+        auto read = read_request({static_cast<const char*>(bytes.data()), bytes.size()});
+        if (!read) return false;
+        if (*read) {
+            incoming_.consume((*read)->size);
+            on_request((*read)->request);
+        } else {
+            keep_alive_ = false;
+            host_.clear();
+            send(refusal(read->error().status, read->error().sentence));
+        }
+        return true;
+    }
+
+    void read() {
+        constexpr std::size_t kAtOnce = 2048;
+        const auto room = incoming_.prepare(std::min(kAtOnce, kMaxRequest - incoming_.size()));
+        socket_.async_read_some(room, [self = shared_from_this()](beast::error_code error, std::size_t size) {
+            if (error) return;
+            if (self->answered_ && self->incoming_.size() == 0)
+                self->expire_after(self->hub_.deadlines.request);
+            self->incoming_.commit(size);
+            self->next();
+        });
+    }
+
+    void on_request(const HttpRequest& request) {
+        keep_alive_ = request.keep_alive() && request.version() == 11;
+        head_only_ = request.method() == http::verb::head;
+        host_ = std::string(view(request[http::field::host]));
+        if (auto response = turned_away(request, hub_.access)) return send(*std::move(response));
+        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request) &&
+            view(request[http::field::sec_websocket_version]) == "13")
             return open_websocket(request);
-        Response response = respond(request, hub_);
-        if (path_of(request) == "/frame.jpg" && response.result() == http::status::ok)
-            return send_picture(std::move(request));
+        HttpResponse response = respond(request, hub_);
+        if (path_of(request) == "/frame.jpg" && response.status == http::status::ok)
+            return send_picture(request);
         send(std::move(response));
     }
 
-    /// The present view, in the size asked for or the view's own. Its ETag tells revision and size.
-    void send_picture(Request request) {
-        constexpr std::size_t kMostWaiting = 8;
+    /// The present view, in the size asked for or the view's own.
+    void send_picture(const HttpRequest& request) {
         const PictureLimits& limits = hub_.engine->limits();
         const auto width = query_number(request, "width"), height = query_number(request, "height");
         if (!width || !height || (*width == 0) != (*height == 0) || !fits(*width, *height, limits))
-            return send(refuse(request, http::status::bad_request,
-                               "'width' and 'height' must be given together, as numbers from 1, of at most " +
-                                   std::to_string(limits.max_pixels) + " pixels"));
-        const std::int64_t pixels_wide = *width > 0 ? *width : hub_.size.width;
-        const std::int64_t pixels_high = *height > 0 ? *height : hub_.size.height;
-        const auto tag = [width = pixels_wide, height = pixels_high](std::int64_t revision) {
-            return "\"" + std::to_string(revision) + "-" + std::to_string(width) + "x" +
-                   std::to_string(height) + "\"";
-        };
-        if (hub_.document && view(request[http::field::if_none_match]) == tag(hub_.document->revision())) {
-            Response response = make_response(request, http::status::not_modified, "image/jpeg", {});
-            response.set(http::field::etag, tag(hub_.document->revision()));
-            return send(std::move(response));
-        }
-        if (request.method() == http::verb::head) {
-            Response response = make_response(request, http::status::ok, "image/jpeg", {});
-            response.erase(http::field::content_length);
-            if (hub_.document) response.set(http::field::etag, tag(hub_.document->revision()));
-            return send(std::move(response));
-        }
-        if (hub_.picture_waiters.size() >= kMostWaiting) {
-            Response response =
-                refuse(request, http::status::service_unavailable, "too many pictures are being drawn");
-            response.set(http::field::retry_after, "1");
-            return send(std::move(response));
-        }
-        const std::string name = "picture " + std::to_string(hub_.next_picture++);
-        hub_.picture_waiters[name] = [self = shared_from_this(), request = std::move(request),
-                                      tag](const std::shared_ptr<const EncodedPicture>& picture) {
-            const std::vector<std::uint8_t> header = header_of_file(*picture, picture->header);
-            const auto& file = picture->file;
-            const auto cut = file.begin() + static_cast<std::ptrdiff_t>(picture->header_offset);
-            std::string body(file.begin(), cut);
-            body.append(header.begin(), header.end()).append(cut, file.end());
-            Response response = make_response(request, http::status::ok, "image/jpeg", std::move(body));
-            response.set(http::field::etag, tag(picture->header.revision));
-            self->send(std::move(response));
-        };
-        hub_.engine->mailbox().push(
-            PictureAsked{name, static_cast<int>(pixels_wide), static_cast<int>(pixels_high)});
-    }
-
-    void open_websocket(const Request& request) {
-        const std::string_view host = view(request[http::field::host]);
-        if (!hub_.access.accepts_host(host))
             return send(
-                refuse(request, http::status::forbidden, "this server is to be reached as localhost"));
-        if (!hub_.access.accepts_origin(view(request[http::field::origin]), host)) {
-            log_info("origin_refused", {{"origin", view(request[http::field::origin])}, {"host", host}});
-            return send(refuse(request, http::status::forbidden, "pages of this origin may not connect"));
-        }
+                refusal(http::status::bad_request,
+                        "'width' and 'height' must be given together, as numbers from 1, of at most " +
+                            std::to_string(limits.max_pixels) + " pixels"));
+        ViewPictureKey key{hub_.document ? hub_.document->revision() : 0, hub_.size, hub_.size};
+        if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
+        const std::string tag = hub_.pictures.tag(key);
+        if (hub_.document && names_tag(view(request[http::field::if_none_match]), tag))
+            return send({http::status::not_modified, "image/jpeg", nullptr, "ETag: " + tag + "\r\n"});
+        if (const ViewPicture* kept = hub_.pictures.find(key)) return send_file(*kept);
+        if (head_only_)
+            return send({http::status::ok, "image/jpeg", nullptr,
+                         hub_.document ? "ETag: " + tag + "\r\n" : std::string{}});
+        deadline_ = Clock::time_point::max();  // it takes as long as it takes
+        const bool asked = hub_.pictures.ask(
+            key, [self = shared_from_this()](const ViewPicture& picture) { self->send_file(picture); },
+            hub_.engine->mailbox());
+        if (!asked) send(refusal(http::status::service_unavailable, "too many pictures are being drawn"));
+    }
+
+    void send_file(const ViewPicture& picture) {
+        send({http::status::ok, "image/jpeg", picture.file,
+              "ETag: " + hub_.pictures.tag(picture.key) + "\r\n"});
+    }
+
+    void open_websocket(const HttpRequest& request) {
         if (!speaks_our_subprotocol(request))
-            return send(refuse(request, http::status::bad_request, "the subprotocol is vrut-preview.v1"));
-        if (hub_.stopping || hub_.connections.size() >= 2 * hub_.max_clients)
-            return send(refuse(request, http::status::service_unavailable, "there are too many connections"));
-        std::make_shared<Session>(std::move(stream_), hub_)->accept(request);
+            return send(refusal(http::status::bad_request, "the subprotocol is vrut-preview.v1"));
+        if (incoming_.size() > 0) {
+            keep_alive_ = false;
+            return send(
+                refusal(http::status::bad_request, "a handshake is answered before anything follows"));
+        }
+        if (hub_.stopping) return;
+        deadline_timer_.cancel();
+        std::make_shared<Session>(beast::tcp_stream(std::move(socket_)), std::move(place_), hub_)
+            ->accept(request);
     }
 
-    void send(Response response) {
-        response_ = std::move(response);
-        stream_.expires_after(kDeadline);
-        http::async_write(
-            stream_, response_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-                if (error) return;
-                if (self->response_.keep_alive() && !self->hub_.stopping) return self->read();
-                beast::error_code ignored;
-                self->stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
-            });
+    // --- writing
+
+    void send(HttpResponse response) {
+        keep_alive_ = keep_alive_ && !hub_.stopping;
+        head_ = head_of(response, host_, keep_alive_);
+        body_ = head_only_ ? nullptr : std::move(response.body);
+        head_only_ = false;
+        expire_after(hub_.deadlines.answer);
+        const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_),
+                                                        body_ ? asio::buffer(*body_) : asio::const_buffer()};
+        asio::async_write(socket_, buffers,
+                          [self = shared_from_this()](beast::error_code error, std::size_t) {
+                              self->body_.reset();
+                              if (error) return;
+                              self->expire_after(self->keep_alive_ ? self->hub_.deadlines.request : kForEnd);
+                              self->answered_ = true;
+                              if (self->keep_alive_) return self->next();
+                              beast::error_code ignored;
+                              self->socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+                              self->drain();
+                          });
     }
 
-    beast::tcp_stream stream_;
+    /// Closing with bytes unread would take the last answer away from the peer.
+    void drain() {
+        incoming_.clear();
+        socket_.async_read_some(incoming_.prepare(kMaxRequest),
+                                [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                    if (!error) self->drain();
+                                });
+    }
+
+    // --- deadlines
+
+    void expire_after(Clock::duration time) { deadline_ = Clock::now() + time; }
+
+    /// Looks after the deadline when one that was set earlier would have passed: setting one costs nothing.
+    void watch() {
+        deadline_timer_.expires_at(std::min(deadline_, Clock::now() + kForEnd));
+        deadline_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+            const auto self = weak.lock();
+            if (stopped || !self) return;
+            if (Clock::now() < self->deadline_) return self->watch();
+            beast::error_code ignored;
+            self->socket_.close(ignored);
+        });
+    }
+
+    asio::ip::tcp::socket socket_;
+    ConnectionLimit::Place place_;
+    asio::steady_timer deadline_timer_;
+    Clock::time_point deadline_;
     Hub& hub_;
-    beast::flat_buffer buffer_{kMaxHeader + kMaxBody};
-    std::optional<http::request_parser<http::string_body>> parser_;
-    Response response_;
+    beast::flat_buffer incoming_{kMaxRequest};
+    bool keep_alive_ = false, head_only_ = false, answered_ = false;
+    std::string host_, head_;
+    std::shared_ptr<const std::string> body_;
 };
 
 }  // namespace
 
-void serve_http(boost::asio::ip::tcp::socket socket, Hub& hub) {
-    std::make_shared<HttpSession>(std::move(socket), hub)->read();
+void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub) {
+    std::make_shared<HttpSession>(std::move(socket), std::move(place), hub)->start();
+}
+
+void turn_away(asio::ip::tcp::socket socket) {
+    const HttpResponse response =
+        refusal(http::status::service_unavailable, "there are too many connections");
+    const std::string text = head_of(response, {}, false) + *response.body;
+    beast::error_code ignored;  // what fits at once has to do
+    socket.non_blocking(true, ignored);
+    socket.write_some(asio::buffer(text), ignored);
+    socket.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    std::array<char, kMaxRequest> unread{};  // or closing would take the answer away
+    socket.read_some(asio::buffer(unread), ignored);
 }
 
 }  // namespace vrut

@@ -1,25 +1,43 @@
 #pragma once
 
-#include <functional>
+#include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
 #include "access.hpp"
+#include "connection_limit.hpp"
 #include "engine.hpp"
 #include "metrics.hpp"
 #include "state.hpp"
+#include "view_pictures.hpp"
 
 namespace vrut {
 
 class Session;
+
+/// How long a peer may take; who takes longer is cut.
+struct Deadlines {
+    using Time = std::chrono::milliseconds;
+    Time request{
+        4'500};  ///< HTTP: from the connection's begin or its first byte to its last; over within 5 s
+    Time answer{10'000};   ///< HTTP: to be taken
+    Time hello{5'000};     ///< from the handshake to the end of `hello`
+    Time message{10'000};  ///< from a message's first bytes to its last
+    Time stuck{10'000};    ///< with something to take, and nothing taken
+    Time ping{20'000};     ///< silence, after which a ping asks for an answer
+    Time silence{60'000};  ///< silence in all, when everything sent has arrived
+};
 
 /// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
 struct Hub {
     Access access;
     std::size_t max_clients = 64;
     std::chrono::milliseconds longest_silence{30'000};  ///< of a loop that has something to do
+    Deadlines deadlines;
+    std::optional<ConnectionLimit> limit;  ///< of connections of any kind
     Metrics* metrics = nullptr;
     Engine* engine = nullptr;
     std::shared_ptr<const protocol::StateDocument> document;
@@ -29,9 +47,7 @@ struct Hub {
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
     bool loads = false;                                 ///< a scene is being loaded
     PictureSize size;                                   ///< of a picture of the view
-    /// Who asked for a picture without being a client, and waits, by the picture's `client`.
-    std::map<std::string, std::function<void(std::shared_ptr<const EncodedPicture>)>> picture_waiters;
-    std::int64_t next_picture = 1;
+    ViewPictures pictures;
     std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
     std::set<Session*> connections;                            ///< those, and those that did not yet
     std::int64_t next_client = 1;

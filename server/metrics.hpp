@@ -52,9 +52,11 @@ private:
 inline constexpr std::array kRoles{"control", "view", "host"};
 /// Why WebSocket connections ended: the client said goodbye; the handshake failed; no `hello` or more than
 /// one; its token was wrong; too many clients; a message that was too large, or binary, or no WebSocket
-/// frame; it took nothing for 10 s; the server shut down; the connection was lost.
-inline constexpr std::array kCloseReasons{"normal", "handshake", "hello", "token",    "too-many", "too-large",
-                                          "binary", "protocol",  "stuck", "shutdown", "gone"};
+/// frame; it took nothing for 10 s; it was silent for 60 s; a message came too slowly; the server shut down;
+/// the connection was lost.
+inline constexpr std::array kCloseReasons{"normal",    "handshake", "hello",    "token", "too-many",
+                                          "too-large", "binary",    "protocol", "stuck", "silent",
+                                          "slow",      "shutdown",  "gone"};
 
 /// What the server did since it started, and what is so now. Written by the thread that does it, read by any.
 struct Metrics {

@@ -8,6 +8,7 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "descriptors.hpp"
 #include "http_session.hpp"
 #include "log.hpp"
 #include "session.hpp"
@@ -26,9 +27,11 @@ struct Server::Impl {
           signals(context),
           deadline(context) {
         listen();
+        limit_connections();
         hub.access = options.access;
         hub.max_clients = options.max_clients;
         hub.longest_silence = options.longest_silence;
+        hub.deadlines = options.deadlines;
         hub.metrics = &metrics;
         EngineCallbacks callbacks;
         callbacks.on_output = [this](EngineOutput output) {
@@ -50,7 +53,7 @@ struct Server::Impl {
 
     ~Impl() {
         hub.newest.reset();
-        hub.picture_waiters.clear();
+        hub.pictures.stop();
         hub.sessions.clear();
     }
 
@@ -67,11 +70,21 @@ struct Server::Impl {
                                      "; choose another with --listen ADDR:PORT");
     }
 
+    /// A page comes with several connections, and some are only half made: more than there may be clients.
+    /// Beyond loopback, one address may not take them all; on loopback the clients of a proxy share one.
+    void limit_connections() {
+        constexpr std::size_t kOfOne = 64, kOthers = 1024, kForEachClient = 4, kFiles = 64;
+        const std::size_t most = kOthers + kForEachClient * options.max_clients;
+        hub.limit.emplace(
+            most, is_loopback(options.listen.host) ? most : kOfOne + kForEachClient * options.max_clients);
+        allow_descriptors(most + kFiles);
+    }
+
     void accept() {
         acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
             if (hub.stopping) return;
             if (!error) {
-                serve_http(std::move(socket), hub);
+                admit(std::move(socket));
                 return accept();
             }
             // Out of descriptors, say: trying again at once would spin.
@@ -81,6 +94,16 @@ struct Server::Impl {
                 if (!stopped) accept();
             });
         });
+    }
+
+    void admit(tcp::socket socket) {
+        boost::system::error_code gone;
+        const tcp::endpoint peer = socket.remote_endpoint(gone);
+        if (gone) return;
+        if (auto place = hub.limit->enter(peer.address()))
+            serve_http(std::move(socket), *std::move(place), hub);
+        else
+            turn_away(std::move(socket));
     }
 
     // --- what the engine says, on the net thread
@@ -95,6 +118,7 @@ struct Server::Impl {
             hub.document = std::move(output.document);
             hub.document_by = std::move(output.by);
             hub.document_by_since = output.by_since;
+            hub.pictures.forget_before(hub.document->revision());
         }
         if (output.stats) hub.stats = std::move(output.stats);
         if (output.loading) {
@@ -119,14 +143,8 @@ struct Server::Impl {
     }
 
     void take_ordered(std::shared_ptr<const EncodedPicture> picture) {
-        const std::string client = picture->client;
-        if (const auto waiter = hub.picture_waiters.find(client); waiter != hub.picture_waiters.end()) {
-            const auto tell = std::move(waiter->second);
-            hub.picture_waiters.erase(waiter);
-            tell(std::move(picture));
-        } else if (Session* session = find(client)) {
-            session->take_snapshot(std::move(picture));
-        }
+        if (hub.pictures.take(*picture)) return;
+        if (Session* session = find(picture->client)) session->take_snapshot(std::move(picture));
     }
 
     template <class Function>

@@ -7,6 +7,7 @@
 #include "access.hpp"
 #include "addresses.hpp"
 #include "engine.hpp"
+#include "hub.hpp"
 #include "metrics.hpp"
 
 namespace vrut {
@@ -15,6 +16,7 @@ struct ServerOptions {
     ListenAddress listen{"127.0.0.1", 8080};
     Access access;
     std::size_t max_clients = 64;
+    Deadlines deadlines{};
     SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
     /// A thread that has something to do and does not come round for longer is not alive.

@@ -1,14 +1,13 @@
 #include "session.hpp"
 
-#include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "codec.hpp"
 #include "images.hpp"
 #include "log.hpp"
+#include "utf8.hpp"
 
 namespace vrut {
 
@@ -19,28 +18,15 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kHelloDeadline = 5s;
-constexpr auto kStuck = 10s;  // a connection that takes nothing for so long is cut
+constexpr auto kGoodbye = 3s;               // for the peer to answer a close
+constexpr int kMessagesPerSecond = 10'000;  // of one client; who sends more is read more slowly
 // Who has sent so much that is not handled, or has not taken so much of its answers, is not read until that
 // is done.
 constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers = 1 << 18;
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
-constexpr std::size_t kMaxRead = 1 << 20;
+constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
-
-/// Bytes that the peer has acknowledged since the connection began.
-std::uint64_t bytes_acknowledged(int socket) {
-    // tcpi_bytes_acked: the C library's struct tcp_info ends before this member, the kernel's goes on.
-    constexpr std::size_t kBytesAckedAt = 120;
-    std::array<std::uint8_t, 256> raw{};
-    socklen_t size = raw.size();
-    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) != 0 || size < kBytesAckedAt + 8)
-        return 0;
-    std::uint64_t bytes = 0;
-    std::memcpy(&bytes, raw.data() + kBytesAckedAt, sizeof bytes);
-    return bytes;
-}
 
 /// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
 /// s.
@@ -63,29 +49,29 @@ const char* reason_of(const protocol::Error& error, close_code code) {
     if (error.code == protocol::error_code::not_allowed) return "token";
     if (code == close_code::try_again_later) return "too-many";
     if (code == close_code::too_big) return "too-large";
+    if (code == close_code::bad_payload) return "protocol";
     return code == close_code::unknown_data ? "binary" : "hello";
-}
-
-/// Bytes that were handed over and that the peer has not acknowledged.
-int bytes_unacknowledged(int socket) {
-    int bytes = 0;
-    return ::ioctl(socket, SIOCOUTQ, &bytes) == 0 ? bytes : 0;
 }
 
 }  // namespace
 
-Session::Session(beast::tcp_stream stream, Hub& hub)
+Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub)
     : socket_(std::move(stream)),
       hub_(hub),
       hello_deadline_(socket_.get_executor()),
-      write_watch_(socket_.get_executor()) {
+      watch_(socket_.get_executor()),
+      rate_timer_(socket_.get_executor()),
+      place_(std::move(place)),
+      progress_at_(Clock::now()),
+      rate_(kMessagesPerSecond),
+      heard_at_(progress_at_) {
     hub_.connections.insert(this);
     ++hub_.metrics->connections_opened;
 }
 
 Session::~Session() { hub_.connections.erase(this); }
 
-void Session::accept(const beast::http::request<beast::http::string_body>& request) {
+void Session::accept(const HttpRequest& request) {
     beast::tcp_stream& stream = beast::get_lowest_layer(socket_);
     stream.expires_never();  // from here on the WebSocket's own deadlines hold
     beast::error_code ignored;
@@ -95,9 +81,9 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
     peer_ = endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
 
     websocket::stream_base::timeout deadlines{};
-    deadlines.handshake_timeout = 5s;
+    deadlines.handshake_timeout = kGoodbye;
     // Beast's own deadline counts what is read only: it would cut a slow reader, whose pings wait behind a
-    // frame.
+    // frame. See look_after().
     deadlines.idle_timeout = websocket::stream_base::none();
     deadlines.keep_alive_pings = false;
     find_dead_peers(stream.socket().native_handle());
@@ -111,7 +97,7 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
 
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
         if (error) return self->drop("handshake");
-        self->hello_deadline_.expires_after(kHelloDeadline);
+        self->hello_deadline_.expires_after(self->hub_.deadlines.hello);
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
             const auto session = weak.lock();
             if (!stopped && session)
@@ -119,6 +105,7 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
                     {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
                     close_code::policy_error);
         });
+        self->watch();
         self->read();
     });
 }
@@ -126,38 +113,70 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
 // --- reading
 
 void Session::read() {
-    if (reading_ || dropped_ || closing_) return;
-    if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
-        answer_bytes_ >= kMaxAnswers)
-        return;
-    reading_ = true;
-    socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
-        self->reading_ = false;
-        if (error) return self->drop(reason_of(error));
-        if (!self->closing_) {
-            ++self->hub_.metrics->messages_received;
-            self->hub_.metrics->bytes_received += self->incoming_.size();
-            if (self->socket_.got_text()) {
-                const auto data = self->incoming_.data();
-                self->on_text({static_cast<const char*>(data.data()), data.size()});
-            } else {
-                self->refuse_and_close(
-                    {{}, protocol::error_code::bad_message, "clients send no binary messages"},
-                    close_code::unknown_data);
-            }
-            self->incoming_.consume(self->incoming_.size());
-        }
-        self->read();
-    });
+    if (reading_ || dropped_ || closing_ || (!begun_ && must_wait())) return;
+    receive();
 }
 
-void Session::on_text(std::string_view text) {
-    if (text.size() > protocol::kMaxMessageBytes)
-        return refuse_and_close(
+/// Before the next message.
+bool Session::must_wait() {
+    if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
+        answer_bytes_ >= kMaxAnswers)
+        return true;
+    const Clock::duration wait = rate_.wait(Clock::now());
+    if (throttled_ || wait <= 0s) return throttled_;
+    throttled_ = true;
+    rate_timer_.expires_after(wait + 10ms);  // a hundred messages, and no timer for each
+    rate_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self) return;
+        self->throttled_ = false;
+        self->read();
+    });
+    return true;
+}
+
+void Session::receive() {
+    reading_ = true;
+    socket_.async_read_some(incoming_, kReadAtOnce,
+                            [self = shared_from_this()](beast::error_code error, std::size_t size) {
+                                self->reading_ = false;
+                                if (error) return self->drop(reason_of(error));
+                                if (!self->closing_) self->on_received(size);
+                                self->read();
+                            });
+}
+
+void Session::on_received(std::size_t size) {
+    if (!begun_) begun_ = Clock::now();
+    message_size_ += size;
+    hub_.metrics->bytes_received += size;
+    if (message_size_ > protocol::kMaxMessageBytes) incoming_.clear();
+    if (!socket_.is_message_done()) return;
+    ++hub_.metrics->messages_received;
+    rate_.spend(Clock::now());
+    begun_.reset();
+    const bool too_large = std::exchange(message_size_, 0) > protocol::kMaxMessageBytes;
+    const auto data = incoming_.data();
+    const std::string_view text{static_cast<const char*>(data.data()), data.size()};
+    if (!socket_.got_text())
+        refuse_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
+                         close_code::unknown_data);
+    else if (too_large)
+        refuse_and_close(
             {{},
              protocol::error_code::bad_message,
              "the message is longer than " + std::to_string(protocol::kMaxMessageBytes) + " bytes"},
             close_code::too_big);
+    else if (find_invalid_utf8(text) !=
+             std::string_view::npos)  // Beast overlooks it where an empty fragment ends it
+        refuse_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
+                         close_code::bad_payload);
+    else
+        on_text(text);
+    incoming_.clear();
+}
+
+void Session::on_text(std::string_view text) {
     auto message = protocol::decode(text);
     const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
     if (client_.empty() && !hello) {
@@ -206,7 +225,7 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
     welcome.client = client_;
     welcome.role = *role;
     welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
-    welcome.limits.messages_per_second = 10'000;
+    welcome.limits.messages_per_second = kMessagesPerSecond;
     welcome.limits.max_server_message = std::size_t{64} << 20;
     answer({client_, protocol::encode(welcome), 0});
 }
@@ -355,11 +374,6 @@ template <class Buffers>
 void Session::write(const Buffers& buffers) {
     writing_ = true;
     hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
-    if (!watching_) {
-        watching_ = true;
-        progress_at_ = Clock::now();
-        watch_progress();
-    }
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->on_written(error);
     });
@@ -371,26 +385,6 @@ void Session::on_written(beast::error_code error) {
     if (error) return drop("gone");
     pump();
     read();
-}
-
-/// Cuts the connection when the peer has something to take and has acknowledged nothing for kStuck. Runs only
-/// while there is something.
-void Session::watch_progress() {
-    write_watch_.expires_after(1s);
-    write_watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
-        const auto self = weak.lock();
-        if (stopped || !self || self->dropped_) return;
-        const int socket = beast::get_lowest_layer(self->socket_).socket().native_handle();
-        if (!self->writing_ && bytes_unacknowledged(socket) == 0) {
-            self->watching_ = false;
-            return;
-        }
-        const std::uint64_t acknowledged = bytes_acknowledged(socket);
-        if (std::exchange(self->acknowledged_, acknowledged) != acknowledged)
-            self->progress_at_ = Clock::now();
-        if (Clock::now() - self->progress_at_ < kStuck) return self->watch_progress();
-        self->drop("stuck");
-    });
 }
 
 // --- the end
@@ -410,7 +404,8 @@ void Session::drop(const char* reason) {
     reason = closing_ ? close_reason_ : reason;
     ++hub_.metrics->closes[reason];
     hello_deadline_.cancel();
-    write_watch_.cancel();
+    watch_.cancel();
+    rate_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
     log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});

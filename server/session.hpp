@@ -4,14 +4,15 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "http_request.hpp"
 #include "hub.hpp"
+#include "rate_limit.hpp"
 
 namespace vrut {
 
@@ -20,13 +21,13 @@ namespace vrut {
 /// newest. Only answers queue, and who does not take them is not read.
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    Session(boost::beast::tcp_stream stream, Hub& hub);
+    Session(boost::beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub);
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
 
     /// Completes the handshake that `request` asks for.
-    void accept(const boost::beast::http::request<boost::beast::http::string_body>& request);
+    void accept(const HttpRequest& request);
 
     // What the engine says.
     void answer(Answer answer);
@@ -43,6 +44,9 @@ public:
 
 private:
     void read();
+    void receive();
+    void on_received(std::size_t size);
+    bool must_wait();
     void on_text(std::string_view text);
     void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
     void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
@@ -57,13 +61,15 @@ private:
     template <class Buffers>
     void write(const Buffers& buffers);
     void on_written(boost::beast::error_code error);
-    void watch_progress();
+    void watch();
+    void look_after(Clock::time_point now);
     void drop(const char* reason);
 
-    boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+    boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
-    boost::asio::steady_timer hello_deadline_, write_watch_;
+    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_;
+    ConnectionLimit::Place place_;
     std::string client_;  // empty before hello
     protocol::Role role_ = protocol::Role::view;
     std::string peer_;
@@ -86,14 +92,19 @@ private:
     std::string text_;
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const EncodedPicture> picture_;
-    bool watching_ = false;
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
-    Clock::time_point progress_at_;   // when it last saw more of them
+    Clock::time_point progress_at_;   // when it last saw more of them, or nothing to acknowledge
     std::optional<boost::beast::websocket::close_reason> closing_;
 
     // --- what has come and is not handled yet
     std::size_t unhandled_bytes_ = 0, unhandled_requests_ = 0;
-    bool reading_ = false;
+    bool reading_ = false, throttled_ = false, pinging_ = false;
+    std::optional<Clock::time_point> begun_;  // a message that is not all there
+    std::size_t message_size_ = 0;            // of it so far
+    RateLimit rate_;
+    std::uint64_t received_ = 0;  // bytes, at the watch's last look
+    Clock::time_point heard_at_;  // when it last saw more of them, or did not read
+    Clock::time_point pinged_at_;
 };
 
 }  // namespace vrut

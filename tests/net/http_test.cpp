@@ -11,6 +11,8 @@ TEST_CASE("the page and its files are served, and nothing else") {
     CHECK(page.status == 200);
     CHECK(page.body.find("main.js") != std::string::npos);
     CHECK(page.headers.find("Content-Security-Policy: default-src 'none'") != std::string::npos);
+    CHECK(page.headers.find("; connect-src 'self' ws://127.0.0.1 wss://127.0.0.1\r\n") != std::string::npos);
+    CHECK(page.headers.find("\r\nCross-Origin-Resource-Policy: same-origin\r\n") != std::string::npos);
     CHECK(page.headers.find("; manifest-src 'self'; ") != std::string::npos);
     CHECK(http(server.port(), "GET", "/main.js").headers.find("text/javascript") != std::string::npos);
     CHECK(http(server.port(), "GET", "/style.css?x=1").status == 200);
@@ -52,7 +54,7 @@ TEST_CASE("where tokens are set, counters ask for one and the page does not") {
 TEST_CASE("a name of another site's that leads here is refused") {
     TestServer server;
     CHECK(http(server.port(), "GET", "/", "Host: evil.example\r\n").status == 403);
-    CHECK(http(server.port(), "GET", "/", "").status == 403);
+    CHECK(http(server.port(), "GET", "/", "").status == 400);
     for (const std::string name : {"evil.example", "127.evil.example"}) {
         CHECK(http(server.port(), "GET", "/", "Host: " + name + "\r\n").status == 403);
         CHECK(TestClient(server.port(), {.origin = "http://" + name, .host = name}).status() == 403);

@@ -1,0 +1,87 @@
+#include "view_pictures.hpp"
+
+#include <algorithm>
+
+namespace vrut {
+
+namespace {
+
+std::string whole_file(const EncodedPicture& picture) {
+    const std::vector<std::uint8_t> header = header_of_file(picture, picture.header);
+    const auto cut = picture.file.begin() + static_cast<std::ptrdiff_t>(picture.header_offset);
+    std::string file;
+    file.reserve(picture.file.size() + header.size());
+    file.append(picture.file.begin(), cut).append(header.begin(), header.end());
+    return file.append(cut, picture.file.end());
+}
+
+}  // namespace
+
+std::string ViewPictures::tag(const ViewPictureKey& key) const {
+    const auto text = [](PictureSize size) {
+        return std::to_string(size.width) + "x" + std::to_string(size.height);
+    };
+    return "\"" + run_ + "-" + std::to_string(key.revision) + "-" + text(key.size) + "-" + text(key.view) +
+           "\"";
+}
+
+const ViewPicture* ViewPictures::find(const ViewPictureKey& key) const {
+    const auto found = std::find_if(kept_.begin(), kept_.end(),
+                                    [&](const ViewPicture& picture) { return picture.key == key; });
+    return found == kept_.end() ? nullptr : &*found;
+}
+
+bool ViewPictures::ask(const ViewPictureKey& key, Tell tell, Mailbox& mailbox) {
+    for (auto& [name, drawing] : waiting_)
+        if (drawing.key == key) {
+            drawing.waiting.push_back(std::move(tell));
+            return true;
+        }
+    if (waiting_.size() >= kMostWaiting) return false;
+    const std::string name = "picture " + std::to_string(next_++);
+    waiting_[name] = {key, {std::move(tell)}};
+    mailbox.push(PictureAsked{name, key.size.width, key.size.height});
+    return true;
+}
+
+bool ViewPictures::take(const EncodedPicture& picture) {
+    auto drawing = waiting_.extract(picture.client);
+    if (!drawing) return false;
+    ViewPictureKey key = drawing.mapped().key;
+    key.revision = picture.header.revision;
+    const ViewPicture taken{key, std::make_shared<const std::string>(whole_file(picture))};
+    keep(taken);
+    for (const Tell& tell : drawing.mapped().waiting) tell(taken);
+    return true;
+}
+
+void ViewPictures::forget_before(std::int64_t revision) {
+    std::erase_if(kept_, [&](const ViewPicture& picture) { return picture.key.revision < revision; });
+}
+
+void ViewPictures::keep(const ViewPicture& picture) {
+    kept_.push_back(picture);
+    const auto bytes = [&] {
+        std::size_t sum = 0;
+        for (const ViewPicture& each : kept_) sum += each.file->size();
+        return sum;
+    };
+    while (kept_.size() > kMostKept || (!kept_.empty() && bytes() > kMostKeptBytes))
+        kept_.erase(kept_.begin());
+}
+
+bool names_tag(std::string_view if_none_match, std::string_view tag) {
+    std::string_view list = if_none_match;
+    while (!list.empty()) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        std::string_view each = list.substr(0, comma);
+        while (each.starts_with(' ') || each.starts_with('\t')) each.remove_prefix(1);
+        while (each.ends_with(' ') || each.ends_with('\t')) each.remove_suffix(1);
+        if (each.starts_with("W/")) each.remove_prefix(2);
+        if (each == tag || each == "*") return true;
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    return false;
+}
+
+}  // namespace vrut

@@ -1,0 +1,154 @@
+// How long a peer may take, and how much: shorter deadlines than the server's own, or these would take
+// minutes.
+#include <doctest/doctest.h>
+
+#include <atomic>
+
+#include "descriptors.hpp"
+#include "raw_websocket.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+using std::chrono::steady_clock;
+
+namespace {
+
+ServerOptions with(const Deadlines& deadlines) {
+    ServerOptions options;
+    options.deadlines = deadlines;
+    return options;
+}
+
+/// Sends byte after byte until the server has had enough; how long that took.
+steady_clock::duration trickle(RawConnection& connection, const std::string& bytes) {
+    const auto start = steady_clock::now();
+    for (const char byte : bytes) {
+        connection.send({&byte, 1});
+        if (connection.ended(50ms)) break;
+    }
+    CHECK(connection.ended(10s));
+    return steady_clock::now() - start;
+}
+
+const std::string kGet = "GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n";
+
+}  // namespace
+
+TEST_CASE("a request that trickles in is cut, and the next on its connection as well") {
+    TestServer server({}, with({.request = 1s}));
+    RawConnection slow(server.port());
+    const auto took = trickle(slow, kGet + "X: " + std::string(1000, 'x'));
+    CHECK(took > 500ms);
+    CHECK(took < 10s);
+    RawConnection second(server.port());
+    second.send(kGet + "\r\n");
+    CHECK(second.answer().status == 200);
+    CHECK(trickle(second, kGet + "X: " + std::string(1000, 'x')) < 10s);
+    RawConnection idle(server.port());
+    CHECK(idle.ended(10s));
+    CHECK(http(server.port(), "GET", "/healthz").status == 200);
+}
+
+TEST_CASE("a hello that trickles in is cut like one that does not come") {
+    TestServer server({}, with({.hello = 1s}));
+    for (const bool trickles : {true, false}) {
+        RawWebSocket client(server.port());
+        REQUIRE(client.handshake.status == 101);
+        const std::string hello = frame(kFinal | kText, R"({"type":"hello","role":"view"})");
+        client.connection.send(trickles ? hello.substr(0, hello.size() / 2) : "");
+        const auto error = client.receive();
+        REQUIRE(error.has_value());
+        CHECK(Json::parse(error->payload)["type"] == "error");
+        const auto close = client.receive();
+        REQUIRE(close.has_value());
+        CHECK(close->payload.substr(0, 2) == big_endian(1008, 2));
+        CHECK(trickle(client.connection, hello.substr(hello.size() / 2) + std::string(1000, 'x')) < 15s);
+    }
+}
+
+TEST_CASE(
+    "a message that does not come to its end ends the connection, one that only takes its time does not") {
+    TestServer server({}, with({.message = 2s}));
+    RawWebSocket client(server.port()), patient(server.port());
+    client.join();
+    patient.join();
+    client.connection.send(frame(kFinal | kText, std::string(100, ' ')).substr(0, 50));
+    const std::string whole = frame(kFinal | kText, R"({"type":"tree","id":1})");
+    patient.connection.send(whole.substr(0, 12));
+    CHECK_FALSE(patient.connection.ended(500ms));
+    patient.connection.send(whole.substr(12));
+    while (Json::parse(patient.receive()->payload)["type"] != "tree") {
+    }
+    int code = 0;
+    while (const auto next = client.receive())
+        if (next->opcode == kClose)
+            code = static_cast<unsigned char>(next->payload[0]) << 8 |
+                   static_cast<unsigned char>(next->payload[1]);
+    CHECK(code == 1008);
+}
+
+TEST_CASE("who is silent is pinged, and cut when no answer comes; who answers is not") {
+    TestServer server({}, with({.ping = 1s, .silence = 4s}));
+    RawWebSocket silent(server.port()), answering(server.port());
+    silent.join();
+    answering.join("host");
+    std::atomic<int> pings{0};
+    std::atomic<bool> cut{false};
+    std::thread host([&] {
+        while (!cut)
+            if (answering.connection.ended(100ms))
+                break;
+            else if (const auto next = answering.receive(); next && next->opcode == kPing) {
+                ++pings;
+                answering.connection.send(frame(kFinal | kPong, next->payload));
+            }
+    });
+    int seen = 0;
+    while (const auto next = silent.receive()) seen += next->opcode == kPing;
+    CHECK(seen >= 1);
+    CHECK(silent.connection.ended());
+    // As long again for the one that answers.
+    CHECK(eventually([&] { return pings >= 6; }, 30s));
+    cut = true;
+    host.join();
+    CHECK_FALSE(answering.connection.ended(100ms));
+}
+
+TEST_CASE("who sends more messages than he was promised is read more slowly, and nothing is lost") {
+    TestServer server;
+    TestClient flood(server.port()), other(server.port());
+    flood.join();
+    other.join("view");
+    const std::uint64_t before = server.metrics().messages_received;
+    constexpr int kMoves = 20'000;
+    const auto start = steady_clock::now();
+    std::thread sender([&] {
+        for (int i = 0; i < kMoves; ++i)
+            flood.send(pointer_event("pointermove", i % 1000, 1, "mouse", -1, 0));
+        flood.send({{"type", "tree"}, {"id", 1}});
+    });
+    for (int id = 1; id <= 5; ++id) {
+        other.send({{"type", "tree"}, {"id", id}});
+        CHECK(other.wait_for("tree", 2s)["id"] == id);
+    }
+    CHECK(flood.wait_for("tree", 60s)["id"] == 1);
+    sender.join();
+    CHECK(steady_clock::now() - start > 800ms);  // 10,000 at once, the others in a second
+    CHECK(server.metrics().messages_received == before + kMoves + 6);
+}
+
+TEST_CASE("one connection too many of any kind is told so, and there is room again when others go") {
+    allow_descriptors(4096);
+    ServerOptions options;
+    options.max_clients = 1;
+    TestServer server({}, options);
+    std::vector<std::unique_ptr<RawConnection>> open;
+    for (int i = 0; i < 1028; ++i) open.push_back(std::make_unique<RawConnection>(server.port()));
+    RawConnection late(server.port());
+    const HttpAnswer answer = late.answer();
+    CHECK(answer.status == 503);
+    CHECK(answer.body == "there are too many connections\n");
+    CHECK(late.ended());
+    open.resize(open.size() / 2);
+    CHECK(eventually([&] { return http(server.port(), "GET", "/healthz").status == 200; }));
+}
