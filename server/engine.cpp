@@ -47,6 +47,7 @@ PainterFactory gl_painter(std::optional<int> device) {
         for (const std::string& sentence : renderer->rejected()) spdlog::warn("passed over {}", sentence);
         spdlog::info("drawing on {}", renderer->description());
         return Painter{renderer->description(), renderer->software(), renderer->max_size(),
+                       [renderer](const View& view) { renderer->take(view); },
                        [renderer](const View& view, Image& image, FrameStats& stats,
                                   const std::function<bool()>& interrupted, Accumulation* kept) {
                            return renderer->render(view, image, stats, interrupted, kept);
@@ -54,8 +55,7 @@ PainterFactory gl_painter(std::optional<int> device) {
     };
 }
 
-Engine::Engine(EngineOptions options, const PainterFactory& factory, Metrics& metrics,
-               EngineCallbacks callbacks)
+Engine::Engine(EngineOptions options, PainterFactory factory, Metrics& metrics, EngineCallbacks callbacks)
     : library_(std::move(options.library)),
       record_folder_(std::move(options.record_folder)),
       metrics_(metrics),
@@ -65,25 +65,22 @@ Engine::Engine(EngineOptions options, const PainterFactory& factory, Metrics& me
       snapshot_encoder_(
           metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
       loader_(mailbox_),
+      factory_(std::move(factory)),
       stats_(metrics) {
     std::promise<void> started;
     std::future<void> start = started.get_future();
-    thread_ = std::thread([this, &factory, &started, scene = std::move(options.scene)]() mutable {
-        Painter painter;
+    thread_ = std::thread([this, &started, scene = std::move(options.scene)]() mutable {
+        bool begun = false;
         try {
-            painter = factory();
-            description_ = painter.description;
-            limits_.max_side = std::min(painter.max_size, limits_.max_side);
+            begin(std::move(scene));
+            begun = true;
             started.set_value();
-        } catch (...) {
-            started.set_exception(std::current_exception());
-            return;
-        }
-        try {
-            painter_ = std::move(painter);
-            run(std::move(scene));
+            while (!mailbox_.closed()) step();
         } catch (const std::exception& error) {
-            callbacks_.on_failure(error.what());
+            if (begun)
+                callbacks_.on_failure(error.what());
+            else
+                started.set_exception(std::current_exception());
         }
         painter_ = {};  // what belongs to GL ends on the thread that it began on
         presentation_.reset();
@@ -107,13 +104,18 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
     return scene;
 }
 
-void Engine::run(LoadedScene scene) {
+void Engine::begin(LoadedScene scene) {
+    painter_ = factory_();
+    description_ = painter_.description;
+    limits_.max_side = std::min(painter_.max_size, limits_.max_side);
+    room_ = limits_;
     use(levels_of(scene.sha256, description_));
     PresentationOptions options;
     options.record_folder = record_folder_;
     options.load = [this](const std::string& name) { return load(name); };
     options.scenes = [this] { return scenes(); };
-    presentation_.emplace(with_notices(std::move(scene)), std::move(options));
+    presentation_.emplace(with_notices(scene), std::move(options));
+    if (const auto refusal = take(scene)) throw std::runtime_error(*refusal);
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
     Image image;
@@ -121,12 +123,16 @@ void Engine::run(LoadedScene scene) {
     View small = presentation_->visible();
     small.width = small.height = 64;
     paint(small, image, stats);
-
-    while (!mailbox_.closed()) step();
 }
 
 void Engine::step() {
     if (!waiting_.empty()) handle_waiting();
+    if (arrived_) show(*std::exchange(arrived_, std::nullopt));
+    if (presentation_->view_size() != room_for_ || (undrawable_ && !is_undrawable())) {
+        room_for_ = presentation_->view_size();
+        room_ = limits_;
+        undrawable_.reset();
+    }
     fly();
     serve_newest();
     report();
@@ -266,21 +272,7 @@ void Engine::tell(const protocol::Loading& loading) {
     output_.loads = !loading.done && !loading.refused;
 }
 
-void Engine::handle(const SceneLoaded& loaded) {
-    loader_.finish();
-    protocol::Loading told{loaded.name, 1, {}, {}};
-    if (loaded.scene) {
-        presentation_->show(with_notices(*loaded.scene), time_of(Clock::now()));
-        use(loaded.levels);
-        last_change_ = Clock::now();
-        told.done = true;
-        spdlog::info("{}: {} triangles", loaded.name, loaded.scene->placed->scene->triangle_count());
-    } else {
-        told.refused = loaded.scene.error();
-        spdlog::warn("{}", loaded.scene.error());
-    }
-    tell(told);
-}
+void Engine::handle(const SceneLoaded& loaded) { arrived_ = loaded; }
 
 std::optional<protocol::Error> Engine::load(const std::string& name) {
     const auto path = library_.find(name);
@@ -367,7 +359,7 @@ void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message,
 
 PictureSize Engine::present_size() const {
     const protocol::Resize& view = presentation_->view_size();
-    return picture_size(view, quality_of(kStill, view, limits_, false).scale);
+    return picture_size(view, quality_of(kStill, view, room_, false).scale);
 }
 
 /// Hands over what there is to tell.

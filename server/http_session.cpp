@@ -207,6 +207,9 @@ private:
         const std::string name = "picture " + std::to_string(hub_.next_picture++);
         hub_.picture_waiters[name] = [self = shared_from_this(), request = std::move(request),
                                       tag](const std::shared_ptr<const EncodedPicture>& picture) {
+            if (!picture)
+                return self->send(refuse(request, http::status::service_unavailable,
+                                         "this picture cannot be drawn: the log says why"));
             const std::vector<std::uint8_t> header = header_of_file(*picture, picture->header);
             const auto& file = picture->file;
             const auto cut = file.begin() + static_cast<std::ptrdiff_t>(picture->header_offset);

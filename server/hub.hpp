@@ -28,7 +28,8 @@ struct Hub {
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
     bool loads = false;                                 ///< a scene is being loaded
     PictureSize size;                                   ///< of a picture of the view
-    /// Who asked for a picture without being a client, and waits, by the picture's `client`.
+    /// Who asked for a picture without being a client, and waits, by the picture's `client`. Null: it cannot
+    /// be drawn.
     std::map<std::string, std::function<void(std::shared_ptr<const EncodedPicture>)>> picture_waiters;
     std::int64_t next_picture = 1;
     std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello

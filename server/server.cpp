@@ -104,6 +104,7 @@ struct Server::Impl {
         if (output.size) hub.size = *output.size;
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
+        for (const std::string& name : output.undrawn) tell_waiter(name, nullptr);
         for (const auto& owed : output.owed)
             if (Session* session = find(owed.client)) session->owe(owed.frame);
         for (const auto& [client, handled] : output.handled)
@@ -120,13 +121,15 @@ struct Server::Impl {
 
     void take_ordered(std::shared_ptr<const EncodedPicture> picture) {
         const std::string client = picture->client;
-        if (const auto waiter = hub.picture_waiters.find(client); waiter != hub.picture_waiters.end()) {
-            const auto tell = std::move(waiter->second);
-            hub.picture_waiters.erase(waiter);
-            tell(std::move(picture));
-        } else if (Session* session = find(client)) {
+        if (Session* session = find(client))
             session->take_snapshot(std::move(picture));
-        }
+        else
+            tell_waiter(client, std::move(picture));
+    }
+
+    void tell_waiter(const std::string& name, std::shared_ptr<const EncodedPicture> picture) {
+        const auto waiter = hub.picture_waiters.extract(name);
+        if (waiter) waiter.mapped()(std::move(picture));
     }
 
     template <class Function>

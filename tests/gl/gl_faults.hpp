@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+
+/// What goes wrong in this program's OpenGL. Whoever links gl_faults.cpp calls GL through it: it does what is
+/// said here, and leaves the rest to the driver.
+namespace vrut::gl_faults {
+
+/// The driver resets itself after so many draws: what is drawn and read then changes nothing, and it tells of
+/// the reset once, until another context is made.
+void reset_after(int draws);
+/// The next contexts that are asked for cannot be made.
+void refuse_contexts(int count);
+/// What buffers and textures hold now, in bytes.
+std::size_t memory_used();
+/// They hold no more than so much from now on.
+void limit_memory(std::size_t bytes);
+/// The end of all that.
+void heal();
+
+}  // namespace vrut::gl_faults
