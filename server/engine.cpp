@@ -278,7 +278,11 @@ std::optional<protocol::Error> Engine::load(const std::string& name) {
     const auto path = library_.find(name);
     if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
-    loader_.start(*path, name, description_, library_.limits());
+    try {
+        loader_.start(*path, name, description_, library_.limits());
+    } catch (const std::system_error& error) {
+        return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
+    }
     tell({name, 0, {}, {}});
     return std::nullopt;
 }
@@ -291,9 +295,13 @@ const std::vector<std::string>& Engine::scenes() {
     if (!listing_.valid() && now >= list_again_) {
         std::packaged_task<std::vector<std::string>()> walk([library = library_] { return library.names(); });
         listing_ = walk.get_future();
-        std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
         list_again_ = now + kBetweenListings;
         patience = kWaitsForListing;
+        try {
+            std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
+        } catch (const std::system_error&) {        // no thread can be had: what was listed last will do
+            listing_ = {};
+        }
     }
     if (listing_.valid() && listing_.wait_for(patience) == std::future_status::ready)
         scenes_ = listing_.get();

@@ -187,6 +187,17 @@ TEST_CASE("what needs memory later, as edges do, ends nothing where there is non
     CHECK(faulty.client->wait_for_still()["renderer"]["wireframe"] == true);
 }
 
+TEST_CASE("a scene for whose loading there is no thread is refused, and later is loaded") {
+    Faulty faulty;
+    gl_faults::refuse_threads(1);
+    const std::int64_t id = faulty.client->next_id();
+    faulty.client->send({{"type", "open"}, {"id", id}, {"scene", "large.vrut"}});
+    const Json error = faulty.client->wait_for("error");
+    CHECK(error["id"] == id);
+    CHECK(error["code"] == "failed");
+    CHECK(faulty.open_large()["done"] == true);
+}
+
 TEST_CASE("a first scene for which there is no memory is told at once") {
     gl_faults::limit_memory(300'000);
     ServerOptions options;

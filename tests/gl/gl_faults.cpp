@@ -2,9 +2,11 @@
 
 #include <EGL/egl.h>
 #include <dlfcn.h>
+#include <pthread.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -16,7 +18,7 @@ namespace {
 
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
-std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0};
+std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0}, refused_threads{0};
 std::atomic<bool> lost{false}, told{false};
 
 std::mutex mutex;  // of what follows
@@ -61,7 +63,9 @@ void limit_memory(std::size_t bytes) {
     const std::lock_guard lock(mutex);
     most = bytes;
 }
+void refuse_threads(int count) { refused_threads = count; }
 void heal() {
+    refuse_threads(0);
     reset_after(std::numeric_limits<int>::max());
     refuse_contexts(0);
     limit_memory(kAll);
@@ -70,6 +74,15 @@ void heal() {
 }  // namespace vrut::gl_faults
 
 extern "C" {
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*run)(void*),
+                   void* argument) noexcept {
+    if (refused_threads > 0) {
+        --refused_threads;
+        return EAGAIN;
+    }
+    return real<decltype(pthread_create)>("pthread_create")(thread, attributes, run, argument);
+}
 
 EGLContext eglCreateContext(EGLDisplay display, EGLConfig config, EGLContext shared,
                             const EGLint* attributes) {

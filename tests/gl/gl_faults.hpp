@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-/// What goes wrong in this program's OpenGL. Whoever links gl_faults.cpp calls GL through it: it does what is
-/// said here, and leaves the rest to the driver.
+/// What goes wrong in this program's OpenGL, and with its threads. Whoever links gl_faults.cpp calls them
+/// through it: it does what is said here, and leaves the rest to the driver.
 namespace vrut::gl_faults {
 
 /// The driver resets itself after so many draws: what is drawn and read then changes nothing, and it tells of
@@ -15,6 +15,8 @@ void refuse_contexts(int count);
 std::size_t memory_used();
 /// They hold no more than so much from now on.
 void limit_memory(std::size_t bytes);
+/// So many threads cannot be begun.
+void refuse_threads(int count);
 /// The end of all that.
 void heal();
 
