@@ -338,6 +338,23 @@ TEST_CASE("whatever happens, before and in a recording, the replay ends in the s
     }
 }
 
+TEST_CASE("a light of a file that is brighter than clients may make it is no hindrance") {
+    const LoadedScene shown = scene_of(R"(vrut-text 1
+geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
+node 1 "Part" geometry geometry 1 end
+node 2 "Key" light type point color 1.08 1.06 1.02 1 end
+)",
+                                       "stage.vrut");
+    Recorded recorded("a", shown);
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
+    const auto replayed =
+        replay(recorded.log(),
+               [&](const auto&, const auto&) -> tl::expected<LoadedScene, std::string> { return shown; });
+    REQUIRE_MESSAGE(replayed, replayed.error());
+    CHECK(replayed->state().camera.eye == recorded.stage.camera().eye);
+}
+
 // --- what is no good log
 
 TEST_CASE("a log that is cut anywhere is played up to its last whole line, and says so") {
