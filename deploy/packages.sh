@@ -12,14 +12,18 @@ BUILD_PACKAGES=(
     libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev zlib1g-dev libssl-dev libqrencode-dev
     libosd-dev libassimp-dev libmeshoptimizer-dev
 )
-# To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; assimp, which reads
-# glTF; and meshoptimizer.
+# To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; and the libraries that the
+# program is linked with.
 # shellcheck disable=SC2034
-RUN_PACKAGES=(libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri libassimp5 libmeshoptimizer2d)
+RUN_PACKAGES=(
+    libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
+    libassimp5 libmeshoptimizer2d libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 zlib1g libssl3 libqrencode4
+)
 # To test: doctest, two browsers and what steers them, and what checks the source.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
     doctest-dev nodejs:node npm:npm chromium:chromium firefox-esr:firefox-esr python3-websockets curl:curl gnuplot-nox:gnuplot
+    haproxy:haproxy openssl:openssl bubblewrap:bwrap
     clang-format-14:clang-format-14 clang-tidy-14:clang-tidy-14
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.

@@ -4,6 +4,10 @@
 
 namespace vrut::protocol {
 
+std::string json_string(std::string_view text) {
+    return Json(text).dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
 std::string encode(const RenderReport& report) {
     return dump({{"device", report.device},
                  {"width", report.width},

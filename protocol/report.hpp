@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "state.hpp"
@@ -43,6 +44,8 @@ std::string encode(const RenderReport& report);
 std::string encode(const CompareReport& report);
 /// What `replay` prints: the state's `camera`.
 std::string encode(const CameraState& camera);
+/// A JSON string of printable ASCII, everything else escaped; what is not UTF-8 is U+FFFD.
+std::string json_string(std::string_view text);
 /// What `info --json` prints: the state's `scene` and the tree, root first.
 std::string encode_info(const SceneState& scene, const std::vector<NodeReport>& nodes);
 

@@ -269,6 +269,7 @@ const std::string& Renderer::description() const { return impl_->context.descrip
 const std::vector<std::string>& Renderer::rejected() const { return impl_->context.rejected(); }
 bool Renderer::software() const { return impl_->context.software(); }
 int Renderer::max_size() const { return impl_->context.max_size(); }
+long Renderer::gl_objects() const { return live_gl_objects(); }
 std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
 
 bool Renderer::render(const View& view, Image& image, FrameStats& stats,

@@ -28,6 +28,8 @@ public:
     bool software() const;
     /// Largest width and height of a picture.
     int max_size() const;
+    /// That live now, in the whole process.
+    long gl_objects() const;
     std::vector<std::string> take_messages();
 
     /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene

@@ -16,6 +16,19 @@
 
 namespace vrut {
 
+namespace {
+
+/// Rights that nobody may have to a file of tokens. What lies in the folder of credentials is for this
+/// service alone; systemd 254 and later give it to the service by an access list, which shows as rights of
+/// the group.
+mode_t forbidden_rights(const std::filesystem::path& file) {
+    const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
+    const bool credential = credentials && file.parent_path() == credentials;
+    return credential ? S_IRWXO : S_IRWXG | S_IRWXO;
+}
+
+}  // namespace
+
 bool equal_in_constant_time(std::string_view a, std::string_view b) {
     unsigned difference = a.size() == b.size() ? 0 : 1;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -65,7 +78,7 @@ Access read_access(const std::filesystem::path& token_file) {
     struct stat status {};
     if (::stat(token_file.c_str(), &status) != 0)
         throw std::runtime_error("token file " + token_file.string() + " cannot be opened");
-    if ((status.st_mode & (S_IRWXG | S_IRWXO)) != 0)
+    if ((status.st_mode & forbidden_rights(token_file)) != 0)
         throw std::runtime_error("token file " + token_file.string() +
                                  " can be read by others: chmod 600 it");
     std::ifstream stream(token_file, std::ios::binary);

@@ -73,6 +73,7 @@ struct ChartArguments {
     std::vector<std::filesystem::path> scenes;  ///< empty: the car
     std::filesystem::path out;
     bool calibrate = false;  ///< the server's table alone
+    bool stability = false;  ///< how far each method holds, and no scene
     int width = 1280, height = 720;
     int frames = 12;  ///< of each setting
     std::uint64_t most_triangles = 10'000'000;
@@ -80,9 +81,9 @@ struct ChartArguments {
 };
 void chart_command(ChartArguments arguments);
 
-/// Where the program's scenes may lie: where it is installed, and beside its sources.
+/// Where the program's scenes may lie, seen from the program: as installed, and as built.
 std::vector<std::filesystem::path> scene_folders();
-/// The car: where the program is installed, or beside its sources. Throws where it is in neither place.
+/// The car, in one of them. Throws where it is in neither.
 std::filesystem::path default_scene();
 
 }  // namespace vrut

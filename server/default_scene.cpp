@@ -6,8 +6,8 @@ namespace vrut {
 
 std::vector<std::filesystem::path> scene_folders() {
     const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
-    return {program.parent_path().parent_path() / "share/vrut-preview/scenes", VRUT_BUILT_SCENES,
-            VRUT_SOURCE_SCENES};
+    const std::filesystem::path prefix = program.parent_path().parent_path();
+    return {prefix / "share/vrut-preview/scenes", prefix / "scenes"};
 }
 
 std::filesystem::path default_scene() {

@@ -79,12 +79,14 @@ void Encoder::run() {
     JpegEncoder jpeg;
     for (;;) {
         std::optional<std::pair<Picture, Image>> job;
+        heart_.rest();
         {
             std::unique_lock lock(mutex_);
             condition_.wait(lock, [&] { return slot_ || closed_; });
             if (closed_) return;
             job.swap(slot_);
         }
+        heart_.beat();
         on_free_();
         auto& [picture, image] = *job;
         const Clock::time_point start = Clock::now();
@@ -101,6 +103,7 @@ void Encoder::run() {
         static_cast<Picture&>(*encoded) = std::move(picture);
         encoded->header.timing.encode_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        metrics_.encode.observe(encoded->header.timing.encode_ms / 1000);
         ++metrics_.frames_encoded;
         metrics_.bytes_encoded += encoded->file.size();
         give_spare(std::move(image));

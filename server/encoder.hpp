@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "frame_header.hpp"
+#include "heartbeat.hpp"
 #include "image.hpp"
 #include "metrics.hpp"
 #include "pacing.hpp"
@@ -46,6 +47,8 @@ public:
     Encoder& operator=(const Encoder&) = delete;
 
     bool is_free() const;
+    /// How long it has worked at one picture; 0 while it has none. From any thread.
+    Clock::duration silence() const { return heart_.silence(); }
     /// Only while is_free().
     void offer(Picture picture, Image image);
     /// An image to draw into, used before where possible: its pages are there already.
@@ -64,6 +67,7 @@ private:
     std::optional<std::pair<Picture, Image>> slot_;
     Image spare_;
     bool closed_ = false;
+    Heartbeat heart_;
     std::thread thread_;  // last: it uses all of the above
 };
 

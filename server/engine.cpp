@@ -1,12 +1,11 @@
 #include "engine.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <limits>
 
 #include "codec.hpp"
 #include "level_store.hpp"
+#include "log.hpp"
 #include "renderer.hpp"
 
 namespace vrut {
@@ -44,14 +43,18 @@ std::optional<Clock::time_point> earlier(std::optional<Clock::time_point> a,
 PainterFactory gl_painter(std::optional<int> device) {
     return [device] {
         auto renderer = std::make_shared<Renderer>(device);
-        for (const std::string& sentence : renderer->rejected()) spdlog::warn("passed over {}", sentence);
-        spdlog::info("drawing on {}", renderer->description());
-        return Painter{renderer->description(), renderer->software(), renderer->max_size(),
+        for (const std::string& sentence : renderer->rejected())
+            log_warning("device_passed_over", {{"reason", sentence}});
+        log_info("drawing", {{"renderer", renderer->description()}});
+        return Painter{renderer->description(),
+                       renderer->software(),
+                       renderer->max_size(),
                        [renderer](const View& view) { renderer->take(view); },
                        [renderer](const View& view, Image& image, FrameStats& stats,
                                   const std::function<bool()>& interrupted, Accumulation* kept) {
                            return renderer->render(view, image, stats, interrupted, kept);
-                       }};
+                       },
+                       [renderer] { return renderer->gl_objects(); }};
     };
 }
 
@@ -105,6 +108,7 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
 }
 
 void Engine::begin(LoadedScene scene) {
+    heart_.beat();
     painter_ = factory_();
     description_ = painter_.description;
     limits_.max_side = std::min(painter_.max_size, limits_.max_side);
@@ -170,10 +174,14 @@ void Engine::fly() {
 // --- events
 
 void Engine::receive(std::optional<Clock::time_point> until) {
-    for (EngineEvent& event : mailbox_.wait(until)) {
+    heart_.rest();
+    std::vector<EngineEvent> events = mailbox_.wait(until);
+    heart_.beat();
+    for (EngineEvent& event : events) {
         const std::string client = client_of(event);
-        if (std::holds_alternative<ClientLeft>(event)) waiting_[client].clear();
+        if (std::holds_alternative<ClientLeft>(event)) taken_ -= std::exchange(waiting_[client], {}).size();
         waiting_[client].push_back(std::move(event));
+        ++taken_;
     }
 }
 
@@ -194,6 +202,7 @@ void Engine::handle_waiting() {
         last_handled_ = next->first;
         const EngineEvent event = std::move(next->second.front());
         next->second.pop_front();
+        --taken_;
         if (next->second.empty()) waiting_.erase(next);
         std::visit([&](const auto& what) { handle(what); }, event);
     }
@@ -236,7 +245,7 @@ void Engine::was_delivered(std::int64_t frame) {
     try {
         detail_ = std::make_shared<const DetailLevels>(placed->scene);
     } catch (const std::exception& error) {  // no memory, or no thread
-        spdlog::warn("all triangles are drawn at all levels: {}", error.what());
+        log_warning("no_coarser_surfaces", {{"reason", error.what()}});
         scene_since_ = std::numeric_limits<std::int64_t>::max();  // it is not tried again for this scene
     }
 }
@@ -378,10 +387,17 @@ void Engine::report() {
         output_.by = presentation_->changed_by();
         output_.by_since = presentation_->changed_by_since();
         stats_.made(document->revision(), now);
+        metrics_.scene_nodes = presentation_->state().scene.value->nodes;
+        metrics_.scene_triangles = presentation_->state().scene.value->triangles;
     }
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     output_.answers = presentation_->take_answers();
-    for (const Answer& answer : output_.answers) metrics_.messages_refused += !answer.refusal.empty();
+    for (const Answer& answer : output_.answers)
+        if (!answer.refusal.empty()) {
+            ++metrics_.errors[answer.code];
+            log_debug("message_refused",
+                      {{"client", answer.client}, {"code", answer.code}, {"reason", answer.refusal}});
+        }
     if (const auto stats = stats_.take(now))
         output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));
     if (!output_.empty()) callbacks_.on_output(std::exchange(output_, {}));

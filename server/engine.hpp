@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <deque>
 #include <functional>
@@ -12,6 +13,7 @@
 
 #include "detail_levels.hpp"
 #include "encoder.hpp"
+#include "heartbeat.hpp"
 #include "level_choice.hpp"
 #include "live_stats.hpp"
 #include "mailbox.hpp"
@@ -37,6 +39,7 @@ struct Painter {
     std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
                        Accumulation* kept)>
         paint = {};
+    std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
 using PainterFactory = std::function<Painter()>;
 
@@ -96,6 +99,17 @@ public:
     Mailbox& mailbox() { return mailbox_; }
     const std::string& description() const { return description_; }
     const PictureLimits& limits() const { return limits_; }
+    /// Events that came and are not handled yet. From any thread.
+    std::size_t events_waiting() const { return mailbox_.size() + taken_; }
+    /// How long each of its threads has not come round, 0 where it waits for something to do. From any
+    /// thread.
+    std::array<std::pair<const char*, Clock::duration>, 3> silences() const {
+        return {{{"render", heart_.silence()},
+                 {"encode", encoder_.silence()},
+                 {"snapshot encode", snapshot_encoder_.silence()}}};
+    }
+    /// Whether what draws can draw. From any thread.
+    bool draws() const { return draws_; }
 
 private:
     struct Client {
@@ -195,6 +209,9 @@ private:
     const Clock::time_point start_ = Clock::now();
     Mailbox mailbox_;
     std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
+    std::atomic<std::size_t> taken_{0};                       ///< events in waiting_
+    Heartbeat heart_;
+    std::atomic<bool> draws_{false};
     std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
     SceneLoader loader_;
@@ -217,6 +234,7 @@ private:
 
     Clock::time_point last_change_;                  ///< of what is to be seen; long ago at the start
     std::optional<Clock::time_point> newest_input_;  ///< arrival of the last message that changed it
+    Clock::time_point measured_input_{};             ///< the newest whose way to a grant was measured
     struct Drawn {
         std::int64_t frame = 0;
         View visible;

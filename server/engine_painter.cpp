@@ -1,10 +1,9 @@
-#include <spdlog/spdlog.h>
-
 #include <array>
 
 #include "codec.hpp"
 #include "drawing_errors.hpp"
 #include "engine.hpp"
+#include "log.hpp"
 
 // What draws, and what goes on when it fails.
 namespace vrut {
@@ -25,8 +24,10 @@ Engine::Painted Engine::paint(const View& view, Image& image, FrameStats& stats,
                               const std::function<bool()>& interrupted, Accumulation* kept) {
     try {
         const bool whole = painter_.paint(view, image, stats, interrupted, kept);
+        draws_ = draws_ || whole;
         metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
         metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
+        if (painter_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(painter_.gl_objects());
         if (whole) tries_ = 0;
         return whole ? Painted::whole : Painted::given_up;
     } catch (const ContextLost& lost) {
@@ -40,7 +41,7 @@ Engine::Painted Engine::paint(const View& view, Image& image, FrameStats& stats,
 void Engine::renew_painter(std::string why) {
     painter_ = {};
     while (!painter_.paint) {
-        spdlog::warn("{}; drawing begins anew", why);
+        log_warning("drawing_begins_anew", {{"reason", why}});
         if (tries_ == kPauses.size()) throw std::runtime_error(why);
         const Clock::time_point end = Clock::now() + kPauses[tries_++];
         while (Clock::now() < end && !mailbox_.closed()) {
@@ -83,14 +84,15 @@ void Engine::show(const SceneLoaded& loaded) {
     else
         told.refused = loaded.scene.error();
     if (told.refused) {
-        spdlog::warn("{}", *told.refused);
+        log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *told.refused}});
     } else {
         presentation_->show(with_notices(*loaded.scene), time_of(Clock::now()));
         use(loaded.levels);
         room_ = limits_;
         last_change_ = Clock::now();
         told.done = true;
-        spdlog::info("{}: {} triangles", loaded.name, loaded.scene->placed->scene->triangle_count());
+        log_info("scene_shown",
+                 {{"scene", loaded.name}, {"triangles", loaded.scene->placed->scene->triangle_count()}});
     }
     tell(told);
 }
@@ -98,7 +100,7 @@ void Engine::show(const SceneLoaded& loaded) {
 /// A live picture of this size does not fit: one of a quarter of its pixels may.
 void Engine::draw_smaller(const Undrawable& what, const PictureSize& size, const std::string& why) {
     const std::int64_t pixels = std::int64_t{size.width} * size.height / 4;
-    spdlog::warn("a picture of {}x{} pixels cannot be drawn: {}", size.width, size.height, why);
+    log_warning("picture_too_large", {{"width", size.width}, {"height", size.height}, {"reason", why}});
     if (pixels >= kFewestPixels) {
         room_.max_pixels = pixels;
         return notice("Memory is short: pictures are drawn smaller");
@@ -124,7 +126,7 @@ void Engine::refuse(const Snapshot& snapshot, const std::string& sentence) {
 }
 
 void Engine::notice(const std::string& sentence) {
-    spdlog::warn("{}", sentence);
+    log_warning("notice", {{"text", sentence}});
     presentation_->notice(sentence);
 }
 

@@ -1,5 +1,6 @@
 #include "drawing_errors.hpp"
 #include "engine.hpp"
+#include "log.hpp"
 
 // What it draws, and when.
 namespace vrut {
@@ -10,6 +11,22 @@ constexpr std::size_t kBegunRemembered = 16;
 
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
+
+/// A picture that was drawn, to who watches the server.
+void tell_of(const protocol::FrameHeader& drawn, Metrics& metrics, LiveStats& stats) {
+    const bool still = drawn.quality.level == protocol::Quality::Level::still;
+    ++(still ? metrics.frames_rendered_still : metrics.frames_rendered_moving);
+    (still ? metrics.render_still : metrics.render_moving).observe(drawn.timing.render_ms / 1000);
+    metrics.readback.observe(drawn.timing.readback_ms / 1000);
+    stats.drawn(drawn.quality, drawn.timing.render_ms, Clock::now());
+    log_debug("frame_drawn", {{"frame", drawn.frame},
+                              {"revision", drawn.revision},
+                              {"quality", still ? "still" : "moving"},
+                              {"width", drawn.width},
+                              {"height", drawn.height},
+                              {"samples", drawn.quality.samples},
+                              {"ms", drawn.timing.render_ms}});
+}
 
 }  // namespace
 
@@ -57,6 +74,9 @@ PacingDecision Engine::pace() {
 /// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
 void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
     constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
+    if (sent.newest_input > measured_input_ && asked - *sent.newest_input < kAsleep)
+        metrics_.input_to_grant.observe(std::chrono::duration<double>(asked - *sent.newest_input).count());
+    measured_input_ = std::max(measured_input_, sent.newest_input.value_or(measured_input_));
     for (const Begun& begun : begun_)
         if (begun.frame == sent.frame && asked > begun.at && asked - begun.at < kAsleep) {
             const double all = std::chrono::duration<double, std::milli>(asked - begun.at).count();
@@ -142,11 +162,10 @@ void Engine::draw(const PacingDecision& decision) {
         return;
     }
     if (still) presentation_->remember(next_frame_++);
-    ++(still ? metrics_.frames_rendered_still : metrics_.frames_rendered_moving);
-    stats_.drawn(quality, stats.render_ms, Clock::now());
     drawn_ = {header.frame, visible, view_size, decision.still_samples};
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
+    tell_of(header, metrics_, stats_);
     if (!still)
         note({header.frame, level, static_cast<double>(size.width) * size.height,
               stats.render_ms + stats.readback_ms, begin});

@@ -8,6 +8,8 @@
 #include <optional>
 
 #include "codec.hpp"
+#include "log.hpp"
+#include "monitoring.hpp"
 #include "page_files.hpp"
 #include "session.hpp"
 
@@ -113,7 +115,10 @@ Response respond(const Request& request, const Hub& hub) {
     const auto text = [&](const std::string& body) {
         return make_response(request, http::status::ok, "text/plain; charset=utf-8", body);
     };
-    if (path == "/healthz") return text("ok\n");
+    const auto state = [&](const std::optional<std::string>& fault, const char* good) {
+        return fault ? refuse(request, http::status::service_unavailable, *fault) : text(good);
+    };
+    if (path == "/healthz") return state(why_unhealthy(hub), "ok\n");
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
         if (!has_token(request, hub)) {
             Response response = refuse(request, http::status::unauthorized, "this route asks for a token");
@@ -124,11 +129,9 @@ Response respond(const Request& request, const Hub& hub) {
             return make_response(request, http::status::ok, "application/schema+json",
                                  protocol::json_schema());
         if (path == "/frame.jpg") return text({});  // the session's, who can wait for it
-        // The engine hands over its first document when a first picture has been drawn.
-        if (path == "/readyz")
-            return hub.document ? text("ready\n")
-                                : refuse(request, http::status::service_unavailable, "no scene is drawn yet");
-        return text(hub.metrics->text());
+        if (path == "/readyz") return state(why_unready(hub), "ready\n");
+        return make_response(request, http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
+                             metrics_text(hub));
     }
     return refuse(request, http::status::not_found, "there is nothing at this address");
 }
@@ -228,8 +231,10 @@ private:
         if (!hub_.access.accepts_host(host))
             return send(
                 refuse(request, http::status::forbidden, "this server is to be reached as localhost"));
-        if (!hub_.access.accepts_origin(view(request[http::field::origin]), host))
+        if (!hub_.access.accepts_origin(view(request[http::field::origin]), host)) {
+            log_info("origin_refused", {{"origin", view(request[http::field::origin])}, {"host", host}});
             return send(refuse(request, http::status::forbidden, "pages of this origin may not connect"));
+        }
         if (!speaks_our_subprotocol(request))
             return send(refuse(request, http::status::bad_request, "the subprotocol is vrut-preview.v1"));
         if (hub_.stopping || hub_.connections.size() >= 2 * hub_.max_clients)

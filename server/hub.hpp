@@ -19,6 +19,7 @@ class Session;
 struct Hub {
     Access access;
     std::size_t max_clients = 64;
+    std::chrono::milliseconds longest_silence{30'000};  ///< of a loop that has something to do
     Metrics* metrics = nullptr;
     Engine* engine = nullptr;
     std::shared_ptr<const protocol::StateDocument> document;

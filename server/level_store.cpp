@@ -1,6 +1,5 @@
 #include "level_store.hpp"
 
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 
 #include "images.hpp"
+#include "log.hpp"
 #include "scene_library.hpp"
 
 namespace vrut {
@@ -91,13 +91,13 @@ std::optional<protocol::LevelTable> stored_levels(const std::string& scene_sha25
     if (table && (table->scene != scene_sha256 || table->renderer != renderer))
         table = tl::unexpected(std::string("it is of another scene or machine"));
     if (table) return *std::move(table);
-    spdlog::warn("{} is not used: {}", path.string(), table.error());
+    log_warning("levels_not_used", {{"file", path.string()}, {"reason", table.error()}});
     return std::nullopt;
 }
 
 protocol::LevelTable levels_of(const std::string& scene_sha256, const std::string& renderer) {
     if (auto stored = stored_levels(scene_sha256, renderer)) {
-        spdlog::info("{} levels as they were measured", stored->levels.size());
+        log_info("levels_as_measured", {{"levels", stored->levels.size()}});
         return *std::move(stored);
     }
     protocol::LevelTable table = built_in_levels();

@@ -67,6 +67,11 @@ bool Mailbox::closed() const {
     return closed_;
 }
 
+std::size_t Mailbox::size() const {
+    const std::lock_guard lock(mutex_);
+    return events_.size();
+}
+
 std::vector<EngineEvent> Mailbox::wait(std::optional<Clock::time_point> until) {
     std::unique_lock lock(mutex_);
     const auto ready = [&] { return !events_.empty() || woken_ || closed_; };

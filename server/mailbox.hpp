@@ -48,6 +48,7 @@ struct FrameSent {
     std::int64_t frame = 0;
     int unused_grants = 0;  ///< where it is one frame for two grants
     double encode_ms = 0;
+    std::optional<Clock::time_point> newest_input{};  ///< that it shows
 };
 
 struct SnapshotSent {
@@ -84,6 +85,7 @@ public:
     /// No more events: every wait ends at once.
     void close();
     bool closed() const;
+    std::size_t size() const;
     /// Empties the mailbox; waits for an event, a wake, the end, or `until` first.
     std::vector<EngineEvent> wait(std::optional<Clock::time_point> until);
 

@@ -1,5 +1,6 @@
-#include <spdlog/sinks/stdout_color_sinks.h>
+#include <fcntl.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -7,11 +8,21 @@
 
 #include "commands.hpp"
 #include "import_process.hpp"
+#include "log.hpp"
 #include "write_scene.hpp"
 
 namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
+
+/// Where one is closed, what is opened next would get its number, and what is printed.
+void open_standard_descriptors() {
+    int opened = 0;
+    do {
+        opened = ::open("/dev/null", O_RDWR);
+    } while (opened >= 0 && opened <= STDERR_FILENO);
+    ::close(opened);
+}
 
 /// Numbers between separators, all of them, or CLI::ValidationError.
 template <class Number, std::size_t N>
@@ -205,6 +216,10 @@ void add_chart(CLI::App& app, vrut::ChartArguments& arguments) {
         "--calibrate", arguments.calibrate,
         "Measure the levels that a server of the scene draws with, on this machine, and store them");
     out->excludes(calibrate);
+    command
+        ->add_flag("--stability", arguments.stability,
+                   "Push each method past its limit instead, and show what takes over there")
+        ->excludes(calibrate);
     add_size(*command, arguments.width, arguments.height);
     command->add_option("--frames", arguments.frames, "Frames of each setting, on one orbit")
         ->check(CLI::Range(1, 1000))
@@ -224,9 +239,8 @@ void add_chart(CLI::App& app, vrut::ChartArguments& arguments) {
 
 int main(int argc, char** argv) try {
     if (vrut::is_import_process(argc, argv)) vrut::run_import_process(argv);
-    // Results go to standard output, what is told on the way to standard error.
-    spdlog::set_default_logger(spdlog::stderr_color_mt("vrut-preview"));
-    spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+    open_standard_descriptors();
+    vrut::start_log();  // results go to standard output, what is told on the way to standard error
 
     CLI::App app("Remote preview of a car for a CAVE: serves a scene to tablets, draws pictures of it",
                  "vrut-preview");

@@ -164,7 +164,7 @@ void Presentation::refuse(const Said& said, const char* code, const std::string&
 }
 
 void Presentation::refuse(const std::string& client, const protocol::Error& error) {
-    answers_.push_back({client, protocol::encode(error), 0, error.message});
+    answers_.push_back({client, protocol::encode(error), 0, error.message, error.code});
 }
 
 // --- who steers

@@ -31,6 +31,7 @@ struct Answer {
     std::string client, text;
     std::int64_t revision = 0;
     std::string refusal = {};  ///< why, where the message was refused
+    std::string code = {};     ///< of that error
 };
 
 /// A picture that somebody asked for beside the live one, as things stood then.

@@ -1,10 +1,10 @@
 #include "recorder.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <cerrno>
 #include <cstring>
 #include <ctime>
+
+#include "log.hpp"
 
 namespace vrut {
 
@@ -44,7 +44,7 @@ tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
     file_.close();
     file_.open(path_, std::ios::binary | std::ios::trunc);
     size_ = 0;
-    spdlog::info("recording to {}", path_.string());
+    log_info("recording_begun", {{"file", path_.string()}});
     return chosen;
 }
 
@@ -65,7 +65,7 @@ void Recorder::write(const std::string& line) {
 
 void Recorder::stop(const std::string& why) {
     end_ = "The recording '" + path_.stem().string() + "' has ended: " + why;
-    spdlog::warn("{}", end_);
+    log_warning("recording_ended", {{"file", path_.string()}, {"reason", why}});
     close();
 }
 

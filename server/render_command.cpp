@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <fstream>
 #include <iostream>
@@ -9,6 +7,7 @@
 #include "commands.hpp"
 #include "detail_levels.hpp"
 #include "images.hpp"
+#include "log.hpp"
 #include "presentation.hpp"
 #include "progress.hpp"
 #include "reference.hpp"
@@ -64,7 +63,7 @@ View view_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = load_scene(arguments.scene, name, loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
-    for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);
+    for (const std::string& notice : scene->notices) log_warning("notice", {{"text", notice}});
     Presentation presentation(*std::move(scene));
     presentation.join("render", protocol::Role::control, Time(0));
     const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),

@@ -1,11 +1,10 @@
-#include <spdlog/spdlog.h>
-
 #include <iostream>
 #include <stdexcept>
 
 #include "commands.hpp"
 #include "encoder.hpp"
 #include "images.hpp"
+#include "log.hpp"
 #include "progress.hpp"
 #include "renderer.hpp"
 #include "replay.hpp"
@@ -35,7 +34,8 @@ public:
         if (fs::path given = std::exchange(given_, {}); !given.empty()) {
             auto scene = load_scene(given, name, loading_bar(name));
             if (scene && scene->sha256 != sha256)
-                spdlog::warn("{} is not the scene that was recorded", given.string());
+                log_warning("another_scene",
+                            {{"file", given.string()}, {"reason", "it is not the scene that was recorded"}});
             return scene;
         }
         bool found = false;
@@ -101,7 +101,7 @@ private:
 void replay_command(const ReplayArguments& arguments) {
     const auto log = read_event_log(arguments.log);
     if (!log) throw std::runtime_error(log.error());
-    if (!log->cut.empty()) spdlog::warn("{}", log->cut);
+    if (!log->cut.empty()) log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
     Scenes scenes(arguments);

@@ -1,9 +1,9 @@
-#include <spdlog/spdlog.h>
-
+#include <csignal>
 #include <iostream>
 #include <stdexcept>
 
 #include "commands.hpp"
+#include "log.hpp"
 #include "progress.hpp"
 #include "scene_library.hpp"
 #include "server.hpp"
@@ -58,6 +58,7 @@ void announce(const ListenAddress& listen, std::uint16_t port, const Access& acc
 }  // namespace
 
 void serve_command(const ServeArguments& arguments) {
+    std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
     ServerOptions options;
     options.listen = parse_listen_address(arguments.listen);
     options.max_clients = arguments.max_clients;
@@ -73,16 +74,19 @@ void serve_command(const ServeArguments& arguments) {
     auto scene = load_scene(path, name, loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     const Scene& read = *scene->placed->scene;
-    for (const std::string& notice : scene->notices) spdlog::warn("{}", notice);
-    spdlog::info("{}: {} nodes, {} triangles", path.string(), read.nodes().size(), read.triangle_count());
+    for (const std::string& notice : scene->notices)
+        log_warning("notice", {{"scene", name}, {"text", notice}});
+    log_info("scene_read",
+             {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});
     options.library = SceneLibrary(existing_folder("--scenes", arguments.scenes));
     options.record_folder = existing_folder("--record", arguments.record);
 
     Server server(options, *std::move(scene), gl_painter(arguments.device));
     server.stop_on_signals();  // before the address is told: from then on somebody may stop it
     announce(options.listen, server.port(), options.access);
+    log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
     server.run();
-    spdlog::info("shut down");
+    log_info("shut_down", {});
 }
 
 }  // namespace vrut

@@ -1,7 +1,5 @@
 #include "server.hpp"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
@@ -11,6 +9,7 @@
 #include <stdexcept>
 
 #include "http_session.hpp"
+#include "log.hpp"
 #include "session.hpp"
 
 namespace vrut {
@@ -29,6 +28,7 @@ struct Server::Impl {
         listen();
         hub.access = options.access;
         hub.max_clients = options.max_clients;
+        hub.longest_silence = options.longest_silence;
         hub.metrics = &metrics;
         EngineCallbacks callbacks;
         callbacks.on_output = [this](EngineOutput output) {
@@ -75,7 +75,7 @@ struct Server::Impl {
                 return accept();
             }
             // Out of descriptors, say: trying again at once would spin.
-            spdlog::warn("a connection could not be accepted: {}", error.message());
+            log_warning("accept_failed", {{"reason", error.message()}});
             accept_pause.expires_after(100ms);
             accept_pause.async_wait([this](boost::system::error_code stopped) {
                 if (!stopped) accept();

@@ -17,6 +17,8 @@ struct ServerOptions {
     std::size_t max_clients = 64;
     SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
+    /// A thread that has something to do and does not come round for longer is not alive.
+    std::chrono::milliseconds longest_silence{30'000};
 };
 
 /// The preview server: an engine, and clients that reach it over HTTP and WebSocket.

@@ -3,12 +3,12 @@
 #include <linux/sockios.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
-#include <spdlog/spdlog.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
 #include "codec.hpp"
 #include "images.hpp"
+#include "log.hpp"
 
 namespace vrut {
 
@@ -52,6 +52,20 @@ void find_dead_peers(int socket) {
     ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
 }
 
+/// Why the other side's end of a connection is at its end, of kCloseReasons.
+const char* reason_of(beast::error_code error) {
+    if (error == websocket::error::closed) return "normal";
+    return error.category() == make_error_code(websocket::error::closed).category() ? "protocol" : "gone";
+}
+
+/// Why this side closes a connection, of kCloseReasons.
+const char* reason_of(const protocol::Error& error, close_code code) {
+    if (error.code == protocol::error_code::not_allowed) return "token";
+    if (code == close_code::try_again_later) return "too-many";
+    if (code == close_code::too_big) return "too-large";
+    return code == close_code::unknown_data ? "binary" : "hello";
+}
+
 /// Bytes that were handed over and that the peer has not acknowledged.
 int bytes_unacknowledged(int socket) {
     int bytes = 0;
@@ -66,6 +80,7 @@ Session::Session(beast::tcp_stream stream, Hub& hub)
       hello_deadline_(socket_.get_executor()),
       write_watch_(socket_.get_executor()) {
     hub_.connections.insert(this);
+    ++hub_.metrics->connections_opened;
 }
 
 Session::~Session() { hub_.connections.erase(this); }
@@ -95,7 +110,7 @@ void Session::accept(const beast::http::request<beast::http::string_body>& reque
         }));
 
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
-        if (error) return self->drop();
+        if (error) return self->drop("handshake");
         self->hello_deadline_.expires_after(kHelloDeadline);
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
             const auto session = weak.lock();
@@ -118,9 +133,10 @@ void Session::read() {
     reading_ = true;
     socket_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->reading_ = false;
-        if (error) return self->drop();
+        if (error) return self->drop(reason_of(error));
         if (!self->closing_) {
             ++self->hub_.metrics->messages_received;
+            self->hub_.metrics->bytes_received += self->incoming_.size();
             if (self->socket_.got_text()) {
                 const auto data = self->incoming_.data();
                 self->on_text({static_cast<const char*>(data.data()), data.size()});
@@ -155,7 +171,7 @@ void Session::on_text(std::string_view text) {
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
-    ClientSaid said{client_, std::move(message), Clock::now(), text.size(), may_steer_};
+    ClientSaid said{client_, std::move(message), Clock::now(), text.size(), role_ == protocol::Role::control};
     unhandled_bytes_ += said.bytes;
     unhandled_requests_ += said.is_request();
     hub_.engine->mailbox().push(std::move(said));
@@ -174,12 +190,14 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
             close_code::try_again_later);
     if (hub_.stopping) return;  // the close is on its way
     hello_deadline_.cancel();
-    may_steer_ = *role == protocol::Role::control;
+    role_ = *role;
     client_ = "c" + std::to_string(hub_.next_client++);
     hub_.sessions[client_] = shared_from_this();
     if (!hub_.loads) loading_ = hub_.loading;  // is no news any more
     ++hub_.metrics->clients_joined;
-    spdlog::info("client {} joined as {} from {}", client_, name_of(*role), peer_);
+    ++hub_.metrics->clients[name_of(*role)];
+    log_info("joined",
+             {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
     hub_.engine->mailbox().push(ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
@@ -194,7 +212,10 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
 }
 
 void Session::refuse_and_close(const protocol::Error& error, close_code code) {
-    ++hub_.metrics->messages_refused;
+    ++hub_.metrics->errors[error.code];
+    log_info("refused",
+             {{"client", client_}, {"peer", peer_}, {"code", error.code}, {"reason", error.message}});
+    if (!closing_) close_reason_ = reason_of(error, code);
     answer({client_, protocol::encode(error), 0, error.message});
     close(code, error.message);
 }
@@ -245,7 +266,7 @@ void Session::pump() {
         if (!answers_.empty()) return send_answer();
         writing_ = true;  // nothing goes out behind the close
         return socket_.async_close(*closing_,
-                                   [self = shared_from_this()](beast::error_code) { self->drop(); });
+                                   [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
     }
     // A frame or answer goes when the client knows the revision that it speaks of.
     if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
@@ -281,8 +302,8 @@ void Session::send_frame() {
     int grants = 0;
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
-    hub_.engine->mailbox().push(
-        FrameSent{client_, last_frame_, grants - 1, picture_->header.timing.encode_ms});
+    hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1, picture_->header.timing.encode_ms,
+                                          picture_->newest_input});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);
@@ -292,7 +313,15 @@ void Session::send_frame() {
     if (picture_->newest_input)
         header.timing.since_input_ms =
             std::chrono::duration<double, std::milli>(Clock::now() - *picture_->newest_input).count();
+    if (picture_->newest_input > shown_input_) {
+        shown_input_ = *picture_->newest_input;
+        hub_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
+    }
     ++hub_.metrics->frames_sent;
+    log_debug("frame_sent", {{"client", client_},
+                             {"frame", last_frame_},
+                             {"bytes", picture_->file.size()},
+                             {"ms", header.timing.since_input_ms.value_or(0)}});
     send_picture(header);
 }
 
@@ -339,7 +368,7 @@ void Session::write(const Buffers& buffers) {
 void Session::on_written(beast::error_code error) {
     writing_ = false;
     picture_.reset();
-    if (error) return drop();
+    if (error) return drop("gone");
     pump();
     read();
 }
@@ -360,8 +389,7 @@ void Session::watch_progress() {
         if (std::exchange(self->acknowledged_, acknowledged) != acknowledged)
             self->progress_at_ = Clock::now();
         if (Clock::now() - self->progress_at_ < kStuck) return self->watch_progress();
-        spdlog::warn("client {} takes nothing and is cut off", self->client_);
-        self->drop();
+        self->drop("stuck");
     });
 }
 
@@ -377,14 +405,17 @@ void Session::close(close_code code, const std::string& reason) {
     pump();
 }
 
-void Session::drop() {
+void Session::drop(const char* reason) {
     if (std::exchange(dropped_, true)) return;
+    reason = closing_ ? close_reason_ : reason;
+    ++hub_.metrics->closes[reason];
     hello_deadline_.cancel();
     write_watch_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
-    spdlog::info("client {} left", client_);
+    log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
     ++hub_.metrics->clients_left;
+    --hub_.metrics->clients[name_of(role_)];
     hub_.engine->mailbox().push(ClientLeft{client_});
     hub_.sessions.erase(client_);
 }

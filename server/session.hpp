@@ -58,16 +58,18 @@ private:
     void write(const Buffers& buffers);
     void on_written(boost::beast::error_code error);
     void watch_progress();
-    void drop();
+    void drop(const char* reason);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, write_watch_;
     std::string client_;  // empty before hello
-    bool may_steer_ = false;
+    protocol::Role role_ = protocol::Role::view;
     std::string peer_;
     bool dropped_ = false;
+    const char* close_reason_ = "shutdown";         // of kCloseReasons, where this side closes
+    Clock::time_point shown_input_ = Clock::now();  // the newest that a frame showed it, of those since then
 
     // --- what the client knows and is owed
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got

@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <csignal>
 #include <fstream>
 #include <iostream>
@@ -11,9 +9,11 @@
 #include "commands.hpp"
 #include "experiments.hpp"
 #include "level_store.hpp"
+#include "log.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 #include "scene_library.hpp"
+#include "stability/stability_page.hpp"
 
 namespace vrut {
 
@@ -21,15 +21,6 @@ namespace fs = std::filesystem;
 using namespace chart;
 
 namespace {
-
-std::string file_text(const fs::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-    write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-}
 
 /// The processor's name and how many of its threads there are.
 std::string machine() {
@@ -199,19 +190,12 @@ void write_all(const ChartArguments& arguments, const Run& run, const std::strin
                                  renderer;
     for (Section& section : sections)
         for (Plot& plot : section.plots) plot.subtitle = subtitle;
-    std::vector<Plot> plots;
-    for (const Section& section : sections)
-        plots.insert(plots.end(), section.plots.begin(), section.plots.end());
-    draw(plots, arguments.out);
-    std::vector<std::string> svgs;
-    svgs.reserve(plots.size());
-    for (const Plot& plot : plots) svgs.push_back(file_text(arguments.out / (plot.file + ".svg")));
     const PageHead head{
         "VRUT Preview: speed against accuracy",
         {"Drawn by " + renderer + " on " + machine() + ", VRUT Preview " VRUT_VERSION ", pictures of " +
          std::to_string(arguments.width) + " x " + std::to_string(arguments.height) + " pixels, " +
          std::to_string(arguments.frames) + " frames a setting."}};
-    write_text(arguments.out / "index.html", page_of(head, sections, svgs));
+    write_page(arguments.out / "index.html", head, sections);
 }
 
 void print(const protocol::LevelTable& table) {
@@ -243,23 +227,39 @@ void calibrate_scene(const ChartArguments& arguments) {
     }
     table.scene = subject.sha256;
     print(table);
-    spdlog::info("kept in {}", store_levels(table).string());
+    log_info("levels_kept", {{"file", store_levels(table).string()}});
+}
+
+void make_folder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw std::runtime_error(folder.string() + " cannot be made: " + error.message());
+}
+
+void stability_charts(const ChartArguments& arguments) {
+    require_gnuplot();
+    Renderer renderer(arguments.device);
+    make_folder(arguments.out);
+    {
+        Progress progress;
+        stability::write_all(renderer, machine() + ", VRUT Preview " VRUT_VERSION, arguments.out,
+                             [&](double part, const std::string& what) { progress.show(part, what); });
+    }
+    std::cout << (arguments.out / "stability.html").string() << std::endl;
 }
 
 }  // namespace
 
 void chart_command(ChartArguments arguments) {
+    if (arguments.stability) return stability_charts(arguments);
     if (arguments.scenes.empty()) arguments.scenes.push_back(default_scene());
     if (arguments.calibrate) return calibrate_scene(arguments);
     require_gnuplot();
-    std::signal(SIGPIPE, SIG_IGN);  // what becomes of gnuplot its status tells
     for (const fs::path& scene : arguments.scenes)
         if (!fs::is_regular_file(scene)) throw std::runtime_error(scene.string() + ": there is no such file");
     Renderer renderer(arguments.device);
     require_size(arguments, renderer);
-    std::error_code error;
-    fs::create_directories(arguments.out, error);
-    if (error) throw std::runtime_error(arguments.out.string() + " cannot be made: " + error.message());
+    make_folder(arguments.out);
     Rows rows(arguments.out / "measurements.csv");
     Run run(arguments, renderer, rows);
     run.measure();

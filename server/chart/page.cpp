@@ -1,7 +1,11 @@
 #include "page.hpp"
 
+#include <fstream>
+#include <iterator>
 #include <sstream>
 #include <string_view>
+
+#include "images.hpp"
 
 namespace vrut::chart {
 
@@ -110,6 +114,25 @@ std::string page_of(const PageHead& head, const std::vector<Section>& sections,
     }
     out << "</body></html>\n";
     return out.str();
+}
+
+void write_page(const std::filesystem::path& page, const PageHead& head,
+                const std::vector<Section>& sections) {
+    std::vector<Plot> plots;
+    for (const Section& section : sections)
+        plots.insert(plots.end(), section.plots.begin(), section.plots.end());
+    draw(plots, page.parent_path());
+    std::vector<std::string> svgs;
+    svgs.reserve(plots.size());
+    for (const Plot& plot : plots) {
+        std::ifstream svg(page.parent_path() / (plot.file + ".svg"), std::ios::binary);
+        svgs.emplace_back(std::istreambuf_iterator<char>(svg), std::istreambuf_iterator<char>());
+    }
+    write_text(page, page_of(head, sections, svgs));
+}
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    write_file(path, {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace vrut::chart

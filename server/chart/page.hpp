@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,12 @@ struct PageHead {
 std::string escaped(const std::string& text);
 /// An SVG file of gnuplot's as a part of a page: its ids begin with `name`, and it names no address.
 std::string inlined(std::string svg, const std::string& name);
+
+/// Draws the sections' plots beside the page, and writes it. Throws std::runtime_error.
+void write_page(const std::filesystem::path& page, const PageHead& head,
+                const std::vector<Section>& sections);
+/// Throws std::runtime_error.
+void write_text(const std::filesystem::path& path, const std::string& text);
 
 /// One HTML page that needs nothing else; `svgs` has the drawn chart of each of the sections' plots, one
 /// after the other.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <limits>
 #include <memory>
@@ -152,6 +153,8 @@ std::string style_of(const Series& series) {
             return "with lines lw 1.6";
         case Series::Look::line:
             return "with linespoints pt 7 ps 0.55 lw 1.6";
+        case Series::Look::rule:
+            return "with lines lw 1.2 dt 2";
     }
     return {};
 }
@@ -239,6 +242,7 @@ namespace {
 
 /// gnuplot's status, given what it reads. No name or path is part of the command.
 int run_gnuplot(const char* command, const std::string& script) {
+    std::signal(SIGPIPE, SIG_IGN);  // what becomes of it its status tells
     std::FILE* pipe = popen(command, "w");
     if (!pipe) return -1;
     std::fwrite(script.data(), 1, script.size(), pipe);

@@ -17,9 +17,9 @@ struct Mark {
     std::string label = {};
 };
 
-/// Marks, or a line through them, of one look.
+/// Marks, or a line through them, of one look; the axes reach as far as all but stairs.
 struct Series {
-    enum class Look { point, dominated, ring, stairs, line };
+    enum class Look { point, dominated, ring, stairs, line, rule };
     Look look = Look::point;
     std::string title;  ///< in the legend; empty: not there
     std::vector<Mark> marks;

@@ -272,7 +272,7 @@ test('snapshot.mjs saves pictures of the size and from where it is asked to', as
 });
 
 test('picture.sh fetches the picture, and again only when it has changed', async () => {
-  assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: saved\n[^]*vrut_preview_clients \d/);
+  assert.match(await succeeds(picture('p.jpg', '200', '100')), /^p\.jpg: saved\n[^]*vrut_preview_clients\{role="view"\} \d/);
   const first = jpeg('p.jpg');
   assert.deepEqual([first.width, first.height], [200, 100]);
   const bytes = fs.readFileSync(file('p.jpg'));

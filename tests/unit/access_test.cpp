@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 
 using namespace vrut;
@@ -75,6 +76,22 @@ TEST_CASE("a token file that others can read is refused, as is none") {
     CHECK_THROWS_WITH(read_access(path), doctest::Contains(path.c_str()));
     std::remove(path.c_str());
     CHECK_THROWS_WITH(read_access(path), doctest::Contains("cannot be opened"));
+}
+
+TEST_CASE(
+    "a credential of systemd's may be read by way of an access list, which shows as the group's right") {
+    const std::filesystem::path folder = std::filesystem::absolute("access_test_credentials");
+    std::filesystem::create_directory(folder);
+    const std::filesystem::path file = folder / "tokens";
+    std::ofstream(file) << R"({"control":"0123456789abcdef"})";
+    REQUIRE(::chmod(file.c_str(), 0440) == 0);
+    CHECK_THROWS_WITH(read_access(file), doctest::Contains("can be read by others"));
+    ::setenv("CREDENTIALS_DIRECTORY", folder.c_str(), 1);
+    CHECK(read_access(file).control_token == "0123456789abcdef");
+    REQUIRE(::chmod(file.c_str(), 0444) == 0);
+    CHECK_THROWS_WITH(read_access(file), doctest::Contains("can be read by others"));
+    ::unsetenv("CREDENTIALS_DIRECTORY");
+    std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("the environment may hold tokens") {

@@ -7,7 +7,7 @@
 
 namespace vrut {
 
-/// A geometry node to be: what test scenes are made of.
+/// A geometry node to be: what the small scenes of tests and measurements are made of.
 struct Part {
     Id id = 0;
     Geometry geometry;

@@ -1,0 +1,148 @@
+// Studies of input that comes faster than pictures can.
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "engine.hpp"
+#include "shapes.hpp"
+#include "study.hpp"
+
+namespace vrut::stability {
+
+namespace {
+
+constexpr std::chrono::milliseconds kPicture{15};  ///< what one takes to draw
+constexpr std::chrono::milliseconds kPatience{20'000};
+
+/// Draws nothing, in the time that a picture takes.
+Painter slow_painter() {
+    Painter painter;
+    painter.paint = [](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
+                       Accumulation*) {
+        std::this_thread::sleep_for(kPicture);
+        image.resize(view.width, view.height);
+        stats = {};
+        stats.render_ms = static_cast<double>(kPicture.count());
+        return true;
+    };
+    return painter;
+}
+
+/// A room of one: a client who steers, and takes each picture at once.
+class Room {
+public:
+    Room()
+        : engine_(
+              {{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
+              {[](EngineOutput) {}, [this](std::shared_ptr<const EncodedPicture> picture) { take(*picture); },
+               [](const std::string&) {}}) {
+        engine_.mailbox().push(ClientJoined{kClient, protocol::Role::control, {}, 0});
+        say(protocol::Control{});
+        say(protocol::FrameGrant{});
+    }
+
+    void say(decltype(protocol::ClientMessage::payload) payload) {
+        protocol::ClientMessage message;
+        message.payload = std::move(payload);
+        engine_.mailbox().push(ClientSaid{kClient, std::move(message), Clock::now()});
+    }
+
+    /// How long after `input` a picture came that shows it, in ms; kPatience where none does.
+    double lag_of(Clock::time_point input) {
+        std::unique_lock lock(mutex_);
+        arrived_.wait_until(lock, input + kPatience, [&] { return shown_ && *shown_ >= input; });
+        return std::chrono::duration<double, std::milli>(Clock::now() - input).count();
+    }
+
+private:
+    void take(const EncodedPicture& picture) {
+        engine_.mailbox().push(FrameSent{kClient, picture.header.frame});
+        say(protocol::FrameGrant{});
+        {
+            const std::lock_guard lock(mutex_);
+            shown_ = picture.newest_input;
+        }
+        arrived_.notify_one();
+    }
+
+    static constexpr const char* kClient = "c1";
+    std::mutex mutex_;
+    std::condition_variable arrived_;
+    std::optional<Clock::time_point> shown_;
+    Metrics metrics_;
+    Engine engine_;  // last: its threads use all of the above
+};
+
+/// The lag of the last of `rate` inputs a second that came for half a second.
+template <class Input>
+double lag_after_burst(double rate, const Input& input) {
+    constexpr std::chrono::milliseconds kBurst{500};
+    Room room;
+    const Clock::time_point start = Clock::now();
+    Clock::time_point last = start;
+    for (int sent = 0; last < start + kBurst; last = Clock::now()) {
+        const double due = rate * std::chrono::duration<double>(last - start).count();
+        for (; sent <= due; ++sent) room.say(input(sent));
+        std::this_thread::sleep_for(std::chrono::microseconds(500));
+    }
+    room.say(input(-1));
+    return room.lag_of(Clock::now() - std::chrono::milliseconds(1));
+}
+
+/// Where each input is drawn, one after the other, what has not been drawn when the burst ends is waited for.
+double lag_of_queue(double rate) {
+    const double ms = static_cast<double>(kPicture.count());
+    return std::max(ms, 500 * (rate * ms / 1000 - 1) + ms);
+}
+
+}  // namespace
+
+Study bursts_of_moves(const Laboratory& laboratory) {
+    Study study{"bursts", "Bursts of moves", "moves a second, for half a second",
+                "ms from the last move to its picture"};
+    study.bound = 300;
+    study.limit = 1000;
+    study.method.title = "a picture for each (computed)";
+    study.successor = {"all that came since the last picture at once"};
+    study.takes_over =
+        "Before each picture all moves that have come are applied, neighbours of one pointer as one; what "
+        "waits "
+        "for a client is replaced, never queued.";
+    study.cost = "Moves between two pictures are not seen.";
+    for (const double rate : laboratory.chosen({10, 30, 60, 1000, 3000, 10'000})) {
+        study.method.points.push_back({rate, lag_of_queue(rate)});
+        study.successor->points.push_back({rate, lag_after_burst(rate, [](int i) {
+                                               protocol::Pointer pointer;
+                                               pointer.event = i == 0 ? protocol::Pointer::Event::down
+                                                                      : protocol::Pointer::Event::move;
+                                               pointer.button = i == 0 ? 0 : -1;
+                                               pointer.buttons = 1;
+                                               pointer.x = 300 + 200 * std::sin(0.01 * i);
+                                               pointer.y = 200 + (i < 0 ? 50 : 0);
+                                               return pointer;
+                                           })});
+    }
+    return study;
+}
+
+Study storms_of_sizes(const Laboratory& laboratory) {
+    Study study{"resizes", "Storms of resizes", "sizes a second, for half a second",
+                "ms from the last size to its picture"};
+    study.bound = 300;
+    study.limit = 300;
+    study.method.title = "a picture for each (computed)";
+    study.successor = {"the newest size when a picture begins"};
+    study.takes_over = "A size is a wish that holds for the next picture; those between are never drawn.";
+    study.cost = "Buffers are made anew for each picture of another size.";
+    for (const double rate : laboratory.chosen({10, 30, 60, 100, 300, 1000})) {
+        study.method.points.push_back({rate, lag_of_queue(rate)});
+        study.successor->points.push_back(
+            {rate, lag_after_burst(rate, [](int i) {
+                 return protocol::Resize{200.0 + i % 40, i < 0 ? 333.0 : 150.0 + i % 30, 1};
+             })});
+    }
+    return study;
+}
+
+}  // namespace vrut::stability

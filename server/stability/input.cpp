@@ -1,0 +1,143 @@
+// Studies of fingers, clocks and links that deliver less than was sent.
+#include <cmath>
+#include <cstdint>
+
+#include "clicks.hpp"
+#include "gestures.hpp"
+#include "study.hpp"
+
+namespace vrut::stability {
+
+namespace {
+
+/// Numbers from -1 to 1, the same in each run (Numerical Recipes' generator).
+class Noise {
+public:
+    double next() {
+        state_ = state_ * 1664525 + 1013904223;
+        return (state_ >> 8) / double(1 << 23) - 1;
+    }
+
+private:
+    std::uint32_t state_ = 1;
+};
+
+PointerInput touch(PointerInput::Action action, const glm::dvec2& place) {
+    PointerInput input;
+    input.action = action;
+    input.client = "c1";
+    input.pointer = 1;
+    input.device = PointerInput::Device::touch;
+    input.x = place.x;
+    input.y = place.y;
+    input.button = action == PointerInput::Action::move ? -1 : 0;
+    input.buttons = action == PointerInput::Action::up ? 0 : 1;
+    return input;
+}
+
+}  // namespace
+
+Study moves_lost(const Laboratory& laboratory) {
+    Study study{"lost-moves", "Moves of a drag that are merged or lost", "moves lost, in percent",
+                "where the eye ends, error / its distance"};
+    study.bound = 0;
+    study.limit = 1;
+    study.method.title = "each move turns on from the one before";
+    study.successor = {"from the drag's start and where the pointer is"};
+    study.takes_over =
+        "A drag is a function of the camera at its start and of the pointers' places: moves may be merged or "
+        "lost, and the last one alone decides.";
+    study.cost = "None: one move is computed where several came.";
+    const Camera start = home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    NavigationContext context;
+    context.keep_upright = false;
+    const auto place = [](int i) {
+        return glm::dvec2(640 + 300 * std::sin(i * 0.05), 360 + 200 * std::sin(i * 0.08));
+    };
+    const auto drag = [&](double percent, bool on_from_before) {
+        constexpr int kMoves = 200;
+        Noise noise;
+        Gestures gestures;
+        Camera camera = gestures.pointer(touch(PointerInput::Action::down, place(0)), start, context);
+        glm::dvec2 before = place(0);
+        for (int i = 1; i <= kMoves; ++i) {
+            if (i < kMoves && 50 * (noise.next() + 1) < percent) continue;
+            if (on_from_before) {
+                const glm::dvec2 degrees = (place(i) - before) * 180.0 / context.height;
+                camera = rotated(camera, degrees.x, degrees.y, false);
+            } else {
+                camera = gestures.pointer(touch(PointerInput::Action::move, place(i)), camera, context);
+            }
+            before = place(i);
+        }
+        return camera.eye;
+    };
+    for (const double percent : laboratory.chosen({1, 10, 30, 50, 70, 90, 99})) {
+        const auto off = [&](bool on_from_before) {
+            return glm::distance(drag(percent, on_from_before), drag(0, on_from_before)) /
+                   focus_distance(start);
+        };
+        study.method.points.push_back({percent, off(true)});
+        study.successor->points.push_back({percent, off(false)});
+    }
+    return study;
+}
+
+Study jittering_taps(const Laboratory& laboratory) {
+    Study study{"jitter", "Double taps of a hand that shakes", "jitter of each press, up to so many pixels",
+                "taps that are not taken for one, in percent"};
+    study.bound = 5;
+    study.limit = 7;
+    study.method.title = "10 pixels from press to release, 24 between the two";
+    study.takes_over =
+        "Beyond, it is a drag, which the hand sees at once and can take back; nothing is selected.";
+    study.cost = "Two targets less than 24 pixels apart cannot be tapped one after the other within 0.4 s.";
+    constexpr int kTaps = 300;
+    for (const double pixels : laboratory.chosen({1, 2, 4, 7, 20, 50, 100})) {
+        Noise noise;
+        int missed = 0;
+        for (int tap = 0; tap < kTaps; ++tap) {
+            Clicks clicks;
+            bool found = false;
+            std::chrono::microseconds time{0};
+            for (int press = 0; press < 2; ++press)
+                for (const auto action : {PointerInput::Action::down, PointerInput::Action::up}) {
+                    const glm::dvec2 place(300 + pixels * noise.next(), 200 + pixels * noise.next());
+                    found = clicks.pointer(touch(action, place), {{}, time}).has_value() || found;
+                    time += std::chrono::milliseconds(80);
+                }
+            missed += !found;
+        }
+        study.method.points.push_back({pixels, 100.0 * missed / kTaps});
+    }
+    return study;
+}
+
+Study jumping_clocks(const Laboratory& laboratory) {
+    Study study{"clocks", "A client's clock that jumps", "jump between two events, in ms",
+                "error of the time between them, in ms"};
+    study.bound = 1000;
+    study.limit = 3000;
+    study.method.title = "time stamps as they come";
+    study.successor = {"time stamps, where the arrival agrees within a second"};
+    study.takes_over =
+        "Where a time stamp falls, is absent, or departs from the arrival by more than a second, the arrival "
+        "counts.";
+    study.cost = "A link that holds an event up for more than a second may split a double click.";
+    for (const double jump : laboratory.chosen({1, 10, 100, 1e3, 3e3, 1e4, 1e6, 1e9})) {
+        double worst = 0;
+        for (const double direction : {1.0, -1.0}) {
+            EventClock clock;
+            constexpr double kBetween = 200;
+            clock.time({1e6, std::chrono::milliseconds(50)});
+            const auto second = clock.time(
+                {1e6 + kBetween + direction * jump, std::chrono::milliseconds(50 + std::int64_t{200})});
+            worst = std::max(worst, std::abs(static_cast<double>(second.count()) / 1000 - kBetween));
+        }
+        study.method.points.push_back({jump, jump});
+        study.successor->points.push_back({jump, worst});
+    }
+    return study;
+}
+
+}  // namespace vrut::stability

@@ -1,0 +1,77 @@
+// Studies of the choice of level while things move.
+#include <cmath>
+
+#include "level_choice.hpp"
+#include "level_store.hpp"
+#include "study.hpp"
+
+namespace vrut::stability {
+
+namespace {
+
+constexpr double kPixels = 1180 * 820;
+constexpr int kPictures = 2000;
+
+/// What a picture takes, of `ms` on average and up to `noise` of that more or less (Numerical Recipes'
+/// generator).
+class Machine {
+public:
+    explicit Machine(double noise) : noise_(noise) {}
+    double takes(double ms) {
+        state_ = state_ * 1664525 + 1013904223;
+        return ms * (1 + noise_ * ((state_ >> 8) / double(1 << 23) - 1));
+    }
+
+private:
+    double noise_;
+    std::uint32_t state_ = 1;
+};
+
+}  // namespace
+
+Study noisy_times(const Laboratory& laboratory) {
+    Study study{"pacing", "Times of pictures that vary", "noise, in percent of a picture's time",
+                "changes of level in 100 pictures"};
+    study.bound = 3;
+    study.limit = 20;
+    study.method.title = "the level that the last picture allows";
+    study.successor = {"running means, hysteresis, back-off"};
+    study.takes_over =
+        "A more accurate level is tried when it is expected to be well within the target, and not again for "
+        "a "
+        "while where it was too slow, each time for longer.";
+    study.cost = "After a load has gone, the better level comes up to a minute later.";
+    for (const double percent : laboratory.chosen({1, 2, 5, 10, 20, 40, 60})) {
+        LevelChoice choice(built_in_levels());
+        const auto& levels = choice.levels();
+        Machine machine(percent / 100), same(percent / 100);
+        Clock::time_point now{std::chrono::hours(1)};
+        std::size_t level = 0, naive = 0;
+        int changes = 0, naive_changes = 0;
+        // A target between the times of two levels, where it is hardest to stay.
+        const double target = std::sqrt(levels[levels.size() / 2].ms * levels[levels.size() / 2 + 1].ms);
+        LevelDemand demand{{1180, 820, 1}, {}, target};
+        for (int i = 0; i < kPictures; ++i) {
+            const std::size_t next = choice.choose(demand, now);
+            changes += next != level && i > 0;
+            level = next;
+            const double ms = machine.takes(levels[level].ms);
+            now += std::chrono::microseconds(std::llround(1000 * ms));
+            const double scale = levels[level].quality.scale;
+            choice.took(level, {ms, 0.0}, kPixels * scale * scale, now);
+
+            // Its factor to the table decides for all levels.
+            const double factor = same.takes(levels[naive].ms) / levels[naive].ms;
+            std::size_t best = 0;
+            for (std::size_t k = 0; k < levels.size(); ++k)
+                if (levels[k].ms * factor <= target) best = k;
+            naive_changes += best != naive && i > 0;
+            naive = best;
+        }
+        study.method.points.push_back({percent, 100.0 * naive_changes / kPictures});
+        study.successor->points.push_back({percent, 100.0 * changes / kPictures});
+    }
+    return study;
+}
+
+}  // namespace vrut::stability

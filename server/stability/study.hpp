@@ -1,0 +1,90 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "renderer.hpp"
+
+/// Each method is pushed past its limit on purpose: how far it holds, and what takes over there.
+namespace vrut::stability {
+
+/// As much as a test has time for, or all that the page shows.
+enum class Form { brief, whole };
+
+/// A measure over the parameter; both 0 or above.
+struct Curve {
+    std::string title;
+    struct Point {
+        double x = 0, y = 0;
+    };
+    std::vector<Point> points = {};
+};
+
+/// A method, what breaks it, and what takes over.
+struct Study {
+    std::string file;                ///< of its chart: letters, digits and hyphens
+    std::string title;               ///< the method and what it is pushed by
+    std::string parameter, measure;  ///< with their units
+    double bound = 0;                ///< of the measure: what is above it has failed
+    /// The parameter from which the method fails; none: it holds as far as it was measured.
+    std::optional<double> limit = {};
+    Curve method = {};
+    std::optional<Curve> successor = {};  ///< what takes over, where something does
+    std::string takes_over = {};          ///< a sentence on what does, or why nothing needs to
+    std::string cost = {};                ///< a sentence on what that costs
+};
+
+/// Why a study is not as it says, in a sentence; none where it is: the method is within the bound below its
+/// limit and not at the first point from there on, what takes over is within the bound everywhere, and
+/// everything is a number.
+std::optional<std::string> contradiction(const Study& study);
+
+/// What studies are made with.
+struct Laboratory {
+    Renderer& renderer;
+    Form form = Form::whole;
+
+    /// The first of `points`, which rise, the last, and in between as many as the form has time for.
+    std::vector<double> chosen(std::vector<double> points) const;
+};
+
+/// What there is to study, in the page's order.
+struct Topic {
+    const char* name;
+    Study (*study)(const Laboratory&);
+};
+const std::vector<Topic>& topics();
+
+// surfaces.cpp
+Study far_positions(const Laboratory& laboratory);
+Study deep_views(const Laboratory& laboratory);
+Study crossing_panes(const Laboratory& laboratory);
+Study large_triangles(const Laboratory& laboratory);
+// materials.cpp
+Study many_mirrors(const Laboratory& laboratory);
+Study edge_on_mirrors(const Laboratory& laboratory);
+Study bent_mirrors(const Laboratory& laboratory);
+Study minified_textures(const Laboratory& laboratory);
+Study small_matrices(const Laboratory& laboratory);
+// moves.cpp
+Study many_moves(const Laboratory& laboratory);
+Study over_the_pole(const Laboratory& laboratory);
+Study through_the_focus(const Laboratory& laboratory);
+Study largest_numbers(const Laboratory& laboratory);
+// input.cpp
+Study moves_lost(const Laboratory& laboratory);
+Study jittering_taps(const Laboratory& laboratory);
+Study jumping_clocks(const Laboratory& laboratory);
+// picks.cpp
+Study slivers(const Laboratory& laboratory);
+// encoding.cpp
+Study thin_saturated_lines(const Laboratory& laboratory);
+Study dark_gradients(const Laboratory& laboratory);
+// bursts.cpp
+Study bursts_of_moves(const Laboratory& laboratory);
+Study storms_of_sizes(const Laboratory& laboratory);
+// levels.cpp
+Study noisy_times(const Laboratory& laboratory);
+
+}  // namespace vrut::stability

@@ -1,0 +1,171 @@
+// Studies of what is drawn, beside what the double-precision reference traces.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "difference.hpp"
+#include "pictures.hpp"
+#include "reference.hpp"
+#include "shapes.hpp"
+
+namespace vrut::stability {
+
+namespace {
+
+Geometry in_single_precision(Geometry geometry) {
+    for (glm::dvec3& position : geometry.positions) position = glm::dvec3(glm::vec3(position));
+    return geometry;
+}
+
+}  // namespace
+
+Study far_positions(const Laboratory& laboratory) {
+    Study study{"positions", "Positions far from the origin",
+                "distance from the origin, in sizes of the part",
+                "pixels off by more than 8 of 255, in percent"};
+    study.bound = 0.1;
+    study.limit = 1e6;
+    study.method.title = "world positions in single precision";
+    study.successor = {"relative to the eye, from double precision"};
+    study.takes_over =
+        "Positions and matrices are kept in double; each part is moved to the eye in double, and only what "
+        "is "
+        "left, which is small where it is seen large, goes to the GPU in single precision.";
+    study.cost = "A product of two matrices in double for each part and picture; no more bytes on the GPU.";
+    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    for (const double distance : laboratory.chosen({1, 10, 100, 1e3, 1e4, 3e4, 1e5, 1e6, 1e7, 1e8})) {
+        const glm::dvec3 there(distance, -distance, distance);
+        const Geometry body = mapped(sphere(1, 12), 1, there);
+        const auto scene = scene_of({{1, body, material}});
+        const View view = looking(scene, there + glm::dvec3(1, 1.5, 3), there);
+        const Image right = image_of(trace(view));
+        View rounded = view;
+        rounded.scene = scene_of({{1, in_single_precision(body), material}});
+        study.method.points.push_back({distance, percent_off(drawn(laboratory, rounded), right)});
+        study.successor->points.push_back({distance, percent_off(drawn(laboratory, view), right)});
+    }
+    return study;
+}
+
+namespace {
+
+/// Whether a wall at `distance` hides one that stands `gap` of that behind it, with a speck at `near`.
+bool tells_apart(const Laboratory& laboratory, double near, double distance, double gap) {
+    const Material front = material_of({1, 0, 0}), back = material_of({0, 1, 0});
+    const auto scene = scene_of({{1, quad(near / 100), back, moved_by({near * 0.2, 0, -near})},
+                                 {2, quad(distance), front, moved_by({0, 0, -distance})},
+                                 {3, quad(distance), back, moved_by({0, 0, -distance * (1 + gap)})}});
+    const Image image = drawn(laboratory, looking(scene, {0, 0, 0}, {0, 0, -1}));
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
+        if (image.rgba[i + 1] > image.rgba[i] + 50) {
+            const std::size_t x = i / 4 % static_cast<std::size_t>(image.width);
+            if (std::abs(static_cast<double>(x) - image.width / 2.0) < image.width / 8.0) return false;
+        }
+    return true;
+}
+
+/// The depth that 24 bits keep of something at `distance`, of a usual projection (OpenGL 4.6, 13.8.1).
+std::uint32_t depth_24(double near, double far, double distance) {
+    const double depth = far * (distance - near) / (distance * (far - near));
+    return static_cast<std::uint32_t>(std::lround(depth * 0xFFFFFF));
+}
+
+}  // namespace
+
+Study deep_views(const Laboratory& laboratory) {
+    Study study{"depth", "Views from very near to very far", "far / near",
+                "least gap told apart at the far end / its distance"};
+    study.bound = 1e-5;
+    study.limit = 1e3;
+    study.method.title = "24 bits, the usual way (computed)";
+    study.successor = {"reversed depth in 32-bit float"};
+    study.takes_over =
+        "Depth is near / distance in 32-bit float: 1 at the near plane, 0 at infinity, with the same "
+        "relative "
+        "precision everywhere.";
+    study.cost = "Nothing: the same 32 bits a pixel, and one clip plane less.";
+    for (const double ratio : laboratory.chosen({10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8})) {
+        const double near = 1000 / ratio;
+        double gap = 1;
+        while (gap > 1e-9 && depth_24(near, 2000, 1000) < depth_24(near, 2000, 1000 * (1 + gap / 2)))
+            gap /= 2;
+        study.method.points.push_back({ratio, gap});
+        double least = 1;
+        while (least > 1e-9 && tells_apart(laboratory, near, 1000, least / 2)) least /= 2;
+        study.successor->points.push_back({ratio, least});
+    }
+    return study;
+}
+
+Study crossing_panes(const Laboratory& laboratory) {
+    Study study{"panes", "Panes of glass that cross in one line", "panes",
+                "pixels off by more than 8 of 255, in percent"};
+    study.bound = 0.1;
+    study.limit = 2;
+    study.method.title = "sorted, pane by pane";
+    study.successor = {"in order at each pixel, where panes have none"};
+    study.takes_over =
+        "Only the groups of panes that no order puts right are sorted at each pixel; all others are drawn "
+        "from "
+        "far to near.";
+    for (const double count : laboratory.chosen({1, 2, 3, 4, 6, 8, 12, 16})) {
+        std::vector<Part> parts;
+        for (int i = 0; i < static_cast<int>(count); ++i) {
+            Material glass = material_of({0.2 + 0.6 * (i % 2), 0.3 + 0.5 * (i % 3) / 2, 0.8 - 0.6 * (i % 2)});
+            glass.diffuse.a = 0.5;
+            glass.two_sided = true;
+            parts.push_back({i + 1, quad(1), glass, turned_by(180.0 * i / count + 10, {0, 1, 0})});
+        }
+        View view = looking(scene_of(parts), {0.4, 0.7, 3.2});
+        const Image right = image_of(trace(view));
+        study.successor->points.push_back({count, percent_off(drawn(laboratory, view), right)});
+        const double exact_ms = time_of(laboratory, view);
+        view.methods.transparency = Methods::Transparency::sorted;
+        study.method.points.push_back({count, percent_off(drawn(laboratory, view), right)});
+        study.cost = "Here " + times_the_time(exact_ms, time_of(laboratory, view)) +
+                     " for the most panes, which is all in the picture; nothing where panes have an order.";
+    }
+    return study;
+}
+
+Study large_triangles(const Laboratory& laboratory) {
+    Study study{"light", "Light on large triangles", "side of the triangles / their distance to the light",
+                "largest error of a channel, of 255"};
+    study.bound = 8;
+    study.limit = 0.1;
+    study.method.title = "light at the vertices";
+    study.successor = {"light at each pixel"};
+    study.takes_over = "Position and normal are interpolated, everything else is computed at each pixel.";
+    for (const double ratio :
+         laboratory.chosen({0.03, 0.05, 0.1, 0.14, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 2, 2.8, 4})) {
+        // Triangles of side `ratio`, as many as cover the wall, and a light 1 before it.
+        const auto cells = static_cast<unsigned>(std::max(1.0, std::round(4 / ratio)));
+        Geometry wall;
+        for (unsigned y = 0; y <= cells; ++y)
+            for (unsigned x = 0; x <= cells; ++x) {
+                const double half = ratio * cells / 2;
+                wall.positions.emplace_back(x * ratio - half, y * ratio - half, 0);
+                wall.normals.emplace_back(0, 0, 1);
+                wall.bounds.add(wall.positions.back());
+                if (x == cells || y == cells) continue;
+                const unsigned at = y * (cells + 1) + x, above = at + cells + 1;
+                wall.triangles.emplace_back(at, at + 1, above + 1);
+                wall.triangles.emplace_back(at, above + 1, above);
+            }
+        View view = looking(scene_of({{1, wall, material_of({0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 20)}}),
+                            {0.3, 0.2, 2.5});
+        view.light.headlight = false;
+        view.light.position = {0.13, 0.07, 1};
+        const Image right = image_of(trace(view));
+        study.successor->points.push_back(
+            {ratio, 1.0 * difference(drawn(laboratory, view), right).maximum()});
+        const double pixel_ms = time_of(laboratory, view);
+        view.methods.light = Methods::Light::vertex;
+        study.cost = "Here " + times_the_time(pixel_ms, time_of(laboratory, view)) +
+                     ", where one wall is all of the picture; within what times vary on the car.";
+        study.method.points.push_back({ratio, 1.0 * difference(drawn(laboratory, view), right).maximum()});
+    }
+    return study;
+}
+
+}  // namespace vrut::stability

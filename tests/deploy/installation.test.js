@@ -1,0 +1,82 @@
+// `cmake --install` into a staging folder: what lies there, and that it works from anywhere.
+'use strict';
+const assert = require('node:assert/strict');
+const fs = require('node:fs');
+const path = require('node:path');
+const { before, test } = require('node:test');
+const { Client, DEPLOY, Running, output, missing, temporaryFolder } = require('./helpers.js');
+
+const { VRUT_BUILD, VRUT_CMAKE } = process.env;
+const SOURCE = path.dirname(DEPLOY);
+const folder = temporaryFolder();
+const prefix = path.join(folder, 'moved');
+
+/** Files below a folder, by their paths in it. */
+const files = (top) => fs.readdirSync(top, { recursive: true, withFileTypes: true })
+  .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.parentPath ?? entry.path, entry.name))).sort();
+
+before(() => {
+  // As packages are made: installed as if into /usr, which lies somewhere else meanwhile.
+  output(VRUT_CMAKE, ['--install', VRUT_BUILD, '--prefix', '/usr'], { env: { ...process.env, DESTDIR: path.join(folder, 'staging') } });
+  fs.renameSync(path.join(folder, 'staging/usr'), prefix);
+});
+
+test('what a server needs is installed, and nothing else', () => {
+  assert.deepEqual(files(path.join(folder, 'staging')), []);
+  const scenes = path.join(SOURCE, 'scenes');
+  const expected = [
+    'bin/vrut-preview', 'lib/systemd/system/vrut-preview.service',
+    ...['LICENSE', 'README.md', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
+    ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
+    ...files(path.join(scenes, 'car/textures')).map((name) => `share/vrut-preview/scenes/car/textures/${name}`),
+    ...files(path.join(scenes, 'teaching')).filter((name) => !name.endsWith('.py')).map((name) => `share/vrut-preview/scenes/teaching/${name}`),
+  ];
+  assert.deepEqual(files(prefix), expected.sort());
+});
+
+const released = /^CMAKE_BUILD_TYPE:\w+=Release$/m.test(fs.readFileSync(path.join(VRUT_BUILD, 'CMakeCache.txt'), 'utf8'));
+
+test('nothing refers to where it was built', { skip: released ? false : 'what helps to find bugs does' }, () => {
+  for (const name of files(prefix)) {
+    const bytes = fs.readFileSync(path.join(prefix, name));
+    for (const place of [SOURCE, VRUT_BUILD, folder]) assert.ok(!bytes.includes(place), `${name} names ${place}`);
+  }
+});
+
+test('the unit starts the program where it is installed to', () => {
+  const unit = path.join(prefix, 'lib/systemd/system/vrut-preview.service');
+  assert.match(fs.readFileSync(unit, 'utf8'), /^ExecStart=\/usr\/bin\/vrut-preview serve .* --scenes \/usr\/share\/vrut-preview\/scenes /m);
+  const elsewhere = path.join(folder, 'opt');
+  output(VRUT_CMAKE, ['--install', VRUT_BUILD, '--prefix', elsewhere]);
+  const text = fs.readFileSync(path.join(elsewhere, 'lib/systemd/system/vrut-preview.service'), 'utf8');
+  assert.ok(text.includes(`ExecStart=${elsewhere}/bin/vrut-preview serve `), text);
+  assert.doesNotMatch(text, /@CMAKE/);
+});
+
+test('the packages to run bring every library that it is linked with', { skip: missing('dpkg-query') }, () => {
+  const listed = output('bash', ['-c', `source ${DEPLOY}/packages.sh; printf '%s\\n' "\${RUN_PACKAGES[@]}"`]).trim().split('\n');
+  const program = path.join(prefix, 'bin/vrut-preview');
+  const dynamic = output('readelf', ['--dynamic', program]);
+  const paths = new Map([...output('ldd', [program]).matchAll(/(\S+) => (\S+)/g)].map(([, name, file]) => [name, fs.realpathSync(file)]));
+  const needed = [...dynamic.matchAll(/\(NEEDED\).*\[(.*)\]/g)].map(([, name]) => paths.get(name)).filter(Boolean);
+  assert.ok(needed.length > 5);
+  // Where /lib is a link to /usr/lib, a package may name either.
+  const owners = output('dpkg-query', ['--search', ...needed.map((file) => file.replace(/^(\/usr)?/, '*'))]);
+  for (const [, owner, file] of owners.matchAll(/^([^:]+):.* (\S+)$/gm))
+    assert.ok(['libc6', 'libstdc++6', 'libgcc-s1', ...listed].includes(owner), `${file} is of ${owner}`);
+  assert.doesNotMatch(dynamic, /R(UN)?PATH/);
+});
+
+test('it draws and serves the car from where it was moved to', async () => {
+  const program = path.join(prefix, 'bin/vrut-preview');
+  const elsewhere = { cwd: '/', env: { PATH: '/usr/bin:/bin' } };
+  output(program, ['render', path.join(prefix, 'share/vrut-preview/scenes/car/car.vrut'), '-o', path.join(folder, 'car.png'), '--size', '64x36', '--samples', '1'], elsewhere);
+  assert.ok(fs.statSync(path.join(folder, 'car.png')).size > 1000);
+  const server = new Running(program, ['serve', '--listen', '127.0.0.1:0', '--scenes', path.join(prefix, 'share/vrut-preview/scenes')], elsewhere);
+  const [, port] = await server.printed(/listening on http:\/\/127\.0\.0\.1:(\d+)\//);
+  assert.ok(server.text.includes(path.join(prefix, 'share/vrut-preview/scenes/car/car.vrut')), server.text);
+  const client = await Client.join(`ws://127.0.0.1:${port}/ws`);
+  const { scenes } = await client.ask({ type: 'scenes' });
+  assert.ok(scenes.includes('car/car.vrut') && scenes.includes('teaching/glass.vrut'), `${scenes}`);
+  assert.equal(await server.stop(), 0);
+});
