@@ -482,6 +482,7 @@ void describe(V& v, const State*) {
     v.writable("quality", &State::quality, Section<QualityState>{});
     v.fixed("control", &State::control, Object<ControlState>{});
     v.fixed("recording", &State::recording, Object<RecordingState>{});
+    v.fixed("notices", &State::notices, List<Text>{kName, 0, kMaxNotices});
 }
 
 // --- the frame header

@@ -156,11 +156,14 @@ struct State {
     QualityState quality;
     ControlState control;
     std::optional<RecordingState> recording;
+    std::vector<std::string> notices;  // r: what has gone wrong in the server, the newest last
     bool operator==(const State&) const = default;
 };
 
 /// Most markers, and most views.
 inline constexpr std::size_t kMaxEntries = 256;
+/// Most notices of the server; older ones are forgotten.
+inline constexpr std::size_t kMaxNotices = 16;
 /// Most nodes that differ from the file.
 inline constexpr std::size_t kMaxNodes = 10'000;
 /// Coordinates of positions go so far either way: products of two stay finite.

@@ -80,9 +80,12 @@ public:
         const std::string path = path_.empty() ? name : path_ + "." + name;
         if constexpr (requires { kind.restore(target, *found, path); }) {
             if (found != document_.end()) kind.restore(target, *found, path);
-        } else {
-            if constexpr (IsOptional<Member>::value) target.reset();
+        } else if constexpr (IsOptional<Member>::value) {
+            target.reset();
             if (found != document_.end()) assign(target, kind.read(*found, path));
+        } else if (found != document_.end() && *found != kind.write(target)) {
+            // A value of the scene's own may lie beyond what clients may say.
+            assign(target, kind.read(*found, path));
         }
     }
     template <class Member, class Kind>

@@ -58,20 +58,6 @@ void add_pictures(std::vector<DrawItem>& items, const View& view) {
     }
 }
 
-/// By rising id, those beside the picture too.
-std::vector<DrawItem> shown_items(const View& view) {
-    const PlacedScene& placed = *view.scene;
-    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
-    const glm::dmat4 view_matrix = view_from_world(view.camera);
-    std::vector<DrawItem> items;
-    for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i])
-            if (const auto item = item_of(placed, i, view_matrix, view.mode)) items.push_back(*item);
-    sort_by_id(items, *placed.scene);
-    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
-    return items;
-}
-
 /// Reflective geometry nodes, mirrors or others, in the materials of their file.
 std::size_t count_reflective(const Scene& scene, bool mirrors) {
     std::size_t count = 0;
@@ -166,6 +152,19 @@ std::vector<glm::dvec3> marks_of(const View& view, const glm::dmat4& view_matrix
 }
 
 }  // namespace
+
+std::vector<DrawItem> shown_items(const View& view) {
+    const PlacedScene& placed = *view.scene;
+    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
+    const glm::dmat4 view_matrix = view_from_world(view.camera);
+    std::vector<DrawItem> items;
+    for (std::size_t i = 0; i < shown.size(); ++i)
+        if (shown[i])
+            if (const auto item = item_of(placed, i, view_matrix, view.mode)) items.push_back(*item);
+    sort_by_id(items, *placed.scene);
+    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
+    return items;
+}
 
 double mark_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 

@@ -84,6 +84,9 @@ class GlassShapes;
 /// given, for the next frame.
 FramePlan plan_frame(const View& view, GlassShapes* shapes = nullptr);
 
+/// The items of all faces that a view of a scene shows or has beside it, opaque or not, by rising id.
+std::vector<DrawItem> shown_items(const View& view);
+
 /// The items of all faces that a view shows, opaque or not, by rising id.
 std::vector<DrawItem> faces_of(const View& view);
 

@@ -112,15 +112,17 @@ GpuGeometry upload(const Geometry& geometry) {
     GpuGeometry result;
     result.origin = geometry.bounds.center();
     const Arrays arrays = make_arrays(geometry, result.origin);
-    result.vertices = make_buffer(arrays.vertices.data(), arrays.vertices.size() * sizeof(Vertex));
+    result.vertices =
+        make_buffer("vertices", arrays.vertices.data(), arrays.vertices.size() * sizeof(Vertex));
     const std::vector<glm::uvec3>& triangles = triangles_of(arrays, geometry);
-    result.indices = make_buffer(triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    result.indices = make_buffer("triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
     result.index_count = static_cast<GLsizei>(triangles.size() * 3);
 
     result.vertex_array = vertex_array_of(result.vertices, result.indices);
     if (geometry.texcoords.empty()) return result;
     const std::vector<glm::vec2> texcoords = texcoords_of(arrays.corners, geometry);
-    result.texcoords = make_buffer(texcoords.data(), texcoords.size() * sizeof(glm::vec2));
+    result.texcoords =
+        make_buffer("texture coordinates", texcoords.data(), texcoords.size() * sizeof(glm::vec2));
     add_texcoords(result.texcoords, result.vertex_array);
     return result;
 }
@@ -174,7 +176,7 @@ GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
     const Arrays arrays = make_arrays(geometry, uploaded.origin);
     const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
     if (edges.empty()) return result;
-    result.indices = make_buffer(edges.data(), edges.size() * sizeof(glm::uvec2));
+    result.indices = make_buffer("edges", edges.data(), edges.size() * sizeof(glm::uvec2));
     result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
     result.index_count = static_cast<GLsizei>(edges.size() * 2);
     return result;
@@ -187,6 +189,17 @@ GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
       geometries_(scene_->geometries().size()),
       edges_(geometries_.size()),
       textures_(scene_->textures().size()) {}
+
+void GpuScene::upload_shown(const View& view) {
+    for (const DrawItem& item : shown_items(view)) {
+        geometry(item.geometry);
+        if (item.texture != kNone) texture(item.texture);
+    }
+    if (view.background.cube_map)
+        cube_map(*view.background.cube_map);
+    else if (view.background.texture != kNone)
+        texture(view.background.texture);
+}
 
 const GpuGeometry& GpuScene::geometry(Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
@@ -248,7 +261,7 @@ const GpuTriangles& GpuScene::ordered(const DrawItem& item) {
         const GpuGeometry& uploaded = geometry(item.geometry);
         const Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
         result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
-        result.indices = make_changing_buffer(order.size() * sizeof(glm::uvec3));
+        result.indices = make_changing_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
         result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
         if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
         result.index_count = static_cast<GLsizei>(order.size() * 3);

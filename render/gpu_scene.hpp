@@ -45,6 +45,8 @@ class GpuScene {
 public:
     explicit GpuScene(std::shared_ptr<const Scene> scene);
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    /// What a view of it shows, in the picture or beside it. Throws OutOfMemory, as all below.
+    void upload_shown(const View& view);
     const GpuGeometry& geometry(Index index);
     /// Of an item: its level's, if it has one.
     const GpuGeometry& geometry(const DrawItem& item);

@@ -8,7 +8,7 @@
 namespace vrut {
 
 /// An image with all its mip levels, repeated in both directions. One that is larger than the driver takes
-/// starts at the first level that is not. Throws std::runtime_error where there is no memory for it.
+/// starts at the first level that is not. Throws OutOfMemory.
 GlTexture upload_texture(const Image& image);
 
 /// A panorama of six squares of one size, px nx py ny pz nz, each what a camera with 90° at the world's

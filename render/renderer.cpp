@@ -50,13 +50,55 @@ void average(std::span<const std::uint32_t> sums, int samples, std::span<std::ui
 }  // namespace
 
 struct Renderer::Impl {
-    Impl(std::optional<int> device, bool debug) : context({device, debug}) {
+    Impl(std::optional<int> device, bool debug) : context({device, debug}) {}
+
+    /// All that drawing changes, too: a picture before may have failed in the midst of it.
+    void set_up_drawing() {
         glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
         glClearDepth(0);
         glEnable(GL_DEPTH_TEST);
         glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
         glDisable(GL_DITHER);
+        glDisable(GL_SCISSOR_TEST);
+        glDisable(GL_BLEND);
+        glDepthMask(GL_TRUE);
+        glDepthRange(0, 1);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     }
+
+    void require_context() const {
+        if (context.lost()) throw ContextLost("the graphics driver has reset itself");
+    }
+
+    static void require_memory() {
+        constexpr int kMostErrors = 100;
+        GLenum error = glGetError();
+        for (int i = 0; i < kMostErrors && error != GL_NO_ERROR && error != GL_OUT_OF_MEMORY; ++i)
+            error = glGetError();
+        if (error == GL_OUT_OF_MEMORY) throw OutOfMemory("the graphics driver has no memory to draw with");
+    }
+
+    /// Draws. The one place that asks whether the context was lost meanwhile, whatever that made of it, and
+    /// whether there was too little memory for something.
+    template <class Draw>
+    auto draw_or_fail(Draw draw) {
+        try {
+            set_up_drawing();
+            auto drawn = draw();
+            require_context();
+            require_memory();
+            return drawn;
+        } catch (const std::bad_alloc&) {
+            require_context();
+            throw OutOfMemory("this machine has no memory left to draw with");
+        } catch (const std::exception&) {
+            require_context();
+            throw;
+        }
+    }
+
+    bool render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted,
+                Accumulation* kept);
 
     void use_target(int width, int height, bool deep) {
         if (target && target->width() == width && target->height() == height && target->deep() == deep)
@@ -74,8 +116,31 @@ struct Renderer::Impl {
     void use_scene(const std::shared_ptr<const Scene>& wanted) {
         if (scene && scene->scene() == wanted) return;
         scene.reset();
-        scene.emplace(wanted);
+        if (taken && taken->scene() == wanted)
+            scene = std::move(taken);
+        else
+            scene = std::make_unique<GpuScene>(wanted);
+        taken.reset();
         shapes.emplace(*wanted);
+    }
+
+    void take(const View& view) {
+        taken.reset();
+        if (scene && scene->scene() == view.scene->scene) return;
+        auto next = std::make_unique<GpuScene>(view.scene->scene);
+        next->upload_shown(view);
+        taken = std::move(next);
+    }
+
+    /// Gives back what was drawn with; what is needed comes again.
+    void release() {
+        scene.reset();
+        taken.reset();
+        target.reset();
+        mirrors.release();
+        pixel_sort.release();
+        sample = {};
+        accumulation = {};
     }
 
     void draw_layers(const Layers& layers, const View& view, const Sight& sight, const Framebuffer& into,
@@ -135,7 +200,7 @@ struct Renderer::Impl {
     }
 
     GlContext context;  // first: destroyed after everything below
-    std::optional<GpuScene> scene;
+    std::unique_ptr<GpuScene> scene, taken;
     std::optional<GlassShapes> shapes;
     std::optional<Framebuffer> target;
     SurfacePrograms programs;
@@ -153,30 +218,20 @@ struct Renderer::Impl {
     Accumulation accumulation;  // of pictures whose samples the caller does not keep
 };
 
-Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {}
-Renderer::~Renderer() = default;
-
-const std::string& Renderer::description() const { return impl_->context.description(); }
-const std::vector<std::string>& Renderer::rejected() const { return impl_->context.rejected(); }
-bool Renderer::software() const { return impl_->context.software(); }
-int Renderer::max_size() const { return impl_->context.max_size(); }
-long Renderer::gl_objects() const { return live_gl_objects(); }
-std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
-
-bool Renderer::render(const View& view, Image& image, FrameStats& stats,
-                      const std::function<bool()>& interrupted, Accumulation* kept) {
+bool Renderer::Impl::render(const View& view, Image& image, FrameStats& stats,
+                            const std::function<bool()>& interrupted, Accumulation* kept) {
     stats = {};
     image.resize(view.width, view.height);
 
     Clock::time_point start = Clock::now();
-    if (view.scene) impl_->use_scene(view.scene->scene);
-    const FramePlan plan = plan_frame(view, impl_->shapes ? &*impl_->shapes : nullptr);
+    if (view.scene) use_scene(view.scene->scene);
+    const FramePlan plan = plan_frame(view, shapes ? &*shapes : nullptr);
     const bool has_glass = has_transparent(plan.scene) || has_transparent(plan.over);
-    impl_->use_target(view.width, view.height, has_glass);
-    impl_->keep_room_for_layers(has_exact_group(plan.scene) || has_exact_group(plan.over));
+    use_target(view.width, view.height, has_glass);
+    keep_room_for_layers(has_exact_group(plan.scene) || has_exact_group(plan.over));
     const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
-    const int uploads_before = impl_->scene ? impl_->scene->uploads() : 0;
-    Accumulation& sum = kept ? *kept : impl_->accumulation;
+    const int uploads_before = scene ? scene->uploads() : 0;
+    Accumulation& sum = kept ? *kept : accumulation;
     const bool goes_on =
         kept && kept->samples > 0 && kept->samples < view.samples && kept->sums.size() == image.rgba.size();
     if (!goes_on) sum.samples = 0;
@@ -184,16 +239,16 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     const int first = sum.samples;
     for (int i = first; i < view.samples; ++i) {
         if (i > first && interrupted && interrupted()) return false;
-        impl_->draw(plan, view, near, sample_offset(i, view.samples), stats);
+        draw(plan, view, near, sample_offset(i, view.samples), stats);
         wait_for_gl();
         ++stats.samples;
         stats.render_ms += milliseconds_since(start);
-        stats.uploads = (impl_->scene ? impl_->scene->uploads() : 0) - uploads_before;
+        stats.uploads = (scene ? scene->uploads() : 0) - uploads_before;
 
         start = Clock::now();
-        std::vector<std::uint8_t>& pixels = view.samples > 1 ? impl_->sample : image.rgba;
+        std::vector<std::uint8_t>& pixels = view.samples > 1 ? sample : image.rgba;
         pixels.resize(image.rgba.size());
-        impl_->target->read(pixels);
+        target->read(pixels);
         ++stats.readbacks;
         if (view.samples > 1) add(pixels, sum);
         stats.readback_ms += milliseconds_since(start);
@@ -207,14 +262,48 @@ bool Renderer::render(const View& view, Image& image, FrameStats& stats,
     return true;
 }
 
+Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {}
+Renderer::~Renderer() = default;
+
+const std::string& Renderer::description() const { return impl_->context.description(); }
+const std::vector<std::string>& Renderer::rejected() const { return impl_->context.rejected(); }
+bool Renderer::software() const { return impl_->context.software(); }
+int Renderer::max_size() const { return impl_->context.max_size(); }
+long Renderer::gl_objects() const { return live_gl_objects(); }
+std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
+
+bool Renderer::render(const View& view, Image& image, FrameStats& stats,
+                      const std::function<bool()>& interrupted, Accumulation* kept) {
+    const auto draw = [&] {
+        return impl_->draw_or_fail([&] { return impl_->render(view, image, stats, interrupted, kept); });
+    };
+    try {
+        return draw();
+    } catch (const OutOfMemory&) {
+        // Much may be there of pictures before: levels of detail, edges, the target of a larger one.
+        impl_->release();
+        if (kept) *kept = {};
+    }
+    return draw();
+}
+
+void Renderer::take(const View& view) {
+    impl_->draw_or_fail([&] {
+        impl_->take(view);
+        return true;
+    });
+}
+
 std::vector<Index> Renderer::node_ids(const View& view) {
     if (!view.scene)
         return std::vector<Index>(
             static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), kNone);
-    impl_->use_scene(view.scene->scene);
-    const double near = fit_clip_range(view.camera, view.scene->bounds).near;
-    return impl_->ids.draw(faces_of(view), *impl_->scene, view.width, view.height,
-                           reversed_clip_from_view(view, near, glm::dvec2(0)));
+    return impl_->draw_or_fail([&] {
+        impl_->use_scene(view.scene->scene);
+        const double near = fit_clip_range(view.camera, view.scene->bounds).near;
+        return impl_->ids.draw(faces_of(view), *impl_->scene, view.width, view.height,
+                               reversed_clip_from_view(view, near, glm::dvec2(0)));
+    });
 }
 
 }  // namespace vrut

@@ -6,12 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "drawing_errors.hpp"
 #include "image.hpp"
 #include "view.hpp"
 
 namespace vrut {
 
-/// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread.
+/// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread. Whatever draws
+/// throws ContextLost when the driver has reset itself: from then on it draws nothing any more. It throws
+/// OutOfMemory where there is too little: what was drawn before can be drawn still.
 class Renderer {
 public:
     /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's
@@ -29,10 +32,14 @@ public:
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
+    /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
+    /// drawn last stays there, too, until then; for good where this throws.
+    void take(const View& view);
+
     /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks
     /// `interrupted`; if that says yes the picture is given up and false comes back. With `kept` its samples
     /// are left there, and the same view given again goes on from them; `kept` is empty after a whole
-    /// picture. The scene drawn last stays on the GPU.
+    /// picture, and worthless where this throws. The scene drawn last stays on the GPU.
     bool render(const View& view, Image& image, FrameStats& stats,
                 const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
 

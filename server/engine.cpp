@@ -46,7 +46,10 @@ PainterFactory gl_painter(std::optional<int> device) {
         for (const std::string& sentence : renderer->rejected())
             log_warning("device_passed_over", {{"reason", sentence}});
         log_info("drawing", {{"renderer", renderer->description()}});
-        return Painter{renderer->description(), renderer->software(), renderer->max_size(),
+        return Painter{renderer->description(),
+                       renderer->software(),
+                       renderer->max_size(),
+                       [renderer](const View& view) { renderer->take(view); },
                        [renderer](const View& view, Image& image, FrameStats& stats,
                                   const std::function<bool()>& interrupted, Accumulation* kept) {
                            return renderer->render(view, image, stats, interrupted, kept);
@@ -55,8 +58,7 @@ PainterFactory gl_painter(std::optional<int> device) {
     };
 }
 
-Engine::Engine(EngineOptions options, const PainterFactory& factory, Metrics& metrics,
-               EngineCallbacks callbacks)
+Engine::Engine(EngineOptions options, PainterFactory factory, Metrics& metrics, EngineCallbacks callbacks)
     : library_(std::move(options.library)),
       record_folder_(std::move(options.record_folder)),
       metrics_(metrics),
@@ -66,25 +68,22 @@ Engine::Engine(EngineOptions options, const PainterFactory& factory, Metrics& me
       snapshot_encoder_(
           metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
       loader_(mailbox_),
+      factory_(std::move(factory)),
       stats_(metrics) {
     std::promise<void> started;
     std::future<void> start = started.get_future();
-    thread_ = std::thread([this, &factory, &started, scene = std::move(options.scene)]() mutable {
-        Painter painter;
+    thread_ = std::thread([this, &started, scene = std::move(options.scene)]() mutable {
+        bool begun = false;
         try {
-            painter = factory();
-            description_ = painter.description;
-            limits_.max_side = std::min(painter.max_size, limits_.max_side);
+            begin(std::move(scene));
+            begun = true;
             started.set_value();
-        } catch (...) {
-            started.set_exception(std::current_exception());
-            return;
-        }
-        try {
-            painter_ = std::move(painter);
-            run(std::move(scene));
+            while (!mailbox_.closed()) step();
         } catch (const std::exception& error) {
-            callbacks_.on_failure(error.what());
+            if (begun)
+                callbacks_.on_failure(error.what());
+            else
+                started.set_exception(std::current_exception());
         }
         painter_ = {};  // what belongs to GL ends on the thread that it began on
         presentation_.reset();
@@ -108,14 +107,19 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
     return scene;
 }
 
-void Engine::run(LoadedScene scene) {
+void Engine::begin(LoadedScene scene) {
     heart_.beat();
+    painter_ = factory_();
+    description_ = painter_.description;
+    limits_.max_side = std::min(painter_.max_size, limits_.max_side);
+    room_ = limits_;
     use(levels_of(scene.sha256, description_));
     PresentationOptions options;
     options.record_folder = record_folder_;
     options.load = [this](const std::string& name) { return load(name); };
     options.scenes = [this] { return scenes(); };
-    presentation_.emplace(with_notices(std::move(scene)), std::move(options));
+    presentation_.emplace(with_notices(scene), std::move(options));
+    if (const auto refusal = take(scene)) throw std::runtime_error(*refusal);
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
     Image image;
@@ -123,12 +127,16 @@ void Engine::run(LoadedScene scene) {
     View small = presentation_->visible();
     small.width = small.height = 64;
     paint(small, image, stats);
-
-    while (!mailbox_.closed()) step();
 }
 
 void Engine::step() {
     if (!waiting_.empty()) handle_waiting();
+    if (arrived_) show(*std::exchange(arrived_, std::nullopt));
+    if (presentation_->view_size() != room_for_ || (undrawable_ && !is_undrawable())) {
+        room_for_ = presentation_->view_size();
+        room_ = limits_;
+        undrawable_.reset();
+    }
     fly();
     serve_newest();
     report();
@@ -273,28 +281,17 @@ void Engine::tell(const protocol::Loading& loading) {
     output_.loads = !loading.done && !loading.refused;
 }
 
-void Engine::handle(const SceneLoaded& loaded) {
-    loader_.finish();
-    protocol::Loading told{loaded.name, 1, {}, {}};
-    if (loaded.scene) {
-        presentation_->show(with_notices(*loaded.scene), time_of(Clock::now()));
-        use(loaded.levels);
-        last_change_ = Clock::now();
-        told.done = true;
-        log_info("scene_shown",
-                 {{"scene", loaded.name}, {"triangles", loaded.scene->placed->scene->triangle_count()}});
-    } else {
-        told.refused = loaded.scene.error();
-        log_warning("scene_refused", {{"scene", loaded.name}, {"reason", loaded.scene.error()}});
-    }
-    tell(told);
-}
+void Engine::handle(const SceneLoaded& loaded) { arrived_ = loaded; }
 
 std::optional<protocol::Error> Engine::load(const std::string& name) {
     const auto path = library_.find(name);
     if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
-    loader_.start(*path, name, description_, library_.limits());
+    try {
+        loader_.start(*path, name, description_, library_.limits());
+    } catch (const std::system_error& error) {
+        return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
+    }
     tell({name, 0, {}, {}});
     return std::nullopt;
 }
@@ -307,9 +304,13 @@ const std::vector<std::string>& Engine::scenes() {
     if (!listing_.valid() && now >= list_again_) {
         std::packaged_task<std::vector<std::string>()> walk([library = library_] { return library.names(); });
         listing_ = walk.get_future();
-        std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
         list_again_ = now + kBetweenListings;
         patience = kWaitsForListing;
+        try {
+            std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
+        } catch (const std::system_error&) {        // no thread can be had: what was listed last will do
+            listing_ = {};
+        }
     }
     if (listing_.valid() && listing_.wait_for(patience) == std::future_status::ready)
         scenes_ = listing_.get();
@@ -375,7 +376,7 @@ void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message,
 
 PictureSize Engine::present_size() const {
     const protocol::Resize& view = presentation_->view_size();
-    return picture_size(view, quality_of(kStill, view, limits_, false).scale);
+    return picture_size(view, quality_of(kStill, view, room_, false).scale);
 }
 
 /// Hands over what there is to tell.

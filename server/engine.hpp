@@ -28,15 +28,17 @@
 namespace vrut {
 
 /// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
-/// thread.
+/// thread; made anew when it throws ContextLost.
 struct Painter {
     std::string description;
     bool software = false;
     int max_size = 16384;
+    /// As Renderer::take; empty: there is nothing to be taken.
+    std::function<void(const View&)> take = {};
     /// As Renderer::render.
     std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
                        Accumulation* kept)>
-        paint;
+        paint = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
 using PainterFactory = std::function<Painter()>;
@@ -55,6 +57,7 @@ struct EngineOutput {
     std::int64_t by_since = 0;
     std::vector<Answer> answers;
     std::vector<Owed> owed;
+    std::vector<std::string> undrawn;  ///< whose picture cannot be drawn (PictureAsked::name)
     struct Handled {
         std::size_t bytes = 0, requests = 0;
     };
@@ -64,7 +67,8 @@ struct EngineOutput {
     bool loads = false;                                 ///< with `loading`: it goes on
 
     bool empty() const {
-        return !document && answers.empty() && owed.empty() && handled.empty() && !size && !stats && !loading;
+        return !document && answers.empty() && owed.empty() && undrawn.empty() && handled.empty() && !size &&
+               !stats && !loading;
     }
 };
 
@@ -85,8 +89,9 @@ struct EngineOptions {
 /// which it came, and draws a picture when something changed and somebody waits for it.
 class Engine {
 public:
-    /// Starts the thread; throws what `factory` throws. The first output holds the first document.
-    Engine(EngineOptions options, const PainterFactory& factory, Metrics& metrics, EngineCallbacks callbacks);
+    /// Starts the thread; throws what `factory` throws, and where the scene does not fit. The first output
+    /// holds the first document.
+    Engine(EngineOptions options, PainterFactory factory, Metrics& metrics, EngineCallbacks callbacks);
     ~Engine();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
@@ -126,7 +131,10 @@ private:
         PictureOrder order;
         Image image;
         Accumulation kept;
+        int losses = 0;  ///< of the context, while it was drawn
     };
+    enum class Painted { whole, given_up, lost };
+    static constexpr int kMostLosses = 2;  // of the context, by one snapshot or scene
 
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
@@ -164,15 +172,29 @@ private:
     void draw_snapshot();
     void promise(std::int64_t frame);
     void measure(const FrameSent& sent, Clock::time_point asked);
-    bool paint(const View& view, Image& image, FrameStats& stats,
-               const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
+
+    // --- what draws, and what fails in it
+    Painted paint(const View& view, Image& image, FrameStats& stats,
+                  const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
+    void renew_painter(std::string why);
+    std::optional<std::string> take(const LoadedScene& scene);
+    void show(const SceneLoaded& loaded);
+    struct Undrawable {
+        View visible;
+        protocol::Resize view_size;
+    };
+    void draw_smaller(const Undrawable& what, const PictureSize& size, const std::string& why);
+    bool is_undrawable() const;
+    void refuse(const Snapshot& snapshot, const std::string& sentence);
+    /// Tells all clients; the log, too.
+    void notice(const std::string& sentence);
     void use(const protocol::LevelTable& table);
     void was_delivered(std::int64_t frame);
     protocol::Quality quality_at_rest(int samples) const;
     std::size_t choose_level();
     void note(const Begun& begun);
 
-    void run(LoadedScene scene);
+    void begin(LoadedScene scene);
     LoadedScene with_notices(LoadedScene scene) const;
 
     SceneLibrary library_;
@@ -193,7 +215,13 @@ private:
     std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
     SceneLoader loader_;
+    PainterFactory factory_;
     Painter painter_;
+    std::size_t tries_ = 0;                 ///< painters made since the last whole picture
+    std::optional<SceneLoaded> arrived_;    ///< to be shown as soon as nothing is being drawn
+    PictureLimits room_;                    ///< of the live picture, as far as is known
+    protocol::Resize room_for_;             ///< of a view of this size
+    std::optional<Undrawable> undrawable_;  ///< for which there is no memory even if it is small
 
     std::optional<Presentation> presentation_;
     std::map<std::string, Client> clients_;

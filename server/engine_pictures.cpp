@@ -1,3 +1,4 @@
+#include "drawing_errors.hpp"
 #include "engine.hpp"
 #include "log.hpp"
 
@@ -61,7 +62,7 @@ void Engine::serve_newest() {
 PacingDecision Engine::pace() {
     PacingInput input;
     for (const auto& [name, client] : clients_)
-        input.somebody_waits = input.somebody_waits || waits_for_newer(client);
+        input.somebody_waits = input.somebody_waits || (waits_for_newer(client) && !is_undrawable());
     input.changed = !shows_present();
     input.newest_samples = drawn_.still_samples;
     input.encoder_free = encoder_.is_free();
@@ -84,16 +85,6 @@ void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
         }
 }
 
-bool Engine::paint(const View& view, Image& image, FrameStats& stats,
-                   const std::function<bool()>& interrupted, Accumulation* kept) {
-    const bool whole = painter_.paint(view, image, stats, interrupted, kept);
-    draws_ = draws_ || whole;
-    metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
-    metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
-    if (painter_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(painter_.gl_objects());
-    return whole;
-}
-
 void Engine::promise(std::int64_t frame) {
     for (auto& [name, client] : clients_) {
         if (client.grants == 0) continue;
@@ -105,7 +96,7 @@ void Engine::promise(std::int64_t frame) {
 
 /// With the error that the table has for such a picture.
 protocol::Quality Engine::quality_at_rest(int samples) const {
-    protocol::Quality quality = quality_of(kStill, presentation_->view_size(), limits_, thin_lines());
+    protocol::Quality quality = quality_of(kStill, presentation_->view_size(), room_, thin_lines());
     quality.samples = samples;
     if (thin_lines()) return quality;
     for (const protocol::Level& level : at_rest_) {
@@ -119,7 +110,7 @@ protocol::Quality Engine::quality_at_rest(int samples) const {
 std::size_t Engine::choose_level() {
     const protocol::QualityState& wanted = presentation_->state().quality;
     const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
-    return choice_->choose({presentation_->view_size(), limits_, target}, Clock::now());
+    return choice_->choose({presentation_->view_size(), room_, target}, Clock::now());
 }
 
 void Engine::draw(const PacingDecision& decision) {
@@ -131,7 +122,7 @@ void Engine::draw(const PacingDecision& decision) {
     const std::size_t level = still ? 0 : choose_level();
     const protocol::Quality quality =
         still ? quality_at_rest(decision.still_samples)
-              : quality_of(choice_->levels()[level].quality, view_size, limits_, thin_lines());
+              : quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
     View view = visible;
     view.width = size.width;
@@ -155,11 +146,17 @@ void Engine::draw(const PacingDecision& decision) {
     const auto interrupted = [&] {
         attend();
         const View& now = presentation_->visible();
-        return mailbox_.closed() || scene_of(now) != scene_of(visible) ||
+        return mailbox_.closed() || arrived_ || scene_of(now) != scene_of(visible) ||
                (still && (now != visible || presentation_->view_size() != view_size));
     };
     if (!still) presentation_->remember(next_frame_++);  // with the camera as it is now
-    if (!paint(view, image, stats, interrupted)) {
+    Painted painted = Painted::whole;
+    try {
+        painted = paint(view, image, stats, interrupted);
+    } catch (const OutOfMemory& error) {
+        return draw_smaller({visible, view_size}, size, error.what());
+    }
+    if (painted != Painted::whole) {
         ++metrics_.frames_interrupted;
         encoder_.give_spare(std::move(image));
         return;
@@ -200,14 +197,21 @@ void Engine::draw_snapshot() {
     FrameStats stats;
     const auto interrupted = [&] {
         attend();
-        return mailbox_.closed() || pace().action == PacingDecision::Action::draw;
+        return mailbox_.closed() || arrived_ || pace().action == PacingDecision::Action::draw;
     };
-    const bool whole = paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
+    Painted painted = Painted::whole;
+    try {
+        painted = paint(view, snapshot.image, stats, interrupted, &snapshot.kept);
+    } catch (const OutOfMemory& error) {
+        return refuse(snapshot, error.what());
+    }
     header.timing.render_ms += stats.render_ms;
     header.timing.readback_ms += stats.readback_ms;
     const bool is_client = header.snapshot.has_value();
     if (is_client && !clients_.contains(client)) return;  // it has left
-    if (!whole) {
+    if (painted == Painted::lost && ++snapshot.losses == kMostLosses)
+        return refuse(snapshot, "the graphics driver is lost whenever this picture is drawn");
+    if (painted != Painted::whole) {
         snapshots_.push_front(std::move(snapshot));
         return;
     }

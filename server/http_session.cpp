@@ -202,7 +202,12 @@ private:
                          hub_.document ? "ETag: " + tag + "\r\n" : std::string{}});
         deadline_ = Clock::time_point::max();  // it takes as long as it takes
         const bool asked = hub_.pictures.ask(
-            key, [self = shared_from_this()](const ViewPicture& picture) { self->send_file(picture); },
+            key,
+            [self = shared_from_this()](const ViewPicture* picture) {
+                if (picture) return self->send_file(*picture);
+                self->send(refusal(http::status::service_unavailable,
+                                   "this picture cannot be drawn: the log says why"));
+            },
             hub_.engine->mailbox());
         if (!asked) send(refusal(http::status::service_unavailable, "too many pictures are being drawn"));
     }

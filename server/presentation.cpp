@@ -89,10 +89,19 @@ void Presentation::show(LoadedScene scene, Time at) {
     next.quality = state_.quality;
     next.control = state_.control;
     next.recording = state_.recording;
+    next.notices = state_.notices;
     state_ = std::move(next);
     at_home_ = !state_.camera.node;
     gestures_.restart(camera());
     visible_ = view_of(state_, scene_);
+}
+
+void Presentation::notice(const std::string& sentence) {
+    document();
+    changing_.clear();  // the server's doing
+    std::erase(state_.notices, sentence);
+    state_.notices.push_back(sentence);
+    if (state_.notices.size() > protocol::kMaxNotices) state_.notices.erase(state_.notices.begin());
 }
 
 void Presentation::remember(std::int64_t frame) {

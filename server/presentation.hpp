@@ -71,6 +71,8 @@ public:
     void advance(Time at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
     void show(LoadedScene scene, Time at);
+    /// Tells all clients what has gone wrong in the server, until newer notices take its place.
+    void notice(const std::string& sentence);
     /// A frame has been drawn of visible() at view_size(): picks name it.
     void remember(std::int64_t frame);
     /// To be called first, if at all: as things stood when a recording began.

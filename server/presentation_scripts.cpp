@@ -170,7 +170,7 @@ void Presentation::start_recording(const Said& said, const std::string& name) {
     if (!recorder_.active()) {
         state_.recording.reset();
         accepted_ = false;
-        return refuse(said, code::failed, "the recording cannot be written");
+        return refuse(said, code::failed, recorder_.end());
     }
     press_anew(said.client);
     answer(said, *opened);
@@ -210,7 +210,9 @@ void Presentation::press_anew(const std::string& client) {
 void Presentation::record(const std::string& client, decltype(protocol::LogLine::what) what) {
     if (!recorder_.active()) return;
     recorder_.write(protocol::encode(protocol::LogLine{time_ - recording_since_, client, std::move(what)}));
-    if (!recorder_.active()) state_.recording.reset();
+    if (recorder_.active()) return;
+    state_.recording.reset();
+    notice(recorder_.end());
 }
 
 protocol::LogHeader Presentation::log_header() const {

@@ -49,13 +49,23 @@ tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
 }
 
 void Recorder::write(const std::string& line) {
-    size_ += line.size() + 1;
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
     // Whole lines reach the file at once: a log whose end is missing is still a log.
     file_ << line << '\n' << std::flush;
-    if (file_ && size_ < largest_) return;
-    log_warning("recording_ended",
-                {{"file", path_.string()},
-                 {"reason", file_ ? "it has grown too large" : "it cannot be written any more"}});
+    const int error = errno;
+    size_ += line.size() + 1;
+    if (!file_)
+        stop(std::strerror(error));
+    else if (size_ >= largest_)
+        stop("it has grown too large");
+    else if (Clock::now() - start >= slowest_)
+        stop("its disk is too slow");
+}
+
+void Recorder::stop(const std::string& why) {
+    end_ = "The recording '" + path_.stem().string() + "' has ended: " + why;
+    log_warning("recording_ended", {{"file", path_.string()}, {"reason", why}});
     close();
 }
 

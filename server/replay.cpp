@@ -11,9 +11,11 @@ tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& 
     std::string text;
     for (std::size_t number = 1; std::getline(stream, text); ++number) {
         const bool unfinished = stream.eof();  // no line's end
+        const std::string place = path.string() + ":" + std::to_string(number) + ": ";
         const auto wrong = [&](const protocol::Error& error) {
-            return tl::unexpected(path.string() + ":" + std::to_string(number) + ": " + error.message);
+            return tl::unexpected(place + error.message);
         };
+        if (unfinished) log.cut = place + "the log is cut off here, and its end is missing";
         if (number == 1) {
             auto header = protocol::decode_log_header(text);
             if (!header) return wrong(header.error());

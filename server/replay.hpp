@@ -15,9 +15,12 @@ namespace vrut {
 struct EventLog {
     protocol::LogHeader header;
     std::vector<protocol::LogLine> lines;
+    /// Why its end is missing, a sentence that names file and line; empty: as far as can be told it is there.
+    std::string cut = {};
 };
 
-/// Or one sentence that names file and line. An unfinished last line is left out: the session was cut off.
+/// Or one sentence that names file and line. A last line that is not whole is left out: the session was cut
+/// off.
 tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path);
 
 /// Finds a scene of a log by its name and SHA-256, or tells why it cannot be had.

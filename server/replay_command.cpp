@@ -101,6 +101,7 @@ private:
 void replay_command(const ReplayArguments& arguments) {
     const auto log = read_event_log(arguments.log);
     if (!log) throw std::runtime_error(log.error());
+    if (!log->cut.empty()) log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
     Scenes scenes(arguments);

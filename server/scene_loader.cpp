@@ -19,7 +19,6 @@ SceneLoader::~SceneLoader() {
 void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
                         const std::string& renderer, const std::optional<ImportLimits>& limits) {
     finish();
-    busy_ = true;
     thread_ = std::thread([this, path, name, renderer, limits] {
         constexpr std::chrono::milliseconds kBetweenReports{100};
         Clock::time_point last = Clock::now();
@@ -39,6 +38,7 @@ void SceneLoader::start(const std::filesystem::path& path, const std::string& na
             mailbox_.push(SceneLoaded{name, tl::unexpected(std::string(error.what()))});
         }
     });
+    busy_ = true;
 }
 
 void SceneLoader::finish() {

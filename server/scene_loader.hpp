@@ -17,7 +17,7 @@ public:
 
     /// From start() until finish().
     bool busy() const { return busy_; }
-    /// With the levels that are kept for what draws.
+    /// With the levels that are kept for what draws. Throws std::system_error where no thread can be had.
     void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
                const std::optional<ImportLimits>& limits);
     /// To be called when SceneLoaded has come.

@@ -128,6 +128,7 @@ struct Server::Impl {
         if (output.size) hub.size = *output.size;
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
+        for (const std::string& name : output.undrawn) hub.pictures.give_up(name);
         for (const auto& owed : output.owed)
             if (Session* session = find(owed.client)) session->owe(owed.frame);
         for (const auto& [client, handled] : output.handled)

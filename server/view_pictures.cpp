@@ -51,8 +51,14 @@ bool ViewPictures::take(const EncodedPicture& picture) {
     key.revision = picture.header.revision;
     const ViewPicture taken{key, std::make_shared<const std::string>(whole_file(picture))};
     keep(taken);
-    for (const Tell& tell : drawing.mapped().waiting) tell(taken);
+    for (const Tell& tell : drawing.mapped().waiting) tell(&taken);
     return true;
+}
+
+void ViewPictures::give_up(const std::string& name) {
+    const auto drawing = waiting_.extract(name);
+    if (!drawing) return;
+    for (const Tell& tell : drawing.mapped().waiting) tell(nullptr);
 }
 
 void ViewPictures::forget_before(std::int64_t revision) {

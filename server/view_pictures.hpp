@@ -31,8 +31,8 @@ struct ViewPicture {
 /// one drawing, and what was drawn is kept while nothing changes.
 class ViewPictures {
 public:
-    using Tell = std::function<void(const ViewPicture&)>;
-    static constexpr std::size_t kMostWaiting = 8;  ///< drawings
+    using Tell = std::function<void(const ViewPicture*)>;  ///< null: it cannot be drawn
+    static constexpr std::size_t kMostWaiting = 8;         ///< drawings
     static constexpr std::size_t kMostKept = 4, kMostKeptBytes = std::size_t{16} << 20;
 
     /// Its entity tag: another server, one started anew, has others.
@@ -43,6 +43,8 @@ public:
     bool ask(const ViewPictureKey& key, Tell tell, Mailbox& mailbox);
     /// False where `picture` is none that was asked for here.
     bool take(const EncodedPicture& picture);
+    /// The picture that was asked for by this name cannot be drawn.
+    void give_up(const std::string& name);
     void forget_before(std::int64_t revision);
     /// Forgets those who wait.
     void stop() { waiting_.clear(); }

@@ -94,6 +94,28 @@ void APIENTRY collect_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei l
     messages->emplace_back(text, static_cast<std::size_t>(length));
 }
 
+/// One that says when the driver has reset itself, and that reads nothing beyond its buffers; or, where the
+/// driver has no such, any. None has no version 4.5.
+EGLContext create_context(EGLDisplay display, bool debug) {
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,
+                                   4,
+                                   EGL_CONTEXT_MINOR_VERSION,
+                                   5,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                   EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                   EGL_CONTEXT_OPENGL_DEBUG,
+                                   debug ? EGL_TRUE : EGL_FALSE,
+                                   EGL_NONE};
+    std::vector<EGLint> robust = attributes;
+    robust.insert(robust.end() - 1,
+                  {EGL_CONTEXT_OPENGL_ROBUST_ACCESS, EGL_TRUE, EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                   EGL_LOSE_CONTEXT_ON_RESET});
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, robust.data());
+    if (context == EGL_NO_CONTEXT)
+        context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+    return context;
+}
+
 /// Draws a triangle over the left half of a small picture and looks at both halves.
 void check_drawing() {
     constexpr int kSize = 16;
@@ -165,6 +187,13 @@ GlContext::GlContext(const GlOptions& options) {
 
 GlContext::~GlContext() = default;
 
+bool GlContext::lost() const {
+    const GLenum status = glGetGraphicsResetStatus();
+    // Some drivers that know nothing of resets answer anything.
+    return status == GL_GUILTY_CONTEXT_RESET || status == GL_INNOCENT_CONTEXT_RESET ||
+           status == GL_UNKNOWN_CONTEXT_RESET;
+}
+
 void GlContext::make_current(const Candidate& candidate, bool debug) {
     const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     if (!get_display) throw std::runtime_error("EGL has no platform displays");
@@ -179,16 +208,7 @@ void GlContext::make_current(const Candidate& candidate, bool debug) {
         !has_word(extensions, "EGL_KHR_no_config_context"))
         throw std::runtime_error("has no contexts without a surface");
     if (!eglBindAPI(EGL_OPENGL_API)) throw std::runtime_error("has no OpenGL");
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_CONTEXT_OPENGL_DEBUG,
-                                 debug ? EGL_TRUE : EGL_FALSE,
-                                 EGL_NONE};
-    display->context = eglCreateContext(display->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    display->context = create_context(display->display, debug);
     if (display->context == EGL_NO_CONTEXT) throw std::runtime_error("has no OpenGL 4.5 core context");
     if (!eglMakeCurrent(display->display, EGL_NO_SURFACE, EGL_NO_SURFACE, display->context))
         throw std::runtime_error("its context cannot be made current");

@@ -31,6 +31,9 @@ public:
     bool software() const { return software_; }
     /// Largest width and height of a framebuffer.
     int max_size() const { return max_size_; }
+    /// Whether the driver has reset itself, as far as it tells: nothing more is drawn then, and what was
+    /// drawn since the last call that said no is worth nothing.
+    bool lost() const;
     /// The driver's messages since the last call (GlOptions::debug).
     std::vector<std::string> take_messages();
 

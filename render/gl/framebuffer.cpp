@@ -1,8 +1,9 @@
 #include "framebuffer.hpp"
 
 #include <cassert>
-#include <stdexcept>
 #include <string>
+
+#include "drawing_errors.hpp"
 
 namespace vrut {
 
@@ -26,8 +27,8 @@ Framebuffer::Framebuffer(int width, int height, bool deep)
     glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, color_.get(), 0);
     glNamedFramebufferTexture(framebuffer_.get(), GL_DEPTH_ATTACHMENT, depth_.get(), 0);
     if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw std::runtime_error("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                 " pixels can be drawn: the driver refuses the framebuffer");
+        throw OutOfMemory("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                          " pixels can be drawn: the driver refuses the framebuffer");
 }
 
 void Framebuffer::bind() const {

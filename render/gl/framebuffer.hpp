@@ -12,7 +12,7 @@ namespace vrut {
 /// depth (32-bit float).
 class Framebuffer {
 public:
-    /// Throws std::runtime_error where the driver has no memory for it.
+    /// Throws OutOfMemory, also where the driver refuses it for reasons of its own.
     Framebuffer(int width, int height, bool deep = false);
 
     int width() const { return width_; }

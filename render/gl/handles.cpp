@@ -1,14 +1,46 @@
 #include "handles.hpp"
 
 #include <atomic>
-#include <stdexcept>
+#include <cstdio>
 #include <string>
+
+#include "drawing_errors.hpp"
 
 namespace vrut {
 
 namespace {
+
 std::atomic<long> live_objects{0};
+
+/// Lets the driver take memory; `what()` tells what for.
+template <class Take, class What>
+void take_memory(Take take, What what) {
+    constexpr int kMostErrors = 100;  // of a lost context there may be no end
+    for (int i = 0; i < kMostErrors && glGetError() != GL_NO_ERROR; ++i) continue;
+    take();
+    if (glGetError() != GL_NO_ERROR) throw OutOfMemory("the graphics driver has no memory for " + what());
 }
+
+std::string mebibytes_of(const char* what, std::size_t bytes) {
+    char text[40];
+    std::snprintf(text, sizeof text, "%.1f MiB of ", static_cast<double>(bytes) / (1 << 20));
+    return text + std::string(what);
+}
+
+std::string of_size(const char* what, int width, int height) {
+    return what + (" of " + std::to_string(width)) + "x" + std::to_string(height);
+}
+
+GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes, GLbitfield flags) {
+    GLuint name = 0;
+    glCreateBuffers(1, &name);
+    GlBuffer buffer(name);
+    take_memory([&] { glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, flags); },
+                [&] { return mebibytes_of(what, bytes); });
+    return buffer;
+}
+
+}  // namespace
 
 long live_gl_objects() { return live_objects; }
 
@@ -25,20 +57,12 @@ void destroy_shader(GLuint name) { glDeleteShader(name); }
 void destroy_program(GLuint name) { glDeleteProgram(name); }
 }  // namespace detail
 
-GlBuffer make_buffer(const void* data, std::size_t bytes) {
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    GlBuffer buffer(name);
-    glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, 0);
-    return buffer;
+GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes) {
+    return make_buffer(what, data, bytes, 0);
 }
 
-GlBuffer make_changing_buffer(std::size_t bytes) {
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    GlBuffer buffer(name);
-    glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), nullptr, GL_DYNAMIC_STORAGE_BIT);
-    return buffer;
+GlBuffer make_changing_buffer(const char* what, std::size_t bytes) {
+    return make_buffer(what, nullptr, bytes, GL_DYNAMIC_STORAGE_BIT);
 }
 
 GlVertexArray make_vertex_array() {
@@ -51,7 +75,8 @@ GlRenderbuffer make_renderbuffer(GLenum format, int width, int height) {
     GLuint name = 0;
     glCreateRenderbuffers(1, &name);
     GlRenderbuffer renderbuffer(name);
-    glNamedRenderbufferStorage(name, format, width, height);
+    take_memory([&] { glNamedRenderbufferStorage(name, format, width, height); },
+                [&] { return of_size("a picture", width, height) + " pixels"; });
     return renderbuffer;
 }
 
@@ -59,7 +84,8 @@ GlTexture make_texture(GLenum format, int width, int height) {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     GlTexture texture(name);
-    glTextureStorage2D(name, 1, format, width, height);
+    take_memory([&] { glTextureStorage2D(name, 1, format, width, height); },
+                [&] { return of_size("a picture", width, height) + " pixels"; });
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
@@ -69,12 +95,8 @@ GlTexture make_mipmapped_texture(GLenum target, int width, int height, int level
     GLuint name = 0;
     glCreateTextures(target, 1, &name);
     GlTexture texture(name);
-    while (glGetError() != GL_NO_ERROR) {
-    }
-    glTextureStorage2D(name, levels, GL_RGBA8, width, height);
-    if (glGetError() != GL_NO_ERROR)
-        throw std::runtime_error("no texture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                 " texels can be made: the driver refuses it");
+    take_memory([&] { glTextureStorage2D(name, levels, GL_RGBA8, width, height); },
+                [&] { return of_size("a texture", width, height) + " texels"; });
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     return texture;

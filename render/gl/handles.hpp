@@ -59,16 +59,17 @@ using GlQuery = GlHandle<detail::destroy_query>;
 using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
 
-GlBuffer make_buffer(const void* data, std::size_t bytes);
+// Whatever holds much throws OutOfMemory where the driver has no room for it.
+/// `what`: of which things it holds so many bytes, as in "vertices".
+GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes);
 /// Without contents, to be written again and again.
-GlBuffer make_changing_buffer(std::size_t bytes);
+GlBuffer make_changing_buffer(const char* what, std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
-/// Two dimensions, one level, read texel by texel.
+/// Two dimensions, one level, read texel by texel: a picture's own.
 GlTexture make_texture(GLenum format, int width, int height);
 /// RGBA8 with that many levels, read bilinearly from one of them, repeated in both directions; `target` is
-/// GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP. Throws std::runtime_error
-/// where the driver has no memory for it.
+/// GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP.
 GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels);
 /// For mipmapped textures: beyond the edges it finds the texels there.
 GlSampler make_clamping_sampler();

@@ -90,7 +90,7 @@ void MarkPass::draw(std::span<const glm::dvec3> points, Cover cover, const glm::
     if (!program_) {
         program_ = make_program(kVertexShader, kFragmentShader);
         nothing_ = make_vertex_array();
-        points_ = make_changing_buffer(kBatch * sizeof(glm::vec4));
+        points_ = make_changing_buffer("markers", kBatch * sizeof(glm::vec4));
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, kPointsBinding, points_.get());
     target.bind();

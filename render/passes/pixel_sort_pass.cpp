@@ -78,8 +78,8 @@ void PixelSortPass::prepare(std::size_t pixels) {
     }
     if (pixels == pixels_) return;
     release();
-    layers_ = make_changing_buffer(kHeadBytes + most_layers(pixels) * kLayerBytes);
-    lists_ = make_changing_buffer(kHeadBytes + pixels * sizeof(GLuint));
+    layers_ = make_changing_buffer("transparent layers", kHeadBytes + most_layers(pixels) * kLayerBytes);
+    lists_ = make_changing_buffer("lists of layers", kHeadBytes + pixels * sizeof(GLuint));
     pixels_ = pixels;
 }
 

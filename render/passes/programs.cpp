@@ -376,7 +376,7 @@ void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scen
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, sight);
     lit_at_ = view.methods.light;
-    if (!sight_) sight_ = make_changing_buffer(sizeof(SightBlock));
+    if (!sight_) sight_ = make_changing_buffer("uniforms", sizeof(SightBlock));
     const SightBlock block = block_of(sight, view);
     glNamedBufferSubData(sight_.get(), 0, sizeof block, &block);
     glBindBufferBase(GL_UNIFORM_BUFFER, kSightBinding, sight_.get());

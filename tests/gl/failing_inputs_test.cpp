@@ -233,8 +233,8 @@ TEST_CASE("GL objects of every kind are counted, moved and not copied") {
         other = Handle();
         CHECK(live_gl_objects() == before);
     };
-    lives_once(make_buffer(&before, sizeof before));
-    lives_once(make_changing_buffer(16));
+    lives_once(make_buffer("numbers", &before, sizeof before));
+    lives_once(make_changing_buffer("numbers", 16));
     lives_once(make_vertex_array());
     lives_once(make_renderbuffer(GL_RGBA8, 2, 2));
     lives_once(make_texture(GL_RGBA8, 2, 2));

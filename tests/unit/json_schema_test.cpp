@@ -140,6 +140,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.markers["Scratch"] = {{1, 2, 3}, 5, "here"};
     state.control = {"c1", "Bea", true};
     state.recording = RecordingState{"drive"};
+    state.notices = {"The recording 'drive' has ended: No space left on device"};
     state.backgrounds.items["11"].texture = "sky.png";
     auto names = std::make_shared<Names>();
     (*names)["4"] = {"Driver"};

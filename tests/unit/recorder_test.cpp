@@ -1,11 +1,14 @@
 // Logs as they are written: how they begin, and how they end.
 #include "recorder.hpp"
 
+#include <sched.h>
 #include <spdlog/spdlog.h>
-#include <sys/resource.h>
+#include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include <csignal>
-
+#include "full_disk.hpp"
+#include "replay.hpp"
 #include "stage.hpp"
 #include "temporary_folder.hpp"
 
@@ -22,26 +25,6 @@ PresentationOptions recording_to(const std::filesystem::path& folder) {
     options.record_folder = folder;
     return options;
 }
-
-/// While it lives no file of this process grows beyond `bytes`, as if the disk were full.
-class FullDisk {
-public:
-    explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-        getrlimit(RLIMIT_FSIZE, &before_);
-        const rlimit limited{bytes, before_.rlim_max};
-        setrlimit(RLIMIT_FSIZE, &limited);
-    }
-    ~FullDisk() {
-        setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-    FullDisk(const FullDisk&) = delete;
-    FullDisk& operator=(const FullDisk&) = delete;
-
-private:
-    rlimit before_{};
-    void (*handler_)(int);
-};
 
 struct Quiet {
     Quiet() { spdlog::set_level(spdlog::level::off); }
@@ -122,6 +105,7 @@ TEST_CASE("a log that has grown to the largest size ends with the line that made
     recorder.write("def");  // now 8 bytes
     CHECK_FALSE(recorder.active());
     CHECK(folder.read("small.jsonl") == "abc\ndef\n");
+    CHECK(recorder.end() == "The recording 'small' has ended: it has grown too large");
     REQUIRE(recorder.open("another"));  // counts anew
     recorder.write("abc");
     CHECK(recorder.active());
@@ -142,11 +126,63 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     CHECK(accepted);
     CHECK(stage.told().at(0)["type"] == "ok");
     CHECK_FALSE(stage.state().contains("recording"));
+    CHECK(stage.state()["notices"] == json{"The recording 'take-1' has ended: File too large"});
     CHECK(std::filesystem::file_size(folder.path() / "take-1.jsonl") <= size + 10);
+    const auto log = read_event_log(folder.path() / "take-1.jsonl");
+    REQUIRE_MESSAGE(log, log.error());
+    CHECK(log->lines.empty());
+    CHECK(log->cut.find("take-1.jsonl:2: ") != std::string::npos);
     CHECK(stage.refusal("a", kStop) == "failed");
     CHECK(stage.refusal("a", kNavigate) == "");
     CHECK(stage.refusal("a", R"({"type":"record","action":"start","name":"take-2"})") == "");
     CHECK(stage.state()["recording"]["name"] == "take-2");
+}
+
+/// In a folder on a disk of 256 KiB, which nothing else sees.
+int fill_a_small_disk(const std::filesystem::path& folder) {
+    if (unshare(CLONE_NEWNS) != 0 && unshare(CLONE_NEWUSER | CLONE_NEWNS) != 0) return 77;
+    if (mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        mount("none", folder.c_str(), "tmpfs", 0, "size=256k") != 0)
+        return 77;
+    Stage stage("ab", scene(), recording_to(folder));
+    if (stage.refusal("a", kStart) != "") return 1;
+    int said = 0;
+    while (stage.state().contains("recording") && said < 100'000) {
+        ++said;
+        if (!stage.say("a", kNavigate)) return 2;  // nobody is refused for it
+    }
+    if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
+        return 3;
+    const auto log = read_event_log(folder / "take-1.jsonl");
+    if (!log) return 4;
+    // All but what did not fit.
+    if (log->lines.size() + 1 != static_cast<std::size_t>(said)) return 5;
+    return stage.say("a", kNavigate) ? 0 : 6;
+}
+
+TEST_CASE("a disk that is full in truth") {
+    const Quiet quiet;
+    const TemporaryFolder folder;
+    const pid_t child = fork();
+    if (child == 0) _exit(fill_a_small_disk(folder.path()));
+    int status = 0;
+    REQUIRE(waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    if (WEXITSTATUS(status) == 77)
+        MESSAGE("no disk can be made here");
+    else
+        CHECK(WEXITSTATUS(status) == 0);
+}
+
+TEST_CASE("a recording whose disk takes too long ends, with the line that it took") {
+    const Quiet quiet;
+    const TemporaryFolder folder;
+    Recorder recorder(folder.path(), Recorder::kLargest, 0ms);  // any time is too long
+    REQUIRE(recorder.open("slow"));
+    recorder.write("abc");
+    CHECK_FALSE(recorder.active());
+    CHECK(recorder.end() == "The recording 'slow' has ended: its disk is too slow");
+    CHECK(folder.read("slow.jsonl") == "abc\n");
 }
 
 TEST_CASE("record is refused for what is wrong with it, and then nobody steers") {

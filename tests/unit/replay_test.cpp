@@ -338,26 +338,53 @@ TEST_CASE("whatever happens, before and in a recording, the replay ends in the s
     }
 }
 
-// --- what is no good log
-
-TEST_CASE("an unfinished last line is left out, one in the middle is told") {
-    Recorded recorded("a");
+TEST_CASE("a light of a file that is brighter than clients may make it is no hindrance") {
+    const LoadedScene shown = scene_of(R"(vrut-text 1
+geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
+node 1 "Part" geometry geometry 1 end
+node 2 "Key" light type point color 1.08 1.06 1.02 1 end
+)",
+                                       "stage.vrut");
+    Recorded recorded("a", shown);
     recorded.start();
     recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
-    const glm::dvec3 eye = recorded.stage.camera().eye;
-    recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
-    const std::string text = recorded.folder.read("log.jsonl");
-    for (const std::size_t missing : {2U, 20U, 60U}) {
-        const auto log =
-            read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, text.size() - missing)));
-        REQUIRE_MESSAGE(log, log.error());
-        CHECK(log->lines.size() == 1);
-        CHECK(replay(*log, find_scene)->state().camera.eye == eye);
+    const auto replayed =
+        replay(recorded.log(),
+               [&](const auto&, const auto&) -> tl::expected<LoadedScene, std::string> { return shown; });
+    REQUIRE_MESSAGE(replayed, replayed.error());
+    CHECK(replayed->state().camera.eye == recorded.stage.camera().eye);
+}
+
+// --- what is no good log
+
+TEST_CASE("a log that is cut anywhere is played up to its last whole line, and says so") {
+    Recorded recorded("a");
+    recorded.start();
+    std::vector<glm::dvec3> eyes{recorded.stage.camera().eye};
+    std::vector<std::size_t> ends{recorded.folder.read("log.jsonl").size()};  // of the header and each line
+    for (int i = 0; i < 3; ++i) {
+        recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
+        eyes.push_back(recorded.stage.camera().eye);
+        ends.push_back(recorded.folder.read("log.jsonl").size());
     }
-    // Only the line's end is missing: it is whole.
-    CHECK(
-        read_event_log(recorded.folder.write("whole.jsonl", text.substr(0, text.size() - 1)))->lines.size() ==
-        2);
+    const std::string text = recorded.folder.read("log.jsonl");
+    REQUIRE(text.size() == ends.back());
+    for (std::size_t size = ends[0] - 1; size <= text.size(); ++size) {
+        CAPTURE(size);
+        const auto log = read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, size)));
+        REQUIRE_MESSAGE(log, log.error());
+        // A line is whole though its end is missing.
+        const auto next =
+            std::find_if(ends.begin(), ends.end(), [&](std::size_t end) { return end > size + 1; });
+        const auto whole = static_cast<std::size_t>(next - ends.begin()) - 1;
+        CHECK(log->lines.size() == whole);
+        CHECK(replay(*log, find_scene)->state().camera.eye == eyes[whole]);
+        const bool at_end = std::find(ends.begin(), ends.end(), size) != ends.end();
+        CHECK(log->cut.empty() == at_end);
+        const auto line =
+            1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(size), '\n');
+        if (!at_end) CHECK(holds(log->cut, "cut.jsonl:" + std::to_string(line) + ": "));
+    }
     CHECK(holds(failure("{\"at\":1,\"cli\n{\"at\":2,\"event\":\"drawn\",\"frame\":1}\n"), "wrong.jsonl:2: "));
 }
 

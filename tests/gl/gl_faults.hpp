@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+
+/// What goes wrong in this program's OpenGL, and with its threads. Whoever links gl_faults.cpp calls them
+/// through it: it does what is said here, and leaves the rest to the driver.
+namespace vrut::gl_faults {
+
+/// The driver resets itself after so many draws: what is drawn and read then changes nothing, and it tells of
+/// the reset once, until another context is made.
+void reset_after(int draws);
+/// The next contexts that are asked for cannot be made.
+void refuse_contexts(int count);
+/// What buffers and textures hold now, in bytes.
+std::size_t memory_used();
+/// They hold no more than so much from now on.
+void limit_memory(std::size_t bytes);
+/// So many threads cannot be begun.
+void refuse_threads(int count);
+/// The end of all that.
+void heal();
+
+}  // namespace vrut::gl_faults

@@ -1,0 +1,139 @@
+// The driver's memory is short: what fits is drawn as ever, and what does not is told.
+#include "gl_faults.hpp"
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+struct Healed {
+    ~Healed() { gl_faults::heal(); }
+};
+
+Material glass() {
+    Material material = material_of({0.2, 0.5, 0.9});
+    material.diffuse.a = 0.5;
+    return material;
+}
+
+Material mirror() {
+    Material material = material_of({0.2, 0.2, 0.2});
+    material.reflectivity = 0.8;
+    return material;
+}
+
+/// Something for every pass.
+std::shared_ptr<const PlacedScene> everything() {
+    return scene_of({{1, sphere(1, 12), material_of({0.7, 0.5, 0.3}), moved_by({-1, 0, 0})},
+                     {2, sphere(0.6, 12), glass(), moved_by({0.4, 0, 1})},
+                     {3, box({0.5, 0.5, 0.5}), glass(), moved_by({0.6, 0, 1.2})},
+                     {4, quad(3), mirror(), moved_by({0, 0, -2})}});
+}
+
+View view_of(const std::shared_ptr<const PlacedScene>& scene) {
+    View view = view_from({0, 1, 5});
+    view.scene = scene;
+    view.selected = 1;
+    view.marks = {{{0, 0, 1}}};
+    return view;
+}
+
+}  // namespace
+
+TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the next one is whole") {
+    const Healed healed;
+    const View view = view_of(everything());
+    Image expected, image;
+    FrameStats stats;
+    std::size_t most = 0;
+    {
+        Renderer renderer;
+        const std::size_t before = gl_faults::memory_used();
+        REQUIRE(renderer.render(view, expected, stats));
+        REQUIRE(stats.passes >= 5);
+        most = gl_faults::memory_used() - before;
+    }
+    CHECK(gl_faults::memory_used() == 0);
+    int refused = 0;
+    for (std::size_t k = 0; k <= 24; ++k) {
+        CAPTURE(k);
+        Renderer renderer;
+        gl_faults::limit_memory(gl_faults::memory_used() + most * k / 24);
+        try {
+            const bool whole = renderer.render(view, image, stats);
+            CHECK(whole);
+            CHECK(image.rgba == expected.rgba);
+        } catch (const OutOfMemory& error) {
+            ++refused;
+            CHECK(std::string(error.what()).find("has no memory for") != std::string::npos);
+        }
+        gl_faults::heal();
+        REQUIRE(renderer.render(view, image, stats));
+        CHECK(image.rgba == expected.rgba);
+    }
+    CHECK(refused > 5);
+    CHECK(refused <= 24);  // with all that it needs it is drawn
+    CHECK(live_gl_objects() == 0);
+}
+
+TEST_CASE(
+    "a scene that does not fit beside the one shown is refused, and that one is drawn from what is there") {
+    const Healed healed;
+    const View shown = view_of(everything());
+    View large = view_from({0, 0, 5});
+    large.scene = scene_of({{1, sphere(1, 200), material_of({1, 0, 0}), glm::dmat4(1)}});
+    Image expected, image;
+    FrameStats stats;
+    Renderer renderer;
+    renderer.take(shown);
+    REQUIRE(renderer.render(shown, expected, stats));
+    const long objects = live_gl_objects();
+    gl_faults::limit_memory(gl_faults::memory_used() + 500'000);
+    CHECK_THROWS_WITH_AS(renderer.take(large),
+                         doctest::Contains("the graphics driver has no memory for 1.8 MiB of vertices"),
+                         OutOfMemory);
+    CHECK(live_gl_objects() == objects);
+    REQUIRE(renderer.render(shown, image, stats));
+    CHECK(stats.uploads == 0);
+    CHECK(image.rgba == expected.rgba);
+    gl_faults::heal();
+    renderer.take(large);
+    REQUIRE(renderer.render(shown, image, stats));
+    CHECK(stats.uploads == 0);
+    REQUIRE(renderer.render(large, image, stats));
+    CHECK(stats.uploads == 0);  // all was there
+}
+
+TEST_CASE("what earlier pictures left on the GPU makes room for the next") {
+    const Healed healed;
+    View view = view_of(everything());
+    Image expected, image;
+    FrameStats stats;
+    Renderer renderer;
+    REQUIRE(renderer.render(view, expected, stats));
+    View lines = view;
+    lines.wireframe = true;
+    lines.width = lines.height = 300;
+    REQUIRE(renderer.render(lines, image, stats));
+    gl_faults::limit_memory(gl_faults::memory_used());
+    view.mode = DrawMode::stylized;
+    REQUIRE(renderer.render(view, image, stats));
+    view.mode = DrawMode::realistic;
+    REQUIRE(renderer.render(view, image, stats));
+    CHECK(image.rgba == expected.rgba);
+}
+
+TEST_CASE("a picture larger than the driver holds is refused in a sentence") {
+    const Healed healed;
+    View view = view_of(everything());
+    Image image;
+    FrameStats stats;
+    Renderer renderer;
+    gl_faults::limit_memory(gl_faults::memory_used() + 1'000'000);
+    view.width = 2000;
+    view.height = 1000;
+    CHECK_THROWS_WITH_AS(renderer.render(view, image, stats),
+                         "the graphics driver has no memory for a picture of 2000x1000 pixels", OutOfMemory);
+    view.width = view.height = 64;
+    CHECK(renderer.render(view, image, stats));
+}
