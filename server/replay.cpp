@@ -21,7 +21,8 @@ tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& 
             continue;
         }
         auto line = protocol::decode_log_line(text);
-        if (!line && unfinished) break;
+        log.cut_off = !line && unfinished;
+        if (log.cut_off) break;
         if (!line) return wrong(line.error());
         log.lines.push_back(*std::move(line));
     }

@@ -15,9 +15,10 @@ namespace vrut {
 struct EventLog {
     protocol::LogHeader header;
     std::vector<protocol::LogLine> lines;
+    bool cut_off = false;  ///< in the midst of a line, which is left out
 };
 
-/// Or one sentence that names file and line. An unfinished last line is left out: the session was cut off.
+/// Or one sentence that names file and line.
 tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path);
 
 /// Finds a scene of a log by its name and SHA-256, or tells why it cannot be had.

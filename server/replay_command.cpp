@@ -101,6 +101,7 @@ private:
 void replay_command(const ReplayArguments& arguments) {
     const auto log = read_event_log(arguments.log);
     if (!log) throw std::runtime_error(log.error());
+    if (log->cut_off) spdlog::warn("{}: the last line is incomplete and left out", arguments.log.string());
     std::optional<FrameWriter> frames;
     if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
     Scenes scenes(arguments);

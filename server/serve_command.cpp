@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <csignal>
 #include <iostream>
 #include <stdexcept>
 
@@ -55,6 +56,15 @@ void announce(const ListenAddress& listen, std::uint16_t port, const Access& acc
     for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
 }
 
+/// Whoever asks again for an end that has begun does not change what it is.
+void ignore_further_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // those that come stay pending; this thread is the last
+}
+
 }  // namespace
 
 void serve_command(const ServeArguments& arguments) {
@@ -82,6 +92,7 @@ void serve_command(const ServeArguments& arguments) {
     server.stop_on_signals();  // before the address is told: from then on somebody may stop it
     announce(options.listen, server.port(), options.access);
     server.run();
+    ignore_further_signals();
     spdlog::info("shut down");
 }
 

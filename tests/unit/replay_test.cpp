@@ -352,12 +352,13 @@ TEST_CASE("an unfinished last line is left out, one in the middle is told") {
             read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, text.size() - missing)));
         REQUIRE_MESSAGE(log, log.error());
         CHECK(log->lines.size() == 1);
+        CHECK(log->cut_off);
         CHECK(replay(*log, find_scene)->state().camera.eye == eye);
     }
     // Only the line's end is missing: it is whole.
-    CHECK(
-        read_event_log(recorded.folder.write("whole.jsonl", text.substr(0, text.size() - 1)))->lines.size() ==
-        2);
+    const auto whole = read_event_log(recorded.folder.write("whole.jsonl", text.substr(0, text.size() - 1)));
+    CHECK(whole->lines.size() == 2);
+    CHECK_FALSE(whole->cut_off);
     CHECK(holds(failure("{\"at\":1,\"cli\n{\"at\":2,\"event\":\"drawn\",\"frame\":1}\n"), "wrong.jsonl:2: "));
 }
 
