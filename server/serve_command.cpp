@@ -55,6 +55,15 @@ void announce(const ListenAddress& listen, std::uint16_t port, const Access& acc
     for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
 }
 
+/// Whoever asks again for an end that has begun does not change what it is.
+void ignore_further_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // those that come stay pending; this thread is the last
+}
+
 }  // namespace
 
 void serve_command(const ServeArguments& arguments) {
@@ -86,6 +95,7 @@ void serve_command(const ServeArguments& arguments) {
     announce(options.listen, server.port(), options.access);
     log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
     server.run();
+    ignore_further_signals();
     log_info("shut_down", {});
 }
 

@@ -171,23 +171,6 @@ TEST_CASE("a client that never reads delays nobody, and one frame waits for it a
     CHECK(metrics.frames_encoded <= metrics.frames_granted);
 }
 
-TEST_CASE("a client that takes nothing for ten seconds is cut") {
-    TestServer server({.noise = true});
-    TestClient worker(server.port()), stalled(server.port(), {.receive_buffer = 4096});
-    worker.join();
-    stalled.join("view");
-    for (int i = 1; i <= 5; ++i) {
-        stalled.send({{"type", "frame"}});
-        worker.send({{"type", "frame"}});
-        worker.send(eye(i, i * 0.1));
-        worker.wait_for("frame");
-    }
-    CHECK(server.metrics().clients_left == 0);
-    CHECK(eventually([&] { return server.metrics().clients_left == 1; }, 13s));
-    worker.send(eye(9, 9));
-    CHECK(worker.wait_for("ok")["id"] == 9);
-}
-
 TEST_CASE("input interrupts the picture at rest") {
     TestServer server({.takes = 50ms});
     TestClient client(server.port());

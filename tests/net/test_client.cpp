@@ -214,10 +214,10 @@ Json TestClient::join(const std::string& role, const std::string& token) {
     return wait_for("state")["state"];
 }
 
-Json TestClient::wait_for_still() {
+Json TestClient::wait_for_still(std::chrono::milliseconds for_each) {
     for (;;) {
         send({{"type", "frame"}});
-        Json header = wait_for("frame");
+        Json header = wait_for("frame", for_each);
         if (header["quality"]["samples"] == kStillSamples.back()) return header;
     }
 }

@@ -84,7 +84,7 @@ public:
     Json join(const std::string& role = "control", const std::string& token = {});
     /// Frame, and the state as patches leave it, up to the last refinement of a still frame; grants as it
     /// reads.
-    Json wait_for_still();
+    Json wait_for_still(std::chrono::milliseconds for_each = 5s);
     Json state;  ///< kept by every read
 
 private:

@@ -1,0 +1,198 @@
+// How the program ends: when it is told to, whatever it is doing, and when it is killed.
+#include <doctest/doctest.h>
+#include <sys/wait.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "../unit/temporary_folder.hpp"
+#include "program.hpp"
+#include "test_client.hpp"
+
+using namespace vrut::test;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kScene = VRUT_SCENES "/teaching/triangle.vrut";
+
+std::vector<std::string> serve(const std::vector<std::string>& options, const std::string& scene = kScene) {
+    std::vector<std::string> words{"serve", scene, "--listen", "127.0.0.1:0", "--log-level", "error"};
+    words.insert(words.end(), options.begin(), options.end());
+    return words;
+}
+
+/// A grid in the project's own text: tens of megabytes.
+void write_grid(const fs::path& path, int side) {
+    std::ofstream out(path);
+    out << "vrut-text 1\ngeometry 1 vertices " << side * side;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) out << '\n' << x << ' ' << y << ' ' << (x * y) % 17;
+    out << "\ntriangles " << 2 * (side - 1) * (side - 1);
+    for (int y = 0; y + 1 < side; ++y)
+        for (int x = 0; x + 1 < side; ++x) {
+            const int a = y * side + x, b = a + side;
+            out << '\n' << a << ' ' << a + 1 << ' ' << b << ' ' << a + 1 << ' ' << b + 1 << ' ' << b;
+        }
+    out << "\nend\nnode 1 \"Grid\" geometry geometry 1 end\n";
+}
+
+/// Triangles without extent, which take a reader of another format a while.
+void write_heap(const TemporaryFolder& folder, std::size_t triangles) {
+    const std::string count = std::to_string(3 * triangles), size = std::to_string(36 * triangles);
+    fs::resize_file(folder.write("heap.bin", ""), 36 * triangles);
+    folder.write("heap.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
+                                  count + R"(}], "bufferViews": [{"buffer": 0, "byteLength": )" + size +
+                                  R"(}], "buffers": [{"uri": "heap.bin", "byteLength": )" + size + "}]}");
+}
+
+/// Where there is a client who says goodbye, without the time that is left to those who do not.
+void expect_end(Program& program, int signal = SIGTERM, TestClient* polite = nullptr) {
+    const auto start = std::chrono::steady_clock::now();
+    program.signal(signal);
+    if (polite) CHECK(polite->wait_for_close() == 1001);
+    const auto status = program.wait(20s);
+    const auto took = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    REQUIRE(status.has_value());
+    CHECK_MESSAGE((WIFEXITED(*status) && WEXITSTATUS(*status) == 0),
+                  "wait status " << *status << ": " << program.output());
+    MESSAGE("ended after " << took << " s");
+    CHECK(took < 5);
+}
+
+/// The process that reads a scene for `program`, once it is one.
+pid_t reader_of(const Program& program) {
+    pid_t reader = 0;
+    const auto reads = [&] {
+        for (const pid_t child : children_of(program.process())) {
+            std::ifstream stream("/proc/" + std::to_string(child) + "/cmdline");
+            const std::string words{std::istreambuf_iterator<char>(stream), {}};
+            if (words.find("import") != std::string::npos) reader = child;
+        }
+        return reader != 0;
+    };
+    REQUIRE(eventually(reads, 10s));
+    return reader;
+}
+
+bool is_gone(pid_t process) {
+    std::ifstream stream("/proc/" + std::to_string(process) + "/stat");
+    std::string stat{std::istreambuf_iterator<char>(stream), {}};
+    return stat.empty() || stat.find(") Z") != std::string::npos;
+}
+
+void open(TestClient& client, const std::string& name) {
+    client.join();
+    client.send({{"type", "open"}, {"id", 1}, {"scene", name}});
+    client.wait_for("ok");
+}
+
+}  // namespace
+
+TEST_CASE("SIGTERM and SIGINT while frames go to clients that do not take them") {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        Program program(serve({}, VRUT_CARS "/car-20k.vrut"));
+        TestClient presenter(program.port());
+        presenter.join();
+        std::vector<std::unique_ptr<TestClient>> slow;
+        for (int i = 0; i < 8; ++i) {
+            slow.push_back(
+                std::make_unique<TestClient>(program.port(), ConnectOptions{.receive_buffer = 4096}));
+            slow.back()->join("view");
+        }
+        for (int i = 1; i <= 8; ++i) {
+            for (const auto& client : slow) client->send({{"type", "frame"}});
+            presenter.send({{"type", "frame"}});
+            presenter.send({{"type", "navigate"}, {"rotate", {7, 0}}});
+            presenter.wait_for("frame");
+        }
+        expect_end(program, signal);
+    }
+}
+
+TEST_CASE("SIGTERM while a large scene is loaded, at any moment of it") {
+    const TemporaryFolder folder;
+    write_grid(folder.path() / "grid.vrut", 700);
+    for (const auto after : {0ms, 100ms, 300ms}) {
+        Program program(serve({"--scenes", folder.path().string()}));
+        TestClient client(program.port());
+        open(client, "grid.vrut");
+        std::this_thread::sleep_for(after);
+        expect_end(program, SIGTERM, &client);
+    }
+}
+
+TEST_CASE("SIGTERM while another format's file is read, and while its reader hangs") {
+    const TemporaryFolder folder;
+    write_heap(folder, 2'000'000);
+    for (const bool hangs : {false, true}) {
+        Program program(serve({"--scenes", folder.path().string()}));
+        TestClient client(program.port());
+        open(client, "heap.gltf");
+        const pid_t reader = reader_of(program);
+        if (hangs) kill(reader, SIGSTOP);
+        expect_end(program, SIGTERM, &client);
+        CHECK(is_gone(reader));
+    }
+}
+
+TEST_CASE("a reader ends with a program that is killed, also while the first scene is read") {
+    const TemporaryFolder folder;
+    write_heap(folder, 2'000'000);
+    for (const int signal : {SIGKILL, SIGTERM}) {
+        Program program(serve({}, (folder.path() / "heap.gltf").string()));
+        const pid_t reader = reader_of(program);
+        program.signal(signal);
+        CHECK(program.wait(5s).has_value());
+        CHECK(eventually([&] { return is_gone(reader); }, 5s));
+    }
+}
+
+TEST_CASE("whoever sends SIGTERM again and again gets the same end") {
+    for (const auto pause : {1ms, 100ms}) {
+        Program program(serve({}));
+        TestClient client(program.port(), {.receive_buffer = 4096});  // does not say goodbye
+        client.join();
+        std::optional<int> status;
+        for (int i = 0; i < 5000 && !status; ++i) {
+            program.signal(SIGTERM);
+            status = program.wait(pause);
+        }
+        REQUIRE(status.has_value());
+        CHECK_MESSAGE(*status == 0, "wait status " << *status);
+    }
+}
+
+TEST_CASE("a program that is killed while it records leaves a log that replays") {
+    const TemporaryFolder folder;
+    std::string longest;
+    for (const auto after : {0ms, 30ms, 200ms, 700ms}) {
+        const std::string name = "killed-" + std::to_string(after.count()), file = name + ".jsonl";
+        Program program(serve({"--record", folder.path().string()}));
+        TestClient client(program.port());
+        client.join();
+        client.send({{"type", "record"}, {"id", 1}, {"action", "start"}, {"name", name}});
+        client.wait_for("ok");
+        client.send(pointer_event("pointerdown", 10, 10));
+        const auto end = std::chrono::steady_clock::now() + after;
+        for (int i = 0; std::chrono::steady_clock::now() < end; ++i)
+            client.send(pointer_event("pointermove", 10 + i % 900, 10 + i % 600));
+        program.signal(SIGKILL);
+        REQUIRE(program.wait(5s).has_value());
+
+        Program replay({"replay", (folder.path() / file).string(), "--scene", kScene});
+        const auto status = replay.wait(60s);
+        const std::string output = replay.output();
+        REQUIRE(status.has_value());
+        CHECK_MESSAGE(*status == 0, output);
+        CHECK(output.find("\"eye\"") != std::string::npos);
+        longest = std::max(longest, folder.read(file), [](auto& a, auto& b) { return a.size() < b.size(); });
+    }
+    CHECK(longest.size() > 10'000);
+    folder.write("cut.jsonl", longest.substr(0, longest.rfind("pointermove")));
+    Program replay({"replay", (folder.path() / "cut.jsonl").string(), "--scene", kScene});
+    CHECK(replay.wait(60s) == 0);
+    CHECK(replay.output().find("cut.jsonl: the last line is incomplete and left out") != std::string::npos);
+}

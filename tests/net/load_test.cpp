@@ -1,0 +1,150 @@
+// Clients that do not do their part: who stand still, who come slowly, who die. The others are not to feel
+// it.
+#include <doctest/doctest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "audience.hpp"
+#include "dying_clients.hpp"
+#include "process.hpp"
+
+using namespace vrut;
+using namespace vrut::test;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+/// As many descriptors as both ends of a crowd take.
+class DescriptorLimit {
+public:
+    explicit DescriptorLimit(rlim_t wanted) {
+        getrlimit(RLIMIT_NOFILE, &before_);
+        const rlimit more{std::min(std::max(before_.rlim_cur, wanted), before_.rlim_max), before_.rlim_max};
+        setrlimit(RLIMIT_NOFILE, &more);
+    }
+    ~DescriptorLimit() { setrlimit(RLIMIT_NOFILE, &before_); }
+    DescriptorLimit(const DescriptorLimit&) = delete;
+    DescriptorLimit& operator=(const DescriptorLimit&) = delete;
+
+private:
+    rlimit before_{};
+};
+
+ServerOptions roomy() {
+    ServerOptions options;
+    options.max_clients = 600;
+    return options;
+}
+
+/// What it goes on sending all the same.
+std::vector<std::string> stubborn() {
+    return {
+        client_frame(R"({"type":"frame"})"),
+        client_frame("ping", 9),
+        client_frame(R"({"type":"tree","depth":9,"id":1})"),  // ids do not rise: each is answered by an error
+        client_frame(R"({"type":"scenes"})"),
+    };
+}
+
+/// Who says what it has to say a byte each half second.
+struct SlowClient {
+    RawSocket socket;
+    std::string says;
+    Clock::time_point since = Clock::now();
+    std::optional<double> cut_s = {};
+};
+
+/// Whoever works goes on meanwhile.
+void dribble(std::vector<SlowClient>& slow, Audience& audience, std::chrono::seconds longest) {
+    const auto is_cut = [](const SlowClient& client) { return client.cut_s.has_value(); };
+    const auto start = Clock::now();
+    for (std::size_t turn = 0; Clock::now() - start < longest; ++turn) {
+        if (std::all_of(slow.begin(), slow.end(), is_cut)) return;
+        audience.work_until(start + turn * 100ms);
+        for (SlowClient& client : slow) {
+            if (client.cut_s) continue;
+            if (turn % 5 == 0 && turn / 5 < client.says.size())
+                client.socket.send(client.says.substr(turn / 5, 1));
+            if (client.socket.ended())
+                client.cut_s = std::chrono::duration<double>(Clock::now() - client.since).count();
+        }
+    }
+}
+
+}  // namespace
+
+TEST_CASE("handshakes and hellos that come a byte each half second end at their deadline") {
+    constexpr unsigned kHandshakes = 500, kHellos = 50;
+    const DescriptorLimit many(4096);
+    TestServer server({.noise = true}, roomy());
+    Audience audience(server.port(), 2);
+    audience.work_until(Clock::now() + 1s);
+    const double alone_ms = audience.percentile(0.99);
+    audience.forget();
+    std::vector<SlowClient> slow;
+    for (unsigned i = 0; i < kHandshakes; ++i)
+        slow.push_back({RawSocket(server.port(), {.source = 100 + i}), upgrade_request()});
+    const std::string hello = client_frame(R"({"type":"hello","role":"view"})");
+    for (unsigned i = 0; i < kHellos; ++i)
+        slow.push_back({websocket(server.port(), {.source = 700 + i}), i % 2 == 0 ? hello : ""});
+    dribble(slow, audience, 12s);
+    double handshakes_s = 0, hellos_s = 0;
+    for (std::size_t i = 0; i < slow.size(); ++i) {
+        double& longest = i < kHandshakes ? handshakes_s : hellos_s;
+        longest = std::max(longest, slow[i].cut_s.value_or(99));
+    }
+    MESSAGE("cut after " << handshakes_s << " s, without hello after " << hellos_s << " s; the others' p99 "
+                         << alone_ms << " ms before, " << audience.percentile(0.99) << " ms meanwhile");
+    CHECK(handshakes_s < 7);
+    CHECK(hellos_s < 12);  // after 5 s they are told why, and have as long to say goodbye
+    CHECK(audience.seen() > 100);
+    Swarm(server.port()).join("view");
+}
+
+TEST_CASE("clients that connect and die leave nothing behind") {
+    const DescriptorLimit many(4096);
+    TestServer server({}, roomy());
+    TestClient good(server.port());
+    good.join("view");
+    const double grown_mb = let_die(server, 6, 200);
+    good.wait_for_still();
+    if (kMemoryTells) CHECK(grown_mb < 4);
+}
+
+TEST_CASE("clients that read nothing, whatever they send, delay nobody, take no memory and are cut") {
+    TestServer server({.noise = true}, roomy());
+    Audience audience(server.port(), 20);
+    audience.work_until(Clock::now() + 1s);
+    const std::vector<std::string> said = stubborn();
+    std::vector<RawSocket> stalled;
+    for (unsigned i = 0; i <= said.size(); ++i) stalled.push_back(standing_client(server.port(), 500 + i));
+    const RawSocket dribbling = standing_client(server.port(), 600);
+    dribbling.send(said[0]);
+    audience.work_until(Clock::now() + 500ms);  // what goes into the sockets has gone there
+    const double memory = use_of(getpid()).resident_mb;
+    double most = memory;
+    std::size_t seen = 0;
+    const auto start = Clock::now();
+    for (int second = 0; second < 14 && server.metrics().clients_left < stalled.size(); ++second) {
+        dribbling.read(1);
+        dribbling.send(said[0]);
+        for (int tenth = 0; tenth < 10; ++tenth) {
+            for (std::size_t i = 0; i < said.size(); ++i)
+                for (int j = 0; j < 20; ++j) stalled[i].send(said[i]);
+            audience.work_until(Clock::now() + 100ms);
+        }
+        most = std::max(most, use_of(getpid()).resident_mb);
+        CHECK(audience.seen() > std::exchange(seen, audience.seen()));
+    }
+    const double cut_s = std::chrono::duration<double>(Clock::now() - start).count();
+    const Metrics& metrics = server.metrics();
+    CHECK(metrics.clients_left >= stalled.size());
+    for (const RawSocket& socket : stalled) CHECK(socket.ended());
+    // Each stalled client's in its socket, the newest, one on its way to those who read, one fresh from the
+    // encoder.
+    CHECK(metrics.pictures_held_most <= 4 + stalled.size());
+    MESSAGE(audience.seen() << " pictures seen, p50 " << audience.percentile(0.5) << ", p99 "
+                            << audience.percentile(0.99) << " ms; memory " << memory << " MB, at most "
+                            << most << "; cut after " << cut_s << " s");
+    if (kMemoryTells) CHECK(most - memory < 8);
+}
