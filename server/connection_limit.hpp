@@ -19,7 +19,8 @@ public:
     /// One connection's, as long as it lives. May not outlive what it was taken from.
     class Place {
     public:
-        Place(Place&& other) noexcept : limit_(std::exchange(other.limit_, nullptr)), peer_(other.peer_) {}
+        Place(Place&& other) noexcept
+            : limit_(std::exchange(other.limit_, nullptr)), peer_(std::move(other.peer_)) {}
         Place& operator=(Place&&) = delete;
         ~Place();
 

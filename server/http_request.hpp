@@ -21,7 +21,7 @@ struct HttpRefusal {
 };
 
 /// Bytes of a request, and of its first line alone.
-inline constexpr std::size_t kMaxRequest = 8 * 1024, kMaxRequestLine = 4 * 1024;
+inline constexpr std::size_t kMaxRequest = 8192, kMaxRequestLine = 4096;
 
 struct ReadRequest {
     HttpRequest request;

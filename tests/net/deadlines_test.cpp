@@ -88,7 +88,7 @@ TEST_CASE(
 }
 
 TEST_CASE("who is silent is pinged, and cut when no answer comes; who answers is not") {
-    TestServer server({}, with({.ping = 1s, .silence = 4s}));
+    TestServer server({}, with({.ping = 1s, .silence = 3s}));
     RawWebSocket silent(server.port()), answering(server.port());
     silent.join();
     answering.join("host");
@@ -108,7 +108,7 @@ TEST_CASE("who is silent is pinged, and cut when no answer comes; who answers is
     CHECK(seen >= 1);
     CHECK(silent.connection.ended());
     // As long again for the one that answers.
-    CHECK(eventually([&] { return pings >= 6; }, 30s));
+    CHECK(eventually([&] { return pings >= 3; }, 30s));
     cut = true;
     host.join();
     CHECK_FALSE(answering.connection.ended(100ms));
