@@ -147,7 +147,7 @@ std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_v
     parser.put(boost::asio::buffer(head.data(), head.size()), error);
     if (error) return tl::unexpected(unreadable(error, head));
     const HttpRequest& request = parser.get();
-    for (const auto judge : {refused_repeats, refused_body, refused_head, refused_handshake})
+    for (const auto judge : {refused_repeats, refused_head, refused_body, refused_handshake})
         if (auto refused = judge(request)) return tl::unexpected(*std::move(refused));
     return ReadRequest{parser.release(), head.size()};
 }

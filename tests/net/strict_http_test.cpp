@@ -119,7 +119,7 @@ std::vector<Case> fields() {
         {"a coding in HTTP/1.0", get(kHost + "Transfer-Encoding: chunked\r\n", "GET / HTTP/1.0") + smuggled,
          400},
         {"a body", get(kHost + "Content-Length: 3\r\n") + "abc", 413},
-        {"a body to POST", get(kHost + "Content-Length: 3\r\n", "POST /healthz HTTP/1.1") + "abc", 413},
+        {"a body to POST", get(kHost + "Content-Length: 3\r\n", "POST /healthz HTTP/1.1") + "abc", 405},
         {"a huge body", get(kHost + "Content-Length: 9999999999\r\n"), 413},
         {"an expectation", get(kHost + "Expect: 100-continue\r\n"), 417},
     };
