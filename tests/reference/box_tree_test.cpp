@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "../gl/shapes.hpp"
+#include "shapes.hpp"
 #include "surfaces.hpp"
 
 using namespace vrut;

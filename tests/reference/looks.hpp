@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "../gl/shapes.hpp"
 #include "reference.hpp"
+#include "shapes.hpp"
 
 namespace vrut {
 
