@@ -14,7 +14,7 @@ const ASKS_AFTER_MS = 5000;
 const SILENT_AFTER_MS = 10_000;
 
 /**
- * Where the connection stands; `reason` is why the server would not have this page, in its own words.
+ * Where the connection stands; `reason`: why the server refused it, in its words.
  *
  * @typedef {{name: 'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
  *   reason?: string}} Phase

@@ -52,7 +52,7 @@ export class Lines {
  * What is to be said of the connection; null where what was said last still holds.
  *
  * @param {import('./connection.js').Phase} phase
- * @param {boolean} hasPicture whether a picture has been drawn since the connection opened
+ * @param {boolean} hasPicture whether a picture was drawn since the connection opened
  * @param {boolean} hasToken
  */
 export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPicture, hasToken) {

@@ -89,7 +89,7 @@ const connection = new Connection({
 
     state(state) {
       prediction.follow(state, connection.steers);
-      for (const notice of [...(state.scene?.notices ?? []), ...(state.notices ?? [])]) {
+      for (const notice of [state.scene?.notices ?? [], state.notices ?? []].flat()) {
         if (!noticesSeen.has(notice)) lines.pass(notice);
         noticesSeen.add(notice);
       }

@@ -7,7 +7,7 @@ import { language, say } from './texts.js';
  *
  * @typedef {{state: ?object, revision: number, header: ?object, stats: ?object, client?: string, steers: boolean}} Now
  *
- * A folding part of the menu, told when it is opened.
+ * A folding part of the menu, told when opened.
  *
  * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now) => void,
  *   unfolded?: () => void}} Section
