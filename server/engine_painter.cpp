@@ -39,6 +39,7 @@ Engine::Painted Engine::paint(const View& view, Image& image, FrameStats& stats,
 
 /// Scene, state and clients know nothing of it. Throws where none can be had, or each is lost at once.
 void Engine::renew_painter(std::string why) {
+    draws_ = false;
     painter_ = {};
     while (!painter_.paint) {
         log_warning("drawing_begins_anew", {{"reason", why}});

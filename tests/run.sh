@@ -37,6 +37,8 @@ done
 
 cd "$ROOT"
 jobs=$(parallel_jobs)
+# Where there is a cache of compilers' work, the same source is compiled once, wherever it lies.
+if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$ROOT CCACHE_NOHASHDIR=1; fi
 done_steps=0
 
 # Runs a function or command as a named step; when it fails, says so with what to do, and stops.
@@ -150,9 +152,9 @@ step "format" "Run clang-format-14 -i on the files named above." format
 step "build release" "$compile_remedy" build release
 if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
 step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
-step "clang-tidy" "Mend what it names above." end_tidy
 step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
+step "clang-tidy" "Mend what it names above." end_tidy
 if $all; then
     step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'

@@ -179,7 +179,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
       const drops = setInterval(() => Date.now() < limit ? socket.write(byte) : socket.destroy(), 100);
       let text = '';
       socket.setEncoding('latin1').on('data', (data) => (text += data)).on('error', () => {});
-      await once(socket, 'close');
+      await new Promise((resolve) => socket.on('close', resolve));  // also where it is reset
       clearInterval(drops);
       assert.ok(Date.now() < limit, 'it was not cut within 10 s');
       return text;

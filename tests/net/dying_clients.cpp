@@ -92,7 +92,7 @@ double let_die(const TestServer& server, int rounds, std::size_t clients) {
         if (round < kFirstRounds) memory = use.resident_mb;
     }
     const std::string metrics = http(server.port(), "GET", "/metrics").body;
-    CHECK(metrics.find("\nvrut_preview_clients 1\n") != std::string::npos);
+    CHECK(metrics.find("\nvrut_preview_clients{role=\"view\"} 1\n") != std::string::npos);
     const double now = use_of(getpid()).resident_mb;
     MESSAGE(clients << " clients: " << memory << " MB after " << kFirstRounds << " rounds, " << now
                     << " MB after " << rounds);

@@ -11,6 +11,7 @@
 #include <regex>
 #include <set>
 
+#include "drawing_errors.hpp"
 #include "encoder.hpp"
 #include "exposition.hpp"
 #include "test_client.hpp"
@@ -225,20 +226,7 @@ TEST_CASE("a time falls into the bucket that ends at it, and none is lost") {
 
 TEST_CASE("a render loop that hangs is told, and one that comes back, too") {
     const Stoppable painter;
-    *painter.stopped = true;
     TestServer server(small_scene(), painter.factory(), impatient(300ms));
-    CHECK(status(server, "/readyz") == 503);  // nothing is drawn yet
-    CHECK(eventually([&] { return status(server, "/healthz") == 503; }));
-    const HttpAnswer answer = http(server.port(), "GET", "/healthz");
-    CHECK(answer.body.starts_with("the render loop has not come round for "));
-    CHECK(metrics_of(server).value("vrut_preview_healthy") == 0);
-    CHECK(metrics_of(server).value("vrut_preview_ready") == 0);
-    const HttpAnswer head = http(server.port(), "HEAD", "/healthz");
-    CHECK(head.status == 503);
-    CHECK(head.body.empty());
-
-    *painter.stopped = false;
-    CHECK(eventually([&] { return status(server, "/healthz") == 200; }));
     CHECK(eventually([&] { return status(server, "/readyz") == 200; }));
     CHECK(http(server.port(), "HEAD", "/readyz").status == 200);
     CHECK(metrics_of(server).value("vrut_preview_ready") == 1);
@@ -248,8 +236,42 @@ TEST_CASE("a render loop that hangs is told, and one that comes back, too") {
     *painter.stopped = true;
     client.send({{"type", "frame"}});
     CHECK(eventually([&] { return status(server, "/healthz") == 503; }));
+    const HttpAnswer answer = http(server.port(), "GET", "/healthz");
+    CHECK(answer.body.starts_with("the render loop has not come round for "));
+    CHECK(metrics_of(server).value("vrut_preview_healthy") == 0);
+    const HttpAnswer head = http(server.port(), "HEAD", "/healthz");
+    CHECK(head.status == 503);
+    CHECK(head.body.empty());
     *painter.stopped = false;
     CHECK(eventually([&] { return status(server, "/healthz") == 200; }));
+    CHECK(metrics_of(server).value("vrut_preview_healthy") == 1);
+}
+
+TEST_CASE("while a driver that was lost is started again nothing is ready") {
+    std::atomic<bool> lost{false};
+    const auto factory = [&] {
+        if (lost) throw std::runtime_error("the driver is not there yet");
+        Painter painter = FakePainter{}.factory()();
+        painter.paint = [&, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
+                                                   const std::function<bool()>& interrupted,
+                                                   Accumulation* kept) {
+            if (lost) throw ContextLost("the driver was reset");
+            return paint(view, image, stats, interrupted, kept);
+        };
+        return painter;
+    };
+    TestServer server(small_scene(), factory);
+    CHECK(eventually([&] { return status(server, "/readyz") == 200; }));
+    TestClient client(server.port());
+    client.join();
+    lost = true;
+    client.send({{"type", "frame"}});
+    CHECK(eventually([&] { return status(server, "/readyz") == 503; }));
+    CHECK(metrics_of(server).value("vrut_preview_ready") == 0);
+    CHECK(status(server, "/healthz") == 200);
+    lost = false;
+    CHECK(eventually([&] { return status(server, "/readyz") == 200; }));
+    client.wait_for("frame");
 }
 
 TEST_CASE("a picture that takes long is alive, and so is a server with nothing to do") {
