@@ -75,7 +75,7 @@ Engine::Engine(EngineOptions options, PainterFactory factory, Metrics& metrics, 
     thread_ = std::thread([this, &started, scene = std::move(options.scene)]() mutable {
         bool begun = false;
         try {
-            begin(std::move(scene));
+            begin(std::exchange(scene, {}));  // not kept when another is shown
             begun = true;
             started.set_value();
             while (!mailbox_.closed()) step();
@@ -107,7 +107,7 @@ LoadedScene Engine::with_notices(LoadedScene scene) const {
     return scene;
 }
 
-void Engine::begin(LoadedScene scene) {
+void Engine::begin(const LoadedScene& scene) {
     heart_.beat();
     painter_ = factory_();
     description_ = painter_.description;

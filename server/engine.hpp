@@ -194,7 +194,7 @@ private:
     std::size_t choose_level();
     void note(const Begun& begun);
 
-    void begin(LoadedScene scene);
+    void begin(const LoadedScene& scene);
     LoadedScene with_notices(LoadedScene scene) const;
 
     SceneLibrary library_;
