@@ -33,10 +33,10 @@ Painter slow_painter() {
 class Room {
 public:
     Room()
-        : engine_(
-              {{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
-              {[](EngineOutput) {}, [this](std::shared_ptr<const EncodedPicture> picture) { take(*picture); },
-               [](const std::string&) {}}) {
+        : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
+                  {[](const EngineOutput&) {},
+                   [this](const std::shared_ptr<const EncodedPicture>& picture) { take(*picture); },
+                   [](const std::string&) {}}) {
         engine_.mailbox().push(ClientJoined{kClient, protocol::Role::control, {}, 0});
         say(protocol::Control{});
         say(protocol::FrameGrant{});

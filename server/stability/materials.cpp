@@ -31,10 +31,10 @@ Study many_mirrors(const Laboratory& laboratory) {
         std::vector<Part> parts{
             {1000, sphere(0.5, 12), material_of({0.9, 0.2, 0.1}), moved_by({-1.5, 0.3, 8})},
             {1001, box({0.5, 0.5, 0.5}), material_of({0.1, 0.8, 0.3}), moved_by({1.5, -0.3, 8})}};
-        const auto in_row = std::ceil(std::sqrt(count));
+        const int in_row = static_cast<int>(std::ceil(std::sqrt(count)));
         for (int i = 0; i < static_cast<int>(count); ++i) {
-            const double x = (i % static_cast<int>(in_row)) + 0.5 - in_row / 2,
-                         y = (i / static_cast<int>(in_row)) + 0.5 - in_row / 2;
+            const int column = i % in_row, row = i / in_row;
+            const double x = column + 0.5 - in_row / 2.0, y = row + 0.5 - in_row / 2.0;
             parts.push_back(
                 {i + 1, quad(1.4 / in_row), mirror_material(),
                  moved_by({x * 3 / in_row, y * 3 / in_row, -1}) * turned_by(3.0 * i / count, {0, 1, 0})});
@@ -119,11 +119,10 @@ Study minified_textures(const Laboratory& laboratory) {
     Texture checkers;
     checkers.image.resize(kTexels, kTexels);
     const auto white = [](std::int64_t x, std::int64_t y) { return ((x + y) & 1) == 0; };
-    for (int y = 0; y < kTexels; ++y)
-        for (int x = 0; x < kTexels; ++x)
-            for (int k = 0; k < 4; ++k)
-                checkers.image.rgba[static_cast<std::size_t>(4 * (y * kTexels + x) + k)] =
-                    white(x, y) || k == 3 ? 255 : 0;
+    for (std::size_t at = 0; at < checkers.image.rgba.size(); ++at) {
+        const auto texel = static_cast<std::int64_t>(at / 4);
+        checkers.image.rgba[at] = white(texel % kTexels, texel / kTexels) || at % 4 == 3 ? 255 : 0;
+    }
     for (const int texels : {1, 2, 3, 4, 6, 8, 16, 32, 64}) {
         Geometry wall = quad(kSide / 2.0);
         const float last = static_cast<float>(kSide * texels) / kTexels;
