@@ -256,4 +256,22 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     await server.stop();
     await eventually('503', async () => (await get(`https://${place()}/`)).status === 503);
   });
+
+  test('an address gets no more requests than it may have, and is told so', async () => {
+    const socket = tls.connect({ port, host: '127.0.0.1', rejectUnauthorized: false });
+    await once(socket, 'secureConnect');
+    let text = '';
+    socket.setEncoding('latin1').on('data', (data) => (text += data));
+    const heard = () => Array.from(text.matchAll(/^HTTP\/1\.1 (\d+)/gm), ([, status]) => status);
+    let statuses = [];
+    while (statuses.length < 2100 && !statuses.includes('429')) {
+      const wanted = statuses.length + 100;
+      socket.write(`GET /healthz HTTP/1.1\r\nHost: ${place()}\r\n\r\n`.repeat(100));
+      statuses = await eventually('the answers', () => heard().length >= wanted && heard());
+    }
+    socket.destroy();
+    const answered = statuses.indexOf('429');
+    assert.ok(answered > 1500 && answered <= 2000, `${answered}`);
+    assert.ok(statuses.slice(answered).every((status) => status === '429'));
+  });
 });
