@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <iostream>
 #include <stdexcept>
+#include <utility>
 
 #include "commands.hpp"
 #include "import_process.hpp"
@@ -10,6 +12,16 @@
 namespace vrut {
 
 namespace {
+
+/// As it stands; a JSON string where a terminal would take part of it for a command (a C0 or C1 control).
+std::string printable(const std::string& name) {
+    unsigned char before = 0;
+    const bool commands = std::any_of(name.begin(), name.end(), [&](unsigned char byte) {
+        const bool is_c1 = std::exchange(before, byte) == 0xC2 && byte < 0xA0;
+        return byte < ' ' || byte == 0x7F || is_c1;
+    });
+    return commands ? protocol::json_string(name) : name;
+}
 
 /// Depth first, as a tree is read; without recursion, since a scene may be a chain of a million nodes.
 std::vector<protocol::NodeReport> list_nodes(const PlacedScene& placed) {
@@ -47,7 +59,7 @@ void print(const protocol::SceneState& scene, const std::vector<protocol::NodeRe
     for (const protocol::NodeReport& node : nodes) {
         // Deep trees keep to the width of a terminal.
         std::cout << std::string(static_cast<std::size_t>(std::min(node.depth, 30)) * 2, ' ') << node.id
-                  << " " << node.name << " (" << node.type;
+                  << " " << printable(node.name) << " (" << node.type;
         if (node.triangles > 0) std::cout << ", " << node.triangles << " triangles";
         std::cout << (node.active ? ")\n" : ", inactive)\n");
     }

@@ -1,13 +1,14 @@
 #include "log.hpp"
 
+#include <poll.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <map>
 #include <mutex>
-#include <optional>
 
 #include "report.hpp"
 
@@ -44,21 +45,20 @@ void append(std::string& line, const LogField& field) {
     line += std::visit([](const auto& value) { return as_text(value); }, field.value);
 }
 
-/// How many lines of one event may still come.
+/// How many lines of one event may still come, and how many did not.
 class Budget {
 public:
-    /// None where this one may not; else how many could not since the last that could.
-    std::optional<std::uint64_t> spend() {
+    bool spend() {
         const Clock::time_point now = Clock::now();
         const double since = std::chrono::duration<double>(now - std::exchange(last_, now)).count();
         left_ = std::min(left_ + since * kPerSecond, kBurst);
-        if (left_ < 1) {
-            ++left_out_;
-            return std::nullopt;
-        }
+        if (left_ < 1) return false;
         --left_;
-        return std::exchange(left_out_, 0);
+        return true;
     }
+    void leave_out() { ++left_out_; }
+    /// Since the last that could.
+    std::uint64_t take_left_out() { return std::exchange(left_out_, 0); }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -67,25 +67,27 @@ private:
     std::uint64_t left_out_ = 0;
 };
 
-/// Events are named in the program, so there are few.
-std::optional<std::uint64_t> spend(std::string_view event) {
-    static std::mutex mutex;
-    static std::map<std::string, Budget, std::less<>> budgets;
-    const std::lock_guard lock(mutex);
-    auto budget = budgets.find(event);
-    if (budget == budgets.end()) budget = budgets.emplace(event, Budget()).first;
-    return budget->second.spend();
+/// For one line at least: a pipe has it while it takes 4096 bytes. Nobody waits for whoever reads it.
+bool has_room(int file) {
+    pollfd asked{file, POLLOUT, 0};
+    return poll(&asked, 1, 0) == 1 && (asked.revents & POLLOUT) != 0;
 }
 
 void write(spdlog::level::level_enum level, std::string_view event, LogFields fields) {
     spdlog::logger& logger = *spdlog::default_logger_raw();
     if (!logger.should_log(level)) return;
-    const auto left_out = level == spdlog::level::debug ? std::optional<std::uint64_t>(0) : spend(event);
-    if (!left_out) return;
+    static std::mutex mutex;  // until it is written: what had room may not have it after another's line
+    static std::map<std::string, Budget, std::less<>> budgets;  // events are named in the program: few
+    const std::lock_guard lock(mutex);
+    auto budget = budgets.find(event);
+    if (budget == budgets.end()) budget = budgets.emplace(event, Budget()).first;
+    if (!has_room(STDERR_FILENO) || (level != spdlog::level::debug && !budget->second.spend()))
+        return budget->second.leave_out();
     std::string line;
     append(line, {"event", event});
     for (const LogField& field : fields) append(line, field);
-    if (*left_out > 0) append(line, {"left_out", *left_out});
+    if (const std::uint64_t left_out = budget->second.take_left_out(); left_out > 0)
+        append(line, {"left_out", left_out});
     logger.log(level, "{}", std::string_view(line).substr(1));
 }
 

@@ -18,8 +18,9 @@ using LogFields = std::initializer_list<LogField>;
 /// One line of standard error for one event: `time=… level=info event=joined client=c1 name="Anna B."`, as
 /// logfmt has it. A text of more than letters, digits and -._:/@+ stands as a JSON string of ASCII, at most
 /// 300 bytes of it, so that no text can end a line, make up a field or steer a terminal. Of one event up to
-/// 100 lines come at once, and one a second from there on, so that nobody fills a disk; the next one tells
-/// how many were left out. Debug lines are not limited.
+/// 100 lines come at once, and one a second from there on, so that nobody fills a disk; debug lines are not
+/// limited. A line for which standard error has no room at once, since nobody reads it, is left out. The next
+/// one of the event tells how many were.
 void log_debug(std::string_view event, LogFields fields);
 void log_info(std::string_view event, LogFields fields);
 void log_warning(std::string_view event, LogFields fields);

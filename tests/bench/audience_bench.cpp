@@ -121,5 +121,5 @@ TEST_CASE("a client that stands still does not delay twenty others") {
     tell("and one who stands still", p99[1]);
     const double ratio = percentile(p99[1], 0.5) / percentile(p99[0], 0.5);
     std::printf("ratio %.3f\n", ratio);
-    CHECK(ratio < 1.5);  // the goal is 1.1; machines that do other things, too, spread more than that
+    CHECK(ratio < 1.1);
 }

@@ -88,6 +88,13 @@ test('info tells what a scene holds', () => {
   assert.equal(info.tree.reduce((sum, node) => sum + node.triangles, 0), info.triangles);
 });
 
+test('names that would steer a terminal do not', () => {
+  fs.writeFileSync(file('names.vrut'), 'vrut-text 1\nnode 1 "Left 90° \x1b[31mred" assembly end\nnode 2 "90°" assembly end\n');
+  const said = succeeds('info', file('names.vrut'));
+  assert.match(said, /1 "Left 90\\u00b0 \\u001b\[31mred" \(/);
+  assert.match(said, /2 90° \(/);
+});
+
 test('render draws pictures of the size asked for', () => {
   succeeds('render', CAR, '-o', file('car.png'), '--size', '320x200');
   assert.deepEqual(pngSize('car.png'), [320, 200]);

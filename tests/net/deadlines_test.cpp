@@ -152,3 +152,17 @@ TEST_CASE("one connection too many of any kind is told so, and there is room aga
     open.resize(open.size() / 2);
     CHECK(eventually([&] { return http(server.port(), "GET", "/healthz").status == 200; }));
 }
+
+TEST_CASE("beyond loopback one address may not take all connections") {
+    ServerOptions options;
+    options.listen.host = "0.0.0.0";
+    options.access.control_token = options.access.view_token = "secret";
+    options.max_clients = 1;
+    TestServer server({}, options);
+    std::vector<std::unique_ptr<RawConnection>> open;
+    for (int i = 0; i < 64 + 4; ++i) open.push_back(std::make_unique<RawConnection>(server.port()));
+    RawConnection late(server.port());
+    CHECK(late.answer().status == 503);
+    open.pop_back();
+    CHECK(eventually([&] { return http(server.port(), "GET", "/healthz").status == 200; }));
+}

@@ -196,3 +196,17 @@ TEST_CASE("a program that is killed while it records leaves a log that replays")
     CHECK(replay.wait(60s) == 0);
     CHECK(replay.output().find("the log is cut off here") != std::string::npos);
 }
+
+TEST_CASE("a log that nobody reads holds nothing up, neither the work nor the end") {
+    Program program({"serve", kScene, "--listen", "127.0.0.1:0", "--log-level", "debug"});
+    TestClient client(program.port());  // from here on nobody reads
+    client.join();
+    constexpr int kRefused = 3000;  // each is a line: more than a pipe takes
+    for (int i = 0; i < kRefused; ++i) client.send({{"type", "patch"}, {"patch", {{"nothing", i}}}});
+    client.send({{"type", "tree"}, {"id", 1}});
+    CHECK(client.wait_for("tree", 10s)["id"] == 1);
+    expect_end(program, SIGTERM, &client);
+    const std::string said = program.output();
+    CHECK(said.find("event=message_refused") != std::string::npos);
+    CHECK(said.size() < 100'000);
+}

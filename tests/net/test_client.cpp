@@ -75,7 +75,7 @@ TestServer::TestServer(const FakePainter& painter, const ServerOptions& options)
 
 TestServer::TestServer(LoadedScene scene, const PainterFactory& painter, ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
-    options.listen = {"127.0.0.1", 0};
+    options.listen.port = 0;
     server_ = std::make_unique<Server>(std::move(options), std::move(scene), painter);
     thread_ = std::thread([this] { server_->run(); });
 }
