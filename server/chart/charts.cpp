@@ -319,7 +319,7 @@ std::string short_number(double value) {
     char text[32];
     if (value != 0 && std::abs(value) < 1e-3)
         std::snprintf(text, sizeof text, "%.1e", value);
-    else if (std::abs(value) >= 100)
+    else if (std::abs(value) >= 100 && std::abs(value) < 1e7)
         std::snprintf(text, sizeof text, "%.0f", value);
     else
         std::snprintf(text, sizeof text, "%.3g", value);
