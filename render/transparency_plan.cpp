@@ -127,6 +127,8 @@ public:
     bool compare_all();
     /// Panes by number, in groups that no order parts, from far to near.
     std::vector<std::vector<unsigned>> groups() const { return strong_components(behind_); }
+    /// How many lie over each other on average, in the box around all.
+    double depth() const;
     /// What drawing a group in some order could change.
     double risk(const std::vector<unsigned>& group) const;
     void sort_by_distance(std::vector<unsigned>& group) const;
@@ -216,6 +218,20 @@ bool Stack::compare_all() {
     return true;
 }
 
+double Stack::depth() const {
+    const auto area = [](const glm::dvec2& low, const glm::dvec2& high) {
+        return (high.x - low.x) * (high.y - low.y);
+    };
+    double sum = 0;
+    glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    for (const Pane& pane : panes_) {
+        sum += area(pane.low, pane.high);
+        low = glm::min(low, pane.low);
+        high = glm::max(high, pane.high);
+    }
+    return sum / area(low, high);
+}
+
 double Stack::risk(const std::vector<unsigned>& group) const {
     double sum = 0;
     for (const unsigned a : group)
@@ -272,6 +288,7 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
     Stack stack(items, scene, light, shapes);
     std::vector<std::vector<unsigned>> order;
     const bool ordered = stack.compare_all(), sorted = method == Methods::Transparency::sorted;
+    const bool all_exact = !ordered && !sorted && stack.depth() <= kMostLayers;
     if (ordered) {
         order = stack.groups();
     } else {
@@ -284,7 +301,8 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
         groups.back().items.push_back(item);
     };
     for (std::vector<unsigned>& members : order) {
-        const bool exact = ordered && !sorted && members.size() > 1 && stack.risk(members) > kVisible;
+        const bool exact =
+            all_exact || (ordered && !sorted && members.size() > 1 && stack.risk(members) > kVisible);
         if (!exact) stack.sort_by_distance(members);
         for (const unsigned member : members) {
             DrawItem item = items[member];

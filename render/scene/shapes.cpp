@@ -81,8 +81,28 @@ Geometry sphere(double radius, int rings, bool normals) {
     return geometry;
 }
 
+Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3(double u, double v)>& at) {
+    Geometry geometry;
+    for (unsigned row = 0; row <= rows; ++row)
+        for (unsigned column = 0; column <= columns; ++column) {
+            geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
+            if (row == rows || column == columns) continue;
+            const unsigned here = row * (columns + 1) + column, above = here + columns + 1;
+            geometry.triangles.emplace_back(here, here + 1, above + 1);
+            geometry.triangles.emplace_back(here, above + 1, above);
+        }
+    measure(geometry);
+    return geometry;
+}
+
 Geometry mapped(Geometry geometry, double scale, const glm::dvec3& offset) {
     for (glm::dvec3& position : geometry.positions) position = position * scale + offset;
+    measure(geometry);
+    return geometry;
+}
+
+Geometry welded(Geometry geometry) {
+    for (glm::dvec3& position : geometry.positions) position = glm::round(position * 0x1p30) / 0x1p30;
     measure(geometry);
     return geometry;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,8 +30,15 @@ Geometry box(const glm::dvec3& half);
 /// Triangles between points of the sphere around the origin, with the sphere's normals there.
 Geometry sphere(double radius, int rings, bool normals = true);
 
+/// A grid over the unit square, bent to where `at` has its points, without normals; its front is where the
+/// cross product of the directions of u and v points.
+Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3(double u, double v)>& at);
+
 /// The same triangles, with every position moved: what the file would hold, not what a node does.
 Geometry mapped(Geometry geometry, double scale, const glm::dvec3& offset);
+/// The same triangles, with positions rounded to 2^-30, so that a sphere's seam and poles meet to the last
+/// bit.
+Geometry welded(Geometry geometry);
 /// The same triangles seen from behind.
 Geometry turned_inside_out(Geometry geometry);
 

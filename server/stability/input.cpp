@@ -1,6 +1,5 @@
 // Studies of fingers, clocks and links that deliver less than was sent.
 #include <cmath>
-#include <cstdint>
 
 #include "clicks.hpp"
 #include "gestures.hpp"
@@ -9,18 +8,6 @@
 namespace vrut::stability {
 
 namespace {
-
-/// Numbers from -1 to 1, the same in each run (Numerical Recipes' generator).
-class Noise {
-public:
-    double next() {
-        state_ = state_ * 1664525 + 1013904223;
-        return (state_ >> 8) / double(1 << 23) - 1;
-    }
-
-private:
-    std::uint32_t state_ = 1;
-};
 
 PointerInput touch(PointerInput::Action action, const glm::dvec2& place) {
     PointerInput input;

@@ -12,19 +12,15 @@ namespace {
 constexpr double kPixels = 1180 * 820;
 constexpr int kPictures = 2000;
 
-/// What a picture takes, of `ms` on average and up to `noise` of that more or less (Numerical Recipes'
-/// generator).
+/// What a picture takes, of `ms` on average and up to `share` of that more or less.
 class Machine {
 public:
-    explicit Machine(double noise) : noise_(noise) {}
-    double takes(double ms) {
-        state_ = state_ * 1664525 + 1013904223;
-        return ms * (1 + noise_ * ((state_ >> 8) / double(1 << 23) - 1));
-    }
+    explicit Machine(double share) : share_(share) {}
+    double takes(double ms) { return ms * (1 + share_ * noise_.next()); }
 
 private:
-    double noise_;
-    std::uint32_t state_ = 1;
+    double share_;
+    Noise noise_;
 };
 
 }  // namespace

@@ -1,10 +1,11 @@
-// Studies of mirrors, textures and normals.
+// Studies of textures and normals.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/gtc/matrix_inverse.hpp>
 
+#include "difference.hpp"
 #include "pictures.hpp"
-#include "plane.hpp"
 #include "reference.hpp"
 #include "shapes.hpp"
 
@@ -12,97 +13,60 @@ namespace vrut::stability {
 
 namespace {
 
-Material mirror_material() {
-    Material material = material_of({0.1, 0.1, 0.1});
-    material.reflectivity = 0.9;
-    return material;
+constexpr int kSide = 192;  // of pictures of walls, in pixels
+
+/// A wall that fills the picture, with so many texels to a pixel, from its bottom left corner on.
+View wall_with(const Texture& texture, double texels) {
+    Geometry wall = quad(kSide / 2.0);
+    const glm::vec2 last =
+        glm::vec2(static_cast<float>(kSide * texels)) / glm::vec2(texture.image.width, texture.image.height);
+    wall.texcoords = {{0, 0}, {last.x, 0}, last, {0, last.y}};
+    Material material = material_of({1, 1, 1});
+    material.texture = 0;
+    View view = looking(scene_of({{1, wall, material}}, {texture}), {0, 0, kSide / 2.0});
+    view.camera.fov = 90;
+    view.width = view.height = kSide;
+    view.light.headlight = false;
+    view.light.type = LightData::Type::directional;
+    view.light.direction = {0, 0, -1};
+    return view;
+}
+
+/// Grey, between a quarter and three quarters.
+Texture grey_noise(int width, int height) {
+    Texture texture;
+    texture.image.resize(width, height);
+    Noise noise;
+    for (std::size_t at = 0; at < texture.image.rgba.size(); at += 4) {
+        std::fill_n(&texture.image.rgba[at], 3, static_cast<std::uint8_t>(128 + 64 * noise.next()));
+        texture.image.rgba[at + 3] = 255;
+    }
+    return texture;
+}
+
+/// Adds to both curves how far a part is from the reference: moved by its matrix in advance, with such a
+/// matrix for normals and sides turned or not, and as it is drawn.
+void compare_normals(const Laboratory& laboratory, Study& study, double inverse, const Part& part,
+                     const glm::mat3& naive, bool turned, const glm::dvec3& eye) {
+    Part baked{part.id, part.geometry, part.material};
+    baked.geometry.bounds = {};
+    for (std::size_t i = 0; i < part.geometry.positions.size(); ++i) {
+        glm::dvec3& position = baked.geometry.positions[i];
+        position = glm::dvec3(part.matrix * glm::dvec4(position, 1));
+        baked.geometry.bounds.add(position);
+        const glm::vec3 normal = glm::normalize(naive * part.geometry.normals[i]);
+        baked.geometry.normals[i] = std::isfinite(glm::dot(normal, normal)) ? normal : glm::vec3(0);
+    }
+    if (turned) baked.geometry = turned_inside_out(baked.geometry);
+    const View view = looking(scene_of({part}), eye);
+    const Image right = image_of(trace(view));
+    View inverted = view;
+    inverted.scene = scene_of({baked});
+    study.method.points.push_back({inverse, percent_off(drawn(laboratory, inverted), right)});
+    study.successor->points.push_back({inverse, percent_off(drawn(laboratory, view), right)});
 }
 
 }  // namespace
-
-Study many_mirrors(const Laboratory& laboratory) {
-    Study study{"mirrors", "Flat mirrors in one picture", "mirrors",
-                "pixels off by more than 8 of 255, in percent"};
-    study.bound = 0.1;
-    study.limit = 17;
-    study.method.title = "the 16 largest show the scene";
-    study.takes_over = "The others are drawn as plain surfaces, which a small one may pass for.";
-    for (const double count : laboratory.chosen({1, 2, 4, 8, 16, 17, 36, 64, 100})) {
-        std::vector<Part> parts{
-            {1000, sphere(0.5, 12), material_of({0.9, 0.2, 0.1}), moved_by({-1.5, 0.3, 8})},
-            {1001, box({0.5, 0.5, 0.5}), material_of({0.1, 0.8, 0.3}), moved_by({1.5, -0.3, 8})}};
-        const int in_row = static_cast<int>(std::ceil(std::sqrt(count)));
-        for (int i = 0; i < static_cast<int>(count); ++i) {
-            const int column = i % in_row, row = i / in_row;
-            const double x = column + 0.5 - in_row / 2.0, y = row + 0.5 - in_row / 2.0;
-            parts.push_back(
-                {i + 1, quad(1.4 / in_row), mirror_material(),
-                 moved_by({x * 3 / in_row, y * 3 / in_row, -1}) * turned_by(3.0 * i / count, {0, 1, 0})});
-        }
-        const View view = looking(scene_of(parts), {0, 0, 6}, {0, 0, -1});
-        study.method.points.push_back({count, percent_off(drawn(laboratory, view), image_of(trace(view)))});
-        if (count <= 16) {
-            View plain = view;
-            for (Part& part : parts) part.material.reflectivity = 0;
-            plain.scene = scene_of(parts);
-            study.cost = "With 16 mirrors a picture takes " +
-                         times_the_time(time_of(laboratory, view), time_of(laboratory, plain)) +
-                         " that it takes without: each shows the scene once more.";
-        }
-    }
-    return study;
-}
-
-Study edge_on_mirrors(const Laboratory& laboratory) {
-    Study study{"edge-on", "The eye comes to a mirror's plane", "1 / height of the eye above the plane",
-                "pixels off by more than 8 of 255, in percent"};
-    study.bound = 0.5;
-    study.method.title = "reflection in double, depth of its own";
-    study.takes_over =
-        "Nothing needs to: at the plane itself the mirror is a line, and nothing is seen in it.";
-    study.cost = "None.";
-    for (const double inverse : laboratory.chosen({0.5, 1, 3, 10, 100, 1e3, 1e4, 1e6, 1e9, 1e12})) {
-        const auto scene =
-            scene_of({{1, quad(3), mirror_material(), turned_by(-90, {1, 0, 0})},
-                      {2, sphere(0.5, 12), material_of({0.9, 0.2, 0.1}), moved_by({-0.6, 0.7, -1})},
-                      {3, box({0.3, 0.3, 0.3}), material_of({0.1, 0.8, 0.3}), moved_by({0.7, 0.3, 0})}});
-        const View view = looking(scene, {0.2, 1 / inverse, 4}, {0.1, 0.2 / inverse, 0});
-        study.method.points.push_back({inverse, percent_off(drawn(laboratory, view), image_of(trace(view)))});
-    }
-    return study;
-}
-
-Study bent_mirrors(const Laboratory& laboratory) {
-    Study study{"bent-mirrors", "Mirrors that are not quite flat",
-                "height of the bulge / radius of the mirror", "error of the reflection at the rim, degrees"};
-    study.bound = 0.2;
-    study.limit = 1e-3;
-    study.method.title = "taken for flat, whatever they are";
-    study.successor = {"flat to 1e-4 of the radius, else none"};
-    study.takes_over =
-        "What is not flat to 1e-4 of its radius reflects the panorama, where there is one, or is drawn as a "
-        "plain surface, and a notice says so.";
-    study.cost = "A bent mirror does not show the scene.";
-    for (const double bulge : laboratory.chosen({1e-7, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.1, 0.5})) {
-        constexpr unsigned kCells = 16;
-        Geometry cap;
-        for (unsigned y = 0; y <= kCells; ++y)
-            for (unsigned x = 0; x <= kCells; ++x) {
-                const glm::dvec2 place = glm::dvec2(x, y) * (2.0 / kCells) - 1.0;
-                cap.positions.emplace_back(place, -bulge * glm::dot(place, place));
-                cap.bounds.add(cap.positions.back());
-                if (x == kCells || y == kCells) continue;
-                const unsigned at = y * (kCells + 1) + x, above = at + kCells + 1;
-                cap.triangles.emplace_back(at, at + 1, above + 1);
-                cap.triangles.emplace_back(at, above + 1, above);
-            }
-        // The normal at the rim leans by the slope there, the reflection by twice that.
-        const double error = glm::degrees(2 * std::atan(2 * bulge));
-        study.method.points.push_back({bulge, error});
-        study.successor->points.push_back({bulge, plane_of(cap) ? error : 0});
-    }
-    return study;
-}
 
 Study minified_textures(const Laboratory& laboratory) {
     Study study{"minified", "Textures seen small", "texels to a pixel", "largest error of a channel, of 255"};
@@ -115,7 +79,7 @@ Study minified_textures(const Laboratory& laboratory) {
         "the "
         "picture is mixed.";
     study.cost = "A third more memory for a texture.";
-    constexpr int kSide = 192, kTexels = 256;
+    constexpr int kTexels = 256;
     Texture checkers;
     checkers.image.resize(kTexels, kTexels);
     const auto white = [](std::int64_t x, std::int64_t y) { return ((x + y) & 1) == 0; };
@@ -124,19 +88,7 @@ Study minified_textures(const Laboratory& laboratory) {
         checkers.image.rgba[at] = white(texel % kTexels, texel / kTexels) || at % 4 == 3 ? 255 : 0;
     }
     for (const int texels : {1, 2, 3, 4, 6, 8, 16, 32, 64}) {
-        Geometry wall = quad(kSide / 2.0);
-        const float last = static_cast<float>(kSide * texels) / kTexels;
-        wall.texcoords = {{0, 0}, {last, 0}, {last, last}, {0, last}};
-        Material material = material_of({1, 1, 1});
-        material.ambient = {0, 0, 0, 1};
-        material.texture = 0;
-        View view = looking(scene_of({{1, wall, material}}, {checkers}), {0, 0, kSide / 2.0});
-        view.camera.fov = 90;
-        view.width = view.height = kSide;
-        view.light.headlight = false;
-        view.light.type = LightData::Type::directional;
-        view.light.direction = {0, 0, -1};
-        const Image image = drawn(laboratory, view);
+        const Image image = drawn(laboratory, wall_with(checkers, texels));
         double worst = 0, worst_of_nearest = 0;
         for (std::int64_t y = 8; y < kSide - 8; ++y)
             for (std::int64_t x = 8; x < kSide - 8; ++x) {
@@ -154,6 +106,38 @@ Study minified_textures(const Laboratory& laboratory) {
     return study;
 }
 
+Study odd_textures(const Laboratory& laboratory) {
+    const int most = laboratory.renderer.max_size();
+    Study study{"odd-textures", "Textures of odd and of great sizes", "longer side of the picture, in texels",
+                "largest error of a channel, of 255"};
+    study.bound = 4;
+    study.limit = most + 1;
+    study.method.title = "seen near, two pixels to a texel";
+    study.successor = {"seen small, 2.5 texels to a pixel"};
+    study.takes_over =
+        "Sizes need not be powers of two, nor even. Of a picture larger than the driver takes the next level "
+        "is "
+        "the finest that is drawn, half as sharp: nothing is lost where two texels or more fall on a pixel.";
+    study.cost = "None: files with more than 16,384 texels along a side are refused when they are read.";
+    const std::vector<glm::ivec2> sizes{{1, 1},     {3, 5},         {7, 1},       {1000, 3},
+                                        {most, 16}, {most + 1, 16}, {2 * most, 5}};
+    for (const double place : laboratory.chosen({0, 1, 2, 3, 4, 5, 6})) {
+        const glm::ivec2 size = sizes[static_cast<std::size_t>(place)];
+        const auto error = [&](double texels) {
+            int worst = 0;
+            for (const Texture& texture : {grey_noise(size.x, size.y), grey_noise(size.y, size.x)}) {
+                const View view = wall_with(texture, texels);
+                worst = std::max(worst, difference(drawn(laboratory, view), image_of(trace(view))).maximum());
+            }
+            return 1.0 * worst;
+        };
+        const double longer = std::max(size.x, size.y);
+        study.method.points.push_back({longer, error(0.5)});
+        study.successor->points.push_back({longer, error(2.5)});
+    }
+    return study;
+}
+
 Study small_matrices(const Laboratory& laboratory) {
     Study study{"normals", "Normals under matrices that shrink", "1 / scale",
                 "pixels off by more than 8 of 255, in percent"};
@@ -167,23 +151,47 @@ Study small_matrices(const Laboratory& laboratory) {
     study.cost = "None: it is computed once a part.";
     const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     for (const double inverse : laboratory.chosen({1, 10, 1e3, 1e6, 1e9, 1e12, 1e13, 1e15})) {
-        const Geometry ball = sphere(1, 12);
         const glm::dmat4 matrix = scaled_by(glm::dvec3(1, 0.5, 1) / inverse) * turned_by(30, {0, 0, 1});
-        Geometry baked = ball;
-        const glm::mat3 naive = glm::transpose(glm::inverse(glm::mat3(matrix)));
-        baked.bounds = {};
-        for (std::size_t i = 0; i < baked.positions.size(); ++i) {
-            baked.positions[i] = glm::dvec3(matrix * glm::dvec4(baked.positions[i], 1));
-            baked.bounds.add(baked.positions[i]);
-            const glm::vec3 normal = glm::normalize(naive * baked.normals[i]);
-            baked.normals[i] = std::isfinite(glm::dot(normal, normal)) ? normal : glm::vec3(0);
-        }
-        const View view = looking(scene_of({{1, ball, material, matrix}}), glm::dvec3(1, 1.5, 3) / inverse);
-        const Image right = image_of(trace(view));
-        View inverted = view;
-        inverted.scene = scene_of({{1, baked, material}});
-        study.method.points.push_back({inverse, percent_off(drawn(laboratory, inverted), right)});
-        study.successor->points.push_back({inverse, percent_off(drawn(laboratory, view), right)});
+        compare_normals(laboratory, study, inverse, {1, sphere(1, 12), material, matrix},
+                        glm::transpose(glm::inverse(glm::mat3(matrix))), false,
+                        glm::dvec3(1, 1.5, 3) / inverse);
+    }
+    return study;
+}
+
+Study mirroring_matrices(const Laboratory& laboratory) {
+    Study study{"mirrored-normals", "Normals under matrices that mirror and flatten", "1 / thickness",
+                "pixels off by more than 8 of 255, in percent"};
+    study.bound = 0.5;
+    study.limit = 1e9;
+    study.method.title = "the determinant's sign in single precision";
+    study.successor = {"in double, and no sign where no volume is"};
+    study.takes_over =
+        "Where a matrix mirrors, the sign of its determinant turns sides and normals; a part thinner than "
+        "1e-12 "
+        "of its size is drawn from both sides. A normal of zero takes its face's.";
+    study.cost = "None: it is computed once a part.";
+    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    // A sheet with waves, its front towards x; in the middle its normals are left at zero.
+    Geometry sheet = surface(16, 16, [](double u, double v) {
+        return glm::dvec3(0.2 * std::sin(5 * u) * std::sin(4 * v), 2 * u - 1, 2 * v - 1);
+    });
+    for (const glm::dvec3& p : sheet.positions) {
+        const glm::dvec2 at = (glm::dvec2(p.y, p.z) + 1.0) / 2.0;
+        const glm::dvec2 slope = 0.1 * glm::dvec2(5 * std::cos(5 * at.x) * std::sin(4 * at.y),
+                                                  4 * std::sin(5 * at.x) * std::cos(4 * at.y));
+        sheet.normals.push_back(glm::length(glm::dvec2(p.y, p.z)) < 0.4 ? glm::vec3(0)
+                                                                        : glm::vec3(1, -slope));
+    }
+    for (const double inverse : laboratory.chosen({1, 10, 1e3, 1e5, 1e7, 1e8, 1e9, 1e11, 1e13, 1e15})) {
+        const glm::dmat4 turn = turned_by(40, glm::normalize(glm::dvec3(1, 2, 3)));
+        const glm::dmat4 matrix = turn * scaled_by({-1 / inverse, 1, 1}) * turned_by(10, {0, 0, 1});
+        const glm::mat3 single(matrix);
+        const bool mirrors = glm::determinant(single) < 0;
+        const glm::mat3 cofactors(glm::cross(single[1], single[2]), glm::cross(single[2], single[0]),
+                                  glm::cross(single[0], single[1]));
+        compare_normals(laboratory, study, inverse, {1, sheet, material, matrix},
+                        mirrors ? -cofactors : cofactors, mirrors, glm::dmat3(turn) * glm::dvec3(-3, 0.7, 1));
     }
     return study;
 }

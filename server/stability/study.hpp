@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,18 @@ struct Study {
 /// everything is a number.
 std::optional<std::string> contradiction(const Study& study);
 
+/// Numbers from -1 to 1, the same in each run (Numerical Recipes' generator).
+class Noise {
+public:
+    double next() {
+        state_ = state_ * 1664525 + 1013904223;
+        return (state_ >> 8) / double(1 << 23) - 1;
+    }
+
+private:
+    std::uint32_t state_ = 1;
+};
+
 /// What studies are made with.
 struct Laboratory {
     Renderer& renderer;
@@ -59,14 +72,26 @@ const std::vector<Topic>& topics();
 // surfaces.cpp
 Study far_positions(const Laboratory& laboratory);
 Study deep_views(const Laboratory& laboratory);
-Study crossing_panes(const Laboratory& laboratory);
 Study large_triangles(const Laboratory& laboratory);
+// detail.cpp
+Study outlines_of_levels(const Laboratory& laboratory);
+Study popping_levels(const Laboratory& laboratory);
+// glass.cpp
+Study crossing_panes(const Laboratory& laboratory);
+Study rings_of_panes(const Laboratory& laboratory);
+Study many_panes(const Laboratory& laboratory);
+Study panes_in_one_place(const Laboratory& laboratory);
+Study nearly_opaque_panes(const Laboratory& laboratory);
 // materials.cpp
+Study minified_textures(const Laboratory& laboratory);
+Study odd_textures(const Laboratory& laboratory);
+Study small_matrices(const Laboratory& laboratory);
+Study mirroring_matrices(const Laboratory& laboratory);
+// mirrors.cpp
 Study many_mirrors(const Laboratory& laboratory);
 Study edge_on_mirrors(const Laboratory& laboratory);
 Study bent_mirrors(const Laboratory& laboratory);
-Study minified_textures(const Laboratory& laboratory);
-Study small_matrices(const Laboratory& laboratory);
+Study mirrors_in_mirrors(const Laboratory& laboratory);
 // moves.cpp
 Study many_moves(const Laboratory& laboratory);
 Study over_the_pole(const Laboratory& laboratory);
@@ -78,6 +103,8 @@ Study jittering_taps(const Laboratory& laboratory);
 Study jumping_clocks(const Laboratory& laboratory);
 // picks.cpp
 Study slivers(const Laboratory& laboratory);
+Study shared_edges(const Laboratory& laboratory);
+Study picks_through_glass(const Laboratory& laboratory);
 // encoding.cpp
 Study thin_saturated_lines(const Laboratory& laboratory);
 Study dark_gradients(const Laboratory& laboratory);

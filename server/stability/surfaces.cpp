@@ -97,37 +97,6 @@ Study deep_views(const Laboratory& laboratory) {
     return study;
 }
 
-Study crossing_panes(const Laboratory& laboratory) {
-    Study study{"panes", "Panes of glass that cross in one line", "panes",
-                "pixels off by more than 8 of 255, in percent"};
-    study.bound = 0.1;
-    study.limit = 2;
-    study.method.title = "sorted, pane by pane";
-    study.successor = {"in order at each pixel, where panes have none"};
-    study.takes_over =
-        "Only the groups of panes that no order puts right are sorted at each pixel; all others are drawn "
-        "from "
-        "far to near.";
-    for (const double count : laboratory.chosen({1, 2, 3, 4, 6, 8, 12, 16})) {
-        std::vector<Part> parts;
-        for (int i = 0; i < static_cast<int>(count); ++i) {
-            Material glass = material_of({0.2 + 0.6 * (i % 2), 0.3 + 0.5 * (i % 3) / 2, 0.8 - 0.6 * (i % 2)});
-            glass.diffuse.a = 0.5;
-            glass.two_sided = true;
-            parts.push_back({i + 1, quad(1), glass, turned_by(180.0 * i / count + 10, {0, 1, 0})});
-        }
-        View view = looking(scene_of(parts), {0.4, 0.7, 3.2});
-        const Image right = image_of(trace(view));
-        study.successor->points.push_back({count, percent_off(drawn(laboratory, view), right)});
-        const double exact_ms = time_of(laboratory, view);
-        view.methods.transparency = Methods::Transparency::sorted;
-        study.method.points.push_back({count, percent_off(drawn(laboratory, view), right)});
-        study.cost = "Here " + times_the_time(exact_ms, time_of(laboratory, view)) +
-                     " for the most panes, which is all in the picture; nothing where panes have an order.";
-    }
-    return study;
-}
-
 Study large_triangles(const Laboratory& laboratory) {
     Study study{"light", "Light on large triangles", "side of the triangles / their distance to the light",
                 "largest error of a channel, of 255"};
@@ -140,18 +109,10 @@ Study large_triangles(const Laboratory& laboratory) {
          laboratory.chosen({0.03, 0.05, 0.1, 0.14, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 2, 2.8, 4})) {
         // Triangles of side `ratio`, as many as cover the wall, and a light 1 before it.
         const auto cells = static_cast<unsigned>(std::max(1.0, std::round(4 / ratio)));
-        Geometry wall;
-        for (unsigned y = 0; y <= cells; ++y)
-            for (unsigned x = 0; x <= cells; ++x) {
-                const double half = ratio * cells / 2;
-                wall.positions.emplace_back(x * ratio - half, y * ratio - half, 0);
-                wall.normals.emplace_back(0, 0, 1);
-                wall.bounds.add(wall.positions.back());
-                if (x == cells || y == cells) continue;
-                const unsigned at = y * (cells + 1) + x, above = at + cells + 1;
-                wall.triangles.emplace_back(at, at + 1, above + 1);
-                wall.triangles.emplace_back(at, above + 1, above);
-            }
+        const double half = ratio * cells / 2;
+        Geometry wall = surface(
+            cells, cells, [&](double u, double v) { return half * glm::dvec3(2 * u - 1, 2 * v - 1, 0); });
+        wall.normals.assign(wall.positions.size(), {0, 0, 1});
         View view = looking(scene_of({{1, wall, material_of({0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 20)}}),
                             {0.3, 0.2, 2.5});
         view.light.headlight = false;

@@ -30,19 +30,8 @@ Material mirroring(Material material) {
 
 /// A square in the plane z = 0 of many triangles.
 Geometry sheet(double half, unsigned cells) {
-    Geometry geometry;
-    for (unsigned row = 0; row <= cells; ++row)
-        for (unsigned column = 0; column <= cells; ++column)
-            geometry.positions.push_back(
-                {half * (2.0 * column / cells - 1), half * (2.0 * row / cells - 1), 0});
-    for (unsigned row = 0; row < cells; ++row)
-        for (unsigned column = 0; column < cells; ++column) {
-            const unsigned a = row * (cells + 1) + column, b = a + cells + 1;
-            geometry.triangles.emplace_back(a, a + 1, b + 1);
-            geometry.triangles.emplace_back(a, b + 1, b);
-        }
-    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
-    return geometry;
+    return surface(cells, cells,
+                   [&](double u, double v) { return half * glm::dvec3(2 * u - 1, 2 * v - 1, 0); });
 }
 
 View simplified(View view, const std::shared_ptr<const PlacedScene>& scene, double pixels = 0.5) {
@@ -258,13 +247,6 @@ Material two_sided(Material material) {
     return material;
 }
 
-/// A sphere whose seam and poles meet to the last bit.
-Geometry closed_sphere(double radius, int rings) {
-    Geometry geometry = sphere(radius, rings);
-    for (glm::dvec3& position : geometry.positions) position = glm::round(position * 0x1p30) / 0x1p30;
-    return geometry;
-}
-
 /// Draws every triangle with and without what is known about closed parts.
 FramePlan check_backs(View view, const std::shared_ptr<const PlacedScene>& scene) {
     Renderer renderer;
@@ -282,7 +264,7 @@ FramePlan check_backs(View view, const std::shared_ptr<const PlacedScene>& scene
 
 TEST_CASE("backs of closed parts are left out where they are hidden") {
     const auto sides = [](const FramePlan& plan) { return plan.scene.opaque.at(0).sides; };
-    const Geometry whole = closed_sphere(1, 12);
+    const Geometry whole = welded(sphere(1, 12));
     const auto ball = scene_of({{1, whole, two_sided(kPaint), glm::dmat4(1)}});
     CHECK(sides(check_backs(view_from({1, 2, 5}), ball)) == Sides::closed);
     CHECK(sides(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == Sides::both);
@@ -300,8 +282,8 @@ TEST_CASE("backs of closed parts are left out where they are hidden") {
 }
 
 TEST_CASE("what a mirror cuts is drawn from both sides in it") {
-    const auto scene = scene_of({{1, closed_sphere(0.7, 24), two_sided(kPaint), moved_by({0, 0, 1.2})},
-                                 {2, closed_sphere(0.7, 24), two_sided(kPaint), moved_by({1, 1, 0.3})},
+    const auto scene = scene_of({{1, welded(sphere(0.7, 24)), two_sided(kPaint), moved_by({0, 0, 1.2})},
+                                 {2, welded(sphere(0.7, 24)), two_sided(kPaint), moved_by({1, 1, 0.3})},
                                  {3, sheet(2, 4), mirroring(kPaint), glm::dmat4(1)}});
     const FramePlan plan = check_backs(view_from({1, 2, 6}), scene);
     REQUIRE(plan.scene.mirrors.size() == 1);

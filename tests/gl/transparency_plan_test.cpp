@@ -105,7 +105,19 @@ TEST_CASE("panes beside each other, and panes that meet in an edge, are sorted")
     CHECK(!coplanar[0].exact);
 }
 
-TEST_CASE("more panes than can be compared are drawn by their distance") {
+TEST_CASE("more panes than can be compared are sorted at each pixel where not too many lie over each other") {
+    std::vector<Part> parts;
+    for (int i = 0; i < 2500; ++i)
+        parts.push_back(
+            pane(i + 1, {0.5, 0, 0},
+                 moved_by({0, 0.03 * (i % 50 - 25), -0.01 * (i * 617 % 2500)}) * scaled_by({1, 0.01, 1})));
+    const auto groups = groups_of(parts);
+    REQUIRE(groups.size() == 1);
+    CHECK(groups[0].items.size() == 2500);
+    CHECK(groups[0].exact);
+}
+
+TEST_CASE("more panes than can be compared, in a deep stack, are drawn by their distance") {
     std::vector<Part> parts;
     parts.reserve(1500);
     for (int i = 0; i < 1500; ++i)

@@ -38,6 +38,7 @@ TEST_CASE("a surface is closed where it has an inside and all triangles face awa
     CHECK_FALSE(closed(inside_out(whole)));
     CHECK(closed(torus(12, 8)) != closed(inside_out(torus(12, 8))));
     CHECK_FALSE(closed(Geometry{}));
+    CHECK(closed(welded(sphere(1, 8))));
     CHECK_FALSE(closed(corrugated(8, 8)));
     Geometry open = whole, turned = whole, doubled = whole;
     open.triangles.erase(open.triangles.begin() + 50);

@@ -99,7 +99,7 @@ void check_bounds(const Geometry& geometry, std::size_t least_levels) {
     }
 }
 
-std::shared_ptr<const Scene> scene_of(std::vector<Geometry> geometries) {
+std::shared_ptr<const Scene> scene_with(std::vector<Geometry> geometries) {
     SceneParts parts;
     for (std::size_t i = 0; i < geometries.size(); ++i) geometries[i].id = static_cast<Id>(i + 1);
     parts.geometries = std::move(geometries);
@@ -234,7 +234,7 @@ TEST_CASE("triangles in a bad order get a better one, and only those") {
     bad.normals.clear();
     CHECK_FALSE(cache_ordered(bad));  // its triangles share no vertices
 
-    const DetailLevels levels(scene_of({with_normals(bad)}));
+    const DetailLevels levels(scene_with({with_normals(bad)}));
     levels.wait();
     CHECK(levels.of(0).size() >= 4);
     for (std::size_t i = 0; i < levels.of(0).size(); ++i)
@@ -242,7 +242,7 @@ TEST_CASE("triangles in a bad order get a better one, and only those") {
 }
 
 TEST_CASE("levels are made in the background, for each geometry") {
-    const auto scene = scene_of({ball(48, 24), {}, torus(40, 20)});
+    const auto scene = scene_with({ball(48, 24), {}, torus(40, 20)});
     const DetailLevels levels(scene);
     levels.wait();
     CHECK(levels.done());
@@ -255,8 +255,8 @@ TEST_CASE("levels are made in the background, for each geometry") {
 }
 
 TEST_CASE("levels can be given up while they are made") {
-    const auto scene = scene_of(std::vector<Geometry>(400, torus(120, 60)));
-    const DetailLevels none(scene_of({}));
+    const auto scene = scene_with(std::vector<Geometry>(400, torus(120, 60)));
+    const DetailLevels none(scene_with({}));
     none.wait();
     {
         const DetailLevels levels(scene);

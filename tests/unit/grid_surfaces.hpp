@@ -1,30 +1,11 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 
-#include "scene.hpp"
+#include "shapes.hpp"
 
 namespace vrut {
-
-/// A grid over the unit square, bent to a surface.
-inline Geometry surface(unsigned columns, unsigned rows,
-                        const std::function<glm::dvec3(double, double)>& at) {
-    Geometry geometry;
-    for (unsigned row = 0; row <= rows; ++row)
-        for (unsigned column = 0; column <= columns; ++column) {
-            geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
-            geometry.bounds.add(geometry.positions.back());
-        }
-    for (unsigned row = 0; row < rows; ++row)
-        for (unsigned column = 0; column < columns; ++column) {
-            const unsigned a = row * (columns + 1) + column, b = a + columns + 1;
-            geometry.triangles.emplace_back(a, a + 1, b + 1);
-            geometry.triangles.emplace_back(a, b + 1, b);
-        }
-    return geometry;
-}
 
 /// cos and sin of a part of a full turn, the same at 0 and 1.
 inline glm::dvec2 turn(double part) {
