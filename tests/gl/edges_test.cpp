@@ -101,7 +101,7 @@ TEST_CASE("each edge is drawn once, however many triangles share it") {
     degenerate.triangles = {{0, 0, 1}, {0, 1, 2}};
     CHECK(edges(degenerate) == 3);
     // Close is not the same.
-    Geometry close = quad(1);
+    Geometry close = quad(1, false);
     close.positions.push_back(close.positions[2] + glm::dvec3(1e-9, 0, 0));
     close.triangles = {{0, 1, 2}, {0, 4, 3}};
     CHECK(edges(close) == 6);
