@@ -14,7 +14,7 @@ Checks the source's format, runs every test of the release build but the long on
 analyzer on the program, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
 Debian packages and node modules that are missing are installed first.
 
-  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the address and undefined behaviour sanitizers with the real renderer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
   --help    this text
 TEXT
 }
@@ -156,6 +156,8 @@ step "build asan" "$compile_remedy" build asan --target tests_without_gpu
 step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
 step "clang-tidy" "Mend what it names above." end_tidy
 if $all; then
+    step "build asan with the renderer" "$compile_remedy" build asan --target test_renderer test_gl_faults test_soak
+    step "tests of asan with the renderer" "Again alone: ctest --preset asan -R NAME." tests asan -R '^(renderer|gl_faults|soak)$'
     step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
     step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'
