@@ -36,10 +36,11 @@ Work work_of(Program& program, const Audience& audience) {
     Work work;
     work.changes = static_cast<double>(audience.changes());
     work.seen = static_cast<double>(audience.seen());
-    work.rendered = counter("frames_rendered_moving_total") + counter("frames_rendered_still_total");
+    work.rendered = counter(R"(frames_rendered_total{level="moving"})") +
+                    counter(R"(frames_rendered_total{level="still"})");
     work.encoded = counter("frames_encoded_total");
     work.sent = counter("frames_sent_total");
-    work.bytes = counter("bytes_sent_total");
+    work.bytes = counter("sent_bytes_total");
     work.cpu_ms = 1e3 * use_of(program.process()).cpu_s;
     // The first thread is the one that serves the sockets; its time in nanoseconds comes first.
     std::ifstream("/proc/" + std::to_string(program.process()) + "/schedstat") >> work.net_ms;
