@@ -229,6 +229,7 @@ void Engine::handle(const FrameSent& sent) {
     Client& client = found->second;
     client.last_frame = std::max(client.last_frame, sent.frame);
     client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
+    client.owed = std::max(client.owed - 1 - sent.unused_grants, 0);
     if (sent.frame > client.newest_sent) client.sent.push_back(sent);
     client.newest_sent = std::max(client.newest_sent, sent.frame);
     if (client.sent.size() > protocol::kMaxGrants) client.sent.pop_front();
@@ -257,6 +258,7 @@ void Engine::use(const protocol::LevelTable& table) {
     for (const protocol::Level& level : table.levels)
         if (level.quality.level == protocol::Quality::Level::still) at_rest_.push_back(level);
     begun_.clear();
+    measured_by_.clear();
     // Elsewhere, since the level that is being made is waited for.
     if (detail_) given_up_ = std::async([levels = std::move(detail_)]() mutable { levels.reset(); });
     scene_since_ = next_frame_;
@@ -340,11 +342,16 @@ void Engine::handle(const ClientSaid& said) {
 void Engine::grant(Client& client, const ClientSaid& said) {
     ++metrics_.frames_granted;
     client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
-    if (client.sent.empty()) return;
+    const int outstanding = client.grants + client.owed + static_cast<int>(client.sent.size());
+    // Sent before any picture can have arrived, it answers none: so many does this client keep outstanding.
+    if (client.sent.empty() || said.arrival - client.sent.front().at < client.sent.front().round_trip)
+        client.window = std::clamp(outstanding, client.window, protocol::kMaxGrants);
+    if (client.sent.empty() || outstanding <= client.window) return;
     // It comes when the oldest has arrived, not the newest, which may be on its way still.
     const FrameSent answered = client.sent.front();
     client.sent.pop_front();
     client.tells = true;
+    client.answered = std::max(client.answered, answered.frame);
     if (presentation_->holder() == said.client) measure(answered, said.arrival);
 }
 

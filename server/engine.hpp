@@ -114,12 +114,22 @@ public:
 private:
     struct Client {
         int grants = 0;
+        int owed = 0;                 ///< pictures that it has been promised, and that are not sent yet
+        int window = 1;               ///< the grants that it keeps outstanding, as far as was seen
         std::int64_t last_frame = 0;  ///< newest that it has been promised
-        std::int64_t handled = 0;     ///< highest message id
-        int snapshots = 0;            ///< asked for and not sent yet
-        std::deque<FrameSent> sent;   ///< each until it is answered: until another is asked for
+        void owe(std::int64_t frame, Clock::time_point now) {
+            --grants;
+            ++owed;
+            last_frame = frame;
+            promised_at = now;
+        }
+        std::int64_t handled = 0;    ///< highest message id
+        int snapshots = 0;           ///< asked for and not sent yet
+        std::deque<FrameSent> sent;  ///< each until it is answered: until another is asked for
         std::int64_t newest_sent = 0;
-        bool tells = false;  ///< has asked for another picture after one
+        bool tells = false;         ///< has asked for another picture after one
+        std::int64_t answered = 0;  ///< the newest frame after which it did
+        Clock::time_point promised_at{};
     };
     struct Begun {
         std::int64_t frame = 0;
@@ -159,7 +169,11 @@ private:
     // --- pictures
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
-    bool waits_for_newer(const Client& client) const;
+    bool waits_for_newer(const std::string& name, const Client& client) const;
+    Clock::duration delivery_at_rest() const;
+    Clock::duration delivery_of_moving() const;
+    Clock::duration delivery_of(std::size_t level) const;
+    bool is_held(const std::string& name, const Client& client, int still_samples) const;
     bool thin_lines() const;
     void serve_newest();
     PacingDecision pace();
@@ -170,7 +184,7 @@ private:
     void wait_for_event(std::optional<Clock::time_point> until);
     void draw(const PacingDecision& decision);
     void draw_snapshot();
-    void promise(std::int64_t frame);
+    void promise(std::int64_t frame, int still_samples);
     void measure(const FrameSent& sent, Clock::time_point asked);
 
     // --- what draws, and what fails in it
@@ -192,6 +206,7 @@ private:
     void was_delivered(std::int64_t frame);
     protocol::Quality quality_at_rest(int samples) const;
     std::size_t choose_level();
+    bool knows_link() const;
     void note(const Begun& begun);
 
     void begin(const LoadedScene& scene);
@@ -243,6 +258,7 @@ private:
     } drawn_;
     std::int64_t next_frame_ = 1;
     std::deque<Begun> begun_;  ///< the last moving frames
+    std::string measured_by_;  ///< the client to whom the last of them that was measured went
     std::optional<LevelChoice> choice_;
     std::vector<protocol::Level> at_rest_;        ///< of the table
     std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first picture was delivered

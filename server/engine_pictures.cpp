@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "drawing_errors.hpp"
 #include "engine.hpp"
 #include "log.hpp"
@@ -7,10 +9,18 @@ namespace vrut {
 
 namespace {
 
-constexpr std::size_t kBegunRemembered = 16;
+constexpr std::size_t kBegunRemembered = 512;  // others may get many while a slow client gets one
+/// A picture at rest that takes longer to arrive is held back for as long as it takes: whoever moves again
+/// would wait for it.
+constexpr std::chrono::milliseconds kLongDelivery{500};
+constexpr Clock::duration kForGood = std::chrono::hours(1);
 
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
+
+Clock::duration milliseconds(double ms) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double, std::milli>(ms));
+}
 
 /// A picture that was drawn, to who watches the server.
 void tell_of(const protocol::FrameHeader& drawn, Metrics& metrics, LiveStats& stats) {
@@ -35,8 +45,52 @@ bool Engine::shows_present() const {
            presentation_->view_size() == drawn_.view_size;
 }
 
-bool Engine::waits_for_newer(const Client& client) const {
-    if (client.grants == 0) return false;
+/// How long a whole picture at rest is expected to be on its way to who steers; 0 where that is not known,
+/// without end while the first picture that will tell is on its way.
+Clock::duration Engine::delivery_at_rest() const {
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    if (holder == clients_.end() || holder->second.last_frame == 0) return {};
+    if (holder->first != measured_by_) {
+        const bool will_tell = std::any_of(begun_.begin(), begun_.end(), [&](const Begun& begun) {
+            return begun.frame > holder->second.answered && begun.frame <= holder->second.last_frame;
+        });
+        return will_tell ? kForGood : Clock::duration{};
+    }
+    return delivery_of(choice_->levels().size() - 1);
+}
+
+/// How long a picture of a level is expected to be on its way to who steers; 0 where that is not known.
+Clock::duration Engine::delivery_of(std::size_t level) const {
+    if (presentation_->holder() != measured_by_) return {};
+    const protocol::Resize view_size = presentation_->view_size();
+    const PictureSize size = picture_size(
+        view_size, quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines()).scale);
+    const double pixels = static_cast<double>(size.width) * size.height;
+    return milliseconds(choice_->expected(level, pixels, Clock::now()).client.value_or(0));
+}
+
+/// How long a moving picture is expected to be on its way to who steers; 0 where that is not known.
+Clock::duration Engine::delivery_of_moving() const {
+    return begun_.empty() ? Clock::duration{} : delivery_of(begun_.back().level);
+}
+
+/// Whether there is no picture for this client yet, of so many samples where it is one at rest: over a slow
+/// link one is on its way at a time, and a large one only when the view has rested.
+bool Engine::is_held(const std::string& name, const Client& client, int still_samples) const {
+    if (name != presentation_->holder()) return false;
+    const Clock::time_point now = Clock::now();
+    const Clock::duration moving = delivery_of_moving();
+    if (moving > kLongDelivery && client.last_frame > client.answered &&
+        now - client.promised_at < 2 * moving)
+        return true;
+    if (still_samples < kStillSamples.back()) return false;
+    const Clock::duration at_rest = delivery_at_rest();
+    return at_rest > kLongDelivery && now - last_change_ < at_rest;
+}
+
+bool Engine::waits_for_newer(const std::string& name, const Client& client) const {
+    const bool next_is_last = shows_present() && drawn_.still_samples > 0;
+    if (client.grants == 0 || is_held(name, client, next_is_last ? kStillSamples.back() : 0)) return false;
     return !shows_present() || client.last_frame != drawn_.frame ||
            drawn_.still_samples < kStillSamples.back();
 }
@@ -52,9 +106,10 @@ bool Engine::thin_lines() const {
 void Engine::serve_newest() {
     if (!shows_present()) return;
     for (auto& [name, client] : clients_) {
-        if (client.grants == 0 || client.last_frame == drawn_.frame) continue;
-        --client.grants;
-        client.last_frame = drawn_.frame;
+        if (client.grants == 0 || client.last_frame == drawn_.frame ||
+            is_held(name, client, drawn_.still_samples))
+            continue;
+        client.owe(drawn_.frame, Clock::now());
         output_.owed.push_back({name, drawn_.frame});
     }
 }
@@ -62,40 +117,63 @@ void Engine::serve_newest() {
 PacingDecision Engine::pace() {
     PacingInput input;
     for (const auto& [name, client] : clients_)
-        input.somebody_waits = input.somebody_waits || (waits_for_newer(client) && !is_undrawable());
+        input.somebody_waits = input.somebody_waits || (waits_for_newer(name, client) && !is_undrawable());
     input.changed = !shows_present();
     input.newest_samples = drawn_.still_samples;
     input.encoder_free = encoder_.is_free();
     input.last_change = last_change_;
     input.now = Clock::now();
-    return decide(input);
+    PacingDecision decision = decide(input);
+    // Who waits for a picture that is held may have it later.
+    const auto look_again = [&](Clock::time_point at) {
+        if (decision.action == PacingDecision::Action::wait && at > input.now)
+            decision.until = std::min(decision.until.value_or(at), at);
+    };
+    if (const auto delivery = delivery_at_rest(); delivery < kForGood) look_again(last_change_ + delivery);
+    if (const auto holder = clients_.find(presentation_->holder().value_or("")); holder != clients_.end())
+        look_again(holder->second.promised_at + 2 * delivery_of_moving());
+    return decision;
 }
 
 /// What a moving frame took, from the begin of its drawing until its client, who steers, asked for the next.
+/// A client that slept makes no more of it than a link that is slow.
 void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
-    constexpr std::chrono::seconds kAsleep{5};  // it did not ask at once
+    constexpr std::chrono::seconds kAsleep{5};
     if (sent.newest_input > measured_input_ && asked - *sent.newest_input < kAsleep)
         metrics_.input_to_grant.observe(std::chrono::duration<double>(asked - *sent.newest_input).count());
     measured_input_ = std::max(measured_input_, sent.newest_input.value_or(measured_input_));
     for (const Begun& begun : begun_)
-        if (begun.frame == sent.frame && asked > begun.at && asked - begun.at < kAsleep) {
-            const double all = std::chrono::duration<double, std::milli>(asked - begun.at).count();
+        if (begun.frame == sent.frame && asked > begun.at) {
+            const double all = std::chrono::duration<double, std::milli>(
+                                   std::min<Clock::duration>(asked - begun.at, kAsleep))
+                                   .count();
             const double server = std::min(begun.drawn_ms + sent.encode_ms, all);
-            choice_->took(begun.level, {server, all - server}, begun.pixels, asked);
+            // No level makes the way itself shorter.
+            const double way = std::chrono::duration<double, std::milli>(sent.round_trip).count();
+            choice_->took(begun.level, {server, std::max(0.0, all - server - way)}, begun.pixels, asked);
+            measured_by_ = sent.client;
         }
 }
 
-void Engine::promise(std::int64_t frame) {
+void Engine::promise(std::int64_t frame, int still_samples) {
     for (auto& [name, client] : clients_) {
-        if (client.grants == 0) continue;
-        --client.grants;
-        client.last_frame = frame;
+        if (client.grants == 0 || is_held(name, client, still_samples)) continue;
+        client.owe(frame, Clock::now());
         output_.owed.push_back({name, frame});
     }
 }
 
 /// With the error that the table has for such a picture.
 protocol::Quality Engine::quality_at_rest(int samples) const {
+    if (samples < kStillSamples.back() && delivery_at_rest() > kLongDelivery) {
+        protocol::Quality quality =
+            quality_of(choice_->levels().front().quality, presentation_->view_size(), room_, thin_lines());
+        quality.level = protocol::Quality::Level::still;
+        quality.samples = samples;
+        quality.detail = 0;
+        quality.error.reset();
+        return quality;
+    }
     protocol::Quality quality = quality_of(kStill, presentation_->view_size(), room_, thin_lines());
     quality.samples = samples;
     if (thin_lines()) return quality;
@@ -107,9 +185,18 @@ protocol::Quality Engine::quality_at_rest(int samples) const {
     return quality;
 }
 
+/// Whether there is one from which it was heard what a moving frame takes, or nobody there who would tell.
+bool Engine::knows_link() const {
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    return holder == clients_.end() || holder->first == measured_by_ ||
+           (holder->second.grants == 0 && holder->second.last_frame == 0);
+}
+
 std::size_t Engine::choose_level() {
     const protocol::QualityState& wanted = presentation_->state().quality;
     const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
+    // The first pictures to a client are small: its link may be slow, and they cannot be taken back.
+    if (std::isfinite(target) && !knows_link()) return 0;
     return choice_->choose({presentation_->view_size(), room_, target}, Clock::now());
 }
 
@@ -169,7 +256,7 @@ void Engine::draw(const PacingDecision& decision) {
     if (!still)
         note({header.frame, level, static_cast<double>(size.width) * size.height,
               stats.render_ms + stats.readback_ms, begin});
-    promise(drawn_.frame);
+    promise(drawn_.frame, drawn_.still_samples);
     encoder_.offer(std::move(picture), std::move(image));
 }
 

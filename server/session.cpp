@@ -26,6 +26,7 @@ constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers =
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
+constexpr auto kTellsAgain = 20ms;
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
 
 /// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
@@ -61,6 +62,7 @@ Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hu
       hello_deadline_(socket_.get_executor()),
       watch_(socket_.get_executor()),
       rate_timer_(socket_.get_executor()),
+      news_timer_(socket_.get_executor()),
       place_(std::move(place)),
       progress_at_(Clock::now()),
       rate_(kMessagesPerSecond),
@@ -95,6 +97,9 @@ void Session::accept(const HttpRequest& request) {
             response.set(beast::http::field::sec_websocket_protocol, protocol::kSubprotocol);
         }));
 
+    socket_.control_callback([this](websocket::frame_type type, beast::string_view) {
+        if (type == websocket::frame_type::pong) on_pong(Clock::now());
+    });
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
         if (error) return self->drop("handshake");
         self->hello_deadline_.expires_after(self->hub_.deadlines.hello);
@@ -217,6 +222,7 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
     ++hub_.metrics->clients[name_of(*role)];
     log_info("joined",
              {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
+    if (!pinging_) ping(Clock::now());  // while nothing else is on its way
     hub_.engine->mailbox().push(ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
@@ -291,12 +297,31 @@ void Session::pump() {
     if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
-    if (client_.empty() || !hub_.document) return;
+    if (client_.empty() || !hub_.document || !has_news()) return;
+    const bool waited_for = frame_is_due() || !answers_.empty() || !snapshots_.empty();
+    if (!waited_for && is_behind(Clock::now())) return tell_later();
+    told_at_ = Clock::now();
     if (document_ == hub_.document) return send_news();
     const auto before = std::exchange(document_, hub_.document);
     if (!before || !document_->has_scene_of(*before)) return send_text(document_->encode());
     const bool one_author = before->revision() + 1 >= hub_.document_by_since;
     send_text(document_->encode_patch_from(*before, one_author ? hub_.document_by : ""));
+}
+
+bool Session::has_news() const {
+    return document_ != hub_.document || loading_ != hub_.loading || stats_ != hub_.stats;
+}
+
+/// Once what was sent has mostly arrived: what waits here is replaced, and what waits in the socket is not.
+void Session::tell_later() {
+    if (std::exchange(tells_later_, true)) return;
+    news_timer_.expires_after(kTellsAgain);
+    news_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self) return;
+        self->tells_later_ = false;
+        self->pump();
+    });
 }
 
 /// What is told to all, and of which only the newest counts.
@@ -322,7 +347,8 @@ void Session::send_frame() {
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
     hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1, picture_->header.timing.encode_ms,
-                                          picture_->newest_input});
+                                          picture_->newest_input, Clock::now(),
+                                          round_trip_.value_or(Clock::duration{})});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);
@@ -406,6 +432,7 @@ void Session::drop(const char* reason) {
     hello_deadline_.cancel();
     watch_.cancel();
     rate_timer_.cancel();
+    news_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
     log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});

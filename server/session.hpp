@@ -52,6 +52,9 @@ private:
     void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
     bool frame_is_due() const;
+    bool has_news() const;
+    bool is_behind(Clock::time_point now);
+    void tell_later();
     void send_frame();
     void send_snapshot();
     void send_picture(const protocol::FrameHeader& header);
@@ -63,12 +66,14 @@ private:
     void on_written(boost::beast::error_code error);
     void watch();
     void look_after(Clock::time_point now);
+    void ping(Clock::time_point now);
+    void on_pong(Clock::time_point now);
     void drop(const char* reason);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
-    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_;
+    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, news_timer_;
     ConnectionLimit::Place place_;
     std::string client_;  // empty before hello
     protocol::Role role_ = protocol::Role::view;
@@ -86,6 +91,8 @@ private:
     std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
     std::deque<std::shared_ptr<const EncodedPicture>> snapshots_;
     std::shared_ptr<const std::string> stats_, loading_;  // that it last got
+    Clock::time_point told_at_{};                         // news
+    bool tells_later_ = false;
 
     // --- what is being sent
     bool writing_ = false;
@@ -105,6 +112,7 @@ private:
     std::uint64_t received_ = 0;  // bytes, at the watch's last look
     Clock::time_point heard_at_;  // when it last saw more of them, or did not read
     Clock::time_point pinged_at_;
+    std::optional<Clock::duration> round_trip_;  // the least so far
 };
 
 }  // namespace vrut

@@ -52,6 +52,14 @@ void Session::watch() {
     });
 }
 
+/// Whether news would wait in the socket behind what was sent before. It does not wait here for ever, though.
+bool Session::is_behind(Clock::time_point now) {
+    constexpr int kOnItsWay = 1024;  // bytes: a few patches
+    constexpr auto kLongestSilence = 10s;
+    return now - told_at_ < kLongestSilence &&
+           traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).waiting > kOnItsWay;
+}
+
 /// Cuts who takes nothing of what waits for him, who does not come to the end of a message, and who is silent
 /// though he got everything, a ping as well: one whose ping waits behind a frame may be slow.
 void Session::look_after(Clock::time_point now) {
@@ -70,10 +78,19 @@ void Session::look_after(Clock::time_point now) {
         return;
     }
     if (has_all && now - heard_at_ >= deadlines.silence) return drop("silent");
-    if (closing_ || pinging_ || now - std::max(heard_at_, pinged_at_) < deadlines.ping) return;
+    if (!closing_ && !pinging_ && now - std::max(heard_at_, pinged_at_) >= deadlines.ping) ping(now);
+}
+
+void Session::ping(Clock::time_point now) {
     pinging_ = true;
     pinged_at_ = now;
     socket_.async_ping({}, [self = shared_from_this()](beast::error_code) { self->pinging_ = false; });
+}
+
+void Session::on_pong(Clock::time_point now) {
+    if (pinged_at_ == Clock::time_point{}) return;  // nobody asked
+    const Clock::duration took = now - pinged_at_;
+    round_trip_ = std::min(took, round_trip_.value_or(took));
 }
 
 }  // namespace vrut

@@ -1,10 +1,9 @@
 const REPEATING_KEYS = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']);
-/** A held `w` must not flicker; digits are held in drags of one navigation style. */
 const KEYS = new Set([...REPEATING_KEYS, 'f', 'Home', 'w', 's', 'Escape', '1', '2', '3']);
 
 /**
  * Passes pointer, wheel and key events on to the server, which alone knows what they mean. Each pointer's moves are
- * thinned to one a display frame; everything else goes out at once and in order.
+ * thinned to the last when `soon` comes; everything else goes out at once and in order.
  */
 export class Input {
   #page;
@@ -41,7 +40,7 @@ export class Input {
       keydown: this.#keyDown,
       keyup: this.#keyUp,
       blur: this.#cancelAll,
-      // Safari zooms the page by gestures that it has beside the pointers.
+      // Safari's own gestures zoom the page.
       gesturestart: prevent,
       gesturechange: prevent,
       gestureend: prevent,
@@ -77,13 +76,13 @@ export class Input {
     const { pointerId, clientX, clientY, button } = event;
     if (!this.#pressed.has(pointerId)) return;
     this.#page.marks?.move(pointerId, clientX, clientY);
-    // A further mouse button comes as a move, and none of those may get lost.
+    // A further mouse button comes as a move: none may get lost.
     if (button >= 0) {
       this.#sendPointer(event);
       return;
     }
     this.#pressed.set(pointerId, this.#pointerMessage(event));
-    if (this.#moved.size === 0) this.#page.window.requestAnimationFrame(() => this.#flush());
+    if (this.#moved.size === 0) this.#page.soon(() => this.#flush());
     this.#moved.add(pointerId);
   }
 

@@ -21,7 +21,7 @@ export class Lines {
     this.#show();
   }
 
-  /** Says a sentence for some seconds. One that is being said already is not said twice. */
+  /** Says a sentence for some seconds, not twice at once. */
   pass(text) {
     const sentence = whole(text);
     this.#passing = this.#passing.filter((line) => line.sentence !== sentence).slice(1 - MOST_LINES);
@@ -48,13 +48,7 @@ export class Lines {
   }
 }
 
-/**
- * What is to be said of the connection; null where what was said last still holds.
- *
- * @param {import('./connection.js').Phase} phase
- * @param {boolean} hasPicture whether a picture was drawn since the connection opened
- * @param {boolean} hasToken
- */
+/** What is to be said of a Phase of the connection; null where the last still holds. */
 export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPicture, hasToken) {
   const seconds = Math.round(retryMs / 1000);
   switch (name) {

@@ -123,6 +123,8 @@ const input = new Input(canvas, {
   mapping: () => picture.mapping(),
   // A server that has begun anew knows nothing of the frames before.
   frame: () => (hasPicture ? picture.header.frame : undefined),
+  // Few moves where all is late.
+  soon: (action) => (meter.lateMs(performance.now()) > 1000 ? setTimeout(action, 250) : requestAnimationFrame(action)),
   marks: new FingerMarks(find('finger-marks')),
 });
 

@@ -5,7 +5,7 @@ const LONGEST_MS = 10_000;
 /** Presses and releases only begin and end what moves the picture. */
 const MOVING = new Set(['pointermove', 'wheel', 'keydown']);
 
-/** Measures what a user feels: the ms from a hand's move to its picture, and how many pictures come. */
+/** What a user feels: the ms from a hand's move to its picture, and how many pictures come. */
 export class Meter {
   /** When what no frame covers yet was sent, by id. */
   #waiting = new Map();
@@ -25,6 +25,11 @@ export class Meter {
     }
     this.#latencies = this.#latencies.slice(-MOST_SAMPLES);
     this.#frames = [...this.#recentFrames(now), { at: now, bytes }];
+  }
+
+  /** For how long pictures are late. */
+  lateMs(now) {
+    return now - ([...this.#waiting.values()][0] ?? now);
   }
 
   forgetSent() {

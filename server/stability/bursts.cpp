@@ -34,7 +34,7 @@ class Room {
 public:
     Room()
         : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
-                  {[](const EngineOutput&) {},
+                  {[this](const EngineOutput& output) { count_refusals(output); },
                    [this](const std::shared_ptr<const EncodedPicture>& picture) { take(*picture); },
                    [](const std::string&) {}}) {
         engine_.mailbox().push(ClientJoined{kClient, protocol::Role::control, {}, 0});
@@ -42,8 +42,9 @@ public:
         say(protocol::FrameGrant{});
     }
 
-    void say(decltype(protocol::ClientMessage::payload) payload) {
+    void say(decltype(protocol::ClientMessage::payload) payload, std::optional<std::int64_t> id = {}) {
         protocol::ClientMessage message;
+        message.id = id;
         message.payload = std::move(payload);
         engine_.mailbox().push(ClientSaid{kClient, std::move(message), Clock::now()});
     }
@@ -55,13 +56,29 @@ public:
         return std::chrono::duration<double, std::milli>(Clock::now() - input).count();
     }
 
+    /// Of the newest picture.
+    glm::dvec3 eye() {
+        const std::lock_guard lock(mutex_);
+        return eye_;
+    }
+    int refused() {
+        const std::lock_guard lock(mutex_);
+        return refused_;
+    }
+
 private:
+    void count_refusals(const EngineOutput& output) {
+        const std::lock_guard lock(mutex_);
+        for (const Answer& answer : output.answers) refused_ += !answer.refusal.empty();
+    }
+
     void take(const EncodedPicture& picture) {
         engine_.mailbox().push(FrameSent{kClient, picture.header.frame});
         say(protocol::FrameGrant{});
         {
             const std::lock_guard lock(mutex_);
             shown_ = picture.newest_input;
+            eye_ = picture.header.camera.pose.eye;
         }
         arrived_.notify_one();
     }
@@ -70,6 +87,8 @@ private:
     std::mutex mutex_;
     std::condition_variable arrived_;
     std::optional<Clock::time_point> shown_;
+    glm::dvec3 eye_{0};
+    int refused_ = 0;
     Metrics metrics_;
     Engine engine_;  // last: its threads use all of the above
 };
@@ -96,7 +115,55 @@ double lag_of_queue(double rate) {
     return std::max(ms, 500 * (rate * ms / 1000 - 1) + ms);
 }
 
+constexpr int kTurns = 200;
+
+/// Whether turn `i` is sent once more, where that happens to so many percent.
+bool comes_again(int i, double percent) { return i * 37 % 100 < percent; }
+
+/// Turns of a degree each, of which so many percent come again: with the same id, or with one before it.
+struct Turned {
+    glm::dvec3 eye;
+    int refused = 0;
+};
+Turned turned_with_repeats(double percent) {
+    Room room;
+    const protocol::Navigate turn{{1, 0}};
+    for (int i = 1; i <= kTurns; ++i) {
+        room.say(turn, 2 * i);
+        if (comes_again(i, percent)) room.say(turn, 2 * i - i % 2);
+    }
+    const Clock::time_point last = Clock::now();
+    room.say(turn, 2 * kTurns + 2);
+    room.lag_of(last);
+    return {room.eye(), room.refused()};
+}
+
 }  // namespace
+
+Study repeated_ids(const Laboratory& laboratory) {
+    Study study{"ids", "Messages that come twice, or late", "messages that come again, in percent",
+                "degrees that the view has turned too far, and repeats that nobody is told of"};
+    study.bound = 1e-6;
+    study.limit = 1;
+    study.method.title = "each turns the view when it comes (computed)";
+    study.successor = {"ids must rise"};
+    study.takes_over =
+        "A message whose id is not above all of its client's before is refused in a sentence, and nothing "
+        "changes.";
+    study.cost = "A message that was overtaken is lost, which its sender is told.";
+    const glm::dvec3 once = turned_with_repeats(0).eye;
+    for (const double percent : laboratory.chosen({1, 5, 10, 30, 60, 100})) {
+        int repeats = 0;
+        for (int i = 1; i <= kTurns; ++i) repeats += comes_again(i, percent);
+        const Turned turned = turned_with_repeats(percent);
+        // By the chord, which is exact where nothing differs.
+        const double radius = glm::length(glm::dvec2(once.x, once.z));
+        const double degrees = glm::degrees(glm::distance(once, turned.eye) / radius);
+        study.method.points.push_back({percent, 1.0 * repeats});
+        study.successor->points.push_back({percent, degrees + std::abs(repeats - turned.refused)});
+    }
+    return study;
+}
 
 Study bursts_of_moves(const Laboratory& laboratory) {
     Study study{"bursts", "Bursts of moves", "moves a second, for half a second",

@@ -70,6 +70,56 @@ Study moves_lost(const Laboratory& laboratory) {
     return study;
 }
 
+Study releases_lost(const Laboratory& laboratory) {
+    Study study{"lost-releases", "Releases of a finger that are lost", "pixels to where it is pressed next",
+                "degrees by which that turns the view, and fingers that stay pressed"};
+    study.bound = 1e-9;
+    study.limit = 1;
+    study.method.title = "the next press goes on with the drag";
+    study.successor = {"a press begins anew, and who leaves is lifted"};
+    study.takes_over =
+        "A second press of a pressed pointer begins a new drag where it is; a client that leaves has its "
+        "pointers lifted; the camera stays where it is.";
+    study.cost = "None.";
+    const Camera start = home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    NavigationContext context;
+    context.keep_upright = false;
+    const glm::dvec2 place(640, 360);
+    const auto degrees = [&](const Camera& a, const Camera& b) {
+        return glm::degrees(
+            2 * std::asin(std::min(1.0, glm::distance(a.eye, b.eye) / 2 / focus_distance(start))));
+    };
+    for (const double pixels : laboratory.chosen({1, 3, 10, 30, 100, 300})) {
+        using Action = PointerInput::Action;
+        const glm::dvec2 next = place + glm::dvec2(pixels, 0);
+        Gestures gestures;
+        Camera camera = gestures.pointer(touch(Action::down, place - 50.0), start, context);
+        camera = gestures.pointer(touch(Action::move, place), camera, context);
+        const Camera pressed_again = gestures.pointer(touch(Action::down, next), camera, context);
+        gestures.lift("c1", pressed_again);
+        PointerInput other = touch(Action::down, place);
+        other.client = "c2";
+        Camera after = gestures.pointer(other, pressed_again, context);
+        other = touch(Action::move, next);
+        other.client = "c2";
+        after = gestures.pointer(other, after, context);
+        // As it is where nobody pressed before.
+        Gestures fresh;
+        other.action = Action::down;
+        other.x = place.x;
+        other.button = 0;
+        Camera alone = fresh.pointer(other, pressed_again, context);
+        other = touch(Action::move, next);
+        other.client = "c2";
+        alone = fresh.pointer(other, alone, context);
+        const Camera swept = rotated(camera, pixels * 180 / context.height, 0, false);
+        study.method.points.push_back({pixels, degrees(swept, camera)});
+        study.successor->points.push_back(
+            {pixels, degrees(pressed_again, camera) + degrees(after, alone) + gestures.is_pressed("c1", 1)});
+    }
+    return study;
+}
+
 Study jittering_taps(const Laboratory& laboratory) {
     Study study{"jitter", "Double taps of a hand that shakes", "jitter of each press, up to so many pixels",
                 "taps that are not taken for one, in percent"};

@@ -23,7 +23,57 @@ private:
     Noise noise_;
 };
 
+/// The level that the last picture's factor to the table allows.
+std::size_t by_last_picture(const std::vector<protocol::Level>& levels, double factor, double target) {
+    std::size_t best = 0;
+    for (std::size_t k = 0; k < levels.size(); ++k)
+        if (levels[k].ms * factor <= target) best = k;
+    return best;
+}
+
 }  // namespace
+
+Study loads_at_a_border(const Laboratory& laboratory) {
+    Study study{"border", "A steady load at the border of two levels",
+                "time of the better level's pictures, in percent of the target",
+                "changes of level in a minute, after a minute"};
+    study.bound = 6;
+    study.limit = 95;
+    study.method.title = "the level that the last picture allows";
+    study.successor = {"running means, hysteresis, back-off"};
+    study.takes_over =
+        "A better level is tried below 85 % of the target and left above it, and where it was left soon, it "
+        "is not tried again for 2 s, then 4, up to a minute. Times vary by 10 %.";
+    study.cost = "At 85 to 100 % of the target the better level would do, and may not be taken.";
+    for (const double percent : laboratory.chosen({75, 80, 85, 90, 95, 98, 100})) {
+        LevelChoice choice(built_in_levels());
+        const auto& levels = choice.levels();
+        const double target = levels[levels.size() / 2 + 1].ms * 100 / percent;
+        Machine machine(0.1), same(0.1);
+        const Clock::time_point start{std::chrono::hours(1)};
+        Clock::time_point now = start;
+        std::size_t level = 0, naive = 0;
+        int changes = 0, naive_changes = 0;
+        while (now < start + std::chrono::minutes(2)) {
+            const bool counts = now >= start + std::chrono::minutes(1);
+            const std::size_t next = choice.choose({{1180, 820, 1}, {}, target}, now);
+            changes += counts && next != level;
+            level = next;
+            const double ms = machine.takes(levels[level].ms);
+            now += std::chrono::microseconds(std::llround(1000 * ms));
+            const double scale = levels[level].quality.scale;
+            choice.took(level, {ms, 0.0}, kPixels * scale * scale, now);
+
+            const double factor = same.takes(levels[naive].ms) / levels[naive].ms;
+            const std::size_t best = by_last_picture(levels, factor, target);
+            naive_changes += counts && best != naive;
+            naive = best;
+        }
+        study.method.points.push_back({percent, 1.0 * naive_changes});
+        study.successor->points.push_back({percent, 1.0 * changes});
+    }
+    return study;
+}
 
 Study noisy_times(const Laboratory& laboratory) {
     Study study{"pacing", "Times of pictures that vary", "noise, in percent of a picture's time",
@@ -58,9 +108,7 @@ Study noisy_times(const Laboratory& laboratory) {
 
             // Its factor to the table decides for all levels.
             const double factor = same.takes(levels[naive].ms) / levels[naive].ms;
-            std::size_t best = 0;
-            for (std::size_t k = 0; k < levels.size(); ++k)
-                if (levels[k].ms * factor <= target) best = k;
+            const std::size_t best = by_last_picture(levels, factor, target);
             naive_changes += best != naive && i > 0;
             naive = best;
         }

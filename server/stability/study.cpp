@@ -73,11 +73,20 @@ const std::vector<Topic>& topics() {
         {"through the focus", through_the_focus},
         {"the largest numbers", largest_numbers},
         {"lost moves", moves_lost},
+        {"lost releases", releases_lost},
+        {"messages that come twice", repeated_ids},
         {"taps that jitter", jittering_taps},
         {"clocks that jump", jumping_clocks},
         {"bursts of moves", bursts_of_moves},
         {"storms of resizes", storms_of_sizes},
+        {"slow links", slow_links},
+        {"long links", long_links},
+        {"levels over long links", levels_of_long_links},
+        {"stalls", stalls},
         {"noisy times", noisy_times},
+        {"a load at a border", loads_at_a_border},
+        {"a long run", long_runs},
+        {"memory of a long run", memory_of_long_runs},
     };
     return all;
 }

@@ -99,6 +99,7 @@ Study through_the_focus(const Laboratory& laboratory);
 Study largest_numbers(const Laboratory& laboratory);
 // input.cpp
 Study moves_lost(const Laboratory& laboratory);
+Study releases_lost(const Laboratory& laboratory);
 Study jittering_taps(const Laboratory& laboratory);
 Study jumping_clocks(const Laboratory& laboratory);
 // picks.cpp
@@ -109,9 +110,19 @@ Study picks_through_glass(const Laboratory& laboratory);
 Study thin_saturated_lines(const Laboratory& laboratory);
 Study dark_gradients(const Laboratory& laboratory);
 // bursts.cpp
+Study repeated_ids(const Laboratory& laboratory);
 Study bursts_of_moves(const Laboratory& laboratory);
 Study storms_of_sizes(const Laboratory& laboratory);
+// links.cpp
+Study slow_links(const Laboratory& laboratory);
+Study long_links(const Laboratory& laboratory);
+Study levels_of_long_links(const Laboratory& laboratory);
+Study stalls(const Laboratory& laboratory);
 // levels.cpp
 Study noisy_times(const Laboratory& laboratory);
+Study loads_at_a_border(const Laboratory& laboratory);
+// long_run.cpp
+Study long_runs(const Laboratory& laboratory);
+Study memory_of_long_runs(const Laboratory& laboratory);
 
 }  // namespace vrut::stability

@@ -332,3 +332,23 @@ TEST_CASE("who comes later hears nothing of a scene that was loaded before") {
         if (message->json()["type"] == "picked") break;
     }
 }
+
+TEST_CASE("changes that a slow client does not take wait as one, and do not fill its socket") {
+    TestServer server;
+    TestClient driver(server.port()), slow(server.port(), {.receive_buffer = 4096});
+    driver.join();
+    slow.join("host");
+    constexpr int kChanges = 1000;
+    for (int i = 1; i <= kChanges; ++i) {
+        driver.send({{"type", "patch"}, {"id", i}, {"patch", {{"camera", {{"eye", {i, 2, 3}}}}}}});
+        driver.wait_for("ok");
+    }
+    int patches = 0;
+    while (slow.state["camera"]["eye"][0] != kChanges) {
+        const auto message = slow.receive();
+        REQUIRE(message.has_value());
+        patches += !message->binary && message->json()["type"] == "patch";
+    }
+    MESSAGE(patches << " patches for " << kChanges << " changes");
+    CHECK(patches < 100);
+}

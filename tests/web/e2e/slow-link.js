@@ -60,17 +60,22 @@ class Way {
   }
 
   carry(from, to) {
-    from.on('data', async (data) => {
+    // A stream may end while its last data still wait here.
+    let passed = Promise.resolve();
+    from.on('data', (data) => {
       from.pause();
-      for (let at = 0; at < data.length; at += PIECE_BYTES) {
-        const piece = data.subarray(at, at + PIECE_BYTES);
-        this.#freeAt = Math.max(this.#freeAt, performance.now()) + piece.length / this.#bytesPerMs;
-        await until(this.#freeAt);
-        setTimeout(() => to.writable && to.write(piece), this.#delayMs);
-      }
-      from.resume();
+      passed = this.#pass(data, to).then(() => from.resume());
     });
-    from.on('end', () => setTimeout(() => to.end(), this.#delayMs));
+    from.on('end', () => passed.then(() => setTimeout(() => to.end(), this.#delayMs)));
+  }
+
+  async #pass(data, to) {
+    for (let at = 0; at < data.length; at += PIECE_BYTES) {
+      const piece = data.subarray(at, at + PIECE_BYTES);
+      this.#freeAt = Math.max(this.#freeAt, performance.now()) + piece.length / this.#bytesPerMs;
+      await until(this.#freeAt);
+      setTimeout(() => to.writable && to.write(piece), this.#delayMs);
+    }
   }
 }
 

@@ -30,6 +30,7 @@ export function messagesOf({ box, view, events }) {
     send: (message) => sent.push(message),
     mapping: () => viewMapping(box, view),
     frame: () => undefined,
+    soon: (action) => window.requestAnimationFrame(action),
   });
   let timeStamp = 0;
   for (const event of events) {

@@ -20,6 +20,7 @@ function setUp() {
       return (x, y) => ({ x: x * scale, y: y * scale });
     },
     frame: () => page.frame,
+    soon: (action) => window.requestAnimationFrame(action),
     marks: { press: mark('press'), move: mark('move'), release: mark('release'), clear: mark('clear') },
   });
   page.take = () => page.sent.splice(0);

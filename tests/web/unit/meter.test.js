@@ -67,3 +67,13 @@ test('rates are of the last two seconds, and nothing when idle', () => {
   assert.equal(meter.read(6500).framesPerSecond, 0);
   assert.equal(meter.read(6500).bytesPerSecond, 0);
 });
+
+test('how late pictures are: since the oldest message was sent that none covers', () => {
+  const meter = new Meter();
+  assert.equal(meter.lateMs(5), 0);
+  meter.sent('pointermove', 1, 10);
+  meter.sent('pointermove', 2, 30);
+  assert.equal(meter.lateMs(100), 90);
+  meter.drawn(1, 1, 100);
+  assert.equal(meter.lateMs(100), 70);
+});

@@ -1,0 +1,330 @@
+// Studies of links that are slow, long, or stand still.
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <future>
+#include <limits>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include "level_store.hpp"
+#include "page_client.hpp"
+#include "server.hpp"
+#include "shapes.hpp"
+#include "slow_link.hpp"
+#include "study.hpp"
+
+namespace vrut::stability {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Milliseconds = std::chrono::duration<double, std::milli>;
+using Seconds = std::chrono::duration<double>;
+
+/// A picture with about as much to encode as one of the car: shaded balls with edges and highlights before a
+/// gradient, the same for all sizes.
+Image balls(int width, int height) {
+    constexpr int kBalls = 36;
+    Image image;
+    image.resize(width, height);
+    const auto put = [&](int x, int y, const glm::dvec3& color) {
+        std::uint8_t* pixel = &image.rgba[static_cast<std::size_t>(y * width + x) * 4];
+        for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::clamp(color[i], 0.0, 255.0));
+        pixel[3] = 255;
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) put(x, y, glm::dvec3(60, 70, 90) + 120.0 * y / height);
+    for (int ball = 0; ball < kBalls; ++ball) {
+        const double radius = height * (0.02 + 0.1 * std::fmod(ball * 0.618, 1));
+        const glm::dvec2 center(width * std::fmod(0.1 + ball * 0.7549, 1),
+                                height * std::fmod(0.2 + ball * 0.5698, 1));
+        const glm::dvec3 paint(40 + ball * 83 % 200, 40 + ball * 47 % 200, 40 + ball * 29 % 200);
+        const auto last = [](double end, int most) { return std::min(static_cast<int>(end), most - 1); };
+        for (int y = std::max(0, static_cast<int>(center.y - radius)); y <= last(center.y + radius, height);
+             ++y)
+            for (int x = std::max(0, static_cast<int>(center.x - radius));
+                 x <= last(center.x + radius, width); ++x) {
+                const glm::dvec2 across = (glm::dvec2(x, y) - center) / radius;
+                const double inside = 1 - glm::dot(across, across);
+                if (inside < 0) continue;
+                const double lit =
+                    0.3 + 0.7 * std::max(0.0, 0.6 * std::sqrt(inside) + 0.5 * across.y - 0.4 * across.x);
+                put(x, y, paint * lit + 150 * std::pow(std::max(0.0, lit - 0.2), 12.0));
+            }
+    }
+    return image;
+}
+
+/// Draws the balls, turned with the camera.
+Painter painter_of_balls() {
+    Painter painter;
+    painter.description = "balls";
+    auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
+    painter.paint = [drawn](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
+                            Accumulation*) {
+        Image& whole = (*drawn)[{view.width, view.height}];
+        if (whole.rgba.empty()) whole = balls(view.width, view.height);
+        image.resize(view.width, view.height);
+        const glm::dvec3 direction = view.camera.focus - view.camera.eye;
+        const double turn = std::atan2(direction.x, direction.z) / 6.2832 + 1;
+        const std::size_t row = static_cast<std::size_t>(view.width) * 4;
+        const std::size_t cut =
+            static_cast<std::size_t>(turn * view.width) % static_cast<std::size_t>(view.width) * 4;
+        for (std::size_t at = 0; at < whole.rgba.size(); at += row) {
+            std::copy_n(&whole.rgba[at] + cut, row - cut, &image.rgba[at]);
+            std::copy_n(&whole.rgba[at], cut, &image.rgba[at] + (row - cut));
+        }
+        stats = {};
+        stats.render_ms = 1;
+        return true;
+    };
+    return painter;
+}
+
+/// A server, a slow link, and the page at its other end, with a finger that turns the view on and on.
+class Journey {
+public:
+    Journey(const LinkQuality& quality, const Deadlines& deadlines = {})
+        : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, painter_of_balls),
+          thread_([this] { server_.run(); }),
+          link_(std::make_unique<SlowLink>(context_, server_.port(), quality)),
+          page_(std::make_unique<PageClient>(context_, link_->port())) {}
+    ~Journey() {
+        page_.reset();
+        link_.reset();  // or the server would wait for a goodbye
+        server_.stop();
+        thread_.join();
+    }
+    Journey(const Journey&) = delete;
+    Journey& operator=(const Journey&) = delete;
+
+    const PageClient& page() const { return *page_; }
+    SlowLink& link() { return *link_; }
+    void go_on(double seconds) {
+        context_.run_for(std::chrono::duration_cast<Clock::duration>(Seconds(seconds)));
+    }
+    /// Until so many pictures have come over this connection, or for so long.
+    void go_on_until(std::size_t pictures, double seconds) {
+        const Clock::time_point end =
+            Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
+        while (page_->shown().size() < pictures && Clock::now() < end) context_.run_for(10ms);
+    }
+
+    /// The longest that a move had to wait for its picture, of those sent from `begin` on, in ms; those that
+    /// none shows yet have waited until now.
+    double longest_lag(Clock::time_point begin) const {
+        double longest = 0;
+        auto picture = page_->shown().begin();
+        for (const PageClient::Move& move : page_->moves()) {
+            if (move.sent < begin) continue;
+            while (picture != page_->shown().end() && picture->handled < move.id) ++picture;
+            const Clock::time_point seen = picture == page_->shown().end() ? Clock::now() : picture->at;
+            longest = std::max(longest, Milliseconds(seen - move.sent).count());
+        }
+        return longest;
+    }
+
+private:
+    static ServerOptions options(const Deadlines& deadlines) {
+        ServerOptions options;
+        options.listen = {"127.0.0.1", 0};
+        options.deadlines = deadlines;
+        return options;
+    }
+
+    Server server_;
+    std::thread thread_;
+    boost::asio::io_context context_{1};
+    std::unique_ptr<SlowLink> link_;
+    std::unique_ptr<PageClient> page_;
+};
+
+constexpr double kSmallest = 8400, kLargest = 117'000;  // bytes of a picture of the balls, with its header
+constexpr double kPicturesPerSecond = 20;
+constexpr double kLink = 1e7, kFastLink = 1e8;  // bit/s, of links that are not slow
+
+double milliseconds_of(double bytes, double bits_per_second) { return 8000 * bytes / bits_per_second; }
+
+/// Where `drag` seconds of pictures of full size, one for each move, are queued: how long the last one waits.
+double lag_of_queue(double drag, double bits_per_second) {
+    const double each = milliseconds_of(kLargest, bits_per_second);
+    return std::max(each, 1000 * drag * (kPicturesPerSecond * each / 1000 - 1));
+}
+
+/// Clients that come and go are no news here.
+struct Quiet {
+    spdlog::level::level_enum before = spdlog::get_level();
+    Quiet() { spdlog::set_level(spdlog::level::off); }
+    ~Quiet() { spdlog::set_level(before); }
+    Quiet(const Quiet&) = delete;
+    Quiet& operator=(const Quiet&) = delete;
+};
+
+/// All at once, as they mostly wait, or where the processor's time counts (`deferred`) one after the other.
+std::vector<Curve::Point> measured(const std::vector<double>& points,
+                                   const std::function<double(double)>& measure,
+                                   std::launch policy = std::launch::async) {
+    const Quiet quiet;
+    std::vector<std::future<double>> running;
+    running.reserve(points.size());
+    for (const double x : points) running.push_back(std::async(policy, measure, x));
+    std::vector<Curve::Point> curve;
+    for (std::size_t i = 0; i < points.size(); ++i) curve.push_back({points[i], running[i].get()});
+    return curve;
+}
+
+const char* const kBalls = " The pictures are of shaded balls, in JPEG as large as those of the car.";
+
+}  // namespace
+
+Study slow_links(const Laboratory& laboratory) {
+    const bool whole = laboratory.form == Form::whole;
+    const double drag = whole ? 30 : 0.5;  // s
+    Study study{"slow-links", "Slow links", "seconds for a megabit, either way",
+                "longest ms from a move to its picture, less two small ones"};
+    study.bound = 2000;
+    study.limit = whole ? 0.1 : 1;
+    study.method.title = "full pictures, each queued (computed)";
+    study.successor = {"small enough and few enough"};
+    study.takes_over =
+        std::string(
+            "The first pictures of a drag are of the smallest level, and from there on the level "
+            "holds the latency target if one can. Where a picture takes longer than half a second, "
+            "one is on its way at a time; the news of the state wait for it, of which the newest "
+            "counts.") +
+        kBalls;
+    study.cost =
+        "Over a slow link the picture is a quarter as wide as the view while it moves, and sharp only when "
+        "it has rested for as long as the sharp one takes to arrive.";
+    const std::vector<double> points =
+        whole ? std::vector{0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 20.0, 50.0} : std::vector{0.01, 1.0};
+    for (const double x : points) {
+        const double two = 2 * milliseconds_of(kSmallest, 1e6 / x);
+        study.method.points.push_back({x, std::max(0.0, lag_of_queue(drag, 1e6 / x) - two)});
+    }
+    study.successor->points = measured(points, [&](double x) {
+        Journey journey({1e6 / x / 8, 0ms});
+        journey.go_on_until(3, 10 * milliseconds_of(kSmallest, 1e6 / x) / 1000 + 1);
+        const Clock::time_point begin = Clock::now();
+        journey.go_on(drag);
+        return std::max(0.0, journey.longest_lag(begin) - 2 * milliseconds_of(kSmallest, 1e6 / x));
+    });
+    return study;
+}
+
+Study long_links(const Laboratory& laboratory) {
+    const bool whole = laboratory.form == Form::whole;
+    Study study{"long-links", "Long links", "ms of delay, either way",
+                "longest ms from a move to its picture, less two round trips"};
+    study.bound = 500;
+    study.method.title = "two pictures on their way";
+    study.takes_over = std::string(
+                           "Nothing needs to, at 10 Mbit/s: a move waits for a grant that comes back, at "
+                           "most a round trip, and is "
+                           "on its own way for another; the lag does not grow.") +
+                       kBalls;
+    study.cost = "Two pictures come in a round trip, and no more.";
+    study.method.points =
+        measured(whole ? std::vector<double>{1, 10, 30, 100, 300, 1000, 2000} : std::vector<double>{1, 100},
+                 [&](double ms) {
+                     Journey journey({kLink / 8, std::chrono::milliseconds(std::llround(ms))});
+                     journey.go_on_until(3, 1 + 10 * ms / 1000);
+                     const Clock::time_point begin = Clock::now();
+                     journey.go_on(whole ? 20 : 0.4);
+                     return std::max(0.0, journey.longest_lag(begin) - 4 * ms);
+                 });
+    return study;
+}
+
+Study levels_of_long_links(const Laboratory& laboratory) {
+    const bool whole = laboratory.form == Form::whole;
+    Study study{"long-link-levels", "Levels over long links", "ms of delay, either way",
+                "width of the view / width of the picture, while it moves (median)"};
+    study.bound = 2.1;  // half the width, and what rounding does
+    study.limit = 5;
+    study.method.title = "all the time to the grant counts (computed)";
+    study.successor = {"without the time of an empty message"};
+    study.takes_over =
+        std::string(
+            "When a client comes, a ping tells how long its way is. No level makes that shorter, so "
+            "it does not count against the latency target of 50 ms. The link has 100 Mbit/s.") +
+        kBalls;
+    study.cost = "Pictures are better than the smallest, and take a little longer than they might.";
+    const std::vector<double> points =
+        whole ? std::vector<double>{1, 5, 30, 100, 300, 1000} : std::vector<double>{1, 5};
+    for (const double ms : points) {
+        LevelChoice choice(built_in_levels());
+        Clock::time_point now{1h};
+        std::size_t level = 0;
+        for (int i = 0; i < 300; ++i) {
+            const protocol::Level& row = choice.levels()[level];
+            const double client = 2 * ms + milliseconds_of(row.bytes, kFastLink);
+            now += std::chrono::milliseconds(std::lround(client) + 10);
+            choice.took(level, {10, client}, 1180 * 820 * row.quality.scale * row.quality.scale, now);
+            level = choice.choose({{1180, 820, 1}, {}, 50}, now);
+        }
+        study.method.points.push_back({ms, 1 / choice.levels()[level].quality.scale});
+    }
+    study.successor->points = measured(
+        points,
+        [&](double ms) {
+            Journey journey({kFastLink / 8, std::chrono::milliseconds(std::llround(ms))});
+            journey.go_on(whole ? 5 + 12 * ms / 1000 : 1.1);
+            std::vector<double> widths;  // once the level was found
+            const auto& shown = journey.page().shown();
+            for (std::size_t i = shown.size() / 2; i < shown.size(); ++i)
+                if (shown[i].moving) widths.push_back(1 / shown[i].scale);
+            if (widths.empty()) return std::numeric_limits<double>::infinity();
+            std::sort(widths.begin(), widths.end());
+            return widths[widths.size() / 2];
+        },
+        std::launch::deferred);
+    return study;
+}
+
+Study stalls(const Laboratory& laboratory) {
+    const bool whole = laboratory.form == Form::whole;
+    const double stuck = whole ? 10 : 1;  // s, after which the server cuts
+    Study study{"stalls", "Links that stand still", "seconds for which nothing leaves or arrives",
+                "ms from its end to the picture of a later move"};
+    study.bound = 2000;
+    study.limit = whole ? 3 : 2.3;
+    study.method.title = "full pictures, each queued (computed)";
+    study.successor = {"two on their way; after 10 s a new connection"};
+    study.takes_over =
+        std::string(
+            "What waits for a client is replaced, not queued: at 10 Mbit/s two old pictures come, and then "
+            "the newest. A connection that has taken nothing for 10 s is cut, and the page comes back.") +
+        kBalls;
+    study.cost = "What happened meanwhile is not seen; who is cut loses control and whatever was pressed.";
+    const std::vector<double> points =
+        whole ? std::vector<double>{0.1, 0.3, 1, 3, 6, 10, 15} : std::vector<double>{0.3, 2.3};
+    for (const double x : points) {
+        const double bytes = kPicturesPerSecond * x * kLargest;
+        study.method.points.push_back({x, milliseconds_of(bytes, kLink)});
+    }
+    study.successor->points = measured(points, [&](double x) {
+        Deadlines deadlines;
+        deadlines.stuck = std::chrono::milliseconds(std::llround(1000 * stuck));
+        Journey journey({kLink / 8, 0ms}, deadlines);
+        journey.go_on_until(5, 5);
+        const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(x));
+        journey.link().stall_until(end);
+        journey.go_on(x + (whole ? 2.5 : 0.6));
+        const bool was_cut = journey.page().connections() > 1;
+        if (x < stuck ? was_cut : x >= stuck + 1.2 && !was_cut)
+            return std::numeric_limits<double>::infinity();
+        for (const PageClient::Shown& picture : journey.page().shown())
+            for (const PageClient::Move& move : journey.page().moves())
+                if (move.sent >= end && picture.at >= end && move.id <= picture.handled)
+                    return Milliseconds(picture.at - end).count();
+        return std::numeric_limits<double>::infinity();
+    });
+    return study;
+}
+
+}  // namespace vrut::stability
