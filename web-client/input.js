@@ -1,4 +1,5 @@
 const REPEATING_KEYS = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']);
+/** A held `w` must not flicker; digits are held in drags of one navigation style. */
 const KEYS = new Set([...REPEATING_KEYS, 'f', 'Home', 'w', 's', 'Escape', '1', '2', '3']);
 
 /**
@@ -35,6 +36,8 @@ export class Input {
       lostpointercapture: this.#cancel,
       wheel: this.#wheel,
       contextmenu: prevent,
+      // Or Chromium drops a tap soon after a flick.
+      touchmove: prevent,
     });
     listen(window, {
       keydown: this.#keyDown,

@@ -12,6 +12,8 @@ const SIZES = {
 /** Of 255: by less than this a picture differs from itself, refined or compressed anew. */
 const VISIBLE = 6;
 const LONGER_THAN_A_TAP_MS = 400;
+const FLICKS = 12;
+const HEARD_WITHIN_MS = 5000;
 
 let browser;
 
@@ -74,6 +76,23 @@ for (const [name, size] of Object.entries(SIZES)) {
     test('one finger turns', async () => {
       const stroke = [{ from: [x, y], to: across(0.2, 0.05) }];
       assertTurned(await changes(() => tablet.stroke(stroke)), { right: 36, down: 9 });
+    });
+
+    test('a tap is heard however soon it comes after a flick', async () => {
+      const { page } = tablet;
+      await page.evaluate(() => {
+        globalThis.clicks = 0;
+        const button = document.createElement('button');
+        button.style = 'position: fixed; left: 0; top: 0; width: 50px; height: 50px; z-index: 1000';
+        button.onclick = () => (globalThis.clicks += 1);
+        document.body.append(button);
+      });
+      for (let flicks = 1; flicks <= FLICKS; flicks += 1) {
+        const [from, to] = flicks % 2 ? [[x, y], across(0.1, 0.1)] : [across(0.1, 0.1), [x, y]];
+        await tablet.stroke([{ from, to }]);
+        await page.touchscreen.tap(25, 25);
+        await page.waitForFunction((count) => globalThis.clicks === count, flicks, { timeout: HEARD_WITHIN_MS });
+      }
     });
 
     test('two fingers move and zoom', async () => {

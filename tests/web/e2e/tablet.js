@@ -27,26 +27,6 @@ function rememberSockets() {
   };
 }
 
-/** Runs in the page, before it: counts the fingers that come down. */
-function countTouches() {
-  window.touches = 0;
-  window.addEventListener('touchstart', () => (window.touches += 1), true);
-}
-
-const touches = (page) => page.evaluate(() => `${performance.timeOrigin} ${window.touches}`);
-
-/** Under load Chromium may lose a tap before its page hears of it, and nobody says so: then it is made once more. */
-function tapForSure(page) {
-  const locator = Object.getPrototypeOf(page.locator('html'));
-  if (locator.tapOnce) return;
-  locator.tapOnce = locator.tap;
-  locator.tap = async function tap(options) {
-    const before = await touches(this.page());
-    await this.tapOnce(options);
-    if (await touches(this.page()) === before) await this.tapOnce(options);
-  };
-}
-
 /** @returns {number} by how much, of 255, two glances differ where they differ most */
 export function difference(a, b) {
   return Math.max(...a.map((value, i) => Math.abs(value - b[i])));
@@ -76,9 +56,7 @@ export class Tablet {
     });
     context.setDefaultTimeout(LIMIT_MS);
     await context.addInitScript(rememberSockets);
-    await context.addInitScript(countTouches);
     tablet.page = await context.newPage();
-    tapForSure(tablet.page);
     tablet.wire = new Wire(tablet.page);
     tablet.page.on('pageerror', (error) => tablet.complaints.push(String(error)));
     tablet.page.on('console', (message) => {
