@@ -117,19 +117,20 @@ private:
         int owed = 0;                 ///< pictures that it has been promised, and that are not sent yet
         int window = 1;               ///< the grants that it keeps outstanding, as far as was seen
         std::int64_t last_frame = 0;  ///< newest that it has been promised
+        std::int64_t handled = 0;     ///< highest message id
+        int snapshots = 0;            ///< asked for and not sent yet
+        std::deque<FrameSent> sent;   ///< each until it is answered: until another is asked for
+        std::int64_t newest_sent = 0;
+        bool tells = false;         ///< has asked for another picture after one
+        std::int64_t answered = 0;  ///< the newest frame after which it did
+        Clock::time_point promised_at{};
+
         void owe(std::int64_t frame, Clock::time_point now) {
             --grants;
             ++owed;
             last_frame = frame;
             promised_at = now;
         }
-        std::int64_t handled = 0;    ///< highest message id
-        int snapshots = 0;           ///< asked for and not sent yet
-        std::deque<FrameSent> sent;  ///< each until it is answered: until another is asked for
-        std::int64_t newest_sent = 0;
-        bool tells = false;         ///< has asked for another picture after one
-        std::int64_t answered = 0;  ///< the newest frame after which it did
-        Clock::time_point promised_at{};
     };
     struct Begun {
         std::int64_t frame = 0;

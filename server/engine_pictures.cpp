@@ -10,9 +10,10 @@ namespace vrut {
 namespace {
 
 constexpr std::size_t kBegunRemembered = 512;  // others may get many while a slow client gets one
-/// A picture at rest that takes longer to arrive is held back for as long as it takes: whoever moves again
-/// would wait for it.
+/// A picture that takes longer to arrive is on its way alone.
 constexpr std::chrono::milliseconds kLongDelivery{500};
+/// One at rest that takes longer is held back for as long as it takes: whoever moves again would wait for it.
+constexpr std::chrono::seconds kLongDeliveryAtRest{2};
 constexpr Clock::duration kForGood = std::chrono::hours(1);
 
 /// Whatever its nodes' states are.
@@ -85,7 +86,7 @@ bool Engine::is_held(const std::string& name, const Client& client, int still_sa
         return true;
     if (still_samples < kStillSamples.back()) return false;
     const Clock::duration at_rest = delivery_at_rest();
-    return at_rest > kLongDelivery && now - last_change_ < at_rest;
+    return at_rest > kLongDeliveryAtRest && now - last_change_ < at_rest;
 }
 
 bool Engine::waits_for_newer(const std::string& name, const Client& client) const {
@@ -165,7 +166,7 @@ void Engine::promise(std::int64_t frame, int still_samples) {
 
 /// With the error that the table has for such a picture.
 protocol::Quality Engine::quality_at_rest(int samples) const {
-    if (samples < kStillSamples.back() && delivery_at_rest() > kLongDelivery) {
+    if (samples < kStillSamples.back() && delivery_at_rest() > kLongDeliveryAtRest) {
         protocol::Quality quality =
             quality_of(choice_->levels().front().quality, presentation_->view_size(), room_, thin_lines());
         quality.level = protocol::Quality::Level::still;

@@ -49,7 +49,6 @@ struct FrameSent {
     int unused_grants = 0;  ///< where it is one frame for two grants
     double encode_ms = 0;
     std::optional<Clock::time_point> newest_input{};  ///< that it shows
-    Clock::time_point at{};                           ///< when it was handed to its connection
     Clock::duration round_trip{};                     ///< there and back, the least that was seen
 };
 

@@ -347,8 +347,7 @@ void Session::send_frame() {
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
     hub_.engine->mailbox().push(FrameSent{client_, last_frame_, grants - 1, picture_->header.timing.encode_ms,
-                                          picture_->newest_input, Clock::now(),
-                                          round_trip_.value_or(Clock::duration{})});
+                                          picture_->newest_input, round_trip_.value_or(Clock::duration{})});
 
     protocol::FrameHeader header = picture_->header;
     const auto handled = picture_->handled.find(client_);

@@ -22,12 +22,13 @@ def header_of(jpeg):
 
 
 async def still_frame(server, message_id):
-    """The first frame at rest that shows what the message of this id did. Each `frame` asks for one."""
+    """The frame at rest, of full size, that shows what the message of this id did. Each `frame` asks for one."""
     await server.send(json.dumps({"type": "frame"}))
     async for message in server:
         if isinstance(message, bytes):
             header = header_of(message)
-            if header["handled"] >= message_id and header["quality"]["level"] == "still":
+            quality = header["quality"]
+            if header["handled"] >= message_id and quality["level"] == "still" and quality["scale"] == 1:
                 return message
             await server.send(json.dumps({"type": "frame"}))
         elif (answer := json.loads(message))["type"] == "error":

@@ -168,8 +168,7 @@ Study mirroring_matrices(const Laboratory& laboratory) {
     study.successor = {"in double, and no sign where no volume is"};
     study.takes_over =
         "Where a matrix mirrors, the sign of its determinant turns sides and normals; a part thinner than "
-        "1e-12 "
-        "of its size is drawn from both sides. A normal of zero takes its face's.";
+        "1e-12 of its size is drawn from both sides. A normal of zero takes its face's.";
     study.cost = "None: it is computed once a part.";
     const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     // A sheet with waves, its front towards x; in the middle its normals are left at zero.
@@ -193,6 +192,46 @@ Study mirroring_matrices(const Laboratory& laboratory) {
         compare_normals(laboratory, study, inverse, {1, sheet, material, matrix},
                         mirrors ? -cofactors : cofactors, mirrors, glm::dmat3(turn) * glm::dvec3(-3, 0.7, 1));
     }
+    return study;
+}
+
+Study flipped_normals(const Laboratory& laboratory) {
+    Study study{"flipped-normals", "Normals that point inwards", "triangles with such, in percent",
+                "pixels off by more than 8 of 255, in percent"};
+    study.bound = 0.5;
+    study.limit = 3;
+    study.method.title = "as they are";
+    study.successor = {"two-sided: turned to the viewer"};
+    study.takes_over =
+        "With a material that is `two-sided` a normal that points away from the viewer is negated. Without, "
+        "normals are taken as they are, and such triangles stay dark.";
+    const Geometry ball = sphere(1, 24);
+    const auto view_of = [&](bool two_sided, double percent) {
+        Geometry flipped;
+        flipped.bounds = ball.bounds;
+        for (std::size_t i = 0; i < ball.triangles.size(); ++i) {
+            const glm::uvec3& triangle = ball.triangles[i];
+            // The golden ratio's multiples spread evenly.
+            const bool flips = 100 * std::fmod(0.618034 * static_cast<double>(i + 1), 1.0) < percent;
+            const auto first = static_cast<unsigned>(flipped.positions.size());
+            for (int k = 0; k < 3; ++k) {
+                flipped.positions.push_back(ball.positions[triangle[k]]);
+                flipped.normals.push_back((flips ? -1.0f : 1.0f) * ball.normals[triangle[k]]);
+            }
+            flipped.triangles.emplace_back(first, first + 1, first + 2);
+        }
+        Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+        material.two_sided = two_sided;
+        return looking(scene_of({{1, flipped, material}}), {0.5, 0.7, 2.5});
+    };
+    for (const double percent : laboratory.chosen({0.1, 0.3, 1, 3, 10, 30, 100}))
+        for (const bool two_sided : {false, true})
+            (two_sided ? *study.successor : study.method)
+                .points.push_back({percent, percent_off(drawn(laboratory, view_of(two_sided, percent)),
+                                                        drawn(laboratory, view_of(two_sided, 0)))});
+    study.cost =
+        "The back sides are drawn, too: " +
+        times_the_time(time_of(laboratory, view_of(true, 0)), time_of(laboratory, view_of(false, 0))) + ".";
     return study;
 }
 

@@ -55,6 +55,7 @@ const std::vector<Topic>& topics() {
         {"nearly opaque panes", nearly_opaque_panes},
         {"matrices that shrink", small_matrices},
         {"matrices that mirror", mirroring_matrices},
+        {"normals that point inwards", flipped_normals},
         {"textures seen small", minified_textures},
         {"textures of odd sizes", odd_textures},
         {"many mirrors", many_mirrors},

@@ -87,6 +87,7 @@ Study minified_textures(const Laboratory& laboratory);
 Study odd_textures(const Laboratory& laboratory);
 Study small_matrices(const Laboratory& laboratory);
 Study mirroring_matrices(const Laboratory& laboratory);
+Study flipped_normals(const Laboratory& laboratory);
 // mirrors.cpp
 Study many_mirrors(const Laboratory& laboratory);
 Study edge_on_mirrors(const Laboratory& laboratory);

@@ -39,7 +39,8 @@ void RawWebSocket::join(const std::string& role) {
     REQUIRE(handshake.status == 101);
     connection.send(frame(kFinal | kText, R"({"type":"hello","role":")" + role + "\"}"));
     for (const char* type : {"welcome", "state"}) {
-        const auto message = receive();
+        auto message = receive();
+        while (message && message->opcode == kPing) message = receive();
         REQUIRE(message.has_value());
         REQUIRE(Json::parse(message->payload)["type"] == type);
     }
