@@ -155,7 +155,8 @@ for (const [name, size] of Object.entries(SIZES)) {
         await pen('mouseMoved', across(0.1, 0), 1);
         await pen('mouseReleased', across(0.1, 0), 0);
       });
-      assert.equal(tablet.wire.sent.findLast(({ type }) => type === 'pointerup').pointerType, 'pen');
+      const released = () => tablet.wire.sent.findLast(({ type }) => type === 'pointerup');
+      await tablet.wire.until('the pen to be lifted', () => released()?.pointerType === 'pen');
       assertTurned(turned, { right: 18, down: 0 });
     });
 
