@@ -343,8 +343,9 @@ void Engine::grant(Client& client, const ClientSaid& said) {
     ++metrics_.frames_granted;
     client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
     const int outstanding = client.grants + client.owed + static_cast<int>(client.sent.size());
-    // With no picture to answer: so many grants does this client keep outstanding.
-    if (client.sent.empty()) client.window = std::clamp(outstanding, client.window, protocol::kMaxGrants);
+    // With no picture that it can answer: so many grants does this client keep outstanding.
+    if (client.sent.empty() || (client.sent.size() == 1 && !said.has_frame))
+        client.window = std::clamp(outstanding, client.window, protocol::kMaxGrants);
     if (outstanding <= client.window || client.sent.empty()) return;
     // It comes when the oldest has arrived, not the newest, which may be on its way still.
     const FrameSent answered = client.sent.front();

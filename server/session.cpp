@@ -196,6 +196,8 @@ void Session::on_text(std::string_view text) {
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
     ClientSaid said{client_, std::move(message), Clock::now(), text.size(), role_ == protocol::Role::control};
+    if (said.message && std::holds_alternative<protocol::FrameGrant>(said.message->payload))
+        said.has_frame = may_have_frame();
     unhandled_bytes_ += said.bytes;
     unhandled_requests_ += said.is_request();
     hub_.engine->mailbox().push(std::move(said));
@@ -342,6 +344,7 @@ void Session::send_answer() {
 
 void Session::send_frame() {
     picture_ = hub_.newest;
+    writes_frame_ = true;
     last_frame_ = picture_->header.frame;
     int grants = 0;
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
@@ -408,6 +411,7 @@ void Session::on_written(beast::error_code error) {
     writing_ = false;
     picture_.reset();
     if (error) return drop("gone");
+    if (std::exchange(writes_frame_, false)) frame_written();
     pump();
     read();
 }

@@ -68,6 +68,8 @@ private:
     void look_after(Clock::time_point now);
     void ping(Clock::time_point now);
     void on_pong(Clock::time_point now);
+    void frame_written();
+    bool may_have_frame();
     void drop(const char* reason);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
@@ -99,6 +101,8 @@ private:
     std::string text_;
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const EncodedPicture> picture_;
+    bool writes_frame_ = false;
+    std::uint64_t frame_end_ = 0;     // of the newest, in bytes since the connection's begin
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
     Clock::time_point progress_at_;   // when it last saw more of them, or nothing to acknowledge
     std::optional<boost::beast::websocket::close_reason> closing_;

@@ -32,11 +32,12 @@ Traffic traffic_of(int socket) {
     std::array<std::uint8_t, 256> raw{};
     socklen_t size = raw.size();
     Traffic traffic;
+    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) == 0 && size >= kReceivedAt + 8) {
+        std::memcpy(&traffic.acknowledged, raw.data() + kAckedAt, sizeof traffic.acknowledged);
+        std::memcpy(&traffic.received, raw.data() + kReceivedAt, sizeof traffic.received);
+    }
+    // Afterwards: what is acknowledged meanwhile makes the sum of both too small, never too large.
     if (::ioctl(socket, SIOCOUTQ, &traffic.waiting) != 0) traffic.waiting = 0;
-    if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, raw.data(), &size) != 0 || size < kReceivedAt + 8)
-        return traffic;
-    std::memcpy(&traffic.acknowledged, raw.data() + kAckedAt, sizeof traffic.acknowledged);
-    std::memcpy(&traffic.received, raw.data() + kReceivedAt, sizeof traffic.received);
     return traffic;
 }
 
@@ -79,6 +80,17 @@ void Session::look_after(Clock::time_point now) {
     }
     if (has_all && now - heard_at_ >= deadlines.silence) return drop("silent");
     if (!closing_ && !pinging_ && now - std::max(heard_at_, pinged_at_) >= deadlines.ping) ping(now);
+}
+
+void Session::frame_written() {
+    const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
+    frame_end_ = traffic.acknowledged + static_cast<std::uint64_t>(traffic.waiting);
+}
+
+/// Whether the peer has acknowledged all of the newest frame; true while that is being written.
+bool Session::may_have_frame() {
+    return writes_frame_ ||
+           traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).acknowledged >= frame_end_;
 }
 
 void Session::ping(Clock::time_point now) {

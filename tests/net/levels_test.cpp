@@ -3,6 +3,7 @@
 
 #include <array>
 #include <atomic>
+#include <random>
 #include <set>
 
 #include "../unit/environment_variable.hpp"
@@ -19,7 +20,7 @@ namespace {
 constexpr int kSide = 100;  // of the view in pixels
 constexpr const char *kScene = "ab12", *kRenderer = "a painter that waits";
 
-/// Draws nothing, and takes `whole_ms` for a picture of the whole size, and less in proportion to its pixels.
+/// Draws noise, and takes `whole_ms` for a picture of the whole size, and less in proportion to its pixels.
 PainterFactory painter_that_waits(const std::atomic<double>& whole_ms) {
     return [&whole_ms] {
         Painter painter{kRenderer, false, 16384, {}};
@@ -35,6 +36,8 @@ PainterFactory painter_that_waits(const std::atomic<double>& whole_ms) {
                     std::chrono::duration<double, std::milli>(stats.render_ms / view.samples));
             }
             image.resize(view.width, view.height);
+            std::minstd_rand random;
+            for (std::uint8_t& byte : image.rgba) byte = static_cast<std::uint8_t>(random());
             if (kept) *kept = {};
             return true;
         };
@@ -77,10 +80,11 @@ struct Drag {
     } kept;
     std::atomic<double> whole_ms{1};
     TestServer server{measured_scene(), painter_that_waits(whole_ms)};
-    TestClient client{server.port()};
+    TestClient client;
     int id = 0;
 
-    explicit Drag(const protocol::LevelTable& levels = table()) : kept(levels) {
+    explicit Drag(const protocol::LevelTable& levels = table(), const ConnectOptions& link = {})
+        : kept(levels), client(server.port(), link) {
         client.join();
         client.send({{"type", "resize"}, {"width", kSide}, {"height", kSide}, {"pixelRatio", 1}});
     }
@@ -161,6 +165,20 @@ TEST_CASE("with two pictures on their way each is measured until it has arrived"
         drag.move(1);
     }
     CHECK(quality["scale"] == 0.25);
+}
+
+TEST_CASE("a grant that comes before the picture has arrived is not taken for its answer") {
+    Drag drag{ends_of_table(), {.receive_buffer = 4096}};
+    constexpr int kLarge = 4 * kSide;  // so that no picture fits into the buffer
+    drag.client.send({{"type", "resize"}, {"width", kLarge}, {"height", kLarge}, {"pixelRatio", 1}});
+    drag.change({{"quality", {{"latencyTargetMs", 200}}}});
+    drag.move(1);
+    for (std::uint64_t i = 1; i <= 5; ++i) {
+        REQUIRE(eventually([&] { return drag.server.metrics().frames_sent == i; }));
+        drag.move(1);
+        std::this_thread::sleep_for(400ms);
+        CHECK(drag.client.wait_for("frame")["quality"]["scale"] == 0.25);
+    }
 }
 
 TEST_CASE("preference moves along the levels, from the quickest to the most accurate") {
