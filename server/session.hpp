@@ -102,7 +102,8 @@ private:
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const EncodedPicture> picture_;
     bool writes_frame_ = false;
-    std::uint64_t frame_end_ = 0;     // of the newest, in bytes since the connection's begin
+    std::uint64_t frame_end_ = 0;  // of the newest, in bytes since the connection's begin
+    Clock::time_point frame_written_at_;
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
     Clock::time_point progress_at_;   // when it last saw more of them, or nothing to acknowledge
     std::optional<boost::beast::websocket::close_reason> closing_;

@@ -53,12 +53,16 @@ void Session::watch() {
     });
 }
 
-/// Whether news would wait in the socket behind what was sent before. It does not wait here for ever, though.
+/// Whether news would wait in the socket: behind a frame, for longer than an acknowledgement may be delayed,
+/// or behind so many others that the link must be slow. They do not wait here for ever, though.
 bool Session::is_behind(Clock::time_point now) {
-    constexpr int kOnItsWay = 1024;  // bytes: a few patches
-    constexpr auto kLongestSilence = 10s;
-    return now - told_at_ < kLongestSilence &&
-           traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).waiting > kOnItsWay;
+    constexpr int kFewNews = 1024, kManyNews = 8192;  // bytes
+    constexpr std::chrono::milliseconds kDelayedAcknowledgement = 50ms, kLongestSilence = 10s;
+    if (now - told_at_ >= kLongestSilence) return false;
+    const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
+    const bool has_frame =
+        traffic.acknowledged >= frame_end_ || now - frame_written_at_ < kDelayedAcknowledgement;
+    return traffic.waiting > (has_frame ? kManyNews : kFewNews);
 }
 
 /// Cuts who takes nothing of what waits for him, who does not come to the end of a message, and who is silent
@@ -85,6 +89,7 @@ void Session::look_after(Clock::time_point now) {
 void Session::frame_written() {
     const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
     frame_end_ = traffic.acknowledged + static_cast<std::uint64_t>(traffic.waiting);
+    frame_written_at_ = Clock::now();
 }
 
 /// Whether the peer has acknowledged all of the newest frame; true while that is being written.

@@ -142,7 +142,7 @@ Turned turned_with_repeats(double percent) {
 
 Study repeated_ids(const Laboratory& laboratory) {
     Study study{"ids", "Messages that come twice, or late", "messages that come again, in percent",
-                "degrees that the view has turned too far, and repeats that nobody is told of"};
+                "degrees turned too far, and repeats nobody is told of"};
     study.bound = 1e-6;
     study.limit = 1;
     study.method.title = "each turns the view when it comes (computed)";

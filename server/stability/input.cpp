@@ -72,7 +72,7 @@ Study moves_lost(const Laboratory& laboratory) {
 
 Study releases_lost(const Laboratory& laboratory) {
     Study study{"lost-releases", "Releases of a finger that are lost", "pixels to where it is pressed next",
-                "degrees by which that turns the view, and fingers that stay pressed"};
+                "degrees that the view turns, and fingers left pressed"};
     study.bound = 1e-9;
     study.limit = 1;
     study.method.title = "the next press goes on with the drag";

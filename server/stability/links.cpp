@@ -243,7 +243,7 @@ Study long_links(const Laboratory& laboratory) {
 Study levels_of_long_links(const Laboratory& laboratory) {
     const bool whole = laboratory.form == Form::whole;
     Study study{"long-link-levels", "Levels over long links", "ms of delay, either way",
-                "width of the view / width of the picture, while it moves (median)"};
+                "width of the view / of the picture while it moves, median"};
     study.bound = 2.1;  // half the width, and what rounding does
     study.limit = 5;
     study.method.title = "all the time to the grant counts (computed)";

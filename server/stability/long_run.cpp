@@ -100,7 +100,7 @@ Study long_runs(const Laboratory& laboratory) {
 
 Study memory_of_long_runs(const Laboratory& laboratory) {
     Study study{"long-run-memory", "Memory over many pictures", "pictures",
-                "megabytes that the process has grown by since the first pictures"};
+                "megabytes that the process has grown by"};
     study.bound = 4;
     study.limit = 100;
     study.method.title = "each picture kept (computed)";

@@ -16,6 +16,7 @@ TEST_CASE("each method holds up to its limit, and beyond it what takes over does
             const Study study = topic.study(laboratory);
             const auto wrong = contradiction(study);
             CHECK_MESSAGE(!wrong, *wrong);
+            CHECK(study.measure.size() <= 60);  // what stands along the height of its chart
             for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
         }
     }

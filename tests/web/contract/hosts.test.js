@@ -13,16 +13,20 @@ after(() => server.stop());
 const newestStats = (client) => client.texts.filter((text) => text.type === 'stats').at(-1);
 
 describe('a host', () => {
-  test('sees every change of the camera, in order, and ends with the same document', async (t) => {
-    const client = await steering(t, server);
-    const host = await ContractClient.join(t, server, { role: 'host', name: 'Wall 1' });
-    const expected = [];
-    for (let i = 1; i <= 20; ++i) expected.push((await client.ask({ type: 'navigate', rotate: [i, 0] })).revision);
-    await host.until('the last', () => host.revision === client.revision);
-    const got = host.texts.filter((text) => text.type === 'patch' && text.by === client.id).map((text) => text.revision);
-    assert.deepEqual(got.filter((revision) => expected.includes(revision)), expected, 'a client that keeps up gets each');
-    assert.deepEqual(host.state, client.state);
-  });
+  for (const takesFrames of [false, true])
+    test(`sees every change of the camera, in order${takesFrames ? ', with frames beside' : ''}`, async (t) => {
+      const client = await steering(t, server);
+      const host = await ContractClient.join(t, server, { role: 'host', name: 'Wall 1' });
+      const expected = [];
+      for (let i = 1; i <= 100; ++i) {
+        if (takesFrames) host.send({ type: 'frame' });
+        expected.push((await client.ask({ type: 'navigate', rotate: [i, 0] })).revision);
+      }
+      await host.until('the last', () => host.revision === client.revision);
+      const got = host.texts.filter((text) => text.type === 'patch' && text.by === client.id).map((text) => text.revision);
+      assert.deepEqual(got.filter((revision) => expected.includes(revision)), expected, 'a client that keeps up gets each');
+      assert.deepEqual(host.state, client.state);
+    });
 
   test('that tells what it shows is in stats, with its name, revision and lag', async (t) => {
     const client = await steering(t, server);

@@ -14,6 +14,8 @@ describe('time', { concurrency: true }, () => {
   test('a connection that takes nothing for 10 s is cut; one that only has nothing to take is not', async (t) => {
     const client = await holder(t, server);
     await client.ask({ type: 'resize', width: 1280, height: 720, pixelRatio: 1 });
+    // Pictures of many bytes, however slow the machine: a few are more than the kernel takes for a client.
+    await client.patch({ quality: { preference: 1, latencyTargetMs: 1000 } });
     const idle = await ContractClient.join(t, server, { role: 'view' });
     const stuck = await ContractClient.join(t, server, { role: 'view' });
     stuck.socket.pause();
