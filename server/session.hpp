@@ -69,6 +69,7 @@ private:
     void ping(Clock::time_point now);
     void on_pong(Clock::time_point now);
     void frame_written();
+    bool has_frame(std::uint64_t acknowledged, Clock::time_point now);
     bool may_have_frame();
     void drop(const char* reason);
 
@@ -104,6 +105,7 @@ private:
     bool writes_frame_ = false;
     std::uint64_t frame_end_ = 0;  // of the newest, in bytes since the connection's begin
     Clock::time_point frame_written_at_;
+    bool frames_are_late_ = false;    // as far as is known
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
     Clock::time_point progress_at_;   // when it last saw more of them, or nothing to acknowledge
     std::optional<boost::beast::websocket::close_reason> closing_;

@@ -53,16 +53,14 @@ void Session::watch() {
     });
 }
 
-/// Whether news would wait in the socket: behind a frame, for longer than an acknowledgement may be delayed,
-/// or behind so many others that the link must be slow. They do not wait here for ever, though.
+/// Whether news would wait in the socket, where frames arrive late even a few. They do not wait here for
+/// ever, though.
 bool Session::is_behind(Clock::time_point now) {
     constexpr int kFewNews = 1024, kManyNews = 8192;  // bytes
-    constexpr std::chrono::milliseconds kDelayedAcknowledgement = 50ms, kLongestSilence = 10s;
-    if (now - told_at_ >= kLongestSilence) return false;
+    constexpr auto kLongestSilence = 10s;
     const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
-    const bool has_frame =
-        traffic.acknowledged >= frame_end_ || now - frame_written_at_ < kDelayedAcknowledgement;
-    return traffic.waiting > (has_frame ? kManyNews : kFewNews);
+    has_frame(traffic.acknowledged, now);
+    return now - told_at_ < kLongestSilence && traffic.waiting > (frames_are_late_ ? kFewNews : kManyNews);
 }
 
 /// Cuts who takes nothing of what waits for him, who does not come to the end of a message, and who is silent
@@ -73,6 +71,7 @@ void Session::look_after(Clock::time_point now) {
     const bool has_all = !writing_ && traffic.waiting == 0;
     if (std::exchange(acknowledged_, traffic.acknowledged) != traffic.acknowledged || has_all)
         progress_at_ = now;
+    has_frame(acknowledged_, now);
     if (std::exchange(received_, traffic.received) != traffic.received || !reading_) heard_at_ = now;
     if (now - progress_at_ >= deadlines.stuck) return drop("stuck");
     if (begun_ && !closing_ && now - *begun_ >= deadlines.message) {
@@ -92,10 +91,18 @@ void Session::frame_written() {
     frame_written_at_ = Clock::now();
 }
 
-/// Whether the peer has acknowledged all of the newest frame; true while that is being written.
+/// Whether the peer, who has acknowledged so many bytes, has all of the newest frame.
+bool Session::has_frame(std::uint64_t acknowledged, Clock::time_point now) {
+    constexpr auto kInTime = 50ms;  // TCP may delay what it acknowledges by 40
+    const bool has_it = acknowledged >= frame_end_;
+    if (has_it == (now - frame_written_at_ < kInTime)) frames_are_late_ = !has_it;
+    return has_it;
+}
+
+/// The same; true while that frame is being written.
 bool Session::may_have_frame() {
-    return writes_frame_ ||
-           traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).acknowledged >= frame_end_;
+    const auto socket = beast::get_lowest_layer(socket_).socket().native_handle();
+    return writes_frame_ || has_frame(traffic_of(socket).acknowledged, Clock::now());
 }
 
 void Session::ping(Clock::time_point now) {
