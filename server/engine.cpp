@@ -138,9 +138,10 @@ void Engine::step() {
         undrawable_.reset();
     }
     fly();
-    serve_newest();
+    const Clock::time_point now = Clock::now();
+    serve_newest(now);
     report();
-    const PacingDecision decision = pace();
+    const PacingDecision decision = pace(now);
     const bool draws = decision.action == PacingDecision::Action::draw;
     // While things move, snapshots get a fifth of the time: a sample of theirs may take longer than a
     // picture.
@@ -229,7 +230,8 @@ void Engine::handle(const FrameSent& sent) {
     Client& client = found->second;
     client.last_frame = std::max(client.last_frame, sent.frame);
     client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
-    client.owed = std::max(client.owed - 1 - sent.unused_grants, 0);
+    // One that it had already is not sent again.
+    client.owed = std::max(client.owed - (sent.frame > client.newest_sent) - sent.unused_grants, 0);
     if (sent.frame > client.newest_sent) client.sent.push_back(sent);
     client.newest_sent = std::max(client.newest_sent, sent.frame);
     if (client.sent.size() > protocol::kMaxGrants) client.sent.pop_front();
@@ -342,6 +344,7 @@ void Engine::handle(const ClientSaid& said) {
 void Engine::grant(Client& client, const ClientSaid& said) {
     ++metrics_.frames_granted;
     client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
+    client.is_late = said.is_late;
     const int outstanding = client.grants + client.owed + static_cast<int>(client.sent.size());
     // With no picture that it can answer: so many grants does this client keep outstanding.
     if (client.sent.empty() || (client.sent.size() == 1 && !said.has_frame))

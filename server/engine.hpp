@@ -123,6 +123,7 @@ private:
         std::int64_t newest_sent = 0;
         bool tells = false;         ///< has asked for another picture after one
         std::int64_t answered = 0;  ///< the newest frame after which it did
+        bool is_late = true;        ///< frames take longer to it than over a quick link, as far as is known
         Clock::time_point promised_at{};
 
         void owe(std::int64_t frame, Clock::time_point now) {
@@ -170,14 +171,15 @@ private:
     // --- pictures
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
-    bool waits_for_newer(const std::string& name, const Client& client) const;
+    bool waits_for_newer(const std::string& name, const Client& client, Clock::time_point now) const;
     Clock::duration delivery_at_rest() const;
     Clock::duration delivery_of_moving() const;
     Clock::duration delivery_of(std::size_t level) const;
-    bool is_held(const std::string& name, const Client& client, int still_samples) const;
+    bool is_held(const std::string& name, const Client& client, int still_samples,
+                 Clock::time_point now) const;
     bool thin_lines() const;
-    void serve_newest();
-    PacingDecision pace();
+    void serve_newest(Clock::time_point now);
+    PacingDecision pace(Clock::time_point now);
     void step();
     void fly();
     PictureSize present_size() const;
@@ -258,8 +260,9 @@ private:
         int still_samples = 0;  ///< 0: a moving one
     } drawn_;
     std::int64_t next_frame_ = 1;
-    std::deque<Begun> begun_;  ///< the last moving frames
-    std::string measured_by_;  ///< the client to whom the last of them that was measured went
+    std::int64_t present_since_ = 1;  ///< the first frame of the view as it is
+    std::deque<Begun> begun_;         ///< the last moving frames
+    std::string measured_by_;         ///< the client to whom the last of them that was measured went
     std::optional<LevelChoice> choice_;
     std::vector<protocol::Level> at_rest_;        ///< of the table
     std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first picture was delivered

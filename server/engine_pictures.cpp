@@ -14,7 +14,8 @@ constexpr std::size_t kBegunRemembered = 512;  // others may get many while a sl
 constexpr std::chrono::milliseconds kLongDelivery{500};
 /// One at rest that takes longer is held back for as long as it takes: whoever moves again would wait for it.
 constexpr std::chrono::seconds kLongDeliveryAtRest{2};
-constexpr Clock::duration kForGood = std::chrono::hours(1);
+/// At most so long where it is not sure that the link is slow.
+constexpr std::chrono::seconds kUnsure{5};
 
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
@@ -46,18 +47,20 @@ bool Engine::shows_present() const {
            presentation_->view_size() == drawn_.view_size;
 }
 
-/// How long a whole picture at rest is expected to be on its way to who steers; 0 where that is not known,
-/// without end while the first picture that will tell is on its way.
+/// How long a whole picture at rest is expected to be on its way to who steers; 0 where that is not known.
 Clock::duration Engine::delivery_at_rest() const {
     const auto holder = clients_.find(presentation_->holder().value_or(""));
     if (holder == clients_.end() || holder->second.last_frame == 0) return {};
+    const Client& client = holder->second;
     if (holder->first != measured_by_) {
         const bool will_tell = std::any_of(begun_.begin(), begun_.end(), [&](const Begun& begun) {
-            return begun.frame > holder->second.answered && begun.frame <= holder->second.last_frame;
+            return begun.frame > client.answered && begun.frame <= client.last_frame;
         });
-        return will_tell ? kForGood : Clock::duration{};
+        return will_tell ? kUnsure : Clock::duration{};
     }
-    return delivery_of(choice_->levels().size() - 1);
+    // Over a quick link it may be that the client took its time, unless the other end of the link is a proxy.
+    const Clock::duration delivery = delivery_of(choice_->levels().size() - 1);
+    return client.is_late ? delivery : std::min<Clock::duration>(delivery, kUnsure);
 }
 
 /// How long a picture of a level is expected to be on its way to who steers; 0 where that is not known.
@@ -77,21 +80,22 @@ Clock::duration Engine::delivery_of_moving() const {
 
 /// Whether there is no picture for this client yet, of so many samples where it is one at rest: over a slow
 /// link one is on its way at a time, and a large one only when the view has rested.
-bool Engine::is_held(const std::string& name, const Client& client, int still_samples) const {
+bool Engine::is_held(const std::string& name, const Client& client, int still_samples,
+                     Clock::time_point now) const {
     if (name != presentation_->holder()) return false;
-    const Clock::time_point now = Clock::now();
     const Clock::duration moving = delivery_of_moving();
     if (moving > kLongDelivery && client.last_frame > client.answered &&
         now - client.promised_at < 2 * moving)
         return true;
-    if (still_samples < kStillSamples.back()) return false;
+    if (still_samples < kStillSamples.back() || client.last_frame < present_since_) return false;
     const Clock::duration at_rest = delivery_at_rest();
     return at_rest > kLongDeliveryAtRest && now - last_change_ < at_rest;
 }
 
-bool Engine::waits_for_newer(const std::string& name, const Client& client) const {
+bool Engine::waits_for_newer(const std::string& name, const Client& client, Clock::time_point now) const {
     const bool next_is_last = shows_present() && drawn_.still_samples > 0;
-    if (client.grants == 0 || is_held(name, client, next_is_last ? kStillSamples.back() : 0)) return false;
+    if (client.grants == 0 || is_held(name, client, next_is_last ? kStillSamples.back() : 0, now))
+        return false;
     return !shows_present() || client.last_frame != drawn_.frame ||
            drawn_.still_samples < kStillSamples.back();
 }
@@ -104,33 +108,34 @@ bool Engine::thin_lines() const {
 
 /// Clients that have not got the newest picture, which shows what is to be seen, get that; no drawing is
 /// needed.
-void Engine::serve_newest() {
+void Engine::serve_newest(Clock::time_point now) {
     if (!shows_present()) return;
     for (auto& [name, client] : clients_) {
         if (client.grants == 0 || client.last_frame == drawn_.frame ||
-            is_held(name, client, drawn_.still_samples))
+            is_held(name, client, drawn_.still_samples, now))
             continue;
-        client.owe(drawn_.frame, Clock::now());
+        client.owe(drawn_.frame, now);
         output_.owed.push_back({name, drawn_.frame});
     }
 }
 
-PacingDecision Engine::pace() {
+PacingDecision Engine::pace(Clock::time_point now) {
     PacingInput input;
     for (const auto& [name, client] : clients_)
-        input.somebody_waits = input.somebody_waits || (waits_for_newer(name, client) && !is_undrawable());
+        input.somebody_waits =
+            input.somebody_waits || (waits_for_newer(name, client, now) && !is_undrawable());
     input.changed = !shows_present();
     input.newest_samples = drawn_.still_samples;
     input.encoder_free = encoder_.is_free();
     input.last_change = last_change_;
-    input.now = Clock::now();
+    input.now = now;
     PacingDecision decision = decide(input);
     // Who waits for a picture that is held may have it later.
     const auto look_again = [&](Clock::time_point at) {
-        if (decision.action == PacingDecision::Action::wait && at > input.now)
+        if (decision.action == PacingDecision::Action::wait && at > now)
             decision.until = std::min(decision.until.value_or(at), at);
     };
-    if (const auto delivery = delivery_at_rest(); delivery < kForGood) look_again(last_change_ + delivery);
+    look_again(last_change_ + delivery_at_rest());
     if (const auto holder = clients_.find(presentation_->holder().value_or("")); holder != clients_.end())
         look_again(holder->second.promised_at + 2 * delivery_of_moving());
     return decision;
@@ -157,9 +162,10 @@ void Engine::measure(const FrameSent& sent, Clock::time_point asked) {
 }
 
 void Engine::promise(std::int64_t frame, int still_samples) {
+    const Clock::time_point now = Clock::now();
     for (auto& [name, client] : clients_) {
-        if (client.grants == 0 || is_held(name, client, still_samples)) continue;
-        client.owe(frame, Clock::now());
+        if (client.grants == 0 || is_held(name, client, still_samples, now)) continue;
+        client.owe(frame, now);
         output_.owed.push_back({name, frame});
     }
 }
@@ -168,7 +174,8 @@ void Engine::promise(std::int64_t frame, int still_samples) {
 protocol::Quality Engine::quality_at_rest(int samples) const {
     if (samples < kStillSamples.back() && delivery_at_rest() > kLongDeliveryAtRest) {
         protocol::Quality quality =
-            quality_of(choice_->levels().front().quality, presentation_->view_size(), room_, thin_lines());
+            quality_of(choice_->levels()[begun_.empty() ? 0 : begun_.back().level].quality,
+                       presentation_->view_size(), room_, thin_lines());
         quality.level = protocol::Quality::Level::still;
         quality.samples = samples;
         quality.detail = 0;
@@ -186,11 +193,10 @@ protocol::Quality Engine::quality_at_rest(int samples) const {
     return quality;
 }
 
-/// Whether there is one from which it was heard what a moving frame takes, or nobody there who would tell.
+/// Whether there is one from which it was heard what a moving frame takes, or nobody who waits for one.
 bool Engine::knows_link() const {
     const auto holder = clients_.find(presentation_->holder().value_or(""));
-    return holder == clients_.end() || holder->first == measured_by_ ||
-           (holder->second.grants == 0 && holder->second.last_frame == 0);
+    return holder == clients_.end() || holder->first == measured_by_ || holder->second.grants == 0;
 }
 
 std::size_t Engine::choose_level() {
@@ -250,6 +256,8 @@ void Engine::draw(const PacingDecision& decision) {
         return;
     }
     if (still) presentation_->remember(next_frame_++);
+    if (drawn_.frame == 0 || visible != drawn_.visible || view_size != drawn_.view_size)
+        present_since_ = header.frame;
     drawn_ = {header.frame, visible, view_size, decision.still_samples};
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
@@ -266,8 +274,10 @@ void Engine::note(const Begun& begun) {
     begun_.push_back(begun);
     if (begun_.size() > kBegunRemembered) begun_.pop_front();
     const auto holder = clients_.find(presentation_->holder().value_or(""));
-    if (holder == clients_.end() || !holder->second.tells)  // nobody tells when it has arrived
-        choice_->took(begun.level, {begun.drawn_ms}, begun.pixels, Clock::now());
+    if (holder != clients_.end() && holder->second.tells) return;
+    // Nobody tells when it has arrived.
+    choice_->took(begun.level, {begun.drawn_ms}, begun.pixels, Clock::now());
+    measured_by_.clear();
 }
 
 /// Draws on the first snapshot that waits, a sample at least; it gives way to the live picture.
@@ -285,7 +295,7 @@ void Engine::draw_snapshot() {
     FrameStats stats;
     const auto interrupted = [&] {
         attend();
-        return mailbox_.closed() || arrived_ || pace().action == PacingDecision::Action::draw;
+        return mailbox_.closed() || arrived_ || pace(Clock::now()).action == PacingDecision::Action::draw;
     };
     Painted painted = Painted::whole;
     try {

@@ -10,8 +10,9 @@ namespace vrut {
 
 /// The milliseconds that a picture took, or is expected to take.
 struct PictureTimes {
-    double server = 0;                  ///< to draw, read back and encode
-    std::optional<double> client = {};  ///< from then until its client asked for the next; none: nobody told
+    double server = 0;  ///< to draw, read back and encode
+    std::optional<double> client =
+        {};  ///< until its client asked for the next, less the way; none: nobody told
     double all() const { return server + client.value_or(0); }
 };
 

@@ -33,6 +33,7 @@ struct ClientSaid {
     std::size_t bytes = 0;  ///< on the wire, merged ones summed
     bool may_steer = true;  ///< else its moves are not merged: each is answered as wrong
     bool has_frame = true;  ///< the newest frame sent may have arrived
+    bool is_late = true;    ///< frames were last longer on their way than over a quick link
 
     /// Anything but input and grants, of which there may be thousands a second.
     bool is_request() const {

@@ -27,6 +27,7 @@ constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers =
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
 constexpr auto kTellsAgain = 20ms;
+constexpr auto kLongestSilence = 10s;    // though news would wait in the socket, or others come before them
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
 
 /// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
@@ -63,6 +64,7 @@ Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hu
       watch_(socket_.get_executor()),
       rate_timer_(socket_.get_executor()),
       news_timer_(socket_.get_executor()),
+      frame_timer_(socket_.get_executor()),
       place_(std::move(place)),
       progress_at_(Clock::now()),
       rate_(kMessagesPerSecond),
@@ -196,8 +198,10 @@ void Session::on_text(std::string_view text) {
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
     ClientSaid said{client_, std::move(message), Clock::now(), text.size(), role_ == protocol::Role::control};
-    if (said.message && std::holds_alternative<protocol::FrameGrant>(said.message->payload))
-        said.has_frame = may_have_frame();
+    if (said.message && std::holds_alternative<protocol::FrameGrant>(said.message->payload)) {
+        said.has_frame = writes_frame_ || has_frame();
+        said.is_late = frames_are_late_;
+    }
     unhandled_bytes_ += said.bytes;
     unhandled_requests_ += said.is_request();
     hub_.engine->mailbox().push(std::move(said));
@@ -300,9 +304,13 @@ void Session::pump() {
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
     if (client_.empty() || !hub_.document || !has_news()) return;
+    const Clock::time_point now = Clock::now();
+    const bool has_all_news = loading_ == hub_.loading && stats_ == hub_.stats;
+    if (has_all_news) had_all_news_ = now;
+    if (!has_all_news && now - had_all_news_ >= kLongestSilence) return send_news();
     const bool waited_for = frame_is_due() || !answers_.empty() || !snapshots_.empty();
-    if (!waited_for && is_behind(Clock::now())) return tell_later();
-    told_at_ = Clock::now();
+    if (!waited_for && now - told_at_ < kLongestSilence && is_behind()) return tell_later();
+    told_at_ = now;
     if (document_ == hub_.document) return send_news();
     const auto before = std::exchange(document_, hub_.document);
     if (!before || !document_->has_scene_of(*before)) return send_text(document_->encode());
@@ -328,6 +336,7 @@ void Session::tell_later() {
 
 /// What is told to all, and of which only the newest counts.
 void Session::send_news() {
+    had_all_news_ = Clock::now();
     for (const auto& [newest, sent] : {std::pair(&hub_.loading, &loading_), std::pair(&hub_.stats, &stats_)})
         if (*newest != *sent) {
             *sent = *newest;
@@ -344,8 +353,9 @@ void Session::send_answer() {
 
 void Session::send_frame() {
     picture_ = hub_.newest;
-    writes_frame_ = true;
     last_frame_ = picture_->header.frame;
+    writes_frame_ = true;
+    frame_bytes_ = picture_->file.size();
     int grants = 0;
     for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
     // One frame answers one grant; the others are for what comes next.
@@ -436,6 +446,7 @@ void Session::drop(const char* reason) {
     watch_.cancel();
     rate_timer_.cancel();
     news_timer_.cancel();
+    frame_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
     log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});

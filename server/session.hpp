@@ -53,7 +53,7 @@ private:
 
     bool frame_is_due() const;
     bool has_news() const;
-    bool is_behind(Clock::time_point now);
+    bool is_behind();
     void tell_later();
     void send_frame();
     void send_snapshot();
@@ -69,14 +69,13 @@ private:
     void ping(Clock::time_point now);
     void on_pong(Clock::time_point now);
     void frame_written();
-    bool has_frame(std::uint64_t acknowledged, Clock::time_point now);
-    bool may_have_frame();
+    bool has_frame();
     void drop(const char* reason);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
-    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, news_timer_;
+    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, news_timer_, frame_timer_;
     ConnectionLimit::Place place_;
     std::string client_;  // empty before hello
     protocol::Role role_ = protocol::Role::view;
@@ -94,7 +93,8 @@ private:
     std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
     std::deque<std::shared_ptr<const EncodedPicture>> snapshots_;
     std::shared_ptr<const std::string> stats_, loading_;  // that it last got
-    Clock::time_point told_at_{};                         // news
+    Clock::time_point told_at_{};                         // something of the document
+    Clock::time_point had_all_news_ = Clock::now();       // and of what else is told to all
     bool tells_later_ = false;
 
     // --- what is being sent
@@ -104,8 +104,8 @@ private:
     std::shared_ptr<const EncodedPicture> picture_;
     bool writes_frame_ = false;
     std::uint64_t frame_end_ = 0;  // of the newest, in bytes since the connection's begin
-    Clock::time_point frame_written_at_;
-    bool frames_are_late_ = false;    // as far as is known
+    std::size_t frame_bytes_ = 0;
+    bool frames_are_late_ = false;    // the one before, as far as is known
     std::uint64_t acknowledged_ = 0;  // bytes, at the watch's last look
     Clock::time_point progress_at_;   // when it last saw more of them, or nothing to acknowledge
     std::optional<boost::beast::websocket::close_reason> closing_;

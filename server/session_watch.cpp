@@ -53,14 +53,12 @@ void Session::watch() {
     });
 }
 
-/// Whether news would wait in the socket, where frames arrive late even a few. They do not wait here for
-/// ever, though.
-bool Session::is_behind(Clock::time_point now) {
+/// Whether news would wait in the socket, where frames arrive late even a few.
+bool Session::is_behind() {
     constexpr int kFewNews = 1024, kManyNews = 8192;  // bytes
-    constexpr auto kLongestSilence = 10s;
-    const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
-    has_frame(traffic.acknowledged, now);
-    return now - told_at_ < kLongestSilence && traffic.waiting > (frames_are_late_ ? kFewNews : kManyNews);
+    const int frame = has_frame() ? 0 : static_cast<int>(frame_bytes_);
+    const int waiting = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).waiting;
+    return waiting > (frames_are_late_ ? kFewNews : kManyNews + frame);
 }
 
 /// Cuts who takes nothing of what waits for him, who does not come to the end of a message, and who is silent
@@ -71,7 +69,6 @@ void Session::look_after(Clock::time_point now) {
     const bool has_all = !writing_ && traffic.waiting == 0;
     if (std::exchange(acknowledged_, traffic.acknowledged) != traffic.acknowledged || has_all)
         progress_at_ = now;
-    has_frame(acknowledged_, now);
     if (std::exchange(received_, traffic.received) != traffic.received || !reading_) heard_at_ = now;
     if (now - progress_at_ >= deadlines.stuck) return drop("stuck");
     if (begun_ && !closing_ && now - *begun_ >= deadlines.message) {
@@ -82,27 +79,25 @@ void Session::look_after(Clock::time_point now) {
         return;
     }
     if (has_all && now - heard_at_ >= deadlines.silence) return drop("silent");
-    if (!closing_ && !pinging_ && now - std::max(heard_at_, pinged_at_) >= deadlines.ping) ping(now);
+    // Who is heard of, too, once there was a pong: while nothing is on its way, it tells how long that is.
+    const auto since = round_trip_ && traffic.waiting == 0 ? pinged_at_ : std::max(heard_at_, pinged_at_);
+    if (!closing_ && !pinging_ && now - since >= deadlines.ping) ping(now);
 }
 
 void Session::frame_written() {
+    constexpr auto kDelayedBy = 50ms;  // TCP may acknowledge 40 ms later
     const Traffic traffic = traffic_of(beast::get_lowest_layer(socket_).socket().native_handle());
     frame_end_ = traffic.acknowledged + static_cast<std::uint64_t>(traffic.waiting);
-    frame_written_at_ = Clock::now();
+    frame_timer_.expires_after(kDelayedBy + round_trip_.value_or(Clock::duration{}));
+    frame_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (!stopped && self && !self->dropped_) self->frames_are_late_ = !self->has_frame();
+    });
 }
 
-/// Whether the peer, who has acknowledged so many bytes, has all of the newest frame.
-bool Session::has_frame(std::uint64_t acknowledged, Clock::time_point now) {
-    constexpr auto kInTime = 50ms;  // TCP may delay what it acknowledges by 40
-    const bool has_it = acknowledged >= frame_end_;
-    if (has_it == (now - frame_written_at_ < kInTime)) frames_are_late_ = !has_it;
-    return has_it;
-}
-
-/// The same; true while that frame is being written.
-bool Session::may_have_frame() {
-    const auto socket = beast::get_lowest_layer(socket_).socket().native_handle();
-    return writes_frame_ || has_frame(traffic_of(socket).acknowledged, Clock::now());
+/// Whether the peer has acknowledged all of the newest frame that was written.
+bool Session::has_frame() {
+    return traffic_of(beast::get_lowest_layer(socket_).socket().native_handle()).acknowledged >= frame_end_;
 }
 
 void Session::ping(Clock::time_point now) {

@@ -11,13 +11,13 @@ export class Input {
   #enabled = true;
   /** Each pressed pointer's latest message. */
   #pressed = new Map();
-  /** Whose latest message waits for the display frame. */
+  /** Whose latest message waits for `soon`. */
   #moved = new Set();
   #keys = new Set();
   /** One mapping for a whole gesture, even if the view changes. */
   #toView = null;
 
-  /** The page's `send`, `mapping` like Picture's, `frame`: the number of the one drawn, and `marks`: FingerMarks. */
+  /** The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, and `marks`: FingerMarks. */
   constructor(element, page) {
     this.#page = { window: globalThis.window, ...page };
     const { window } = this.#page;

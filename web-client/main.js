@@ -128,10 +128,10 @@ const input = new Input(canvas, {
   marks: new FingerMarks(find('finger-marks')),
 });
 
-// Whoever touches the picture means it with the keys, too.
+// Who touches the picture means it with the keys, too.
 canvas.addEventListener('pointerdown', () => canvas.focus({ preventScroll: true }));
 
-/** What the sections of the menu are given. */
+/** For the menu's sections. */
 const page = {
   change: (patch) => changes.add(patch),
   ask,
@@ -151,7 +151,7 @@ const menu = new Menu({
   },
 });
 
-/** While frames are late, the last picture and its labels go with the fingers. */
+/** While frames are late, picture and labels go with the fingers. */
 function follow() {
   picture.move(prediction.transform);
   labels.show(picture.header, connection.state?.markers, picture.mapping(), prediction.transform);
@@ -165,7 +165,7 @@ function report(error) {
 
 let nextShow;
 
-/** Everything is updated in the next display frame. */
+/** In the next display frame. */
 function show() {
   cancelAnimationFrame(nextShow);
   nextShow = requestAnimationFrame(() => {
@@ -184,7 +184,7 @@ function showPart({ node, name, path = [] }) {
   const title = names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`);
   const above = names.slice(0, -2).join(' › ');
   const part = find('part');
-  // Only a change: a screen reader would read it again.
+  // Only a change: screen readers read it again.
   if (part.textContent === title + above) return;
   part.replaceChildren(...(title ? [title, element('small', {}, above)] : []));
 }
@@ -214,7 +214,7 @@ document.addEventListener('visibilitychange', () => {
   if (!document.hidden) connection.wake();
 });
 window.addEventListener('online', () => connection.wake());
-// Another token in the address: another start.
+// Another token: another start.
 window.addEventListener('hashchange', () => location.reload());
 
 speak(recall('language'));

@@ -1,11 +1,11 @@
 const MOST_SAMPLES = 100;
 const WINDOW_MS = 2000;
-/** A message without effect is covered by a much later frame: that is no latency. */
+/** A message without effect is covered by a later frame: that is no latency. */
 const LONGEST_MS = 10_000;
 /** Presses and releases only begin and end what moves the picture. */
 const MOVING = new Set(['pointermove', 'wheel', 'keydown']);
 
-/** What a user feels: the ms from a hand's move to its picture, and how many pictures come. */
+/** What a user feels: ms from a hand's move to its picture, pictures a second. */
 export class Meter {
   /** When what no frame covers yet was sent, by id. */
   #waiting = new Map();
@@ -27,16 +27,18 @@ export class Meter {
     this.#frames = [...this.#recentFrames(now), { at: now, bytes }];
   }
 
-  /** For how long pictures are late. */
+  /** How late pictures are; what was sent a second before the rest had no effect. */
   lateMs(now) {
-    return now - ([...this.#waiting.values()][0] ?? now);
+    let since = now;
+    for (const at of [...this.#waiting.values()].reverse()) if (since - at < 1000) since = at;
+    return now - since;
   }
 
   forgetSent() {
     this.#waiting.clear();
   }
 
-  /** There are no percentiles before the first latency. */
+  /** No percentiles before the first latency. */
   read(now) {
     const perSecond = 1000 / WINDOW_MS;
     const frames = this.#recentFrames(now);

@@ -1,8 +1,7 @@
-/** `buttons` */
-const RIGHT = 2;
+const RIGHT = 2; // of `buttons`
 const MIDDLE = 4;
 
-/** Pixels, lines and pages of a wheel's step. */
+/** A wheel's step in pixels, lines, pages. */
 const WHEEL_STEPS = [100, 3, 1 / 3];
 /** What moves the camera otherwise: drags begin anew there. */
 const OTHER_MOVES = new Set(['keydown', 'patch', 'fit', 'fly']);

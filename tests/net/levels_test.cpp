@@ -181,6 +181,75 @@ TEST_CASE("a grant that comes before the picture has arrived is not taken for it
     }
 }
 
+TEST_CASE("who takes long to ask gets the picture at rest soon: it need not be the link") {
+    Drag drag{ends_of_table()};
+    drag.moves(1);
+    std::this_thread::sleep_for(1500ms);
+    drag.move(1);  // it took 1.5 s to the grant; a whole picture has 16 times the bytes
+    const auto rest = std::chrono::steady_clock::now();
+    while (drag.client.wait_for("frame", 10s)["quality"]["samples"] != 16) {
+        REQUIRE(std::chrono::steady_clock::now() - rest < 12s);
+        drag.client.send({{"type", "frame"}});
+    }
+    CHECK(std::chrono::steady_clock::now() - rest < 10s);
+}
+
+TEST_CASE("who steers over a slow link sees where it ended at once, though others have seen it before") {
+    Drag drag{ends_of_table()};
+    TestClient watcher(drag.server.port());
+    watcher.join("view");
+    drag.moves(1);
+    std::this_thread::sleep_for(1500ms);
+    drag.moves(1);
+    drag.move(0);
+    for (Json quality; quality["samples"] != 16; quality = watcher.wait_for("frame")["quality"])
+        watcher.send({{"type", "frame"}});
+    const auto asked = std::chrono::steady_clock::now();
+    drag.client.send({{"type", "frame"}});
+    drag.client.wait_for("frame");
+    CHECK(std::chrono::steady_clock::now() - asked < 1s);
+}
+
+TEST_CASE("where who steers takes no pictures, the others' are not small for that") {
+    Drag drag;
+    TestClient watcher(drag.server.port());
+    watcher.join("view");
+    drag.moves(1);
+    double scale = 0;
+    for (int i = 0; i < 100 && scale < 1; ++i) {
+        watcher.send({{"type", "frame"}});
+        drag.move(0);
+        scale = watcher.wait_for("frame")["quality"]["scale"];
+    }
+    CHECK(scale == 1);
+}
+
+TEST_CASE("what is told to all reaches a slow client, though pictures come all the time") {
+    Drag drag{ends_of_table()};
+    drag.client.send({{"type", "resize"}, {"width", 4 * kSide}, {"height", 4 * kSide}, {"pixelRatio", 1}});
+    drag.change({{"quality", {{"preference", 1}}}});
+    TestClient slow(drag.server.port(), {.receive_buffer = 4096});
+    slow.takes_stats = true;
+    slow.join("view");
+    for (int i = 0; i < 2; ++i) slow.send({{"type", "frame"}});
+    const auto begin = std::chrono::steady_clock::now();
+    int pictures = 0, stats = 0;
+    while (stats == 0 && std::chrono::steady_clock::now() - begin < 20s) {
+        drag.move(0);
+        const auto message = slow.receive(10ms);
+        if (!message) continue;
+        if (message->binary) {
+            ++pictures;
+            slow.send({{"type", "frame"}});
+            std::this_thread::sleep_for(50ms);
+        } else if (message->json()["type"] == "stats" && pictures > 5) {
+            ++stats;
+        }
+    }
+    MESSAGE("after " << pictures << " pictures");
+    CHECK(stats == 1);
+}
+
 TEST_CASE("preference moves along the levels, from the quickest to the most accurate") {
     Drag drag;
     drag.whole_ms = 200;

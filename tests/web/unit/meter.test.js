@@ -77,3 +77,12 @@ test('how late pictures are: since the oldest message was sent that none covers'
   meter.drawn(1, 1, 100);
   assert.equal(meter.lateMs(100), 70);
 });
+
+test('a move without effect, long before, makes nothing late', () => {
+  const meter = new Meter();
+  meter.sent('keydown', 1, 0);
+  meter.sent('pointermove', 2, 5000);
+  assert.equal(meter.lateMs(5010), 10);
+  meter.sent('pointermove', 3, 5250);
+  assert.equal(meter.lateMs(6100), 1100);
+});
