@@ -14,8 +14,10 @@ constexpr std::size_t kBegunRemembered = 512;  // others may get many while a sl
 constexpr std::chrono::milliseconds kLongDelivery{500};
 /// One at rest that takes longer is held back for as long as it takes: whoever moves again would wait for it.
 constexpr std::chrono::seconds kLongDeliveryAtRest{2};
-/// At most so long where it is not sure that the link is slow.
-constexpr std::chrono::seconds kUnsure{5};
+/// So long at most until the first picture has told.
+constexpr std::chrono::seconds kUntilItTells{5};
+/// So long at most where TCP has pictures acknowledged quickly: it may be the client that takes its time.
+constexpr std::chrono::milliseconds kUnsure{2500};
 
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
@@ -56,9 +58,9 @@ Clock::duration Engine::delivery_at_rest() const {
         const bool will_tell = std::any_of(begun_.begin(), begun_.end(), [&](const Begun& begun) {
             return begun.frame > client.answered && begun.frame <= client.last_frame;
         });
-        return will_tell ? kUnsure : Clock::duration{};
+        return will_tell ? kUntilItTells : Clock::duration{};
     }
-    // Over a quick link it may be that the client took its time, unless the other end of the link is a proxy.
+    // Not 0, since the other end of a quick link may be a proxy.
     const Clock::duration delivery = delivery_of(choice_->levels().size() - 1);
     return client.is_late ? delivery : std::min<Clock::duration>(delivery, kUnsure);
 }
