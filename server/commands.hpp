@@ -73,7 +73,6 @@ struct ChartArguments {
     std::vector<std::filesystem::path> scenes;  ///< empty: the car
     std::filesystem::path out;
     bool calibrate = false;  ///< the server's table alone
-    bool stability = false;  ///< how far each method holds, and no scene
     int width = 1280, height = 720;
     int frames = 12;  ///< of each setting
     std::uint64_t most_triangles = 10'000'000;

@@ -216,10 +216,6 @@ void add_chart(CLI::App& app, vrut::ChartArguments& arguments) {
         "--calibrate", arguments.calibrate,
         "Measure the levels that a server of the scene draws with, on this machine, and store them");
     out->excludes(calibrate);
-    command
-        ->add_flag("--stability", arguments.stability,
-                   "Push each method past its limit instead, and show what takes over there")
-        ->excludes(calibrate);
     add_size(*command, arguments.width, arguments.height);
     command->add_option("--frames", arguments.frames, "Frames of each setting, on one orbit")
         ->check(CLI::Range(1, 1000))

@@ -1,8 +1,6 @@
 #include <csignal>
-#include <fstream>
 #include <iostream>
 #include <stdexcept>
-#include <thread>
 
 #include "calibrate.hpp"
 #include "charts.hpp"
@@ -10,10 +8,10 @@
 #include "experiments.hpp"
 #include "level_store.hpp"
 #include "log.hpp"
+#include "machine.hpp"
 #include "page.hpp"
 #include "progress.hpp"
 #include "scene_library.hpp"
-#include "stability/stability_page.hpp"
 
 namespace vrut {
 
@@ -21,18 +19,6 @@ namespace fs = std::filesystem;
 using namespace chart;
 
 namespace {
-
-/// The processor's name and how many of its threads there are.
-std::string machine() {
-    std::ifstream stream("/proc/cpuinfo");
-    std::string name = "a processor";
-    for (std::string line; std::getline(stream, line);)
-        if (line.starts_with("model name")) {
-            name = line.substr(line.find(':') + 2);
-            break;
-        }
-    return name + ", " + std::to_string(std::thread::hardware_concurrency()) + " threads";
-}
 
 constexpr int kLargestSide = 8192;
 
@@ -236,22 +222,9 @@ void make_folder(const fs::path& folder) {
     if (error) throw std::runtime_error(folder.string() + " cannot be made: " + error.message());
 }
 
-void stability_charts(const ChartArguments& arguments) {
-    require_gnuplot();
-    Renderer renderer(arguments.device);
-    make_folder(arguments.out);
-    {
-        Progress progress;
-        stability::write_all(renderer, machine() + ", VRUT Preview " VRUT_VERSION, arguments.out,
-                             [&](double part, const std::string& what) { progress.show(part, what); });
-    }
-    std::cout << (arguments.out / "stability.html").string() << std::endl;
-}
-
 }  // namespace
 
 void chart_command(ChartArguments arguments) {
-    if (arguments.stability) return stability_charts(arguments);
     if (arguments.scenes.empty()) arguments.scenes.push_back(default_scene());
     if (arguments.calibrate) return calibrate_scene(arguments);
     require_gnuplot();

@@ -1,8 +1,8 @@
-// Every method pushed past its limit, in short. `vrut-preview chart --stability` does it in full, as a page.
+// Every method pushed past its limit, in short. The program `stability` does it in full, as a page.
 #include <doctest/doctest.h>
 
 #include "handles.hpp"
-#include "stability/study.hpp"
+#include "study.hpp"
 
 using namespace vrut;
 using namespace vrut::stability;
