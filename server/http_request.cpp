@@ -130,6 +130,20 @@ bool is_host(std::string_view text) {
            std::all_of(port.begin() + 1, port.end(), is_digit);
 }
 
+bool names_tag(std::string_view if_none_match, std::string_view tag) {
+    std::string_view list = if_none_match;
+    while (!list.empty()) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        std::string_view each = list.substr(0, comma);
+        while (each.starts_with(' ') || each.starts_with('\t')) each.remove_prefix(1);
+        while (each.ends_with(' ') || each.ends_with('\t')) each.remove_suffix(1);
+        if (each.starts_with("W/")) each.remove_prefix(2);
+        if (each == tag || each == "*") return true;
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    return false;
+}
+
 std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_view bytes) {
     const std::size_t end = bytes.find("\r\n\r\n");
     const bool whole = end != std::string_view::npos;

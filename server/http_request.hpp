@@ -37,4 +37,7 @@ std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_v
 /// A name or number, IPv6 in brackets, and a port: what can stand in a Content-Security-Policy.
 bool is_host(std::string_view text);
 
+/// Whether the value of an If-None-Match field names `tag`.
+bool names_tag(std::string_view if_none_match, std::string_view tag);
+
 }  // namespace vrut

@@ -6,11 +6,13 @@ namespace http = boost::beast::http;
 
 namespace {
 
-constexpr std::string_view kSafety =
-    "Cache-Control: no-cache\r\n"
+constexpr std::string_view kSecurity =
     "X-Content-Type-Options: nosniff\r\n"
+    "Cross-Origin-Resource-Policy: same-origin\r\n";
+
+/// Without effect on what is not shown by itself, as scripts are not, of which a page has many.
+constexpr std::string_view kDocumentSecurity =
     "Referrer-Policy: no-referrer\r\n"
-    "Cross-Origin-Resource-Policy: same-origin\r\n"
     "Cross-Origin-Opener-Policy: same-origin\r\n"
     "Content-Security-Policy: default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
     "manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; connect-src 'self'";
@@ -45,9 +47,13 @@ std::string head_of(const HttpResponse& response, std::string_view host, bool ke
     head.reserve(1024);
     head.append("HTTP/1.1 ").append(std::to_string(static_cast<unsigned>(response.status))).append(" ");
     head.append(reason.data(), reason.size()).append("\r\nContent-Type: ").append(response.content_type);
-    head.append("\r\n").append(kSafety);
-    append_websocket(head, host);
-    head.append("\r\n").append(response.fields);
+    head.append("\r\nCache-Control: ").append(response.cache_control).append("\r\n").append(kSecurity);
+    if (response.is_document) {
+        head.append(kDocumentSecurity);
+        append_websocket(head, host);
+        head.append("\r\n");
+    }
+    head.append(response.fields);
     if (response.body)
         head.append("Content-Length: ").append(std::to_string(response.body->size())).append("\r\n");
     if (!keep_alive) head += "Connection: close\r\n";

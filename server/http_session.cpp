@@ -13,7 +13,7 @@
 #include "http_response.hpp"
 #include "log.hpp"
 #include "monitoring.hpp"
-#include "page_files.hpp"
+#include "page_response.hpp"
 #include "session.hpp"
 
 namespace vrut {
@@ -91,9 +91,7 @@ std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access
 
 HttpResponse respond(const HttpRequest& request, const Hub& hub) {
     const std::string_view path = path_of(request);
-    for (const PageFile& file : page_files())
-        if (path == file.path || (path == "/" && file.path == "/index.html"))
-            return {http::status::ok, file.content_type, std::make_shared<const std::string>(file.bytes)};
+    if (auto file = page_response(request, path)) return *std::move(file);
     if (path == "/ws")
         return refusal(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
     const auto state = [](const std::optional<std::string>& fault, const char* good) {

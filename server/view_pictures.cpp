@@ -76,18 +76,4 @@ void ViewPictures::keep(const ViewPicture& picture) {
         kept_.erase(kept_.begin());
 }
 
-bool names_tag(std::string_view if_none_match, std::string_view tag) {
-    std::string_view list = if_none_match;
-    while (!list.empty()) {
-        const std::size_t comma = std::min(list.find(','), list.size());
-        std::string_view each = list.substr(0, comma);
-        while (each.starts_with(' ') || each.starts_with('\t')) each.remove_prefix(1);
-        while (each.ends_with(' ') || each.ends_with('\t')) each.remove_suffix(1);
-        if (each.starts_with("W/")) each.remove_prefix(2);
-        if (each == tag || each == "*") return true;
-        list.remove_prefix(std::min(comma + 1, list.size()));
-    }
-    return false;
-}
-
 }  // namespace vrut

@@ -62,7 +62,4 @@ private:
     std::vector<ViewPicture> kept_;  ///< oldest first
 };
 
-/// Whether the value of an If-None-Match field names `tag`.
-bool names_tag(std::string_view if_none_match, std::string_view tag);
-
 }  // namespace vrut

@@ -58,6 +58,23 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
     await tablet.screenshot('tablet');
   });
 
+  test('opened again, the page is not sent again', async () => {
+    const visitor = await Tablet.open(browser, `${server.address}#watch`, TABLET);
+    await visitor.wire.still();
+    const received = new Map();
+    const pathOf = new Map();
+    visitor.devtools.on('Network.requestWillBeSent', ({ requestId, request }) => pathOf.set(requestId, new URL(request.url).pathname));
+    visitor.devtools.on('Network.loadingFinished', ({ requestId, encodedDataLength }) =>
+      received.set(pathOf.get(requestId), encodedDataLength));
+    await visitor.devtools.send('Network.enable');
+    await visitor.page.reload();
+    await visitor.wire.until('the modules of the page', () => received.size > 10);
+    const sent = [...received].filter(([, bytes]) => bytes > 0).map(([path]) => path);
+    assert.deepEqual(sent, ['/']);
+    assert.ok(received.get('/') < 2000, `${received.get('/')} bytes`);
+    await visitor.page.close();
+  });
+
   test('one finger turns it', async () => {
     const drag = await tablet.touch([{ from: [500, 400], to: [664, 441] }]);
     assertTurned(drag, { right: (164 / SHORTER_SIDE) * 180, down: (41 / SHORTER_SIDE) * 180 });
