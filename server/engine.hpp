@@ -19,6 +19,7 @@
 #include "mailbox.hpp"
 #include "metrics.hpp"
 #include "pacing.hpp"
+#include "painter.hpp"
 #include "presentation.hpp"
 #include "scene_library.hpp"
 #include "scene_loader.hpp"
@@ -26,25 +27,6 @@
 #include "view.hpp"
 
 namespace vrut {
-
-/// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
-/// thread; made anew when it throws ContextLost.
-struct Painter {
-    std::string description;
-    bool software = false;
-    int max_size = 16384;
-    /// As Renderer::take; empty: there is nothing to be taken.
-    std::function<void(const View&)> take = {};
-    /// As Renderer::render.
-    std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
-                       Accumulation* kept)>
-        paint = {};
-    std::function<long()> gl_objects = {};  ///< how many live; where there may be any
-};
-using PainterFactory = std::function<Painter()>;
-
-/// The renderer as a painter, on EGL device `device` or the first that works.
-PainterFactory gl_painter(std::optional<int> device);
 
 /// What the render thread tells the net thread after it has handled a batch of events.
 struct EngineOutput {

@@ -1,16 +1,19 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
 
 #include "access.hpp"
 #include "addresses.hpp"
-#include "engine.hpp"
-#include "hub.hpp"
-#include "metrics.hpp"
+#include "deadlines.hpp"
+#include "painter.hpp"
+#include "scene_library.hpp"
 
 namespace vrut {
+
+struct Metrics;
 
 struct ServerOptions {
     ListenAddress listen{"127.0.0.1", 8080};

@@ -397,19 +397,18 @@ void Session::send_picture(const protocol::FrameHeader& header) {
     const auto& file = picture_->file;
     const std::size_t cut = picture_->header_offset;
     socket_.binary(true);
-    write(std::array<boost::asio::const_buffer, 3>{
-        boost::asio::buffer(file.data(), cut), boost::asio::buffer(header_),
-        boost::asio::buffer(file.data() + cut, file.size() - cut)});
+    write({boost::asio::buffer(file.data(), cut), boost::asio::buffer(header_),
+           boost::asio::buffer(file.data() + cut, file.size() - cut)});
 }
 
 void Session::send_text(std::string text) {
     text_ = std::move(text);
     socket_.text(true);
-    write(boost::asio::buffer(text_));
+    write({boost::asio::buffer(text_)});
 }
 
-template <class Buffers>
-void Session::write(const Buffers& buffers) {
+// One type of buffers for all: Beast's write operation takes seconds to compile for each.
+void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
     writing_ = true;
     hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {

@@ -61,8 +61,7 @@ private:
     void send_news();
     void send_answer();
     void send_text(std::string text);
-    template <class Buffers>
-    void write(const Buffers& buffers);
+    void write(const std::array<boost::asio::const_buffer, 3>& buffers);
     void on_written(boost::beast::error_code error);
     void watch();
     void look_after(Clock::time_point now);

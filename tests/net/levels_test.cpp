@@ -9,6 +9,7 @@
 #include "../unit/environment_variable.hpp"
 #include "../unit/temporary_folder.hpp"
 #include "level_store.hpp"
+#include "pacing.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -13,6 +13,8 @@
 #include <random>
 
 #include "frame_header.hpp"
+#include "pacing.hpp"
+#include "view.hpp"
 #include "vrut_text.hpp"
 
 namespace vrut::test {

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "metrics.hpp"
 #include "server.hpp"
 
 namespace vrut::test {

@@ -10,7 +10,9 @@
 #include <memory>
 #include <thread>
 
+#include "level_choice.hpp"
 #include "level_store.hpp"
+#include "pacing.hpp"
 #include "page_client.hpp"
 #include "server.hpp"
 #include "shapes.hpp"
