@@ -8,21 +8,25 @@ source "$ROOT/deploy/packages.sh"
 
 usage() {
     cat <<TEXT
-Usage: tests/run.sh [--all]
+Usage: tests/run.sh [--ci | --all]
 
-Checks the source's format, runs every test of the release build but the long ones, runs clang-tidy without its
-analyzer on the program, and runs the unit, net and replay tests under the address and undefined behaviour sanitizers.
-Debian packages and node modules that are missing are installed first.
+Checks the source's format, builds the program, and runs the tests of its parts, of the server, of recorded sessions,
+of the protocol and of the command line, and one walk through the page in a browser. Debian packages and node modules
+that are missing are installed first.
 
-  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the address and undefined behaviour sanitizers with the real renderer, the thread sanitizer on unit and net, the soak tests, the benchmarks and the fuzzers
+  --ci      also the rest of the tests, clang-tidy without its analyzer on the program, and the address and undefined
+            behaviour sanitizers on the tests that need no renderer: within an hour on two cores
+  --all     also clang-tidy's analyzer, and clang-tidy on the tests, the same sanitizers with the real renderer, the
+            thread sanitizer, the soak tests, the benchmarks and the fuzzers: hours
   --help    this text
 TEXT
 }
 
-all=false
+ci=false all=false
 while [ $# -gt 0 ]; do
     case $1 in
-    --all) all=true ;;
+    --ci) ci=true ;;
+    --all) ci=true all=true ;;
     -h | --help)
         usage
         exit 0
@@ -37,8 +41,14 @@ done
 
 cd "$ROOT"
 jobs=$(parallel_jobs)
-# Where there is a cache of compilers' work, the same source is compiled once, wherever it lies.
-if command -v ccache >/dev/null; then export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$ROOT CCACHE_NOHASHDIR=1; fi
+# Where there is a cache of compilers' work, the same source is compiled once, wherever it lies. It keeps nothing that
+# is compiled with a precompiled header.
+configure=()
+if command -v ccache >/dev/null; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=ccache CCACHE_BASEDIR=$ROOT CCACHE_NOHASHDIR=1
+    configure=(-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON)
+fi
+default_labels='^(unit|net|replay|page|contract|cli|walk)$'
 done_steps=0
 
 # Runs a function or command as a named step; when it fails, says so with what to do, and stops.
@@ -70,6 +80,7 @@ sources() { # EXTENSION...
 
 packages() {
     local wanted=("${BUILD_PACKAGES[@]}" "${RUN_PACKAGES[@]}" "${TEST_PACKAGES[@]}")
+    if $ci; then wanted+=("${ALL_TEST_PACKAGES[@]}"); fi
     if $all; then wanted+=("${FUZZ_PACKAGES[@]}"); fi
     install_packages "${wanted[@]}"
 }
@@ -86,7 +97,7 @@ format() {
 }
 
 build() { # PRESET CMAKE-BUILD-ARGUMENTS...
-    cmake --preset "$1" >"build/$1.configure.log" 2>&1 || {
+    cmake --preset "$1" "${configure[@]}" >"build/$1.configure.log" 2>&1 || {
         cat "build/$1.configure.log"
         return 1
     }
@@ -102,7 +113,9 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
     local object file stamp stamps=build/release/$1 folders='protocol|render|scenes|server'
     if $all; then folders+='|tests'; fi
     local -A queued=()  # what several programs compile is looked at once
-    mkdir -p "$stamps"
+    mkdir -p "$stamps" build/tidy
+    # clang cannot read another compiler's precompiled headers; and so each file has to include what it uses.
+    sed -E 's/ -Winvalid-pch -include [^ ]+//' build/release/compile_commands.json >build/tidy/compile_commands.json
     # shellcheck disable=SC2016
     sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
         -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
@@ -115,7 +128,7 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
             queued[$file]=yes
             printf '%s\0%s\0' "$file" "$stamp"
         done | arguments=${*:2} xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
-            clang-tidy-14 -p build/release --quiet --warnings-as-errors="*" $arguments "$0" 2>&1 |
+            clang-tidy-14 -p build/tidy --quiet --warnings-as-errors="*" $arguments "$0" 2>&1 |
                 sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
 }
 
@@ -143,18 +156,25 @@ compile_remedy="The compiler's message is above; if the source is right, remove 
 if ! mkdir -p build 2>/dev/null || [ ! -w build ]; then
     die "cannot write to $ROOT/build: start this as the folder's owner, or from a copy of your own."
 fi
-if [ ! -d build/asan ]; then require_space build 2000 "Building the program and its tests"; fi
-if $all && [ ! -d build/tsan ]; then require_space build 2500 "Building the tests of --all"; fi
+space=900
+if $ci; then space=3000; fi
+if $all; then space=5500; fi
+if [ ! -d build/release ]; then require_space build "$space" "Building the program and its tests"; fi
 
 step "Debian packages" "" packages
 step "node modules" "npm's message is above: see that there is a network, and start again." node_modules
 step "format" "Run clang-format-14 -i on the files named above." format
-step "build release" "$compile_remedy" build release
-if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
-step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE 'soak|fuzz|bench'
-step "build asan" "$compile_remedy" build asan --target tests_without_gpu
-step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
-step "clang-tidy" "Mend what it names above." end_tidy
+if $ci; then
+    step "build release" "$compile_remedy" build release
+    if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
+    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE '^(soak|fuzz|bench)$'
+    step "build asan" "$compile_remedy" build asan --target tests_without_gpu
+    step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
+    step "clang-tidy" "Mend what it names above." end_tidy
+else
+    step "build release" "$compile_remedy" build release --target default_tests
+    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -L "$default_labels"
+fi
 if $all; then
     step "build asan with the renderer" "$compile_remedy" build asan --target test_renderer test_gl_faults test_soak
     step "tests of asan with the renderer" "Again alone: ctest --preset asan -R NAME." tests asan -R '^(renderer|gl_faults|soak)$'

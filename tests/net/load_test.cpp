@@ -77,7 +77,10 @@ void dribble(std::vector<SlowClient>& slow, Audience& audience, std::chrono::sec
 TEST_CASE("handshakes and hellos that come a byte each half second end at their deadline") {
     constexpr unsigned kHandshakes = 500, kHellos = 50;
     const DescriptorLimit many(4096);
-    TestServer server({.noise = true}, roomy());
+    ServerOptions options = roomy();
+    options.deadlines.request = 1'500ms;
+    options.deadlines.hello = 2s;
+    TestServer server({.noise = true}, options);
     Audience audience(server.port(), 2);
     audience.work_until(Clock::now() + 1s);
     const double alone_ms = audience.percentile(0.99);
@@ -88,7 +91,7 @@ TEST_CASE("handshakes and hellos that come a byte each half second end at their 
     const std::string hello = client_frame(R"({"type":"hello","role":"view"})");
     for (unsigned i = 0; i < kHellos; ++i)
         slow.push_back({websocket(server.port(), {.source = 700 + i}), i % 2 == 0 ? hello : ""});
-    dribble(slow, audience, 12s);
+    dribble(slow, audience, 9s);
     double handshakes_s = 0, hellos_s = 0;
     for (std::size_t i = 0; i < slow.size(); ++i) {
         double& longest = i < kHandshakes ? handshakes_s : hellos_s;
@@ -96,8 +99,8 @@ TEST_CASE("handshakes and hellos that come a byte each half second end at their 
     }
     MESSAGE("cut after " << handshakes_s << " s, without hello after " << hellos_s << " s; the others' p99 "
                          << alone_ms << " ms before, " << audience.percentile(0.99) << " ms meanwhile");
-    CHECK(handshakes_s < (kMemoryTells ? 5 : 7));
-    CHECK(hellos_s < 9);  // after 5 s they are told why, and have 3 to say goodbye
+    CHECK(handshakes_s < (kMemoryTells ? 2 : 4));
+    CHECK(hellos_s < 6);  // after 2 s they are told why, and have 3 to say goodbye
     CHECK(audience.seen() > 100);
     Swarm(server.port()).join("view");
 }
@@ -113,7 +116,9 @@ TEST_CASE("clients that connect and die leave nothing behind") {
 }
 
 TEST_CASE("clients that read nothing, whatever they send, delay nobody, take no memory and are cut") {
-    TestServer server({.noise = true}, roomy());
+    ServerOptions options = roomy();
+    options.deadlines.stuck = 4s;
+    TestServer server({.noise = true}, options);
     Audience audience(server.port(), 20);
     audience.work_until(Clock::now() + 1s);
     const std::vector<std::string> said = stubborn();
@@ -126,7 +131,7 @@ TEST_CASE("clients that read nothing, whatever they send, delay nobody, take no 
     double most = memory;
     std::size_t seen = 0;
     const auto start = Clock::now();
-    for (int second = 0; second < 14 && server.metrics().clients_left < stalled.size(); ++second) {
+    for (int second = 0; second < 8 && server.metrics().clients_left < stalled.size(); ++second) {
         dribbling.read(1);
         dribbling.send(said[0]);
         for (int tenth = 0; tenth < 10; ++tenth) {

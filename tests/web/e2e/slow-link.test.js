@@ -54,7 +54,7 @@ describe('a slow link', { skip: browserIsMissing }, () => {
     assert.ok(waits.length >= LEAST_MOVES, `${waits.length} moves`);
     const third = Math.floor(waits.length / 3);
     const [first, final] = [mean(waits.slice(0, third)), mean(waits.slice(-third))];
-    const sorted = waits.toSorted((a, b) => a - b);
+    const sorted = [...waits].sort((a, b) => a - b);
     const quantile = (share) => Math.round(sorted[Math.floor(share * (sorted.length - 1))]);
     t.diagnostic(`${waits.length} moves, ${drawn.length} pictures; from a move to its picture: median ${quantile(0.5)} ms, ` +
       `95 % ${quantile(0.95)} ms, first third ${Math.round(first)} ms, last third ${Math.round(final)} ms`);
