@@ -50,7 +50,7 @@ build() {
     if [ ! -f "$folder/build.ninja" ]; then
         cmake --preset release -B "$folder" -DVRUT_TESTS=OFF || return
     fi
-    NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build "$folder" --target vrut-preview --parallel "$(parallel_jobs)"
+    NINJA_STATUS='[%p, step %f of %t, %es] ' cmake --build "$folder" --target vrut-preview car --parallel "$(parallel_jobs)"
 }
 
 install_packages "${BUILD_PACKAGES[@]}" "${RUN_PACKAGES[@]}"

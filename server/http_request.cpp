@@ -16,8 +16,6 @@ namespace {
 
 using Refused = std::optional<HttpRefusal>;
 
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/beast/core/string_type.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/status.hpp>
@@ -13,6 +14,9 @@ namespace vrut {
 
 /// A GET or HEAD without a body; nothing else is served.
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
+
+/// Beast's strings as the standard's.
+inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
 /// Why a request is not answered. What follows it on its connection cannot be trusted.
 struct HttpRefusal {

@@ -27,8 +27,6 @@ namespace {
 
 constexpr auto kForEnd = 1s;  // for the peer to take the last answer and to close, too
 
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
 std::string_view path_of(const HttpRequest& request) {
     const std::string_view target = view(request.target());
     return target.substr(0, target.find('?'));

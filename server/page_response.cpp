@@ -76,8 +76,7 @@ std::optional<HttpResponse> page_response(const HttpRequest& request, std::strin
     if (by_content) response.cache_control = "public, max-age=31536000, immutable";
     response.fields = "ETag: " + chosen.tag + "\r\n";
     if (file->gzip.body) response.fields += "Vary: Accept-Encoding\r\n";
-    const auto known = request[http::field::if_none_match];
-    if (names_tag({known.data(), known.size()}, chosen.tag)) {
+    if (names_tag(view(request[http::field::if_none_match]), chosen.tag)) {
         response.status = http::status::not_modified;
         response.body = nullptr;
     } else if (compressed) {

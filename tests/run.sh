@@ -108,22 +108,22 @@ tests() { # PRESET CTEST-ARGUMENTS...
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null
 }
 
-# Only what the build compiles, and of that only what it has compiled anew since clang-tidy last passed it.
+# Each file that the build compiles, by itself and without precompiled headers, so that it has to include what it uses;
+# and of these only what has changed, itself or some header, since clang-tidy last passed it.
 tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
-    local object file stamp stamps=build/release/$1 folders='protocol|render|scenes|server'
+    local file stamp header stamps=build/tidy/$1 folders='protocol|render|scenes|server'
     if $all; then folders+='|tests'; fi
     local -A queued=()  # what several programs compile is looked at once
-    mkdir -p "$stamps" build/tidy
-    # clang cannot read another compiler's precompiled headers; and so each file has to include what it uses.
-    sed -E 's/ -Winvalid-pch -include [^ ]+//' build/release/compile_commands.json >build/tidy/compile_commands.json
+    cmake --preset release -B build/tidy -DVRUT_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >build/tidy.configure.log
+    mkdir -p "$stamps"
+    header=$(sources hpp | xargs ls -t | head -n 1 || true)
     # shellcheck disable=SC2016
-    sed -nE -e '/"command"/ { s/.* -o ([^ ]+) -c .*/\1/; h }' \
-        -e '/"file"/ { s/.*"file": "(.*)".*/\1/; H; x; s/\n/\t/; p }' build/release/compile_commands.json |
-        while IFS=$'\t' read -r object file; do
+    sed -nE 's/.*"file": "(.*)".*/\1/p' build/tidy/compile_commands.json |
+        while read -r file; do
             [[ ${file#"$ROOT"/} =~ ^($folders)/ ]] || continue
             stamp=${file#"$ROOT"/}
             stamp=$stamps/${stamp//\//+}
-            [ "$stamp" -nt "build/release/$object" ] && [ "$stamp" -nt .clang-tidy ] && continue
+            [ "$stamp" -nt "$file" ] && [ "$stamp" -nt "$header" ] && [ "$stamp" -nt .clang-tidy ] && continue
             [ -n "${queued[$file]:-}" ] && continue
             queued[$file]=yes
             printf '%s\0%s\0' "$file" "$stamp"

@@ -22,7 +22,7 @@ constexpr int kDeepestNode = 1000;
 constexpr std::uint64_t kMostTimes = 64, kAlwaysAllowed = std::uint64_t{256} << 20;
 constexpr std::uint32_t kFloat = 5126;
 
-[[noreturn]] void fail(const std::string& what) { throw JsonFault(what); }
+[[noreturn]] void reject(const std::string& what) { throw JsonFault(what); }
 
 std::uint64_t component_size(std::uint32_t type) {
     switch (type) {
@@ -36,7 +36,7 @@ std::uint64_t component_size(std::uint32_t type) {
         case kFloat:
             return 4;
         default:
-            fail("an accessor has no component type of glTF");
+            reject("an accessor has no component type of glTF");
     }
 }
 
@@ -56,7 +56,7 @@ public:
 
 private:
     const GltfView& view(std::uint32_t index) const {
-        if (index >= document_.views.size()) fail("it has no buffer view " + std::to_string(index));
+        if (index >= document_.views.size()) reject("it has no buffer view " + std::to_string(index));
         return document_.views[index];
     }
 
@@ -64,8 +64,8 @@ private:
         for (const GltfView& view : document_.views) {
             if (view.buffer >= document_.buffers.size() ||
                 view.offset + view.length > document_.buffers[view.buffer].length)
-                fail("a buffer view goes beyond its buffer");
-            if (view.stride > 255) fail("a buffer view has a stride of more than 252 bytes");
+                reject("a buffer view goes beyond its buffer");
+            if (view.stride > 255) reject("a buffer view has a stride of more than 252 bytes");
         }
     }
 
@@ -75,25 +75,25 @@ private:
         const GltfView& in = view(index);
         const std::uint64_t stride = in.stride > 0 ? in.stride : size;
         if (stride < size || (count > 0 && offset + (count - 1) * stride + size > in.length))
-            fail("an accessor goes beyond its buffer view");
+            reject("an accessor goes beyond its buffer view");
     }
 
     void check_accessor(const GltfAccessor& accessor) const {
         const std::uint64_t size = component_size(accessor.component) * accessor.components;
-        if (size == 0) fail("an accessor has no type of glTF");
+        if (size == 0) reject("an accessor has no type of glTF");
         if (accessor.view) check_room(*accessor.view, accessor.offset, accessor.count, size);
         if (!accessor.sparse) return;
         if (!accessor.sparse_indices || !accessor.sparse_values)
-            fail("a sparse accessor has no indices or no values");
+            reject("a sparse accessor has no indices or no values");
         if (accessor.view && view(*accessor.view).stride > size)
-            fail("a sparse accessor is of a kind that is not read");
+            reject("a sparse accessor is of a kind that is not read");
         check_room(*accessor.sparse_indices, accessor.sparse_indices_offset, accessor.sparse_count,
                    component_size(accessor.sparse_component));
         check_room(*accessor.sparse_values, accessor.sparse_values_offset, accessor.sparse_count, size);
     }
 
     const GltfAccessor& accessor(std::uint32_t index) const {
-        if (index >= document_.accessors.size()) fail("it has no accessor " + std::to_string(index));
+        if (index >= document_.accessors.size()) reject("it has no accessor " + std::to_string(index));
         return document_.accessors[index];
     }
 
@@ -138,33 +138,33 @@ private:
     void take_memory(std::uint64_t bytes) {
         memory_ += bytes;  // of which each is far below 2^64
         if (memory_ > most_memory_)
-            fail("it would take more than " + std::to_string(most_memory_ >> 20) + " MiB of memory");
+            reject("it would take more than " + std::to_string(most_memory_ >> 20) + " MiB of memory");
     }
 
     void check_primitive(GltfPrimitive& primitive) {
         constexpr std::uint32_t kFewest[] = {1, 2, 2, 2, 3, 3, 3};  // by mode
-        if (primitive.mode >= std::size(kFewest)) fail("a mesh is of no kind of glTF, such as triangles");
+        if (primitive.mode >= std::size(kFewest)) reject("a mesh is of no kind of glTF, such as triangles");
         if (primitive.mode < 4 && primitive.indices) {  // out of range, those of a loop of lines crash assimp
             hide_member(result_, primitive.indices_name);
             primitive.indices.reset();
         }
-        if (!primitive.positions) fail("a mesh has no positions");
+        if (!primitive.positions) reject("a mesh has no positions");
         const auto has = [&](std::uint32_t index, std::uint64_t components, std::uint32_t component) {
             return accessor(index).components == components && accessor(index).component == component;
         };
         if (!has(*primitive.positions, 3, kFloat) ||
             (primitive.normals && !has(*primitive.normals, 3, kFloat)))
-            fail("the positions and normals of a mesh are not three floats each");
+            reject("the positions and normals of a mesh are not three floats each");
         if (primitive.texcoords && !has(*primitive.texcoords, 2, kFloat)) {
             hide_member(result_, primitive.texcoords_name);  // assimp takes integers for floats
             result_.losses.add("texture coordinates that are not floats are not read");
         }
         if (primitive.indices && (accessor(*primitive.indices).components != 1 ||
                                   accessor(*primitive.indices).component == kFloat))
-            fail("the indices of a mesh are not whole numbers");
+            reject("the indices of a mesh are not whole numbers");
         if (accessor(*primitive.positions).count < kFewest[primitive.mode] ||
             drawn_vertices(primitive) < kFewest[primitive.mode])
-            fail("a mesh has too few vertices");
+            reject("a mesh has too few vertices");
     }
 
     std::uint64_t drawn_vertices(const GltfPrimitive& primitive) const {
@@ -172,18 +172,18 @@ private:
     }
 
     void check_nodes() {
-        if (document_.scene >= document_.scenes.size()) fail("it has no scene to show");
+        if (document_.scene >= document_.scenes.size()) reject("it has no scene to show");
         std::vector<bool> reached(document_.nodes.size()), shown(document_.meshes.size());
         const auto reach = [&](std::uint32_t node) {
-            if (node >= document_.nodes.size()) fail("it has no node " + std::to_string(node));
-            if (reached[node]) fail("node " + std::to_string(node) + " has several parents");
+            if (node >= document_.nodes.size()) reject("it has no node " + std::to_string(node));
+            if (reached[node]) reject("node " + std::to_string(node) + " has several parents");
             reached[node] = true;
         };
         std::vector<std::uint32_t> level = document_.scenes[document_.scene], below;
         for (const std::uint32_t node : level) reach(node);
         for (int depth = 0; !level.empty(); ++depth, level.swap(below)) {
             if (depth > kDeepestNode)
-                fail("its nodes are nested more than " + std::to_string(kDeepestNode) + " deep");
+                reject("its nodes are nested more than " + std::to_string(kDeepestNode) + " deep");
             below.clear();
             for (const std::uint32_t node : level) {
                 if (document_.nodes[node].mesh) show(*document_.nodes[node].mesh, shown);
@@ -196,7 +196,7 @@ private:
     }
 
     void show(std::uint32_t mesh, std::vector<bool>& shown) {
-        if (mesh >= document_.meshes.size()) fail("it has no mesh " + std::to_string(mesh));
+        if (mesh >= document_.meshes.size()) reject("it has no mesh " + std::to_string(mesh));
         if (shown[mesh]) return;
         shown[mesh] = true;
         for (const GltfPrimitive& primitive : document_.meshes[mesh]) {
@@ -218,21 +218,21 @@ constexpr std::size_t kGlbHeader = 20;  // of the file and its first chunk, whic
 std::string read_glb_head(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string head(kGlbHeader, '\0');
-    if (!stream.read(head.data(), kGlbHeader) || !head.starts_with("glTF")) fail("it is no binary glTF");
+    if (!stream.read(head.data(), kGlbHeader) || !head.starts_with("glTF")) reject("it is no binary glTF");
     std::uint32_t length = 0;
     std::memcpy(&length, head.data() + 12, sizeof length);
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (error || length > size - kGlbHeader) fail("it ends before its JSON does");
+    if (error || length > size - kGlbHeader) reject("it ends before its JSON does");
     head.resize(kGlbHeader + length);
-    if (!stream.read(head.data() + kGlbHeader, length)) fail("it cannot be read to its end");
+    if (!stream.read(head.data() + kGlbHeader, length)) reject("it cannot be read to its end");
     return head;
 }
 
 std::string read_head(const std::filesystem::path& path, bool binary) {
     if (binary) return read_glb_head(path);
     auto bytes = read_bytes(path);
-    if (!bytes) fail(bytes.error());
+    if (!bytes) reject(bytes.error());
     return *std::move(bytes);
 }
 

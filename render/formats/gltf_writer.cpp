@@ -4,7 +4,7 @@
 #include <map>
 #include <ostream>
 
-#include "gltf_buffer.hpp"
+#include "gltf_binary_chunk.hpp"
 #include "gltf_material.hpp"
 #include "json_writer.hpp"
 #include "picture_writer.hpp"
@@ -212,7 +212,7 @@ private:
         if (mesh_list_.empty()) return;
         json_.open_array("meshes");
         for (const auto& [geometry, material] : mesh_list_) {
-            const GltfBuffer::Accessors& accessors = buffer_.accessors_of(*geometry);
+            const GltfBinaryChunk::Accessors& accessors = buffer_.accessors_of(*geometry);
             json_.open_object().open_array("primitives").open_object().open_object("attributes");
             json_.number(accessors.positions, "POSITION");
             if (accessors.normals != kNone) json_.number(accessors.normals, "NORMAL");
@@ -278,7 +278,7 @@ private:
     std::map<Index, int> mesh_of_node_, materials_, pictures_;  // places in the file
     std::vector<Index> material_list_;
     std::vector<GltfMaterial> converted_;  // for each of them
-    GltfBuffer buffer_;
+    GltfBinaryChunk buffer_;
     std::vector<const CameraData*> cameras_;
     std::vector<const LightData*> lights_;
     JsonWriter json_;

@@ -18,7 +18,7 @@ namespace {
 
 const std::string kStart = R"({"type":"record","id":1,"action":"start","name":"take-1"})";
 const std::string kStop = R"({"type":"record","id":2,"action":"stop"})";
-const std::string kNavigate = R"({"type":"navigate","id":3,"rotate":[5,0]})";
+const std::string kTurn = R"({"type":"navigate","id":3,"rotate":[5,0]})";
 
 PresentationOptions recording_to(const std::filesystem::path& folder) {
     PresentationOptions options;
@@ -121,7 +121,7 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     bool accepted = false;
     {
         const FullDisk full(size + 10);
-        accepted = stage.say("a", kNavigate);
+        accepted = stage.say("a", kTurn);
     }
     CHECK(accepted);
     CHECK(stage.told().at(0)["type"] == "ok");
@@ -133,7 +133,7 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     CHECK(log->lines.empty());
     CHECK(log->cut.find("take-1.jsonl:2: ") != std::string::npos);
     CHECK(stage.refusal("a", kStop) == "failed");
-    CHECK(stage.refusal("a", kNavigate) == "");
+    CHECK(stage.refusal("a", kTurn) == "");
     CHECK(stage.refusal("a", R"({"type":"record","action":"start","name":"take-2"})") == "");
     CHECK(stage.state()["recording"]["name"] == "take-2");
 }
@@ -149,7 +149,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
     int said = 0;
     while (stage.state().contains("recording") && said < 100'000) {
         ++said;
-        if (!stage.say("a", kNavigate)) return 2;  // nobody is refused for it
+        if (!stage.say("a", kTurn)) return 2;  // nobody is refused for it
     }
     if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
         return 3;
@@ -157,7 +157,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
     if (!log) return 4;
     // All but what did not fit.
     if (log->lines.size() + 1 != static_cast<std::size_t>(said)) return 5;
-    return stage.say("a", kNavigate) ? 0 : 6;
+    return stage.say("a", kTurn) ? 0 : 6;
 }
 
 TEST_CASE("a disk that is full in truth") {
@@ -213,8 +213,8 @@ TEST_CASE("a log has what was accepted, who came and went, and nothing that was 
     stage.at(2s);
     stage.say("a", kStart);
     stage.at(2001500us);
-    stage.say("a", kNavigate);
-    stage.say("b", kNavigate);                                // not in control
+    stage.say("a", kTurn);
+    stage.say("b", kTurn);                                    // not in control
     stage.say("a", R"({"type":"fit","node":99})");            // unknown
     stage.say("b", R"({"type":"pick","id":8,"x":1,"y":1})");  // steers nothing, but counts
     stage.at(2500ms);
@@ -223,7 +223,7 @@ TEST_CASE("a log has what was accepted, who came and went, and nothing that was 
     stage.presentation.remember(17);
     stage.presentation.show(other_scene(), stage.now);
     stage.say("a", kStop);
-    stage.say("a", kNavigate);
+    stage.say("a", kTurn);
 
     std::istringstream text(folder.read("take-1.jsonl"));
     std::vector<json> lines;

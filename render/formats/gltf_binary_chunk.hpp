@@ -13,7 +13,7 @@ namespace vrut {
 
 /// The binary chunk of a GLB file: geometries, each once, and pictures behind them; one buffer view for each
 /// array and picture, and one accessor for each array, in the order of the bytes.
-class GltfBuffer {
+class GltfBinaryChunk {
 public:
     /// Places of a geometry's accessors; kNone for arrays that it lacks.
     struct Accessors {

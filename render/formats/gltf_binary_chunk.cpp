@@ -1,4 +1,4 @@
-#include "gltf_buffer.hpp"
+#include "gltf_binary_chunk.hpp"
 
 #include <bit>
 #include <ostream>
@@ -9,8 +9,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
-constexpr int kFloat = 5126, kUnsigned = 5125;      // of an accessor's components
-constexpr int kVertices = 34962, kIndices = 34963;  // what a buffer view is for
+constexpr int kFloatComponent = 5126, kUnsignedComponent = 5125;  // of an accessor's components
+constexpr int kVertices = 34962, kIndices = 34963;                // what a buffer view is for
 
 std::uint64_t aligned(std::uint64_t size) { return (size + 3) / 4 * 4; }
 
@@ -24,12 +24,12 @@ public:
 
     void add(const Geometry& geometry) {
         const std::size_t count = geometry.positions.size(), corners = geometry.triangles.size() * 3;
-        open_accessor(kFloat, "VEC3", count, count * 12, kVertices);
+        open_accessor(kFloatComponent, "VEC3", count, count * 12, kVertices);
         write_range(geometry);
         json_.close();
-        if (!geometry.normals.empty()) add_array(kFloat, "VEC3", count, count * 12, kVertices);
-        if (!geometry.texcoords.empty()) add_array(kFloat, "VEC2", count, count * 8, kVertices);
-        add_array(kUnsigned, "SCALAR", corners, corners * 4, kIndices);
+        if (!geometry.normals.empty()) add_array(kFloatComponent, "VEC3", count, count * 12, kVertices);
+        if (!geometry.texcoords.empty()) add_array(kFloatComponent, "VEC2", count, count * 8, kVertices);
+        add_array(kUnsignedComponent, "SCALAR", corners, corners * 4, kIndices);
     }
 
     JsonWriter& open_view(std::size_t bytes) {
@@ -97,7 +97,7 @@ void write_geometry(const Geometry& geometry, std::ostream& out) {
 
 }  // namespace
 
-bool GltfBuffer::add(const Geometry& geometry) {
+bool GltfBinaryChunk::add(const Geometry& geometry) {
     const auto [found, is_new] = accessors_.emplace(&geometry, Accessors{});
     if (!is_new) return false;
     geometries_.push_back(&geometry);
@@ -108,7 +108,7 @@ bool GltfBuffer::add(const Geometry& geometry) {
     return true;
 }
 
-std::uint64_t GltfBuffer::describe(JsonWriter& json) const {
+std::uint64_t GltfBinaryChunk::describe(JsonWriter& json) const {
     if (geometries_.empty()) return 0;  // then there are no pictures either
     Description description(json);
     for (const Geometry* const geometry : geometries_) description.add(*geometry);
@@ -116,7 +116,7 @@ std::uint64_t GltfBuffer::describe(JsonWriter& json) const {
     return description.close();
 }
 
-void GltfBuffer::write(std::ostream& out, const WriteProgress& progress) const {
+void GltfBinaryChunk::write(std::ostream& out, const WriteProgress& progress) const {
     std::size_t done = 0;
     for (const Geometry* const geometry : geometries_) {
         write_geometry(*geometry, out);
