@@ -1,2 +1,3 @@
+// The parts of Asio and Beast that are no templates (their "separate compilation").
 #include <boost/asio/impl/src.hpp>
 #include <boost/beast/src.hpp>

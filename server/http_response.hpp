@@ -13,7 +13,7 @@ struct HttpResponse {
     std::shared_ptr<const std::string> body{};  ///< null: none, and no length is said
     std::string fields{};                       ///< more of them, each with its CR LF
     std::string_view cache_control = "no-cache";
-    bool is_document = true;  ///< a browser may show it as one: the fields that bind documents go with it
+    bool is_document = true;  ///< a browser may show it as one: the Content-Security-Policy is sent with it
 };
 
 HttpResponse text_response(boost::beast::http::status status, std::string text);

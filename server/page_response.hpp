@@ -8,9 +8,9 @@
 
 namespace vrut {
 
-/// The file of the page at `path`, in the content coding that `request` accepts, or 304 where the browser has
-/// it; none if the page has no such file. What lies in page_folder() may be kept for good, the rest is asked
-/// for again.
+/// Returns the file of the page at `path`, compressed if `request` accepts gzip; 304 if its If-None-Match
+/// names the file; none if the page has no such file. Browsers may keep files of page_folder() for good, and
+/// revalidate the others.
 std::optional<HttpResponse> page_response(const HttpRequest& request, std::string_view path);
 
 }  // namespace vrut
