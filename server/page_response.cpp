@@ -2,8 +2,9 @@
 
 #include <boost/beast/core/string.hpp>
 #include <boost/beast/http/rfc7230.hpp>
-#include <charconv>
 #include <map>
+#include <memory>
+#include <string>
 
 #include "page_files.hpp"
 
@@ -67,7 +68,8 @@ std::optional<HttpResponse> page_response(const HttpRequest& request, std::strin
     std::string_view name = path.substr(by_content ? page_folder().size() : 1);
     if (path == "/") name = "index.html";
     const ServedFile* const file = find_file(name);
-    if (!file) return std::nullopt;
+    // Its references start from the root.
+    if (!file || (by_content && name == "index.html")) return std::nullopt;
 
     const bool compressed = file->gzip.body && accepts_gzip(request);
     const Variant& chosen = compressed ? file->gzip : file->identity;

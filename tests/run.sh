@@ -116,7 +116,7 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
     local -A queued=()  # what several programs compile is looked at once
     cmake --preset release -B build/tidy -DVRUT_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >build/tidy.configure.log
     mkdir -p "$stamps"
-    header=$(sources hpp | xargs ls -t | head -n 1 || true)
+    header=$(sources hpp | xargs ls -t | sed -n 1p)
     # shellcheck disable=SC2016
     sed -nE 's/.*"file": "(.*)".*/\1/p' build/tidy/compile_commands.json |
         while read -r file; do

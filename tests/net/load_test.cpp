@@ -100,7 +100,7 @@ TEST_CASE("handshakes and hellos that come a byte each half second end at their 
     MESSAGE("cut after " << handshakes_s << " s, without hello after " << hellos_s << " s; the others' p99 "
                          << alone_ms << " ms before, " << audience.percentile(0.99) << " ms meanwhile");
     CHECK(handshakes_s < (kMemoryTells ? 2 : 4));
-    CHECK(hellos_s < 6);  // after 2 s they are told why, and have 3 to say goodbye
+    CHECK(hellos_s < 6);  // after 2 s the server sends an error, then waits 3 s for the goodbye
     CHECK(audience.seen() > 100);
     Swarm(server.port()).join("view");
 }

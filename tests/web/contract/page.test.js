@@ -92,6 +92,8 @@ test('a reload asks for the page alone, and is sent nothing', async () => {
     }
   }
   assert.equal((await get('page-0123456789abcdef/main.js')).status, 404);
+  const [folder] = /page-[0-9a-f]{16}\//.exec(index.text);
+  assert.equal((await get(`${folder}index.html`)).status, 404, 'its references start from the root');
 });
 
 test('who does not accept gzip gets the same bytes as they are', async () => {
