@@ -24,6 +24,8 @@ namespace vrut::stability {
 namespace {
 
 using namespace std::chrono_literals;
+using test_support::LinkQuality;
+using test_support::SlowLink;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 using Seconds = std::chrono::duration<double>;
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
+import { SlowLink } from '../../support/slow-link.js';
 import { Server } from './program.js';
-import { SlowLink } from './slow-link.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
