@@ -1,6 +1,7 @@
 // Studies of input that comes faster than pictures can.
 #include <cmath>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <thread>
 
@@ -49,17 +50,18 @@ public:
         engine_.mailbox().push(ClientSaid{kClient, std::move(message), Clock::now()});
     }
 
-    /// How long after `input` a picture came that shows it, in ms; kPatience where none does.
+    /// How long after `input` a picture came that shows it, in ms; kNothing where none does.
     double lag_of(Clock::time_point input) {
         std::unique_lock lock(mutex_);
-        arrived_.wait_until(lock, input + kPatience, [&] { return shown_ && *shown_ >= input; });
+        if (!arrived_.wait_until(lock, input + kPatience, [&] { return shown_ && *shown_ >= input; }))
+            return kNothing;
         return std::chrono::duration<double, std::milli>(Clock::now() - input).count();
     }
 
     /// Of the newest picture.
-    glm::dvec3 eye() {
+    protocol::FrameHeader header() {
         const std::lock_guard lock(mutex_);
-        return eye_;
+        return header_;
     }
     int refused() {
         const std::lock_guard lock(mutex_);
@@ -78,7 +80,7 @@ private:
         {
             const std::lock_guard lock(mutex_);
             shown_ = picture.newest_input;
-            eye_ = picture.header.camera.pose.eye;
+            header_ = picture.header;
         }
         arrived_.notify_one();
     }
@@ -87,15 +89,17 @@ private:
     std::mutex mutex_;
     std::condition_variable arrived_;
     std::optional<Clock::time_point> shown_;
-    glm::dvec3 eye_{0};
+    protocol::FrameHeader header_;
     int refused_ = 0;
     Metrics metrics_;
     Engine engine_;  // last: its threads use all of the above
 };
 
-/// The lag of the last of `rate` inputs a second that came for half a second.
+/// The lag of the last of `rate` inputs a second that came for half a second; kNothing where its picture does
+/// not show what `is_shown` asks for.
 template <class Input>
-double lag_after_burst(double rate, const Input& input) {
+double lag_after_burst(double rate, const Input& input,
+                       const std::function<bool(const protocol::FrameHeader&)>& is_shown) {
     constexpr std::chrono::milliseconds kBurst{500};
     Room room;
     const Clock::time_point start = Clock::now();
@@ -106,13 +110,16 @@ double lag_after_burst(double rate, const Input& input) {
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
     room.say(input(-1));
-    return room.lag_of(Clock::now() - std::chrono::milliseconds(1));
+    const double lag = room.lag_of(Clock::now() - std::chrono::milliseconds(1));
+    return is_shown(room.header()) ? lag : kNothing;
 }
 
-/// Where each input is drawn, one after the other, what has not been drawn when the burst ends is waited for.
-double lag_of_queue(double rate) {
-    const double ms = static_cast<double>(kPicture.count());
-    return std::max(ms, 500 * (rate * ms / 1000 - 1) + ms);
+glm::dvec3 eye_at_start() {
+    Room room;
+    const Clock::time_point now = Clock::now();
+    room.say(protocol::Resize{200, 150, 1});
+    room.lag_of(now);
+    return room.header().camera.pose.eye;
 }
 
 constexpr int kTurns = 200;
@@ -120,22 +127,23 @@ constexpr int kTurns = 200;
 /// Whether turn `i` is sent once more, where that happens to so many percent.
 bool comes_again(int i, double percent) { return i * 37 % 100 < percent; }
 
-/// Turns of a degree each, of which so many percent come again: with the same id, or with one before it.
+/// The eye, and how many messages were refused, after `turns` turns of a degree each and one more, of which
+/// so many percent come again: with the same id, or with one before it.
 struct Turned {
     glm::dvec3 eye;
     int refused = 0;
 };
-Turned turned_with_repeats(double percent) {
+Turned turned_with_repeats(int turns, double percent) {
     Room room;
     const protocol::Navigate turn{{1, 0}};
-    for (int i = 1; i <= kTurns; ++i) {
+    for (int i = 1; i <= turns; ++i) {
         room.say(turn, 2 * i);
         if (comes_again(i, percent)) room.say(turn, 2 * i - i % 2);
     }
     const Clock::time_point last = Clock::now();
-    room.say(turn, 2 * kTurns + 2);
+    room.say(turn, 2 * turns + 2);
     room.lag_of(last);
-    return {room.eye(), room.refused()};
+    return {room.header().camera.pose.eye, room.refused()};
 }
 
 }  // namespace
@@ -144,23 +152,22 @@ Study repeated_ids(const Laboratory& laboratory) {
     Study study{"ids", "Messages that come twice, or late", "messages that come again, in percent",
                 "degrees turned too far, and repeats nobody is told of"};
     study.bound = 1e-6;
-    study.limit = 1;
-    study.method.title = "each turns the view when it comes (computed)";
-    study.successor = {"ids must rise"};
-    study.takes_over =
+    study.method.title = "ids must rise";
+    study.explanation =
         "A message whose id is not above all of its client's before is refused in a sentence, and nothing "
         "changes.";
     study.cost = "A message that was overtaken is lost, which its sender is told.";
-    const glm::dvec3 once = turned_with_repeats(0).eye;
+    const glm::dvec3 begin = turned_with_repeats(0, 0).eye, once = turned_with_repeats(kTurns, 0).eye;
+    const double radius = glm::length(glm::dvec2(once.x, once.z));
+    const bool turns = glm::distance(begin, once) > radius;  // 200 degrees apart
     for (const double percent : laboratory.chosen({1, 5, 10, 30, 60, 100})) {
         int repeats = 0;
         for (int i = 1; i <= kTurns; ++i) repeats += comes_again(i, percent);
-        const Turned turned = turned_with_repeats(percent);
+        const Turned turned = turned_with_repeats(kTurns, percent);
         // By the chord, which is exact where nothing differs.
-        const double radius = glm::length(glm::dvec2(once.x, once.z));
         const double degrees = glm::degrees(glm::distance(once, turned.eye) / radius);
-        study.method.points.push_back({percent, 1.0 * repeats});
-        study.successor->points.push_back({percent, degrees + std::abs(repeats - turned.refused)});
+        study.method.points.push_back(
+            {percent, turns ? degrees + std::abs(repeats - turned.refused) : kNothing});
     }
     return study;
 }
@@ -169,27 +176,26 @@ Study bursts_of_moves(const Laboratory& laboratory) {
     Study study{"bursts", "Bursts of moves", "moves a second, for half a second",
                 "ms from the last move to its picture"};
     study.bound = 300;
-    study.limit = 1000;
-    study.method.title = "a picture for each (computed)";
-    study.successor = {"all that came since the last picture at once"};
-    study.takes_over =
+    study.method.title = "all that came since the last picture at once";
+    study.explanation =
         "Before each picture all moves that have come are applied, neighbours of one pointer as one; what "
-        "waits "
-        "for a client is replaced, never queued.";
+        "waits for a client is replaced, never queued. A picture takes 15 ms here.";
     study.cost = "Moves between two pictures are not seen.";
-    for (const double rate : laboratory.chosen({10, 30, 60, 1000, 3000, 10'000})) {
-        study.method.points.push_back({rate, lag_of_queue(rate)});
-        study.successor->points.push_back({rate, lag_after_burst(rate, [](int i) {
-                                               protocol::Pointer pointer;
-                                               pointer.event = i == 0 ? protocol::Pointer::Event::down
-                                                                      : protocol::Pointer::Event::move;
-                                               pointer.button = i == 0 ? 0 : -1;
-                                               pointer.buttons = 1;
-                                               pointer.x = 300 + 200 * std::sin(0.01 * i);
-                                               pointer.y = 200 + (i < 0 ? 50 : 0);
-                                               return pointer;
-                                           })});
-    }
+    const auto move = [](int i) {
+        protocol::Pointer pointer;
+        pointer.event = i == 0 ? protocol::Pointer::Event::down : protocol::Pointer::Event::move;
+        pointer.button = i == 0 ? 0 : -1;
+        pointer.buttons = 1;
+        pointer.x = 300 + 200 * std::sin(0.01 * i);
+        pointer.y = 200 + (i < 0 ? 50 : 0);
+        return pointer;
+    };
+    const glm::dvec3 begin = eye_at_start();
+    const auto has_turned = [&](const protocol::FrameHeader& header) {
+        return header.camera.pose.eye != begin;
+    };
+    for (const double rate : laboratory.chosen({10, 30, 60, 1000, 3000, 10'000}))
+        study.method.points.push_back({rate, lag_after_burst(rate, move, has_turned)});
     return study;
 }
 
@@ -197,18 +203,20 @@ Study storms_of_sizes(const Laboratory& laboratory) {
     Study study{"resizes", "Storms of resizes", "sizes a second, for half a second",
                 "ms from the last size to its picture"};
     study.bound = 300;
-    study.limit = 300;
-    study.method.title = "a picture for each (computed)";
-    study.successor = {"the newest size when a picture begins"};
-    study.takes_over = "A size is a wish that holds for the next picture; those between are never drawn.";
+    study.method.title = "the newest size when a picture begins";
+    study.explanation =
+        "A size is a wish that holds for the next picture; those between are never drawn. A picture takes 15 "
+        "ms here.";
     study.cost = "Buffers are made anew for each picture of another size.";
-    for (const double rate : laboratory.chosen({10, 30, 60, 100, 300, 1000})) {
-        study.method.points.push_back({rate, lag_of_queue(rate)});
-        study.successor->points.push_back(
-            {rate, lag_after_burst(rate, [](int i) {
-                 return protocol::Resize{200.0 + i % 40, i < 0 ? 333.0 : 150.0 + i % 30, 1};
-             })});
-    }
+    constexpr double kLastHeight = 333;
+    const auto resize = [](int i) {
+        return protocol::Resize{200.0 + i % 40, i < 0 ? kLastHeight : 150.0 + i % 30, 1};
+    };
+    const auto has_last_size = [](const protocol::FrameHeader& header) {
+        return header.view.height == kLastHeight;
+    };
+    for (const double rate : laboratory.chosen({10, 30, 60, 100, 300, 1000}))
+        study.method.points.push_back({rate, lag_after_burst(rate, resize, has_last_size)});
     return study;
 }
 

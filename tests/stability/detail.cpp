@@ -58,8 +58,8 @@ Study outlines_of_levels(const Laboratory& laboratory) {
                 "triangles of the part / triangles left", "how far the outline moves / error told"};
     study.bound = 1;
     study.method.title = "the error told with each level";
-    study.takes_over =
-        "Nothing needs to: how far the collapses have moved the surface is measured at vertices, edges and "
+    study.explanation =
+        "How far the collapses have moved the surface is measured at vertices, edges and "
         "triangles, from either surface to the other, and told with a quarter more.";
     study.cost = "Part of the time that levels take to make, on a thread that gives way.";
     Geometry whole = bumpy_ball(24);
@@ -81,6 +81,7 @@ Study outlines_of_levels(const Laboratory& laboratory) {
             const auto before = outline_of(drawn(laboratory, view));
             view.scene = fewer;
             const auto after = outline_of(drawn(laboratory, view));
+            if (before.empty() || after.empty()) most = kNothing;
             most = std::max({most, furthest(before, after) / told, furthest(after, before) / told});
         }
         const double reduction =
@@ -96,10 +97,9 @@ Study popping_levels(const Laboratory& laboratory) {
     study.bound = 1;
     study.limit = 4;
     study.method.title = "from each level to the next, at once";
-    study.takes_over =
+    study.explanation =
         "While things move, the built-in levels of accuracy allow two pixels at most; at rest every triangle "
-        "is "
-        "drawn.";
+        "is drawn.";
     study.cost = "Where fewer pixels are allowed, more triangles are drawn.";
     Geometry whole = bumpy_ball(48);
     whole.normals.assign(whole.positions.size(), glm::vec3(0));
@@ -111,7 +111,7 @@ Study popping_levels(const Laboratory& laboratory) {
     const auto scene = scene_of({{1, whole, material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30)}});
     const auto levels = chart::detail_levels_of(scene);
     for (const double pixels : laboratory.chosen({0.125, 0.25, 0.5, 1, 2, 4, 8, 16})) {
-        double most = 0;
+        std::vector<double> jumps;
         for (const DetailLevel& level : levels->of(0)) {
             if (level.number == 0) continue;
             // From where the level is just drawn.
@@ -123,13 +123,17 @@ Study popping_levels(const Laboratory& laboratory) {
                 view.detail = most_pixels(view_from_world(view.camera), whole.bounds, view) * level.error;
                 if (view.detail <= pixels) break;
             }
+            FrameStats fewer, more;
             view.detail *= 1.0001;
-            const Image after = drawn(laboratory, view);
+            const Image after = drawn(laboratory, view, &fewer);
             view.detail *= 0.999;
-            const Image before = drawn(laboratory, view);
-            most = std::max(most, percent_off(before, after));
+            const Image before = drawn(laboratory, view, &more);
+            // Of coarse levels so far away that the ball is less than a pixel nothing is to be seen.
+            if (fewer.triangles < more.triangles && !is_plain(after))
+                jumps.push_back(percent_off(before, after));
         }
-        study.method.points.push_back({pixels, most});
+        const auto most = std::max_element(jumps.begin(), jumps.end());
+        study.method.points.push_back({pixels, most == jumps.end() ? kNothing : *most});
     }
     return study;
 }

@@ -14,7 +14,7 @@ namespace {
 Image sent(const Image& image, int quality, bool subsampled) {
     JpegEncoder encoder;
     const auto file = encoder.encode(image, quality, subsampled);
-    return *decode_picture({reinterpret_cast<const char*>(file.data()), file.size()});
+    return decode_picture({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
 }
 
 template <class Color>
@@ -39,13 +39,11 @@ Study thin_saturated_lines(const Laboratory& laboratory) {
     Study study{"thin-lines", "Saturated lines in JPEG", "lines to a pixel (1 / width)",
                 "pixels off by more than 64 of 255, in percent"};
     study.bound = 10;
-    study.limit = 0.5;
-    study.method.title = "colour at half the resolution (4:2:0)";
-    study.successor = {"colour in full (4:4:4)"};
-    study.takes_over =
+    study.baseline.title = "colour at half the resolution (4:2:0)";
+    study.method.title = "colour in full (4:4:4)";
+    study.explanation =
         "Pictures with thin lines (wireframe, stylized, a selection's outline) and all pictures at rest are "
-        "sent "
-        "in full colour.";
+        "sent in full colour.";
     for (const double density : laboratory.chosen({0.0625, 0.125, 0.25, 0.5, 1})) {
         const int width = static_cast<int>(std::lround(1 / density));
         const Image lines = picture_of(256, 256, [&](int x, int y) {
@@ -55,8 +53,8 @@ Study thin_saturated_lines(const Laboratory& laboratory) {
         const auto error = [&](bool subsampled) {
             return 100 * difference(sent(lines, 85, subsampled), lines).share_above(64);
         };
-        study.method.points.push_back({density, error(true)});
-        study.successor->points.push_back({density, error(false)});
+        study.baseline.points.push_back({density, error(true)});
+        study.method.points.push_back({density, error(false)});
         JpegEncoder encoder;
         const auto bytes = [&](bool half) {
             return static_cast<double>(encoder.encode(lines, 85, half).size());
@@ -73,7 +71,7 @@ Study dark_gradients(const Laboratory& laboratory) {
     study.bound = 4;
     study.limit = 3.3;
     study.method.title = "as sent while things move";
-    study.takes_over = "At rest the picture comes at quality 90, which holds the bound.";
+    study.explanation = "At rest the picture comes at quality 90, which holds the bound.";
     study.cost = "Some 100 to 200 kB for the picture at rest, once.";
     const Image gradient = picture_of(256, 128, [](int x, int y) {
         return glm::dvec3(0.01, 0.012, 0.016) + 0.06 * glm::dvec3(x / 255.0, x / 255.0, y / 127.0);

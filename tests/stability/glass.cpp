@@ -38,14 +38,14 @@ std::vector<Part> panes_of(double count, const Make& make) {
 /// each pixel where they have no order.
 void compare_orders(const Laboratory& laboratory, Study& study, double count,
                     const std::vector<Part>& panes) {
-    study.method.title = "sorted, pane by pane";
-    study.successor->title = "in order at each pixel, where panes have none";
+    study.baseline.title = "sorted, pane by pane";
+    study.method.title = "in order at each pixel, where panes have none";
     View view = looking(scene_of(panes), {0.4, 0.7, 3.2});
-    const Image right = image_of(trace(view));
-    study.successor->points.push_back({count, percent_off(drawn(laboratory, view), right)});
+    const Image right = truth_of(view);
+    study.method.points.push_back({count, percent_off(drawn(laboratory, view), right)});
     const double exact_ms = time_of(laboratory, view);
     view.methods.transparency = Methods::Transparency::sorted;
-    study.method.points.push_back({count, percent_off(drawn(laboratory, view), right)});
+    study.baseline.points.push_back({count, percent_off(drawn(laboratory, view), right)});
     study.cost = "Here " + times_the_time(exact_ms, time_of(laboratory, view)) +
                  " for the most panes, which is all in the picture; nothing where panes have an order.";
 }
@@ -56,9 +56,7 @@ Study crossing_panes(const Laboratory& laboratory) {
     Study study{"panes", "Panes of glass that cross in one line", "panes",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.1;
-    study.limit = 2;
-    study.successor.emplace();
-    study.takes_over =
+    study.explanation =
         "Only the groups of panes that no order puts right are sorted at each pixel; all others are drawn "
         "from far to near.";
     for (const double count : laboratory.chosen({1, 2, 3, 4, 6, 8, 12, 16})) {
@@ -75,9 +73,7 @@ Study rings_of_panes(const Laboratory& laboratory) {
     Study study{"rings", "Panes of glass in a ring, each partly before the next", "panes",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.1;
-    study.limit = 3;
-    study.successor.emplace();
-    study.takes_over =
+    study.explanation =
         "Rings are found as strong components of what lies before what, and sorted at each pixel; what lies "
         "before or behind the ring is not.";
     for (const double count : laboratory.chosen({1, 2, 3, 4, 5, 6, 8, 12})) {
@@ -100,14 +96,10 @@ Study many_panes(const Laboratory& laboratory) {
     Study study{"many-panes", "Many small panes of glass, at all angles", "panes",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.5;  // each has edges, whose pixels may fall to either side
-    study.limit = 500;
-    study.successor.emplace();
-    study.takes_over =
+    study.explanation =
         "An order is looked for among a million pairs that overlap in the width of the screen. Where there "
-        "are "
-        "more, all glass is sorted at each pixel if no more than 64 panes lie over each other on average, "
-        "and "
-        "else drawn by its distance.";
+        "are more, all glass is sorted at each pixel if no more than 64 panes lie over each other on "
+        "average, and else drawn by its distance.";
     for (const double count : laboratory.chosen({10, 30, 100, 500, 1000, 2000, 4000})) {
         Noise noise;
         const auto panes = panes_of(count, [&](int i) {
@@ -121,44 +113,61 @@ Study many_panes(const Laboratory& laboratory) {
     return study;
 }
 
+namespace {
+
+/// Adds to the study how far panes are from the reference that lie closer and closer together, in any order
+/// in the file.
+void compare_close_panes(const Laboratory& laboratory, Study& study, bool nearer_is_higher) {
+    constexpr int kPanes = 5;
+    const auto panes = [&](double gap, bool higher) {
+        return panes_of(kPanes, [&](int i) {
+            return Part{
+                higher ? i + 1 : kPanes - i, quad(1), glass(color_of(i), 0.5),
+                turned_by(35, glm::normalize(glm::dvec3(1, 1, 0))) * moved_by({0.1 * i, 0.07 * i, gap * i})};
+        });
+    };
+    const auto view_of = [](const std::vector<Part>& parts) {
+        return looking(scene_of(parts), {0.4, 0.7, 5});
+    };
+    for (const double inverse : laboratory.chosen({1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9, 1e12, 1e18})) {
+        // Where no pixel shows the distance, it must not decide either.
+        const Image right = truth_of(view_of(panes(std::max(2 / inverse, 1e-9), true)));
+        std::vector<Part> parts = panes(2 / inverse, nearer_is_higher);
+        double worst = 0;
+        for (int i = 0; i < kPanes; ++i) {
+            std::rotate(parts.begin(), parts.begin() + 1, parts.end());
+            if (i == 2) std::swap(parts[1], parts[3]);
+            worst = std::max(worst, percent_off(drawn(laboratory, view_of(parts)), right));
+        }
+        study.method.points.push_back({inverse, worst});
+    }
+}
+
+}  // namespace
+
 Study panes_in_one_place(const Laboratory& laboratory) {
-    Study study{"equal-panes", "Panes of glass close together, in any order in the file",
+    Study study{"close-panes", "Panes of glass close together, in any order in the file",
                 "side of a pane / its distance to the next", "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.1;
     study.limit = 1e7;
     study.method.title = "by what lies before what";
-    study.successor = {"where the nearer pane has the higher id"};
-    study.takes_over =
-        "Panes closer than a millionth of their size count as one plane, and of those the higher id is in "
-        "front, wherever it stands in the file: who lays a film on glass gives it the higher id.";
+    study.explanation =
+        "Panes closer than a millionth of their size count as one plane, and of those the one with the "
+        "higher id is "
+        "in front, wherever it stands in the file. Here the lower id is the nearer one.";
     study.cost = "None: ids stay as they are in the file.";
-    constexpr int kPanes = 5;
-    for (const double inverse : laboratory.chosen({1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9, 1e12, 1e18})) {
-        const auto panes = [&](double gap, bool nearer_is_higher) {
-            return panes_of(kPanes, [&](int i) {
-                return Part{nearer_is_higher ? i + 1 : kPanes - i, quad(1), glass(color_of(i), 0.5),
-                            turned_by(35, glm::normalize(glm::dvec3(1, 1, 0))) *
-                                moved_by({0.1 * i, 0.07 * i, gap * i})};
-            });
-        };
-        const auto view_of = [](const std::vector<Part>& parts) {
-            return looking(scene_of(parts), {0.4, 0.7, 5});
-        };
-        // Where no pixel shows the distance, it must not decide either.
-        const Image right = image_of(trace(view_of(panes(std::max(2 / inverse, 1e-9), true))));
-        const auto most_off = [&](bool nearer_is_higher) {
-            std::vector<Part> parts = panes(2 / inverse, nearer_is_higher);
-            double worst = 0;
-            for (int i = 0; i < kPanes; ++i) {
-                std::rotate(parts.begin(), parts.begin() + 1, parts.end());
-                if (i == 2) std::swap(parts[1], parts[3]);
-                worst = std::max(worst, percent_off(drawn(laboratory, view_of(parts)), right));
-            }
-            return worst;
-        };
-        study.method.points.push_back({inverse, most_off(false)});
-        study.successor->points.push_back({inverse, most_off(true)});
-    }
+    compare_close_panes(laboratory, study, false);
+    return study;
+}
+
+Study panes_by_id(const Laboratory& laboratory) {
+    Study study{"panes-by-id", "Panes of glass close together, the nearer one with the higher id",
+                "side of a pane / its distance to the next", "pixels off by more than 8 of 255, in percent"};
+    study.bound = 0.1;
+    study.method.title = "in one plane by their ids";
+    study.explanation = "Who lays a film on glass gives it the higher id.";
+    study.cost = "None: ids stay as they are in the file.";
+    compare_close_panes(laboratory, study, true);
     return study;
 }
 
@@ -166,13 +175,11 @@ Study nearly_opaque_panes(const Laboratory& laboratory) {
     Study study{"alpha", "Twelve panes of glass, from faint to nearly opaque", "alpha / (1 - alpha)",
                 "largest error of a channel, of 255"};
     study.bound = 1;
-    study.limit = 0.1;
-    study.method.title = "weighted means, which need no order (computed)";
-    study.successor = {"one over the other, in 16 bits"};
-    study.takes_over =
+    study.baseline.title = "weighted means, which need no order (computed)";
+    study.method.title = "one over the other, in 16 bits";
+    study.explanation =
         "Layers are composited in their order, into 16 bits a channel: of what lies behind them the panes "
-        "let "
-        "1 - alpha through, each. Behind alpha 0.9 two more layers can change a byte, above 0.998 none.";
+        "let 1 - alpha through, each. Behind alpha 0.9 two more layers can change a byte, above 0.998 none.";
     study.cost =
         "Colours take twice the bytes on the GPU in pictures with glass, and an order has to be found.";
     constexpr int kPanes = 12;
@@ -202,8 +209,8 @@ Study nearly_opaque_panes(const Laboratory& laboratory) {
                 worst_of_mean = std::max({worst_of_mean, off_of_mean.x, off_of_mean.y, off_of_mean.z});
             }
         }
-        study.method.points.push_back({odds, worst_of_mean});
-        study.successor->points.push_back({odds, worst});
+        study.baseline.points.push_back({odds, worst_of_mean});
+        study.method.points.push_back({odds, worst});
     }
     return study;
 }

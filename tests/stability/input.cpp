@@ -28,10 +28,9 @@ Study moves_lost(const Laboratory& laboratory) {
     Study study{"lost-moves", "Moves of a drag that are merged or lost", "moves lost, in percent",
                 "where the eye ends, error / its distance"};
     study.bound = 0;
-    study.limit = 1;
-    study.method.title = "each move turns on from the one before";
-    study.successor = {"from the drag's start and where the pointer is"};
-    study.takes_over =
+    study.baseline.title = "each move turns on from the one before";
+    study.method.title = "from the drag's start and where the pointer is";
+    study.explanation =
         "A drag is a function of the camera at its start and of the pointers' places: moves may be merged or "
         "lost, and the last one alone decides.";
     study.cost = "None: one move is computed where several came.";
@@ -59,13 +58,14 @@ Study moves_lost(const Laboratory& laboratory) {
         }
         return camera.eye;
     };
+    const bool turns = glm::distance(drag(0, false), start.eye) > 0.01 * focus_distance(start);
     for (const double percent : laboratory.chosen({1, 10, 30, 50, 70, 90, 99})) {
         const auto off = [&](bool on_from_before) {
             return glm::distance(drag(percent, on_from_before), drag(0, on_from_before)) /
                    focus_distance(start);
         };
-        study.method.points.push_back({percent, off(true)});
-        study.successor->points.push_back({percent, off(false)});
+        study.baseline.points.push_back({percent, off(true)});
+        study.method.points.push_back({percent, turns ? off(false) : kNothing});
     }
     return study;
 }
@@ -74,10 +74,9 @@ Study releases_lost(const Laboratory& laboratory) {
     Study study{"lost-releases", "Releases of a finger that are lost", "pixels to where it is pressed next",
                 "degrees that the view turns, and fingers left pressed"};
     study.bound = 1e-9;
-    study.limit = 1;
-    study.method.title = "the next press goes on with the drag";
-    study.successor = {"a press begins anew, and who leaves is lifted"};
-    study.takes_over =
+    study.baseline.title = "the next press goes on with the drag";
+    study.method.title = "a press begins anew, and who leaves is lifted";
+    study.explanation =
         "A second press of a pressed pointer begins a new drag where it is; a client that leaves has its "
         "pointers lifted; the camera stays where it is.";
     study.cost = "None.";
@@ -113,9 +112,12 @@ Study releases_lost(const Laboratory& laboratory) {
         other.client = "c2";
         alone = fresh.pointer(other, alone, context);
         const Camera swept = rotated(camera, pixels * 180 / context.height, 0, false);
-        study.method.points.push_back({pixels, degrees(swept, camera)});
-        study.successor->points.push_back(
-            {pixels, degrees(pressed_again, camera) + degrees(after, alone) + gestures.is_pressed("c1", 1)});
+        study.baseline.points.push_back({pixels, degrees(swept, camera)});
+        const bool turns = camera.eye != start.eye && after.eye != pressed_again.eye;
+        study.method.points.push_back(
+            {pixels,
+             turns ? degrees(pressed_again, camera) + degrees(after, alone) + gestures.is_pressed("c1", 1)
+                   : kNothing});
     }
     return study;
 }
@@ -126,7 +128,7 @@ Study jittering_taps(const Laboratory& laboratory) {
     study.bound = 5;
     study.limit = 7;
     study.method.title = "10 pixels from press to release, 24 between the two";
-    study.takes_over =
+    study.explanation =
         "Beyond, it is a drag, which the hand sees at once and can take back; nothing is selected.";
     study.cost = "Two targets less than 24 pixels apart cannot be tapped one after the other within 0.4 s.";
     constexpr int kTaps = 300;
@@ -154,10 +156,8 @@ Study jumping_clocks(const Laboratory& laboratory) {
     Study study{"clocks", "A client's clock that jumps", "jump between two events, in ms",
                 "error of the time between them, in ms"};
     study.bound = 1000;
-    study.limit = 3000;
-    study.method.title = "time stamps as they come";
-    study.successor = {"time stamps, where the arrival agrees within a second"};
-    study.takes_over =
+    study.method.title = "time stamps, where the arrival agrees within a second";
+    study.explanation =
         "Where a time stamp falls, is absent, or departs from the arrival by more than a second, the arrival "
         "counts.";
     study.cost = "A link that holds an event up for more than a second may split a double click.";
@@ -165,14 +165,14 @@ Study jumping_clocks(const Laboratory& laboratory) {
         double worst = 0;
         for (const double direction : {1.0, -1.0}) {
             EventClock clock;
-            constexpr double kBetween = 200;
-            clock.time({1e6, std::chrono::milliseconds(50)});
-            const auto second = clock.time(
-                {1e6 + kBetween + direction * jump, std::chrono::milliseconds(50 + std::int64_t{200})});
-            worst = std::max(worst, std::abs(static_cast<double>(second.count()) / 1000 - kBetween));
+            constexpr std::chrono::milliseconds kFirst{50}, kBetween{2000};
+            const auto first = clock.time({1e6, kFirst});
+            const auto second = clock.time({1e6 + kBetween.count() + direction * jump, kFirst + kBetween});
+            worst = std::max(
+                worst,
+                std::abs(std::chrono::duration<double, std::milli>(second - first - kBetween).count()));
         }
-        study.method.points.push_back({jump, jump});
-        study.successor->points.push_back({jump, worst});
+        study.method.points.push_back({jump, worst});
     }
     return study;
 }

@@ -5,13 +5,10 @@
 #include <cmath>
 #include <functional>
 #include <future>
-#include <limits>
 #include <map>
 #include <memory>
 #include <thread>
 
-#include "level_choice.hpp"
-#include "level_store.hpp"
 #include "pacing.hpp"
 #include "page_client.hpp"
 #include "server.hpp"
@@ -118,18 +115,21 @@ public:
         while (page_->shown().size() < pictures && Clock::now() < end) context_.run_for(10ms);
     }
 
-    /// The longest that a move had to wait for its picture, of those sent from `begin` on, in ms; those that
-    /// none shows yet have waited until now.
-    double longest_lag(Clock::time_point begin) const {
-        double longest = 0;
-        auto picture = page_->shown().begin();
-        for (const PageClient::Move& move : page_->moves()) {
-            if (move.sent < begin) continue;
-            while (picture != page_->shown().end() && picture->handled < move.id) ++picture;
-            const Clock::time_point seen = picture == page_->shown().end() ? Clock::now() : picture->at;
-            longest = std::max(longest, Milliseconds(seen - move.sent).count());
-        }
-        return longest;
+    /// The longest that a move of a drag of so many seconds waits for its picture, in ms; kNothing where
+    /// there is no move, one has no picture after `patience` more seconds, or the connection was lost.
+    double longest_lag(double seconds, double patience) {
+        const int connections = page_->connections();
+        const Clock::time_point begin = Clock::now();
+        go_on(seconds);
+        const Clock::time_point end = Clock::now();
+        const std::vector<PageClient::Move> all = page_->moves();
+        std::vector<PageClient::Move> moves;
+        for (const PageClient::Move& move : all)
+            if (move.sent >= begin && move.sent <= end) moves.push_back(move);
+        if (moves.empty()) return kNothing;
+        while (handled() < moves.back().id && Clock::now() < end + Seconds(patience)) context_.run_for(10ms);
+        const bool arrived = handled() >= moves.back().id && page_->connections() == connections;
+        return arrived ? longest_lag(moves) : kNothing;
     }
 
 private:
@@ -140,6 +140,19 @@ private:
         return options;
     }
 
+    std::int64_t handled() const { return page_->shown().empty() ? 0 : page_->shown().back().handled; }
+
+    /// Of moves that pictures show.
+    double longest_lag(const std::vector<PageClient::Move>& moves) const {
+        double longest = 0;
+        auto picture = page_->shown().begin();
+        for (const PageClient::Move& move : moves) {
+            while (picture->handled < move.id) ++picture;
+            longest = std::max(longest, Milliseconds(picture->at - move.sent).count());
+        }
+        return longest;
+    }
+
     Server server_;
     std::thread thread_;
     boost::asio::io_context context_{1};
@@ -147,17 +160,11 @@ private:
     std::unique_ptr<PageClient> page_;
 };
 
-constexpr double kSmallest = 8400, kLargest = 117'000;  // bytes of a picture of the balls, with its header
-constexpr double kPicturesPerSecond = 20;
+constexpr double kSmallest = 8400;              // bytes of a picture of the balls, with its header
 constexpr double kLink = 1e7, kFastLink = 1e8;  // bit/s, of links that are not slow
+constexpr double kPatience = 10;                // s
 
 double milliseconds_of(double bytes, double bits_per_second) { return 8000 * bytes / bits_per_second; }
-
-/// Where `drag` seconds of pictures of full size, one for each move, are queued: how long the last one waits.
-double lag_of_queue(double drag, double bits_per_second) {
-    const double each = milliseconds_of(kLargest, bits_per_second);
-    return std::max(each, 1000 * drag * (kPicturesPerSecond * each / 1000 - 1));
-}
 
 /// Clients that come and go are no news here.
 struct Quiet {
@@ -187,35 +194,27 @@ const char* const kBalls = " The pictures are of shaded balls, in JPEG as large 
 
 Study slow_links(const Laboratory& laboratory) {
     const bool whole = laboratory.form == Form::whole;
-    const double drag = whole ? 30 : 0.5;  // s
     Study study{"slow-links", "Slow links", "seconds for a megabit, either way",
                 "longest ms from a move to its picture, less two small ones"};
     study.bound = 2000;
-    study.limit = whole ? 0.1 : 1;
-    study.method.title = "full pictures, each queued (computed)";
-    study.successor = {"small enough and few enough"};
-    study.takes_over =
+    study.method.title = "small enough and few enough";
+    study.explanation =
         std::string(
             "The first pictures of a drag are of the smallest level, and from there on the level "
             "holds the latency target if one can. Where a picture takes longer than half a second, "
             "one is on its way at a time; the news of the state wait for it, of which the newest "
-            "counts.") +
+            "counts. A drag takes 30 s.") +
         kBalls;
     study.cost =
         "Over a slow link the picture is a quarter as wide as the view while it moves, and sharp only when "
         "it has rested for as long as the sharp one takes to arrive.";
     const std::vector<double> points =
         whole ? std::vector{0.01, 0.1, 0.3, 1.0, 3.0, 10.0, 20.0, 50.0} : std::vector{0.01, 1.0};
-    for (const double x : points) {
-        const double two = 2 * milliseconds_of(kSmallest, 1e6 / x);
-        study.method.points.push_back({x, std::max(0.0, lag_of_queue(drag, 1e6 / x) - two)});
-    }
-    study.successor->points = measured(points, [&](double x) {
+    study.method.points = measured(points, [&](double x) {
+        const double small = milliseconds_of(kSmallest, 1e6 / x);
         Journey journey({1e6 / x / 8, 0ms});
-        journey.go_on_until(3, 10 * milliseconds_of(kSmallest, 1e6 / x) / 1000 + 1);
-        const Clock::time_point begin = Clock::now();
-        journey.go_on(drag);
-        return std::max(0.0, journey.longest_lag(begin) - 2 * milliseconds_of(kSmallest, 1e6 / x));
+        journey.go_on_until(3, 10 * small / 1000 + 1);
+        return std::max(0.0, journey.longest_lag(whole ? 30 : 0.5, kPatience) - 2 * small);
     });
     return study;
 }
@@ -226,20 +225,18 @@ Study long_links(const Laboratory& laboratory) {
                 "longest ms from a move to its picture, less two round trips"};
     study.bound = 500;
     study.method.title = "two pictures on their way";
-    study.takes_over = std::string(
-                           "Nothing needs to, at 10 Mbit/s: a move waits for a grant that comes back, at "
-                           "most a round trip, and is "
-                           "on its own way for another; the lag does not grow.") +
-                       kBalls;
+    study.explanation =
+        std::string(
+            "At 10 Mbit/s a move waits for a grant that comes back, at most a round trip, and is "
+            "on its own way for another; the lag does not grow.") +
+        kBalls;
     study.cost = "Two pictures come in a round trip, and no more.";
     study.method.points =
         measured(whole ? std::vector<double>{1, 10, 30, 100, 300, 1000, 2000} : std::vector<double>{1, 100},
                  [&](double ms) {
                      Journey journey({kLink / 8, std::chrono::milliseconds(std::llround(ms))});
                      journey.go_on_until(3, 1 + 10 * ms / 1000);
-                     const Clock::time_point begin = Clock::now();
-                     journey.go_on(whole ? 20 : 0.4);
-                     return std::max(0.0, journey.longest_lag(begin) - 4 * ms);
+                     return std::max(0.0, journey.longest_lag(whole ? 20 : 0.4, kPatience) - 4 * ms);
                  });
     return study;
 }
@@ -249,10 +246,8 @@ Study levels_of_long_links(const Laboratory& laboratory) {
     Study study{"long-link-levels", "Levels over long links", "ms of delay, either way",
                 "width of the view / of the picture while it moves, median"};
     study.bound = 2.1;  // half the width, and what rounding does
-    study.limit = 5;
-    study.method.title = "all the time to the grant counts (computed)";
-    study.successor = {"without the time of an empty message"};
-    study.takes_over =
+    study.method.title = "without the time of an empty message";
+    study.explanation =
         std::string(
             "When a client comes, a ping tells how long its way is. No level makes that shorter, so "
             "it does not count against the latency target of 50 ms. The link has 100 Mbit/s.") +
@@ -260,20 +255,7 @@ Study levels_of_long_links(const Laboratory& laboratory) {
     study.cost = "Pictures are better than the smallest, and take a little longer than they might.";
     const std::vector<double> points =
         whole ? std::vector<double>{1, 5, 30, 100, 300, 1000} : std::vector<double>{1, 5};
-    for (const double ms : points) {
-        LevelChoice choice(built_in_levels());
-        Clock::time_point now{1h};
-        std::size_t level = 0;
-        for (int i = 0; i < 300; ++i) {
-            const protocol::Level& row = choice.levels()[level];
-            const double client = 2 * ms + milliseconds_of(row.bytes, kFastLink);
-            now += std::chrono::milliseconds(std::lround(client) + 10);
-            choice.took(level, {10, client}, 1180 * 820 * row.quality.scale * row.quality.scale, now);
-            level = choice.choose({{1180, 820, 1}, {}, 50}, now);
-        }
-        study.method.points.push_back({ms, 1 / choice.levels()[level].quality.scale});
-    }
-    study.successor->points = measured(
+    study.method.points = measured(
         points,
         [&](double ms) {
             Journey journey({kFastLink / 8, std::chrono::milliseconds(std::llround(ms))});
@@ -282,7 +264,7 @@ Study levels_of_long_links(const Laboratory& laboratory) {
             const auto& shown = journey.page().shown();
             for (std::size_t i = shown.size() / 2; i < shown.size(); ++i)
                 if (shown[i].moving) widths.push_back(1 / shown[i].scale);
-            if (widths.empty()) return std::numeric_limits<double>::infinity();
+            if (widths.empty()) return kNothing;
             std::sort(widths.begin(), widths.end());
             return widths[widths.size() / 2];
         },
@@ -296,10 +278,8 @@ Study stalls(const Laboratory& laboratory) {
     Study study{"stalls", "Links that stand still", "seconds for which nothing leaves or arrives",
                 "ms from its end to the picture of a later move"};
     study.bound = 2000;
-    study.limit = whole ? 3 : 2.3;
-    study.method.title = "full pictures, each queued (computed)";
-    study.successor = {"two on their way; after 10 s a new connection"};
-    study.takes_over =
+    study.method.title = "two on their way; after 10 s a new connection";
+    study.explanation =
         std::string(
             "What waits for a client is replaced, not queued: at 10 Mbit/s two old pictures come, and then "
             "the newest. A connection that has taken nothing for 10 s is cut, and the page comes back.") +
@@ -307,11 +287,7 @@ Study stalls(const Laboratory& laboratory) {
     study.cost = "What happened meanwhile is not seen; who is cut loses control and whatever was pressed.";
     const std::vector<double> points =
         whole ? std::vector<double>{0.1, 0.3, 1, 3, 6, 10, 15} : std::vector<double>{0.3, 2.3};
-    for (const double x : points) {
-        const double bytes = kPicturesPerSecond * x * kLargest;
-        study.method.points.push_back({x, milliseconds_of(bytes, kLink)});
-    }
-    study.successor->points = measured(points, [&](double x) {
+    study.method.points = measured(points, [&](double x) {
         Deadlines deadlines;
         deadlines.stuck = std::chrono::milliseconds(std::llround(1000 * stuck));
         Journey journey({kLink / 8, 0ms}, deadlines);
@@ -320,13 +296,12 @@ Study stalls(const Laboratory& laboratory) {
         journey.link().stall_until(end);
         journey.go_on(x + (whole ? 2.5 : 0.6));
         const bool was_cut = journey.page().connections() > 1;
-        if (x < stuck ? was_cut : x >= stuck + 1.2 && !was_cut)
-            return std::numeric_limits<double>::infinity();
+        if (x < stuck ? was_cut : x >= stuck + 1.2 && !was_cut) return kNothing;
         for (const PageClient::Shown& picture : journey.page().shown())
             for (const PageClient::Move& move : journey.page().moves())
                 if (move.sent >= end && picture.at >= end && move.id <= picture.handled)
                     return Milliseconds(picture.at - end).count();
-        return std::numeric_limits<double>::infinity();
+        return kNothing;
     });
     return study;
 }

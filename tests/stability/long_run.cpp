@@ -77,7 +77,7 @@ Study long_runs(const Laboratory& laboratory) {
                 "processor time of a picture / of a renderer just made"};
     study.bound = 2;  // processor times vary by some 20 % of themselves; what slows goes on to
     study.method.title = "a scene that turns, drawn on and on";
-    study.takes_over = "Nothing needs to: a picture leaves nothing behind that the next one has to look at.";
+    study.explanation = "A picture leaves nothing behind that the next one has to look at.";
     study.cost = "None.";
     const Form form = laboratory.form;
     study.method.points = with_new_renderer(form, [form](Turning& turning) {
@@ -91,7 +91,7 @@ Study long_runs(const Laboratory& laboratory) {
                 fresh = std::min(fresh, with_new_renderer(form, least_of_next));
                 aged = std::min(aged, least_of_next(turning));
             }
-            points.push_back({pictures, aged / fresh});
+            points.push_back({pictures, is_plain(turning.image) ? kNothing : aged / fresh});
         }
         return points;
     });
@@ -102,22 +102,19 @@ Study memory_of_long_runs(const Laboratory& laboratory) {
     Study study{"long-run-memory", "Memory over many pictures", "pictures",
                 "megabytes that the process has grown by"};
     study.bound = 4;
-    study.limit = 100;
-    study.method.title = "each picture kept (computed)";
-    study.successor = {"as it is"};
-    study.takes_over =
+    study.method.title = "a scene that turns, drawn on and on";
+    study.explanation =
         "Buffers are of the view's size and made once; a picture is read into the one before it.";
     study.cost = "None.";
     Turning turning(laboratory);
     for (int i = 0; i < kWarmUp; ++i) turning.next();
     const double before = static_cast<double>(process_usage().resident_bytes);
-    const double each = static_cast<double>(turning.image.rgba.size()) / 1e6;
     int drawn = 0;
     for (const double pictures : pictures_of(laboratory.form)) {
         for (; drawn < pictures; ++drawn) turning.next();
         const double now = static_cast<double>(process_usage().resident_bytes);
-        study.method.points.push_back({pictures, pictures * each});
-        study.successor->points.push_back({pictures, std::max(0.0, now - before) / 1e6});
+        study.method.points.push_back(
+            {pictures, is_plain(turning.image) ? kNothing : std::max(0.0, now - before) / 1e6});
     }
     return study;
 }

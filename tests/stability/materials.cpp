@@ -59,11 +59,11 @@ void compare_normals(const Laboratory& laboratory, Study& study, double inverse,
     }
     if (turned) baked.geometry = turned_inside_out(baked.geometry);
     const View view = looking(scene_of({part}), eye);
-    const Image right = image_of(trace(view));
+    const Image right = truth_of(view);
     View inverted = view;
     inverted.scene = scene_of({baked});
-    study.method.points.push_back({inverse, percent_off(drawn(laboratory, inverted), right)});
-    study.successor->points.push_back({inverse, percent_off(drawn(laboratory, view), right)});
+    study.baseline.points.push_back({inverse, percent_off(drawn(laboratory, inverted), right)});
+    study.method.points.push_back({inverse, percent_off(drawn(laboratory, view), right)});
 }
 
 }  // namespace
@@ -71,13 +71,11 @@ void compare_normals(const Laboratory& laboratory, Study& study, double inverse,
 Study minified_textures(const Laboratory& laboratory) {
     Study study{"minified", "Textures seen small", "texels to a pixel", "largest error of a channel, of 255"};
     study.bound = 40;
-    study.limit = 2;
-    study.method.title = "the texel at the pixel's centre (computed)";
-    study.successor = {"levels of means, trilinear"};
-    study.takes_over =
+    study.baseline.title = "the texel at the pixel's centre (computed)";
+    study.method.title = "levels of means, trilinear";
+    study.explanation =
         "Each level is the mean of the texels that it covers, for pictures of any size; between two levels "
-        "the "
-        "picture is mixed.";
+        "the picture is mixed.";
     study.cost = "A third more memory for a texture.";
     constexpr int kTexels = 256;
     Texture checkers;
@@ -100,41 +98,57 @@ Study minified_textures(const Laboratory& laboratory) {
                 const double shown = image.rgba[static_cast<std::size_t>(4 * (y * kSide + x))];
                 worst = std::max(worst, std::abs(shown - mean));
             }
-        study.method.points.push_back({1.0 * texels, worst_of_nearest});
-        study.successor->points.push_back({1.0 * texels, worst});
+        study.baseline.points.push_back({1.0 * texels, worst_of_nearest});
+        study.method.points.push_back({1.0 * texels, worst});
     }
     return study;
 }
 
-Study odd_textures(const Laboratory& laboratory) {
+namespace {
+
+/// Adds to the study how far walls are from the reference with textures of several sizes, so many texels to a
+/// pixel.
+void compare_sizes(const Laboratory& laboratory, Study& study, double texels) {
     const int most = laboratory.renderer.max_size();
-    Study study{"odd-textures", "Textures of odd and of great sizes", "longer side of the picture, in texels",
-                "largest error of a channel, of 255"};
-    study.bound = 4;
-    study.limit = most + 1;
-    study.method.title = "seen near, two pixels to a texel";
-    study.successor = {"seen small, 2.5 texels to a pixel"};
-    study.takes_over =
-        "Sizes need not be powers of two, nor even. Of a picture larger than the driver takes the next level "
-        "is "
-        "the finest that is drawn, half as sharp: nothing is lost where two texels or more fall on a pixel.";
-    study.cost = "None: files with more than 16,384 texels along a side are refused when they are read.";
     const std::vector<glm::ivec2> sizes{{1, 1},     {3, 5},         {7, 1},       {1000, 3},
                                         {most, 16}, {most + 1, 16}, {2 * most, 5}};
     for (const double place : laboratory.chosen({0, 1, 2, 3, 4, 5, 6})) {
         const glm::ivec2 size = sizes[static_cast<std::size_t>(place)];
-        const auto error = [&](double texels) {
-            int worst = 0;
-            for (const Texture& texture : {grey_noise(size.x, size.y), grey_noise(size.y, size.x)}) {
-                const View view = wall_with(texture, texels);
-                worst = std::max(worst, difference(drawn(laboratory, view), image_of(trace(view))).maximum());
-            }
-            return 1.0 * worst;
-        };
-        const double longer = std::max(size.x, size.y);
-        study.method.points.push_back({longer, error(0.5)});
-        study.successor->points.push_back({longer, error(2.5)});
+        double worst = 0;
+        for (const Texture& texture : {grey_noise(size.x, size.y), grey_noise(size.y, size.x)}) {
+            const View view = wall_with(texture, texels);
+            worst = std::max(worst, largest_error(drawn(laboratory, view), truth_of(view)));
+        }
+        study.method.points.push_back({1.0 * std::max(size.x, size.y), worst});
     }
+}
+
+}  // namespace
+
+Study odd_textures(const Laboratory& laboratory) {
+    Study study{"odd-textures", "Textures of odd and of great sizes, seen near", "longer side, in texels",
+                "largest error of a channel, of 255"};
+    study.bound = 4;
+    study.limit = laboratory.renderer.max_size() + 1;
+    study.method.title = "two pixels to a texel";
+    study.explanation =
+        "Sizes need not be powers of two, nor even. Of a texture larger than the driver takes the next level "
+        "is "
+        "the finest that is drawn, half as sharp.";
+    study.cost = "None: files with more than 16,384 texels along a side are refused when they are read.";
+    compare_sizes(laboratory, study, 0.5);
+    return study;
+}
+
+Study small_odd_textures(const Laboratory& laboratory) {
+    Study study{"small-odd-textures", "Textures of odd and of great sizes, seen small",
+                "longer side, in texels", "largest error of a channel, of 255"};
+    study.bound = 4;
+    study.method.title = "2.5 texels to a pixel";
+    study.explanation =
+        "Where two texels or more fall on a pixel, nothing is lost of textures larger than the driver takes.";
+    study.cost = "None.";
+    compare_sizes(laboratory, study, 2.5);
     return study;
 }
 
@@ -142,10 +156,9 @@ Study small_matrices(const Laboratory& laboratory) {
     Study study{"normals", "Normals under matrices that shrink", "1 / scale",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.5;
-    study.limit = 1e13;
-    study.method.title = "inverse transpose in single precision";
-    study.successor = {"cofactor matrix in double"};
-    study.takes_over =
+    study.baseline.title = "inverse transpose in single precision";
+    study.method.title = "cofactor matrix in double";
+    study.explanation =
         "Normals go by the cofactor matrix, times the sign of the determinant, brought to scale: it needs no "
         "inverse, which flattened parts have not; a normal of zero takes its face's.";
     study.cost = "None: it is computed once a part.";
@@ -163,10 +176,9 @@ Study mirroring_matrices(const Laboratory& laboratory) {
     Study study{"mirrored-normals", "Normals under matrices that mirror and flatten", "1 / thickness",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.5;
-    study.limit = 1e9;
-    study.method.title = "the determinant's sign in single precision";
-    study.successor = {"in double, and no sign where no volume is"};
-    study.takes_over =
+    study.baseline.title = "the determinant's sign in single precision";
+    study.method.title = "in double, and no sign where no volume is";
+    study.explanation =
         "Where a matrix mirrors, the sign of its determinant turns sides and normals; a part thinner than "
         "1e-12 of its size is drawn from both sides. A normal of zero takes its face's.";
     study.cost = "None: it is computed once a part.";
@@ -199,10 +211,9 @@ Study flipped_normals(const Laboratory& laboratory) {
     Study study{"flipped-normals", "Normals that point inwards", "triangles with such, in percent",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.5;
-    study.limit = 3;
-    study.method.title = "as they are";
-    study.successor = {"two-sided: turned to the viewer"};
-    study.takes_over =
+    study.baseline.title = "as they are";
+    study.method.title = "two-sided: turned to the viewer";
+    study.explanation =
         "With a material that is `two-sided` a normal that points away from the viewer is negated. Without, "
         "normals are taken as they are, and such triangles stay dark.";
     const Geometry ball = sphere(1, 24);
@@ -224,11 +235,12 @@ Study flipped_normals(const Laboratory& laboratory) {
         material.two_sided = two_sided;
         return looking(scene_of({{1, flipped, material}}), {0.5, 0.7, 2.5});
     };
+    const Image right = truth_of(view_of(true, 0));
     for (const double percent : laboratory.chosen({0.1, 0.3, 1, 3, 10, 30, 100}))
         for (const bool two_sided : {false, true})
-            (two_sided ? *study.successor : study.method)
-                .points.push_back({percent, percent_off(drawn(laboratory, view_of(two_sided, percent)),
-                                                        drawn(laboratory, view_of(two_sided, 0)))});
+            (two_sided ? study.method : study.baseline)
+                .points.push_back(
+                    {percent, percent_off(drawn(laboratory, view_of(two_sided, percent)), right)});
     study.cost =
         "The back sides are drawn, too: " +
         times_the_time(time_of(laboratory, view_of(true, 0)), time_of(laboratory, view_of(false, 0))) + ".";

@@ -25,7 +25,7 @@ Study many_mirrors(const Laboratory& laboratory) {
     study.bound = 0.1;
     study.limit = 17;
     study.method.title = "the 16 largest show the scene";
-    study.takes_over = "The others are drawn as plain surfaces, which a small one may pass for.";
+    study.explanation = "The others are drawn as plain surfaces, which a small one may pass for.";
     for (const double count : laboratory.chosen({1, 2, 4, 8, 16, 17, 36, 64, 100})) {
         std::vector<Part> parts{
             {1000, sphere(0.5, 12), material_of({0.9, 0.2, 0.1}), moved_by({-1.5, 0.3, 8})},
@@ -39,7 +39,7 @@ Study many_mirrors(const Laboratory& laboratory) {
                  moved_by({x * 3 / in_row, y * 3 / in_row, -1}) * turned_by(3.0 * i / count, {0, 1, 0})});
         }
         const View view = looking(scene_of(parts), {0, 0, 6}, {0, 0, -1});
-        study.method.points.push_back({count, percent_off(drawn(laboratory, view), image_of(trace(view)))});
+        study.method.points.push_back({count, percent_off(drawn(laboratory, view), truth_of(view))});
         if (count <= 16) {
             View plain = view;
             for (Part& part : parts) part.material.reflectivity = 0;
@@ -57,8 +57,7 @@ Study edge_on_mirrors(const Laboratory& laboratory) {
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.5;
     study.method.title = "reflection in double, depth of its own";
-    study.takes_over =
-        "Nothing needs to: at the plane itself the mirror is a line, and nothing is seen in it.";
+    study.explanation = "At the plane itself the mirror is a line, and nothing is seen in it.";
     study.cost = "None.";
     for (const double inverse : laboratory.chosen({0.5, 1, 3, 10, 100, 1e3, 1e4, 1e6, 1e9, 1e12})) {
         const auto scene =
@@ -68,7 +67,7 @@ Study edge_on_mirrors(const Laboratory& laboratory) {
         double worst = 0;
         for (const double height : {1 / inverse, 0.0, -1 / inverse}) {
             const View view = looking(scene, {0.2, height, 4}, {0.1, 0.2 * height, 0});
-            worst = std::max(worst, percent_off(drawn(laboratory, view), image_of(trace(view))));
+            worst = std::max(worst, percent_off(drawn(laboratory, view), truth_of(view)));
         }
         study.method.points.push_back({inverse, worst});
     }
@@ -79,13 +78,12 @@ Study bent_mirrors(const Laboratory& laboratory) {
     Study study{"bent-mirrors", "Mirrors that are not quite flat",
                 "height of the bulge / radius of the mirror", "error of the reflection at the rim, degrees"};
     study.bound = 0.2;
-    study.limit = 1e-3;
-    study.method.title = "taken for flat, whatever they are";
-    study.successor = {"flat to 1e-4 of the radius, else none"};
-    study.takes_over =
+    study.method.title = "flat to 1e-4 of the radius, else none";
+    study.explanation =
         "What is not flat to 1e-4 of its radius reflects the panorama, where there is one, or is drawn as a "
         "plain surface, and a notice says so.";
     study.cost = "A bent mirror does not show the scene.";
+    constexpr double kFlat = 1e-5;  // of the radius: what a file's rounding may bend
     for (const double bulge : laboratory.chosen({1e-7, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.1, 0.5})) {
         const Geometry cap = surface(16, 16, [&](double u, double v) {
             const glm::dvec2 place = glm::dvec2(u, v) * 2.0 - 1.0;
@@ -93,8 +91,9 @@ Study bent_mirrors(const Laboratory& laboratory) {
         });
         // The normal at the rim leans by the slope there, the reflection by twice that.
         const double error = glm::degrees(2 * std::atan(2 * bulge));
-        study.method.points.push_back({bulge, error});
-        study.successor->points.push_back({bulge, plane_of(cap) ? error : 0});
+        const bool is_flat = plane_of(cap).has_value();
+        const bool is_lost = !is_flat && bulge <= kFlat;
+        study.method.points.push_back({bulge, is_lost ? kNothing : is_flat ? error : 0});
     }
     return study;
 }
@@ -105,14 +104,13 @@ Study mirrors_in_mirrors(const Laboratory& laboratory) {
     study.bound = 0.1;
     study.limit = 25;
     study.method.title = "one bounce, then plain surfaces";
-    study.takes_over =
-        "Nothing: that a mirror is seen in a mirror as a plain surface in its own colour is a rule of the "
+    study.explanation =
+        "That a mirror is seen in a mirror as a plain surface in its own colour is a rule of the "
         "picture. It is seen where mirrors are good ones and face each other, as in a lift; a car's hardly "
         "do.";
     study.cost =
         "A second bounce would show the scene once more for each pair of mirrors, up to 240 times in a "
-        "picture "
-        "with 16.";
+        "picture with 16.";
     const auto shining = [](const glm::dvec3& color) {
         Material material = material_of({0, 0, 0});
         material.emission = {color, 1};
@@ -146,7 +144,7 @@ Study mirrors_in_mirrors(const Laboratory& laboratory) {
                     {1000 * thing.id + i, thing.geometry, thing.material, there * thing.matrix});
         }
         view.scene = scene_of(unfolded);
-        study.method.points.push_back({percent, percent_off(seen, image_of(trace(view)))});
+        study.method.points.push_back({percent, percent_off(seen, truth_of(view))});
     }
     return study;
 }

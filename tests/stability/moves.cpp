@@ -12,13 +12,11 @@ namespace vrut::stability {
 Study many_moves(const Laboratory& laboratory) {
     Study study{"moves", "Turns one after the other", "turns", "distance from the centre, relative error"};
     study.bound = 1e-6;
-    study.limit = 100;
-    study.method.title = "matrices in single precision, piled up";
-    study.successor = {"pose in double, made orthogonal again"};
-    study.takes_over =
+    study.baseline.title = "matrices in single precision, piled up";
+    study.method.title = "pose in double, made orthogonal again";
+    study.explanation =
         "The camera is a pose in double; a drag is computed from where it began, and a turn keeps the "
-        "distances "
-        "from the centre.";
+        "distances from the centre.";
     study.cost = "Less than a microsecond a move.";
     const Camera start = home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
     const double radius = glm::distance(start.eye, start.center);
@@ -33,9 +31,10 @@ Study many_moves(const Laboratory& laboratory) {
             camera = rotated(camera, 11.3, done < count / 2 ? 3.1 : -2.7, false);
         }
         const auto off = [&](const glm::dvec3& eye) { return std::abs(glm::length(eye) / radius - 1); };
-        study.method.points.push_back(
+        study.baseline.points.push_back(
             {count, off(glm::dvec3(piled * glm::vec4(glm::vec3(start.eye - start.center), 1)))});
-        study.successor->points.push_back({count, off(camera.eye - camera.center)});
+        const bool has_turned = glm::distance(camera.eye, start.eye) > 0.01 * radius;
+        study.method.points.push_back({count, has_turned ? off(camera.eye - camera.center) : kNothing});
     }
     return study;
 }
@@ -44,13 +43,11 @@ Study over_the_pole(const Laboratory& laboratory) {
     Study study{"pole", "Turning over the pole", "degrees dragged down",
                 "tilt of the picture's up from the vertical, in degrees"};
     study.bound = 90.001;
-    study.limit = 90;
-    study.method.title = "about the camera's own up";
-    study.successor = {"kept upright"};
-    study.takes_over =
+    study.baseline.title = "about the camera's own up";
+    study.method.title = "kept upright";
+    study.explanation =
         "With keepUpright the scene turns about its own vertical, and tipping stops at the poles; a drag "
-        "back "
-        "comes back at once.";
+        "back comes back at once.";
     study.cost = "None.";
     Camera level;
     level.eye = {0, 0, 5};
@@ -58,8 +55,10 @@ Study over_the_pole(const Laboratory& laboratory) {
         const auto tilt = [&](const Camera& camera) {
             return glm::degrees(std::acos(std::clamp(glm::dot(camera.up, kVertical), -1.0, 1.0)));
         };
-        study.method.points.push_back({degrees, tilt(rotated(level, 0, degrees, false))});
-        study.successor->points.push_back({degrees, tilt(rotated(level, 0, degrees, true))});
+        study.baseline.points.push_back({degrees, tilt(rotated(level, 0, degrees, false))});
+        const Camera upright = rotated(level, 0, degrees, true);
+        const bool has_turned = glm::distance(upright.eye, level.eye) > 0.01;
+        study.method.points.push_back({degrees, has_turned ? tilt(upright) : kNothing});
     }
     return study;
 }
@@ -68,10 +67,9 @@ Study through_the_focus(const Laboratory& laboratory) {
     Study study{"zoom", "Wheel steps towards the focus", "steps at one blow",
                 "degrees by which the view has turned"};
     study.bound = 0.001;
-    study.limit = 11;
-    study.method.title = "a tenth of the distance a step";
-    study.successor = {"the distance divided by 1.1 a step"};
-    study.takes_over =
+    study.baseline.title = "a tenth of the distance a step";
+    study.method.title = "the distance divided by 1.1 a step";
+    study.explanation =
         "Zoom divides the distance between eye and focus, and ends at a millionth and at a million of the "
         "scene's radius.";
     study.cost = "None.";
@@ -84,9 +82,10 @@ Study through_the_focus(const Laboratory& laboratory) {
             const double cosine = glm::dot(view, glm::normalize(camera.focus - camera.eye));
             return glm::degrees(std::acos(std::clamp(cosine, -1.0, 1.0)));
         };
-        study.method.points.push_back({steps, turned(linear)});
+        study.baseline.points.push_back({steps, turned(linear)});
         const Camera zoomed = wheel({-100 * steps, WheelInput::Unit::pixel}, start, {});
-        study.successor->points.push_back({steps, turned(zoomed)});
+        const bool is_nearer = focus_distance(zoomed) < 0.95 * focus_distance(start);
+        study.method.points.push_back({steps, is_nearer ? turned(zoomed) : kNothing});
     }
     return study;
 }
@@ -95,11 +94,11 @@ Study largest_numbers(const Laboratory& laboratory) {
     Study study{"numbers", "Poses at the end of the range", "distance of eye and focus from the origin",
                 "numbers of the camera that are none"};
     study.bound = 0;
-    study.limit = 1e200;
-    study.method.title = "turned as it is asked";
-    study.successor = {"a move that no number can hold is not made"};
-    study.takes_over = "The camera stays as it is, to the bit; messages with such poses are refused before.";
+    study.baseline.title = "turned as it is asked";
+    study.method.title = "a move that no number can hold is not made";
+    study.explanation = "The camera stays as it is, to the bit; messages with such poses are refused before.";
     study.cost = "One look at 13 numbers a move.";
+    constexpr double kTurned = 1e30;  // the farthest pose that messages may have
     for (const double far : laboratory.chosen({1, 1e10, 1e50, 1e100, 1e150, 1e200, 1e250, 1e280})) {
         Camera camera;
         camera.eye = {far, far, 2 * far};
@@ -110,9 +109,13 @@ Study largest_numbers(const Laboratory& laboratory) {
         // As the length of a vector is usually computed.
         const glm::dvec3 arm = camera.eye - camera.center;
         const glm::dvec3 turned = arm / std::sqrt(glm::dot(arm, arm)) * std::sqrt(glm::dot(arm, arm));
-        study.method.points.push_back({far, 1.0 * none(turned)});
+        study.baseline.points.push_back({far, 1.0 * none(turned)});
         const Camera after = rotated(camera, 30, 20, true);
-        study.successor->points.push_back(
+        if (far <= kTurned && after.eye == camera.eye) {
+            study.method.points.push_back({far, kNothing});
+            continue;
+        }
+        study.method.points.push_back(
             {far, 1.0 * (none(after.eye) + none(after.focus) + none(after.up) + none(after.center))});
     }
     return study;

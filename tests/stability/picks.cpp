@@ -83,13 +83,11 @@ Study slivers(const Laboratory& laboratory) {
     Study study{"slivers", "Picking slivers", "length of a sliver / its width",
                 "picks along its middle that miss it, in percent"};
     study.bound = 0;
-    study.limit = 1e6;
-    study.method.title = "ray and triangle in single precision";
-    study.successor = {"Woop's test in double"};
-    study.takes_over =
+    study.baseline.title = "ray and triangle in single precision";
+    study.method.title = "Woop's test in double";
+    study.explanation =
         "One ray in double, with an edge test that leaves no gaps; triangles are brought to the ray, so that "
-        "no "
-        "inverse is needed.";
+        "no inverse is needed.";
     study.cost = "0.07 ms a pick on the car; a picture of ids takes hundreds of times longer.";
     for (const double ratio : laboratory.chosen({1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9, 1e12})) {
         const glm::dvec3 a(0.1, 0.2, -5), b(2.1, 0.9, -6);
@@ -111,8 +109,8 @@ Study slivers(const Laboratory& laboratory) {
             missed += !pick(*scene, {glm::dvec3(0), direction}, false).has_value();
             missed_in_float += !met_in_float(direction, a, b, c).has_value();
         }
-        study.method.points.push_back({ratio, 100.0 * missed_in_float / kPicks});
-        study.successor->points.push_back({ratio, 100.0 * missed / kPicks});
+        study.baseline.points.push_back({ratio, 100.0 * missed_in_float / kPicks});
+        study.method.points.push_back({ratio, 100.0 * missed / kPicks});
     }
     return study;
 }
@@ -121,10 +119,9 @@ Study shared_edges(const Laboratory& laboratory) {
     Study study{"shared-edges", "Picking where two triangles meet", "distance of the eye / size of the part",
                 "picks that miss it by a hundredth of the part, in percent"};
     study.bound = 0;
-    study.limit = 2;
-    study.method.title = "ray and triangle in single precision";
-    study.successor = {"Woop's test in double"};
-    study.takes_over =
+    study.baseline.title = "ray and triangle in single precision";
+    study.method.title = "Woop's test in double";
+    study.explanation =
         "Two triangles get their common edge from the same numbers, and only its sign decides: a ray on the "
         "edge meets one of the two.";
     study.cost = "None: it is the test of all triangles.";
@@ -154,8 +151,8 @@ Study shared_edges(const Laboratory& laboratory) {
                 wrong_in_float += !(std::abs(nearest - right) <= 0.01);
             }
         }
-        study.method.points.push_back({distance, 100.0 * wrong_in_float / picks});
-        study.successor->points.push_back({distance, 100.0 * wrong / picks});
+        study.baseline.points.push_back({distance, 100.0 * wrong_in_float / picks});
+        study.method.points.push_back({distance, 100.0 * wrong / picks});
     }
     return study;
 }
@@ -164,10 +161,9 @@ Study picks_through_glass(const Laboratory& laboratory) {
     Study study{"picks-through-glass", "Picking a part through glass", "surfaces that the ray meets",
                 "picks that name another part, in percent"};
     study.bound = 0;
-    study.limit = 2;
-    study.method.title = "from a picture of ids";
-    study.successor = {"a ray that passes what is transparent"};
-    study.takes_over =
+    study.baseline.title = "from a picture of ids";
+    study.method.title = "a ray that passes what is transparent";
+    study.explanation =
         "What is transparent is left out before its triangles are asked; without 'through' the nearest pane "
         "is picked as any other part.";
     study.cost = "None: less is asked than by a pick of what is nearest.";
@@ -198,8 +194,8 @@ Study picks_through_glass(const Laboratory& laboratory) {
                     id_of(ids[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +
                               static_cast<std::size_t>(x)]) != right;
             }
-        study.method.points.push_back({count, 100.0 * wrong_in_picture / picks});
-        study.successor->points.push_back({count, 100.0 * wrong / picks});
+        study.baseline.points.push_back({count, 100.0 * wrong_in_picture / picks});
+        study.method.points.push_back({count, 100.0 * wrong / picks});
     }
     return study;
 }

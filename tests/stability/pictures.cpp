@@ -5,14 +5,21 @@
 #include <limits>
 
 #include "difference.hpp"
+#include "reference.hpp"
 
 namespace vrut::stability {
 
-Image drawn(const Laboratory& laboratory, const View& view) {
+Image drawn(const Laboratory& laboratory, const View& view, FrameStats* stats) {
     Image image;
-    FrameStats stats;
-    laboratory.renderer.render(view, image, stats);
+    FrameStats unused;
+    laboratory.renderer.render(view, image, stats ? *stats : unused);
     return image;
+}
+
+bool is_plain(const Image& image) {
+    for (std::size_t i = 0; i < image.rgba.size(); ++i)
+        if (image.rgba[i] != image.rgba[i % 4]) return false;
+    return true;
 }
 
 double time_of(const Laboratory& laboratory, const View& view) {
@@ -27,9 +34,9 @@ double time_of(const Laboratory& laboratory, const View& view) {
     return least;
 }
 
-std::string times_the_time(double successor, double method) {
+std::string times_the_time(double method, double baseline) {
     char text[64];
-    std::snprintf(text, sizeof text, "%.2g times the time", successor / method);
+    std::snprintf(text, sizeof text, "%.2g times the time", method / baseline);
     return text;
 }
 
@@ -45,6 +52,27 @@ View looking(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& 
     return view;
 }
 
-double percent_off(const Image& a, const Image& b) { return 100 * difference(a, b).share_above(8); }
+Image truth_of(const View& view) {
+    const ReferencePicture picture = trace(view);
+    const bool is_empty =
+        std::all_of(picture.node.begin(), picture.node.end(), [](Index node) { return node == kNone; });
+    return is_empty ? Image() : image_of(picture);
+}
+
+namespace {
+
+bool can_be_compared(const Image& image, const Image& right) {
+    return !right.rgba.empty() && image.rgba.size() == right.rgba.size();
+}
+
+}  // namespace
+
+double percent_off(const Image& image, const Image& right) {
+    return can_be_compared(image, right) ? 100 * difference(image, right).share_above(8) : kNothing;
+}
+
+double largest_error(const Image& image, const Image& right) {
+    return can_be_compared(image, right) ? difference(image, right).maximum() : kNothing;
+}
 
 }  // namespace vrut::stability

@@ -8,15 +8,22 @@ namespace vrut::stability {
 
 // What studies of pictures share.
 
-Image drawn(const Laboratory& laboratory, const View& view);
+/// `stats`, where it is given, is told what the picture took.
+Image drawn(const Laboratory& laboratory, const View& view, FrameStats* stats = nullptr);
+/// Whether all pixels have one colour, or there are none.
+bool is_plain(const Image& image);
 /// The time of a picture, in ms, when everything that it needs is on the GPU: the least of a few.
 double time_of(const Laboratory& laboratory, const View& view);
 /// "1.4 times the time".
-std::string times_the_time(double successor, double method);
+std::string times_the_time(double method, double baseline);
 /// A small view of `scene`.
 View looking(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& eye,
              const glm::dvec3& focus = glm::dvec3(0));
-/// Pixels off by more than 8 of 255, in percent.
-double percent_off(const Image& a, const Image& b);
+/// What `view` has to show, by the reference; without pixels where that shows the background alone.
+Image truth_of(const View& view);
+/// Pixels off by more than 8 of 255, in percent; kNothing where `right` has no pixels, or others.
+double percent_off(const Image& image, const Image& right);
+/// Of a channel, of 255; kNothing where `right` has no pixels, or others.
+double largest_error(const Image& image, const Image& right);
 
 }  // namespace vrut::stability

@@ -1,21 +1,25 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
+#include <vector>
 
 #include "chart/charts.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
 
-/// The study's chart, with its bound and the point where the method fails, and what is to be said of it.
+/// The study's chart, with its bound and its limit, and what is to be said of it.
 chart::Section section_of(const Study& study);
 
-/// Makes all studies and writes them to a folder: stability.csv, the charts, and the page stability.html.
-/// `machine` is what it runs on; `progress` is told the part that is done, and what comes next. Throws
+/// Writes studies to a folder: stability.csv, the charts, and the page stability.html. `renderer` and
+/// `machine` are what they were measured on. Returns a sentence for each study that failed. Throws
 /// std::runtime_error.
-void write_all(Renderer& renderer, const std::string& machine, const std::filesystem::path& folder,
-               const std::function<void(double, const std::string&)>& progress);
+std::vector<std::string> write_page(const std::vector<Study>& studies, const std::string& renderer,
+                                    const std::string& machine, const std::filesystem::path& folder);
+
+/// Writes what README's table of limits is made from, a line for each study: its bound, its limit and the
+/// points of its method. Throws std::runtime_error.
+void write_results(const std::vector<Study>& studies, const std::filesystem::path& file);
 
 }  // namespace vrut::stability

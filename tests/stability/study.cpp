@@ -2,36 +2,60 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace vrut::stability {
 
 namespace {
 
+/// Three digits that mean something.
+std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", value);
+    return text;
+}
+
 std::string at(const Curve& curve, const Curve::Point& point) {
-    return "'" + curve.title + "' is " + std::to_string(point.y) + " at " + std::to_string(point.x);
+    return "'" + curve.title + "' is " + number(point.y) + " at " + number(point.x);
+}
+
+/// Why the curve is none.
+std::optional<std::string> flaw(const Curve& curve) {
+    for (const Curve::Point& point : curve.points) {
+        if (point.y == kNothing) return "'" + curve.title + "' returned nothing at " + number(point.x);
+        if (!(std::isfinite(point.x) && std::isfinite(point.y) && point.x >= 0 && point.y >= 0))
+            return at(curve, point);
+    }
+    return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<std::string> contradiction(const Study& study) {
-    for (const Curve* curve : {&study.method, study.successor ? &*study.successor : &study.method}) {
-        if (curve->points.empty()) return "'" + curve->title + "' was not measured";
-        for (const Curve::Point& point : curve->points)
-            if (!(std::isfinite(point.x) && std::isfinite(point.y) && point.x >= 0 && point.y >= 0))
-                return at(*curve, point);
-    }
-    for (const Curve::Point& point : study.method.points)
+std::optional<std::string> failure(const Study& study) {
+    const auto& points = study.method.points;
+    if (points.empty()) return "'" + study.method.title + "' was not measured";
+    for (const Curve* curve : {&study.method, &study.baseline})
+        if (const auto why = flaw(*curve)) return why;
+    for (const Curve::Point& point : points)
         if (point.y > study.bound && !(study.limit && point.x >= *study.limit))
-            return at(study.method, point) + ", before its limit";
-    if (study.limit) {
-        const auto first = std::find_if(study.method.points.begin(), study.method.points.end(),
-                                        [&](const Curve::Point& point) { return point.x >= *study.limit; });
-        if (first == study.method.points.end()) return "'" + study.method.title + "' was not pushed so far";
-        if (!(first->y > study.bound)) return at(study.method, *first) + ", and has not failed";
+            return at(study.method, point) + ", above " + number(study.bound);
+    if (study.limit && points.back().x < *study.limit)
+        return "'" + study.method.title + "' was not pushed as far as " + number(*study.limit);
+    return std::nullopt;
+}
+
+std::optional<std::string> improvement(const Study& study) {
+    for (const Curve::Point& point : study.method.points) {
+        if (!study.limit || point.x < *study.limit) continue;
+        if (point.y > study.bound) return std::nullopt;
+        return at(study.method, point) + " and holds: the limit can be told as better";
     }
-    if (!study.successor) return std::nullopt;
-    for (const Curve::Point& point : study.successor->points)
-        if (point.y > study.bound) return at(*study.successor, point) + ", and fails, too";
+    return std::nullopt;
+}
+
+std::optional<double> fails_from(const Curve& curve, double bound) {
+    for (const Curve::Point& point : curve.points)
+        if (point.y > bound) return point.x;
     return std::nullopt;
 }
 
@@ -52,12 +76,14 @@ const std::vector<Topic>& topics() {
         {"rings of panes", rings_of_panes},
         {"many panes", many_panes},
         {"panes in one place", panes_in_one_place},
+        {"panes by their ids", panes_by_id},
         {"nearly opaque panes", nearly_opaque_panes},
         {"matrices that shrink", small_matrices},
         {"matrices that mirror", mirroring_matrices},
         {"normals that point inwards", flipped_normals},
         {"textures seen small", minified_textures},
         {"textures of odd sizes", odd_textures},
+        {"textures of odd sizes, seen small", small_odd_textures},
         {"many mirrors", many_mirrors},
         {"mirrors edge-on", edge_on_mirrors},
         {"bent mirrors", bent_mirrors},

@@ -1,19 +1,23 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "renderer.hpp"
 
-/// Each method is pushed past its limit on purpose: how far it holds, and what takes over there.
+/// Each method is pushed as far as its limit or beyond: how far it holds, and what happens there.
 namespace vrut::stability {
 
 /// As much as a test has time for, or all that the page shows.
 enum class Form { brief, whole };
 
-/// A measure over the parameter; both 0 or above.
+/// Of a method that returned nothing where its study asks for something: a failure.
+inline constexpr double kNothing = std::numeric_limits<double>::infinity();
+
+/// A measure over the parameter; both 0 or above. The parameter rises.
 struct Curve {
     std::string title;
     struct Point {
@@ -22,24 +26,27 @@ struct Curve {
     std::vector<Point> points = {};
 };
 
-/// A method, what breaks it, and what takes over.
+/// How far a method of the product holds.
 struct Study {
     std::string file;                ///< of its chart: letters, digits and hyphens
-    std::string title;               ///< the method and what it is pushed by
+    std::string title;               ///< what the method is pushed by
     std::string parameter, measure;  ///< with their units
     double bound = 0;                ///< of the measure: what is above it has failed
-    /// The parameter from which the method fails; none: it holds as far as it was measured.
+    /// The parameter from which the method may fail; none: it has to hold as far as it is measured.
     std::optional<double> limit = {};
-    Curve method = {};
-    std::optional<Curve> successor = {};  ///< what takes over, where something does
-    std::string takes_over = {};          ///< a sentence on what does, or why nothing needs to
-    std::string cost = {};                ///< a sentence on what that costs
+    Curve method = {};             ///< measured, of the product's own code
+    Curve baseline = {};           ///< how another method does, for comparison only; without points: none
+    std::string explanation = {};  ///< sentences: how the method does it, and what happens beyond its limit
+    std::string cost = {};         ///< a sentence
 };
 
-/// Why a study is not as it says, in a sentence; none where it is: the method is within the bound below its
-/// limit and not at the first point from there on, what takes over is within the bound everywhere, and
-/// everything is a number.
-std::optional<std::string> contradiction(const Study& study);
+/// Why the study fails, in a sentence; none where it does not: the method was measured as far as its limit,
+/// is within the bound below it, and everything is a number.
+std::optional<std::string> failure(const Study& study);
+/// That the method is within the bound at its limit, too, so that the limit can be told as better.
+std::optional<std::string> improvement(const Study& study);
+/// The first parameter at which the curve is above the bound; none where it never is.
+std::optional<double> fails_from(const Curve& curve, double bound);
 
 /// Numbers from -1 to 1, the same in each run (Numerical Recipes' generator).
 class Noise {
@@ -81,10 +88,12 @@ Study crossing_panes(const Laboratory& laboratory);
 Study rings_of_panes(const Laboratory& laboratory);
 Study many_panes(const Laboratory& laboratory);
 Study panes_in_one_place(const Laboratory& laboratory);
+Study panes_by_id(const Laboratory& laboratory);
 Study nearly_opaque_panes(const Laboratory& laboratory);
 // materials.cpp
 Study minified_textures(const Laboratory& laboratory);
 Study odd_textures(const Laboratory& laboratory);
+Study small_odd_textures(const Laboratory& laboratory);
 Study small_matrices(const Laboratory& laboratory);
 Study mirroring_matrices(const Laboratory& laboratory);
 Study flipped_normals(const Laboratory& laboratory);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "difference.hpp"
 #include "pictures.hpp"
 #include "reference.hpp"
 #include "shapes.hpp"
@@ -24,13 +23,11 @@ Study far_positions(const Laboratory& laboratory) {
                 "distance from the origin, in sizes of the part",
                 "pixels off by more than 8 of 255, in percent"};
     study.bound = 0.1;
-    study.limit = 1e6;
-    study.method.title = "world positions in single precision";
-    study.successor = {"relative to the eye, from double precision"};
-    study.takes_over =
+    study.baseline.title = "world positions in single precision";
+    study.method.title = "relative to the eye, from double precision";
+    study.explanation =
         "Positions and matrices are kept in double; each part is moved to the eye in double, and only what "
-        "is "
-        "left, which is small where it is seen large, goes to the GPU in single precision.";
+        "is left, which is small where it is seen large, goes to the GPU in single precision.";
     study.cost = "A product of two matrices in double for each part and picture; no more bytes on the GPU.";
     const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     for (const double distance : laboratory.chosen({1, 10, 100, 1e3, 1e4, 3e4, 1e5, 1e6, 1e7, 1e8})) {
@@ -38,11 +35,11 @@ Study far_positions(const Laboratory& laboratory) {
         const Geometry body = mapped(sphere(1, 12), 1, there);
         const auto scene = scene_of({{1, body, material}});
         const View view = looking(scene, there + glm::dvec3(1, 1.5, 3), there);
-        const Image right = image_of(trace(view));
+        const Image right = truth_of(view);
         View rounded = view;
         rounded.scene = scene_of({{1, in_single_precision(body), material}});
-        study.method.points.push_back({distance, percent_off(drawn(laboratory, rounded), right)});
-        study.successor->points.push_back({distance, percent_off(drawn(laboratory, view), right)});
+        study.baseline.points.push_back({distance, percent_off(drawn(laboratory, rounded), right)});
+        study.method.points.push_back({distance, percent_off(drawn(laboratory, view), right)});
     }
     return study;
 }
@@ -56,12 +53,13 @@ bool tells_apart(const Laboratory& laboratory, double near, double distance, dou
                                  {2, quad(distance), front, moved_by({0, 0, -distance})},
                                  {3, quad(distance), back, moved_by({0, 0, -distance * (1 + gap)})}});
     const Image image = drawn(laboratory, looking(scene, {0, 0, 0}, {0, 0, -1}));
-    for (std::size_t i = 0; i < image.rgba.size(); i += 4)
-        if (image.rgba[i + 1] > image.rgba[i] + 50) {
-            const std::size_t x = i / 4 % static_cast<std::size_t>(image.width);
-            if (std::abs(static_cast<double>(x) - image.width / 2.0) < image.width / 8.0) return false;
-        }
-    return true;
+    std::size_t of_front = 0, others = 0;  // pixels in the middle
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const std::size_t x = i / 4 % static_cast<std::size_t>(image.width);
+        if (std::abs(static_cast<double>(x) - image.width / 2.0) >= image.width / 8.0) continue;
+        ++(image.rgba[i] > image.rgba[i + 1] + 50 ? of_front : others);
+    }
+    return of_front > 0 && others == 0;
 }
 
 /// The depth that 24 bits keep of something at `distance`, of a usual projection (OpenGL 4.6, 13.8.1).
@@ -76,23 +74,25 @@ Study deep_views(const Laboratory& laboratory) {
     Study study{"depth", "Views from very near to very far", "far / near",
                 "least gap told apart at the far end / its distance"};
     study.bound = 1e-5;
-    study.limit = 1e3;
-    study.method.title = "24 bits, the usual way (computed)";
-    study.successor = {"reversed depth in 32-bit float"};
-    study.takes_over =
+    study.baseline.title = "24 bits, the usual way (computed)";
+    study.method.title = "reversed depth in 32-bit float";
+    study.explanation =
         "Depth is near / distance in 32-bit float: 1 at the near plane, 0 at infinity, with the same "
-        "relative "
-        "precision everywhere.";
+        "relative precision everywhere.";
     study.cost = "Nothing: the same 32 bits a pixel, and one clip plane less.";
     for (const double ratio : laboratory.chosen({10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8})) {
         const double near = 1000 / ratio;
         double gap = 1;
         while (gap > 1e-9 && depth_24(near, 2000, 1000) < depth_24(near, 2000, 1000 * (1 + gap / 2)))
             gap /= 2;
-        study.method.points.push_back({ratio, gap});
+        study.baseline.points.push_back({ratio, gap});
+        if (!tells_apart(laboratory, near, 1000, 1)) {
+            study.method.points.push_back({ratio, kNothing});
+            continue;
+        }
         double least = 1;
         while (least > 1e-9 && tells_apart(laboratory, near, 1000, least / 2)) least /= 2;
-        study.successor->points.push_back({ratio, least});
+        study.method.points.push_back({ratio, least});
     }
     return study;
 }
@@ -101,10 +101,9 @@ Study large_triangles(const Laboratory& laboratory) {
     Study study{"light", "Light on large triangles", "side of the triangles / their distance to the light",
                 "largest error of a channel, of 255"};
     study.bound = 8;
-    study.limit = 0.1;
-    study.method.title = "light at the vertices";
-    study.successor = {"light at each pixel"};
-    study.takes_over = "Position and normal are interpolated, everything else is computed at each pixel.";
+    study.baseline.title = "light at the vertices";
+    study.method.title = "light at each pixel";
+    study.explanation = "Position and normal are interpolated, everything else is computed at each pixel.";
     for (const double ratio :
          laboratory.chosen({0.03, 0.05, 0.1, 0.14, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 2, 2.8, 4})) {
         // Triangles of side `ratio`, as many as cover the wall, and a light 1 before it.
@@ -117,14 +116,13 @@ Study large_triangles(const Laboratory& laboratory) {
                             {0.3, 0.2, 2.5});
         view.light.headlight = false;
         view.light.position = {0.13, 0.07, 1};
-        const Image right = image_of(trace(view));
-        study.successor->points.push_back(
-            {ratio, 1.0 * difference(drawn(laboratory, view), right).maximum()});
+        const Image right = truth_of(view);
+        study.method.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});
         const double pixel_ms = time_of(laboratory, view);
         view.methods.light = Methods::Light::vertex;
         study.cost = "Here " + times_the_time(pixel_ms, time_of(laboratory, view)) +
                      ", where one wall is all of the picture; within what times vary on the car.";
-        study.method.points.push_back({ratio, 1.0 * difference(drawn(laboratory, view), right).maximum()});
+        study.baseline.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});
     }
     return study;
 }
