@@ -119,17 +119,17 @@ void compare_sizes(const Laboratory& laboratory, Study& study, double texels) {
             const View view = wall_with(texture, texels);
             worst = std::max(worst, largest_error(drawn(laboratory, view), truth_of(view)));
         }
-        study.method.points.push_back({1.0 * std::max(size.x, size.y), worst});
+        study.method.points.push_back({1.0 * std::max(size.x, size.y) / most, worst});
     }
 }
 
 }  // namespace
 
 Study odd_textures(const Laboratory& laboratory) {
-    Study study{"odd-textures", "Textures of odd and of great sizes, seen near", "longer side, in texels",
-                "largest error of a channel, of 255"};
+    Study study{"odd-textures", "Textures of odd and of great sizes, seen near",
+                "longer side / the longest that the driver takes", "largest error of a channel, of 255"};
     study.bound = 4;
-    study.limit = laboratory.renderer.max_size() + 1;
+    study.limit = 1.00001;  // one texel more
     study.method.title = "two pixels to a texel";
     study.explanation =
         "Sizes need not be powers of two, nor even. Of a texture larger than the driver takes the next level "
@@ -142,7 +142,7 @@ Study odd_textures(const Laboratory& laboratory) {
 
 Study small_odd_textures(const Laboratory& laboratory) {
     Study study{"small-odd-textures", "Textures of odd and of great sizes, seen small",
-                "longer side, in texels", "largest error of a channel, of 255"};
+                "longer side / the longest that the driver takes", "largest error of a channel, of 255"};
     study.bound = 4;
     study.method.title = "2.5 texels to a pixel";
     study.explanation =

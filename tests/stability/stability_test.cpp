@@ -1,13 +1,39 @@
 // Every method pushed as far as its limit, in short. The program `stability` does it in full, as a page.
 #include <doctest/doctest.h>
 
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
 #include "handles.hpp"
 #include "study.hpp"
 
 using namespace vrut;
 using namespace vrut::stability;
 
+namespace {
+
+/// The results that README's table is made from, by the names of their studies.
+std::map<std::string, nlohmann::json> kept_results() {
+    std::map<std::string, nlohmann::json> results;
+    std::ifstream file(VRUT_TEST_DATA "/results.json");
+    for (const nlohmann::json& study : nlohmann::json::parse(file)) results[study["study"]] = study;
+    return results;
+}
+
+/// Whether they are of a study as it is now.
+bool is_of(const nlohmann::json& result, const Study& study) {
+    const bool same_limit =
+        study.limit ? result.value("limit", -1.0) == *study.limit : !result.contains("limit");
+    return same_limit && result["bound"] == study.bound && result["measure"] == study.measure &&
+           result["parameter"] == study.parameter && result["method"] == study.method.title;
+}
+
+}  // namespace
+
 TEST_CASE("each method holds up to its limit") {
+    const auto results = kept_results();
+    CHECK(results.size() == topics().size());
     {
         Renderer renderer(std::nullopt, true);
         const Laboratory laboratory{renderer, Form::brief};
@@ -16,6 +42,9 @@ TEST_CASE("each method holds up to its limit") {
             const Study study = topic.study(laboratory);
             const auto why = failure(study);
             CHECK_MESSAGE(!why, *why);
+            CHECK_MESSAGE(
+                (results.count(study.file) && is_of(results.at(study.file), study)),
+                "the results in data/ are of an older study: run `stability FOLDER`, then limits.mjs");
             CHECK(study.measure.size() <= 60);  // what stands along the height of its chart
             for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
         }

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { once } from 'node:events';
 import { connect, createServer } from 'node:net';
 import { test } from 'node:test';
-import { SlowLink } from './slow-link.js';
+import { SlowLink } from './slow-link.mjs';
 
 /** A server that sends back what it gets, and a link before it. */
 async function echoOver(quality, use) {
