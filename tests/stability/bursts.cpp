@@ -14,7 +14,7 @@ namespace vrut::stability {
 namespace {
 
 constexpr std::chrono::milliseconds kPicture{15};  ///< what one takes to draw
-constexpr std::chrono::milliseconds kPatience{20'000};
+constexpr std::chrono::milliseconds kPatience{5000};
 
 /// Draws nothing, in the time that a picture takes.
 Painter slow_painter() {

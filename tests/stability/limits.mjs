@@ -1,9 +1,9 @@
 // README's table of limits, from what the studies gave.
 //
-//   node tests/stability/limits.mjs [RESULTS]
+//   node tests/stability/limits.mjs [RESULTS...]
 //
 // RESULTS, written by the program `stability`, replace those that are kept in data/, study by study; then the table in
-// README.md is written anew.
+// README.md is written anew. Nothing is written where a study failed.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -189,10 +189,9 @@ function seconds(ms) {
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
-  const [results] = process.argv.slice(2);
-  if (results) {
-    const studies = new Map([...read(), ...read(results)]);
-    writeFileSync(kept, `[\n${[...studies.values()].map((study) => JSON.stringify(study)).join(',\n')}\n]\n`);
-  }
-  writeFileSync(readme, withTable(readFileSync(readme, 'utf8'), table(read())));
+  const results = process.argv.slice(2).reduce((studies, file) => new Map([...studies, ...read(file)]), read());
+  for (const study of results.keys()) held(results, study);
+  const text = withTable(readFileSync(readme, 'utf8'), table(results));
+  writeFileSync(kept, `[\n${[...results.values()].map((study) => JSON.stringify(study)).join(',\n')}\n]\n`);
+  writeFileSync(readme, text);
 }
