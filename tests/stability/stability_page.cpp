@@ -41,8 +41,8 @@ Series series_of(const Curve& curve, int color) {
 }
 
 std::string held(const Study& study) {
-    return study.limit ? "below " + chart::short_number(*study.limit) + " (" + study.parameter + ")"
-                       : "as far as it was measured";
+    const std::string end = chart::short_number(study.limit.value_or(study.method.points.back().x));
+    return (study.limit ? "below " : "as far as it was measured, to ") + end + " (" + study.parameter + ")";
 }
 
 std::vector<std::string> sentences_on(const Study& study) {
@@ -123,9 +123,9 @@ std::vector<std::string> write_page(const std::vector<Study>& studies, const std
             failures.push_back(study.title + ": " + *why + ".");
             sections.front().sentences.push_back("Failed: " + failures.back());
         }
+        if (study.method.points.empty()) continue;
         sections.front().tables.front().rows.push_back(
             {study.title + ": " + study.method.title, held(study), study.cost});
-        if (study.method.points.empty()) continue;
         sections.push_back(section_of(study));
         sections.back().plots.front().subtitle = renderer;
     }
