@@ -30,6 +30,8 @@ Painter slow_painter() {
     return painter;
 }
 
+using Asked = std::function<bool(const protocol::FrameHeader&)>;
+
 /// A room of one: a client who steers, and takes each picture at once.
 class Room {
 public:
@@ -50,11 +52,13 @@ public:
         engine_.mailbox().push(ClientSaid{kClient, std::move(message), Clock::now()});
     }
 
-    /// How long after `input` a picture came that shows it, in ms; kNothing where none does.
-    double lag_of(Clock::time_point input) {
+    /// How long after `input` a picture came that shows it, and what `is_shown` asks for, in ms; kNothing
+    /// where none does.
+    double lag_of(
+        Clock::time_point input, const Asked& is_shown = [](const auto&) { return true; }) {
         std::unique_lock lock(mutex_);
-        if (!arrived_.wait_until(lock, input + kPatience, [&] { return shown_ && *shown_ >= input; }))
-            return kNothing;
+        const auto has_come = [&] { return shown_ && *shown_ >= input && is_shown(header_); };
+        if (!arrived_.wait_until(lock, input + kPatience, has_come)) return kNothing;
         return std::chrono::duration<double, std::milli>(Clock::now() - input).count();
     }
 
@@ -95,11 +99,10 @@ private:
     Engine engine_;  // last: its threads use all of the above
 };
 
-/// The lag of the last of `rate` inputs a second that came for half a second; kNothing where its picture does
-/// not show what `is_shown` asks for.
+/// The lag of the last of `rate` inputs a second that came for half a second, until a picture shows what is
+/// asked for.
 template <class Input>
-double lag_after_burst(double rate, const Input& input,
-                       const std::function<bool(const protocol::FrameHeader&)>& is_shown) {
+double lag_after_burst(double rate, const Input& input, const Asked& is_shown) {
     constexpr std::chrono::milliseconds kBurst{500};
     Room room;
     const Clock::time_point start = Clock::now();
@@ -110,8 +113,7 @@ double lag_after_burst(double rate, const Input& input,
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
     room.say(input(-1));
-    const double lag = room.lag_of(Clock::now() - std::chrono::milliseconds(1));
-    return is_shown(room.header()) ? lag : kNothing;
+    return room.lag_of(Clock::now() - std::chrono::milliseconds(1), is_shown);
 }
 
 glm::dvec3 eye_at_start() {
