@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "difference.hpp"
+#include "files.hpp"
 #include "flip.hpp"
 #include "images.hpp"
 #include "picture_file.hpp"

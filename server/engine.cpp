@@ -67,7 +67,8 @@ Engine::Engine(EngineOptions options, PainterFactory factory, Metrics& metrics, 
           metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
       snapshot_encoder_(
           metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
-      loader_(mailbox_),
+      loader_([this](SceneLoading loading) { mailbox_.push(std::move(loading)); },
+              [this](SceneLoaded loaded) { mailbox_.push(std::move(loaded)); }),
       factory_(std::move(factory)),
       stats_(metrics) {
     std::promise<void> started;

@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-#include "pacing.hpp"
+#include "clock.hpp"
 
 namespace vrut {
 

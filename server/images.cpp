@@ -4,9 +4,6 @@
 #include <zlib.h>
 
 #include <bit>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <stdexcept>
 
@@ -62,13 +59,6 @@ std::vector<std::uint8_t> png_text_chunk(const std::string& text) {
     const std::string chunk =
         big_endian(body.size() - 4) + body + big_endian(crc32(0, bytes, static_cast<uInt>(body.size())));
     return {chunk.begin(), chunk.end()};
-}
-
-void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
-    std::ofstream file(path, std::ios::binary);
-    file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) throw std::runtime_error(path.string() + " cannot be written: " + std::strerror(errno));
 }
 
 }  // namespace vrut

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
 #include <span>
@@ -37,8 +36,5 @@ std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm:
 inline constexpr std::size_t kPngTextOffset = 33;
 /// An uncompressed iTXt chunk with keyword `vrut-preview` that holds `text`.
 std::vector<std::uint8_t> png_text_chunk(const std::string& text);
-
-/// Writes a whole file. Throws std::runtime_error with a sentence that names it.
-void write_file(const std::filesystem::path& path, std::span<const std::uint8_t> bytes);
 
 }  // namespace vrut

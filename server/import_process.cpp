@@ -16,14 +16,13 @@
 #include <system_error>
 #include <utility>
 
+#include "clock.hpp"
 #include "import_channel.hpp"
 #include "parts_stream.hpp"
 
 namespace vrut {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 int checked(int result, const char* what) {
     if (result < 0) throw std::system_error(errno, std::generic_category(), what);

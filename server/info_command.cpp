@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "import_process.hpp"
+#include "loaded_scene.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "scene_state.hpp"

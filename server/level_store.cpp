@@ -9,7 +9,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "images.hpp"
+#include "files.hpp"
 #include "log.hpp"
 #include "scene_library.hpp"
 

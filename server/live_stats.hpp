@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "clock.hpp"
 #include "messages.hpp"
 #include "metrics.hpp"
-#include "pacing.hpp"
 
 namespace vrut {
 

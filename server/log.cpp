@@ -10,6 +10,7 @@
 #include <map>
 #include <mutex>
 
+#include "clock.hpp"
 #include "report.hpp"
 
 namespace vrut {
@@ -61,7 +62,6 @@ public:
     std::uint64_t take_left_out() { return std::exchange(left_out_, 0); }
 
 private:
-    using Clock = std::chrono::steady_clock;
     double left_ = kBurst;
     Clock::time_point last_ = Clock::now();
     std::uint64_t left_out_ = 0;

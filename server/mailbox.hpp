@@ -8,10 +8,9 @@
 #include <variant>
 #include <vector>
 
-#include "level_table.hpp"
 #include "messages.hpp"
 #include "pacing.hpp"
-#include "scene_state.hpp"
+#include "scene_loader.hpp"
 
 namespace vrut {
 
@@ -62,17 +61,6 @@ struct SnapshotSent {
 struct PictureAsked {
     std::string name;           ///< that the picture shall have as its `client`
     int width = 0, height = 0;  ///< 0: the view's
-};
-
-struct SceneLoading {
-    std::string name;
-    double fraction = 0;
-};
-
-struct SceneLoaded {
-    std::string name;
-    tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
-    protocol::LevelTable levels = {};              ///< of the scene on this machine
 };
 
 using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent, SnapshotSent, PictureAsked,

@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "clock.hpp"
 #include "frame_header.hpp"
 
 namespace vrut {
-
-using Clock = std::chrono::steady_clock;
 
 /// After this long without a change the picture is drawn at full accuracy.
 inline constexpr std::chrono::milliseconds kQuiet{150};

@@ -13,6 +13,7 @@
 #include "flight.hpp"
 #include "frame_header.hpp"
 #include "gestures.hpp"
+#include "loaded_scene.hpp"
 #include "messages.hpp"
 #include "picking.hpp"
 #include "recorder.hpp"

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <memory>
 
+#include "clock.hpp"
+
 namespace vrut {
 
 Progress::Progress() : terminal_(isatty(STDERR_FILENO) == 1) {}
@@ -32,7 +34,6 @@ void Progress::show(double part, const std::string& what) {
 }
 
 std::function<void(double)> loading_bar(const std::string& what) {
-    using Clock = std::chrono::steady_clock;
     constexpr std::chrono::milliseconds kPatience{500};
     if (isatty(STDERR_FILENO) != 1) return {};
     return [bar = std::make_shared<Progress>(), what, kPatience, start = Clock::now()](double part) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "pacing.hpp"
+#include "clock.hpp"
 
 namespace vrut {
 

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <ctime>
 
+#include "clock.hpp"
 #include "log.hpp"
 
 namespace vrut {
@@ -49,7 +50,6 @@ tl::expected<std::string, std::string> Recorder::open(const std::string& name) {
 }
 
 void Recorder::write(const std::string& line) {
-    using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     // Whole lines reach the file at once: a log whose end is missing is still a log.
     file_ << line << '\n' << std::flush;

@@ -6,6 +6,7 @@
 
 #include "commands.hpp"
 #include "detail_levels.hpp"
+#include "files.hpp"
 #include "images.hpp"
 #include "log.hpp"
 #include "presentation.hpp"

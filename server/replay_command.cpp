@@ -3,6 +3,7 @@
 
 #include "commands.hpp"
 #include "encoder.hpp"
+#include "files.hpp"
 #include "images.hpp"
 #include "log.hpp"
 #include "progress.hpp"

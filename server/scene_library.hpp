@@ -7,7 +7,8 @@
 #include <vector>
 
 #include "import_process.hpp"
-#include "scene_state.hpp"
+#include "loaded_scene.hpp"
+#include "messages.hpp"
 
 namespace vrut {
 

@@ -1,5 +1,6 @@
 #include "scene_loader.hpp"
 
+#include "clock.hpp"
 #include "level_store.hpp"
 #include "scene_library.hpp"
 
@@ -26,16 +27,16 @@ void SceneLoader::start(const std::filesystem::path& path, const std::string& na
             if (closing_) throw Closing();
             if (Clock::now() - last < kBetweenReports) return;
             last = Clock::now();
-            mailbox_.push(SceneLoading{name, fraction});
+            on_progress_({name, fraction});
         };
         try {
             auto scene = load_scene(path, name, progress, limits);
             protocol::LevelTable levels;
             if (scene) levels = levels_of(scene->sha256, renderer);
-            mailbox_.push(SceneLoaded{name, std::move(scene), std::move(levels)});
+            on_loaded_({name, std::move(scene), std::move(levels)});
         } catch (const Closing&) {
         } catch (const std::exception& error) {
-            mailbox_.push(SceneLoaded{name, tl::unexpected(std::string(error.what()))});
+            on_loaded_({name, tl::unexpected(std::string(error.what()))});
         }
     });
     busy_ = true;

@@ -2,29 +2,48 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <thread>
+#include <tl/expected.hpp>
 
 #include "import_process.hpp"
-#include "mailbox.hpp"
+#include "level_table.hpp"
+#include "loaded_scene.hpp"
 
 namespace vrut {
 
-/// Reads one scene at a time in a thread of its own, and tells the mailbox how far it is.
+struct SceneLoading {
+    std::string name;
+    double fraction = 0;
+};
+
+struct SceneLoaded {
+    std::string name;
+    tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
+    protocol::LevelTable levels = {};              ///< of the scene on this machine
+};
+
+/// Reads one scene at a time on a thread of its own.
 class SceneLoader {
 public:
-    explicit SceneLoader(Mailbox& mailbox) : mailbox_(mailbox) {}
+    /// Both are called on that thread: `on_progress` at most ten times a second, `on_loaded` once at the end.
+    SceneLoader(std::function<void(SceneLoading)> on_progress, std::function<void(SceneLoaded)> on_loaded)
+        : on_progress_(std::move(on_progress)), on_loaded_(std::move(on_loaded)) {}
     ~SceneLoader();
 
     /// From start() until finish().
     bool busy() const { return busy_; }
-    /// With the levels that are kept for what draws. Throws std::system_error where no thread can be had.
+    /// Reads also the levels that are kept for `renderer`. Throws std::system_error where no thread can be
+    /// had.
     void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
                const std::optional<ImportLimits>& limits);
-    /// To be called when SceneLoaded has come.
+    /// To be called after `on_loaded`.
     void finish();
 
 private:
-    Mailbox& mailbox_;
+    std::function<void(SceneLoading)> on_progress_;
+    std::function<void(SceneLoaded)> on_loaded_;
     bool busy_ = false;
     std::atomic<bool> closing_{false};
     std::thread thread_;

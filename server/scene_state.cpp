@@ -126,12 +126,6 @@ std::optional<Error> apply(protocol::NodeOverride& change, const Scene& scene, c
 
 }  // namespace
 
-std::vector<std::string> all_notices(const Scene& scene) {
-    std::vector<std::string> notices = scene.notices();
-    for (std::string& notice : undrawn_features(scene)) notices.push_back(std::move(notice));
-    return notices;
-}
-
 protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices) {
     protocol::State state;
     const Scene& scene = *placed.scene;

@@ -9,17 +9,6 @@
 
 namespace vrut {
 
-/// A scene as it was read.
-struct LoadedScene {
-    std::string name;    ///< by which it was asked for
-    std::string sha256;  ///< of its file, in hexadecimal
-    std::shared_ptr<const PlacedScene> placed;
-    std::vector<std::string> notices;
-};
-
-/// What the reader had to say of a scene, and what of it is not drawn.
-std::vector<std::string> all_notices(const Scene& scene);
-
 /// The state that a scene starts with, its camera at home for a view of `aspect`.
 protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices);
 /// What `fit` gives at loading.

@@ -12,6 +12,7 @@
 #include "page.hpp"
 #include "progress.hpp"
 #include "scene_library.hpp"
+#include "scene_state.hpp"
 
 namespace vrut {
 

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "files.hpp"
 #include "images.hpp"
 
 namespace vrut::chart {

@@ -21,6 +21,7 @@
 
 #include "detail_levels.hpp"
 #include "difference.hpp"
+#include "files.hpp"
 #include "images.hpp"
 #include "read_scene.hpp"
 #include "renderer.hpp"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "files.hpp"
 #include "images.hpp"
 #include "recorded_session.hpp"
 #include "renderer.hpp"

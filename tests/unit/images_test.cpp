@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "files.hpp"
 #include "frame_header.hpp"
 
 using namespace vrut;
