@@ -8,10 +8,12 @@
 
 #include "../unit/environment_variable.hpp"
 #include "../unit/temporary_folder.hpp"
-#include "import_process.hpp"
+#include "scene/import_process.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::net;
 using namespace vrut::test;
 namespace fs = std::filesystem;
 

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "files.hpp"
-#include "images.hpp"
+#include "base/files.hpp"
+#include "engine/images.hpp"
 #include "recorded_session.hpp"
 #include "renderer.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::room;
 using namespace vrut::test;
 
 namespace {

@@ -10,11 +10,11 @@
 #include <memory>
 #include <thread>
 
-#include "level_choice.hpp"
-#include "level_store.hpp"
-#include "pacing.hpp"
+#include "engine/level_choice.hpp"
+#include "engine/pacing.hpp"
+#include "net/server.hpp"
 #include "page_client.hpp"
-#include "server.hpp"
+#include "scene/level_store.hpp"
 #include "shapes.hpp"
 #include "slow_link.hpp"
 #include "study.hpp"
@@ -62,8 +62,8 @@ Image balls(int width, int height) {
 }
 
 /// Draws the balls, turned with the camera.
-Painter painter_of_balls() {
-    Painter painter;
+server::engine::Painter painter_of_balls() {
+    server::engine::Painter painter;
     painter.description = "balls";
     auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
     painter.paint = [drawn](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
@@ -90,7 +90,7 @@ Painter painter_of_balls() {
 /// A server, a slow link, and the page at its other end, with a finger that turns the view on and on.
 class Journey {
 public:
-    Journey(const LinkQuality& quality, const Deadlines& deadlines = {})
+    Journey(const LinkQuality& quality, const server::net::Deadlines& deadlines = {})
         : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, painter_of_balls),
           thread_([this] { server_.run(); }),
           link_(std::make_unique<SlowLink>(context_, server_.port(), quality)),
@@ -107,38 +107,40 @@ public:
     const PageClient& page() const { return *page_; }
     SlowLink& link() { return *link_; }
     void go_on(double seconds) {
-        context_.run_for(std::chrono::duration_cast<Clock::duration>(Seconds(seconds)));
+        context_.run_for(std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds)));
     }
     /// Until so many pictures have come over this connection, or for so long.
     void go_on_until(std::size_t pictures, double seconds) {
-        const Clock::time_point end =
-            Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
-        while (page_->shown().size() < pictures && Clock::now() < end) context_.run_for(10ms);
+        const server::base::Clock::time_point end =
+            server::base::Clock::now() +
+            std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds));
+        while (page_->shown().size() < pictures && server::base::Clock::now() < end) context_.run_for(10ms);
     }
 
     /// The longest that a move had to wait for its picture, of those sent from `begin` on, in ms; those that
     /// none shows yet have waited until now.
-    double longest_lag(Clock::time_point begin) const {
+    double longest_lag(server::base::Clock::time_point begin) const {
         double longest = 0;
         auto picture = page_->shown().begin();
         for (const PageClient::Move& move : page_->moves()) {
             if (move.sent < begin) continue;
             while (picture != page_->shown().end() && picture->handled < move.id) ++picture;
-            const Clock::time_point seen = picture == page_->shown().end() ? Clock::now() : picture->at;
+            const server::base::Clock::time_point seen =
+                picture == page_->shown().end() ? server::base::Clock::now() : picture->at;
             longest = std::max(longest, Milliseconds(seen - move.sent).count());
         }
         return longest;
     }
 
 private:
-    static ServerOptions options(const Deadlines& deadlines) {
-        ServerOptions options;
+    static server::net::ServerOptions options(const server::net::Deadlines& deadlines) {
+        server::net::ServerOptions options;
         options.listen = {"127.0.0.1", 0};
         options.deadlines = deadlines;
         return options;
     }
 
-    Server server_;
+    server::net::Server server_;
     std::thread thread_;
     boost::asio::io_context context_{1};
     std::unique_ptr<SlowLink> link_;
@@ -211,7 +213,7 @@ Study slow_links(const Laboratory& laboratory) {
     study.successor->points = measured(points, [&](double x) {
         Journey journey({1e6 / x / 8, 0ms});
         journey.go_on_until(3, 10 * milliseconds_of(kSmallest, 1e6 / x) / 1000 + 1);
-        const Clock::time_point begin = Clock::now();
+        const server::base::Clock::time_point begin = server::base::Clock::now();
         journey.go_on(drag);
         return std::max(0.0, journey.longest_lag(begin) - 2 * milliseconds_of(kSmallest, 1e6 / x));
     });
@@ -235,7 +237,7 @@ Study long_links(const Laboratory& laboratory) {
                  [&](double ms) {
                      Journey journey({kLink / 8, std::chrono::milliseconds(std::llround(ms))});
                      journey.go_on_until(3, 1 + 10 * ms / 1000);
-                     const Clock::time_point begin = Clock::now();
+                     const server::base::Clock::time_point begin = server::base::Clock::now();
                      journey.go_on(whole ? 20 : 0.4);
                      return std::max(0.0, journey.longest_lag(begin) - 4 * ms);
                  });
@@ -259,8 +261,8 @@ Study levels_of_long_links(const Laboratory& laboratory) {
     const std::vector<double> points =
         whole ? std::vector<double>{1, 5, 30, 100, 300, 1000} : std::vector<double>{1, 5};
     for (const double ms : points) {
-        LevelChoice choice(built_in_levels());
-        Clock::time_point now{1h};
+        server::engine::LevelChoice choice(server::scene::built_in_levels());
+        server::base::Clock::time_point now{1h};
         std::size_t level = 0;
         for (int i = 0; i < 300; ++i) {
             const protocol::Level& row = choice.levels()[level];
@@ -310,11 +312,13 @@ Study stalls(const Laboratory& laboratory) {
         study.method.points.push_back({x, milliseconds_of(bytes, kLink)});
     }
     study.successor->points = measured(points, [&](double x) {
-        Deadlines deadlines;
+        server::net::Deadlines deadlines;
         deadlines.stuck = std::chrono::milliseconds(std::llround(1000 * stuck));
         Journey journey({kLink / 8, 0ms}, deadlines);
         journey.go_on_until(5, 5);
-        const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(x));
+        const server::base::Clock::time_point end =
+            server::base::Clock::now() +
+            std::chrono::duration_cast<server::base::Clock::duration>(Seconds(x));
         journey.link().stall_until(end);
         journey.go_on(x + (whole ? 2.5 : 0.6));
         const bool was_cut = journey.page().connections() > 1;

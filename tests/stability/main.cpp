@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include "chart/machine.hpp"
-#include "chart/plot.hpp"
-#include "log.hpp"
-#include "progress.hpp"
+#include "measure/machine.hpp"
+#include "measure/plot.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
 #include "stability_page.hpp"
 
 int main(int argc, char** argv) try {
@@ -13,14 +13,15 @@ int main(int argc, char** argv) try {
         std::cerr << "stability: usage: stability FOLDER, where the page and its charts are written to\n";
         return 2;
     }
-    vrut::start_log();
-    vrut::chart::require_gnuplot();
+    vrut::server::observe::start_log();
+    vrut::server::measure::require_gnuplot();
     vrut::Renderer renderer;
     const std::filesystem::path folder = argv[1];
     std::filesystem::create_directories(folder);
     {
-        vrut::Progress progress;
-        vrut::stability::write_all(renderer, vrut::chart::machine() + ", VRUT Preview " VRUT_VERSION, folder,
+        vrut::server::observe::Progress progress;
+        vrut::stability::write_all(renderer,
+                                   vrut::server::measure::machine() + ", VRUT Preview " VRUT_VERSION, folder,
                                    [&](double part, const std::string& what) { progress.show(part, what); });
     }
     std::cout << (folder / "stability.html").string() << std::endl;

@@ -26,7 +26,7 @@ constexpr int kTakenAhead = 4096;  // bytes that wait at the link's begin; the k
 /// What the two ways of a link share.
 struct Line {
     LinkQuality quality;
-    Clock::time_point stalled_until{};
+    server::base::Clock::time_point stalled_until{};
     bool closed = false;
 };
 
@@ -58,14 +58,15 @@ public:
         from_.async_read_some(asio::buffer(piece_.data(), static_cast<std::size_t>(most)),
                               [self = shared_from_this()](error_code error, std::size_t size) {
                                   if (error) return self->push("");
-                                  self->free_at_ = std::max(Clock::now(), self->free_at_) + self->takes(size);
+                                  self->free_at_ = std::max(server::base::Clock::now(), self->free_at_) +
+                                                   self->takes(size);
                                   self->leave(size);
                               });
     }
 
 private:
-    Clock::duration takes(std::size_t bytes) const {
-        return std::chrono::duration_cast<Clock::duration>(
+    server::base::Clock::duration takes(std::size_t bytes) const {
+        return std::chrono::duration_cast<server::base::Clock::duration>(
             std::chrono::duration<double>(static_cast<double>(bytes) / line_->quality.bytes_per_second));
     }
 
@@ -73,7 +74,7 @@ private:
         leaves_.expires_at(std::max(free_at_, line_->stalled_until));
         leaves_.async_wait([self = shared_from_this(), size](error_code stopped) {
             if (stopped || self->line_->closed) return;
-            if (Clock::now() < self->line_->stalled_until) return self->leave(size);
+            if (server::base::Clock::now() < self->line_->stalled_until) return self->leave(size);
             self->free_at_ = std::max(self->free_at_, self->line_->stalled_until);
             self->push(std::string(self->piece_.data(), size));
             self->read();
@@ -82,7 +83,7 @@ private:
 
     /// An empty one ends the connection.
     void push(std::string piece) {
-        on_its_way_.push_back({Clock::now() + line_->quality.delay, std::move(piece)});
+        on_its_way_.push_back({server::base::Clock::now() + line_->quality.delay, std::move(piece)});
         if (on_its_way_.size() == 1) arrive();
     }
 
@@ -90,7 +91,7 @@ private:
         arrives_.expires_at(std::max(on_its_way_.front().due, line_->stalled_until));
         arrives_.async_wait([self = shared_from_this()](error_code stopped) {
             if (stopped || self->line_->closed) return;
-            if (Clock::now() < self->line_->stalled_until) return self->arrive();
+            if (server::base::Clock::now() < self->line_->stalled_until) return self->arrive();
             if (self->on_its_way_.front().bytes.empty()) return self->ends_->close();
             asio::async_write(self->to_, asio::buffer(self->on_its_way_.front().bytes),
                               [self](error_code error, std::size_t) {
@@ -102,7 +103,7 @@ private:
     }
 
     struct Piece {
-        Clock::time_point due;
+        server::base::Clock::time_point due;
         std::string bytes;
     };
     std::shared_ptr<Ends> ends_;
@@ -111,7 +112,7 @@ private:
     std::shared_ptr<const Line> line_;
     asio::steady_timer leaves_, arrives_;
     std::array<char, kSegment> piece_{};
-    Clock::time_point free_at_{};  ///< when what was put on the link so far has left
+    server::base::Clock::time_point free_at_{};  ///< when what was put on the link so far has left
     std::deque<Piece> on_its_way_;
 };
 
@@ -174,6 +175,6 @@ SlowLink::~SlowLink() {
 }
 
 std::uint16_t SlowLink::port() const { return impl_->acceptor.local_endpoint().port(); }
-void SlowLink::stall_until(Clock::time_point end) { impl_->line->stalled_until = end; }
+void SlowLink::stall_until(server::base::Clock::time_point end) { impl_->line->stalled_until = end; }
 
 }  // namespace vrut::stability

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "pacing.hpp"
+#include "engine/pacing.hpp"
 
 namespace vrut::stability {
 
@@ -28,7 +28,7 @@ public:
 
     std::uint16_t port() const;
     /// Nothing leaves and nothing arrives, either way, until then.
-    void stall_until(Clock::time_point end);
+    void stall_until(server::base::Clock::time_point end);
 
 private:
     struct Impl;

@@ -5,14 +5,14 @@
 #include <limits>
 #include <sstream>
 
-#include "chart/page.hpp"
+#include "measure/page.hpp"
 
 namespace vrut::stability {
 
 namespace {
 
-using chart::Plot;
-using chart::Series;
+using server::measure::Plot;
+using server::measure::Series;
 
 /// What the chart shows, from the least above 0 to the greatest.
 struct Range {
@@ -37,7 +37,7 @@ Series series_of(const Curve& curve, int color) {
 
 }  // namespace
 
-chart::Section section_of(const Study& study) {
+server::measure::Section section_of(const Study& study) {
     constexpr int kMethod = 1, kSuccessor = 0, kBound = 3;
     Range range;
     range.add(study.bound);
@@ -57,11 +57,11 @@ chart::Section section_of(const Study& study) {
     const auto& points = study.method.points;
     line(points.front().x, study.bound, points.back().x, study.bound, "bound", kBound);
     if (study.limit) line(*study.limit, range.greatest, *study.limit, lowest, "fails from here", kMethod);
-    chart::Section section{study.title, {}, {plot}};
-    section.sentences.push_back(
-        "'" + study.method.title + "' " +
-        (study.limit ? "holds below " + chart::short_number(*study.limit) + " (" + study.parameter + ")."
-                     : "holds as far as it was measured."));
+    server::measure::Section section{study.title, {}, {plot}};
+    section.sentences.push_back("'" + study.method.title + "' " +
+                                (study.limit ? "holds below " + server::measure::short_number(*study.limit) +
+                                                   " (" + study.parameter + ")."
+                                             : "holds as far as it was measured."));
     section.sentences.push_back(study.takes_over);
     section.sentences.push_back("Cost: " + study.cost);
     if (const auto wrong = contradiction(study)) section.sentences.push_back("Not so here: " + *wrong + ".");
@@ -71,8 +71,9 @@ chart::Section section_of(const Study& study) {
 void write_all(Renderer& renderer, const std::string& machine, const std::filesystem::path& folder,
                const std::function<void(double, const std::string&)>& progress) {
     const Laboratory laboratory{renderer};
-    std::vector<chart::Section> sections;
-    chart::Section overview{"Limits", {}, {}, {{{"method", "fails from", "what takes over", "cost"}, {}}}};
+    std::vector<server::measure::Section> sections;
+    server::measure::Section overview{
+        "Limits", {}, {}, {{{"method", "fails from", "what takes over", "cost"}, {}}}};
     std::ostringstream csv;
     csv.precision(9);
     csv << "study,curve,x,y\n";
@@ -83,22 +84,24 @@ void write_all(Renderer& renderer, const std::string& machine, const std::filesy
         sections.back().plots.front().subtitle = renderer.description();
         overview.tables.front().rows.push_back(
             {study.title + ": " + study.method.title,
-             study.limit ? chart::short_number(*study.limit) + " (" + study.parameter + ")" : "nowhere",
+             study.limit ? server::measure::short_number(*study.limit) + " (" + study.parameter + ")"
+                         : "nowhere",
              study.successor ? study.successor->title : study.takes_over, study.cost});
         for (const Curve* curve : {&study.method, study.successor ? &*study.successor : nullptr})
             if (curve)
                 for (const Curve::Point& point : curve->points)
-                    csv << chart::line_of(std::vector{study.file, curve->title}) << ',' << point.x << ','
-                        << point.y << '\n';
+                    csv << server::measure::line_of(std::vector{study.file, curve->title}) << ',' << point.x
+                        << ',' << point.y << '\n';
     }
     sections.insert(sections.begin(), overview);
-    chart::write_text(folder / "stability.csv", csv.str());
-    chart::write_page(folder / "stability.html",
-                      {"VRUT Preview: how far each method holds",
-                       {"Each method was pushed past its limit on purpose, to see where it fails and what "
-                        "takes over there. Drawn by " +
-                        renderer.description() + " on " + machine + "."}},
-                      sections);
+    server::measure::write_text(folder / "stability.csv", csv.str());
+    server::measure::write_page(
+        folder / "stability.html",
+        {"VRUT Preview: how far each method holds",
+         {"Each method was pushed past its limit on purpose, to see where it fails and what "
+          "takes over there. Drawn by " +
+          renderer.description() + " on " + machine + "."}},
+        sections);
 }
 
 }  // namespace vrut::stability

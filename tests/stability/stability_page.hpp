@@ -4,13 +4,13 @@
 #include <functional>
 #include <string>
 
-#include "chart/charts.hpp"
+#include "measure/charts.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
 
 /// The study's chart, with its bound and the point where the method fails, and what is to be said of it.
-chart::Section section_of(const Study& study);
+server::measure::Section section_of(const Study& study);
 
 /// Makes all studies and writes them to a folder: stability.csv, the charts, and the page stability.html.
 /// `machine` is what it runs on; `progress` is told the part that is done, and what comes next. Throws

@@ -1,11 +1,11 @@
-#include "scene_library.hpp"
-
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
+#include "scene/library.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
 namespace fs = std::filesystem;
 
 namespace {

@@ -1,0 +1,254 @@
+#include "scene/import_process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "base/clock.hpp"
+#include "parts_stream.hpp"
+#include "scene/import_channel.hpp"
+
+namespace vrut::server::scene {
+
+namespace {
+
+int checked(int result, const char* what) {
+    if (result < 0) throw std::system_error(errno, std::generic_category(), what);
+    return result;
+}
+
+void check_error(int error, const char* what) {
+    if (error != 0) throw std::system_error(error, std::generic_category(), what);
+}
+
+class Descriptor {
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    ~Descriptor() { close(); }
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(number_, other.number_);
+        return *this;
+    }
+
+    int number() const { return number_; }
+    void close() {
+        if (number_ >= 0) ::close(number_);
+        number_ = -1;
+    }
+
+private:
+    int number_;
+};
+
+/// How a process is started: with its end of the channel, and nothing else that is open here.
+class SpawnSetup {
+public:
+    explicit SpawnSetup(int channel) {
+        check_error(posix_spawn_file_actions_init(&actions_), "a process cannot be prepared");
+        check_error(posix_spawnattr_init(&attributes_), "a process cannot be prepared");
+        for (int standard = 0; standard < kChannel; ++standard)
+            posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
+        posix_spawn_file_actions_adddup2(&actions_, channel, kChannel);
+        posix_spawn_file_actions_addclosefrom_np(&actions_, kChannel + 1);
+        sigset_t none, all;
+        sigemptyset(&none);
+        sigfillset(&all);
+        posix_spawnattr_setsigmask(&attributes_, &none);
+        posix_spawnattr_setsigdefault(&attributes_, &all);
+        posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+    }
+    ~SpawnSetup() {
+        posix_spawn_file_actions_destroy(&actions_);
+        posix_spawnattr_destroy(&attributes_);
+    }
+    SpawnSetup(const SpawnSetup&) = delete;
+    SpawnSetup& operator=(const SpawnSetup&) = delete;
+
+    pid_t start(std::vector<std::string> arguments) const {
+        std::vector<char*> argv(arguments.size() + 1);  // the last one stays null
+        std::transform(arguments.begin(), arguments.end(), argv.begin(),
+                       [](std::string& argument) { return argument.data(); });
+        std::vector<char*> environment;
+        for (char** variable = environ; *variable != nullptr; ++variable)
+            if (!std::string_view(*variable).starts_with(
+                    "VRUT_PREVIEW_"))  // tokens are not for a foreign file
+                environment.push_back(*variable);
+        environment.push_back(nullptr);
+        pid_t process = 0;
+        check_error(
+            posix_spawn(&process, "/proc/self/exe", &actions_, &attributes_, argv.data(), environment.data()),
+            "no process can be started to read a file");
+        return process;
+    }
+
+private:
+    posix_spawn_file_actions_t actions_{};
+    posix_spawnattr_t attributes_{};
+};
+
+/// A started process, which is ended and reaped with the object.
+class Child {
+public:
+    explicit Child(pid_t process) : process_(process) {}
+    ~Child() {
+        if (status_) return;
+        kill(process_, SIGKILL);
+        while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
+        }
+    }
+    Child(const Child&) = delete;
+    Child& operator=(const Child&) = delete;
+
+    /// As waitpid() has it; none while it runs.
+    std::optional<int> status() {
+        int status = 0;
+        if (!status_ && waitpid(process_, &status, WNOHANG) == process_) status_ = status;
+        return status_;
+    }
+
+private:
+    pid_t process_;
+    std::optional<int> status_;
+};
+
+struct Pipe {
+    Descriptor out{-1}, in{-1};
+
+    Pipe() {
+        int ends[2];
+        checked(pipe2(ends, O_CLOEXEC), "no pipe is left");
+        out = Descriptor(ends[0]);
+        in = Descriptor(ends[1]);
+        // Away from the number that it has in the child.
+        in = Descriptor(checked(fcntl(in.number(), F_DUPFD_CLOEXEC, kChannel + 1), "no descriptor is left"));
+        checked(fcntl(out.number(), F_SETFL, O_NONBLOCK), "a pipe cannot be read");
+        fcntl(out.number(), F_SETPIPE_SZ, 1 << 20);  // for speed; where it may be no larger, it stays small
+    }
+};
+
+std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
+
+/// The reading of one file in a child process, as long as the object lives.
+class Import {
+public:
+    Import(const std::filesystem::path& path, const ReadProgress& progress, const ImportLimits& limits)
+        : path_(path),
+          progress_(progress),
+          limits_(limits),
+          end_(base::Clock::now() + limits.time),
+          child_(SpawnSetup(pipe_.in.number())
+                     .start({"vrut-preview", "import", path.string(), std::to_string(limits.bytes),
+                             std::to_string(limits.time.count())})) {
+        pipe_.in.close();
+    }
+
+    PartsResult read() try {
+        const ByteSource source = [this](void* to, std::size_t size) { fill(static_cast<char*>(to), size); };
+        for (double told = 0; told >= 0; source(&told, sizeof told))
+            fraction_ = std::clamp(told, fraction_, 1.0);
+        return read_parts(source, limits_.bytes, path_.string());
+    } catch (const Fault& fault) {
+        return tl::unexpected(path_.string() + ": " + fault.what());
+    }
+
+private:
+    /// Why nothing more comes.
+    struct Fault : std::runtime_error {
+        using std::runtime_error::runtime_error;
+    };
+
+    void fill(char* to, std::size_t size) {
+        attend();
+        while (size > 0) {
+            const ssize_t got = ::read(pipe_.out.number(), to, size);
+            if (got == 0) fail();
+            if (got > 0) {
+                to += got;
+                size -= static_cast<std::size_t>(got);
+            } else if (errno == EAGAIN) {
+                wait_for_more();
+            } else if (errno != EINTR) {
+                checked(-1, "a pipe cannot be read");
+            }
+        }
+    }
+    void attend() const {
+        if (base::Clock::now() > end_)
+            throw Fault("it is not read within " + std::to_string(limits_.time.count()) + " s");
+        if (progress_) progress_(fraction_);
+    }
+    void wait_for_more() const {
+        constexpr int kMilliseconds = 20;
+        pollfd waited{pipe_.out.number(), POLLIN, 0};  // a closed one just passes the time
+        poll(&waited, 1, kMilliseconds);
+        attend();
+    }
+    /// The child has closed its end of the channel: it has ended, or does soon.
+    [[noreturn]] void fail() {
+        pipe_.out.close();
+        for (;; wait_for_more())
+            if (const auto status = child_.status()) throw Fault(fault_of(*status));
+    }
+    std::string fault_of(int status) const {
+        if (WIFSIGNALED(status)) {
+            const char* name = sigdescr_np(WTERMSIG(status));
+            return "its reader ended with signal " + std::to_string(WTERMSIG(status)) + " (" +
+                   (name != nullptr ? name : "unknown") + ")";
+        }
+        if (WEXITSTATUS(status) == kOutOfMemory)
+            return "to read it takes more than the " + memory_text(limits_.bytes) +
+                   " of memory that it may take";
+        return "its reader ended with status " + std::to_string(WEXITSTATUS(status)) + " too early";
+    }
+
+    const std::filesystem::path& path_;
+    const ReadProgress& progress_;
+    const ImportLimits limits_;
+    const base::Clock::time_point end_;
+    double fraction_ = 0;
+    Pipe pipe_;
+    Child child_;
+};
+
+/// Bytes; as much as can be counted where the system does not tell.
+std::uint64_t free_memory() {
+    std::ifstream stream("/proc/meminfo");
+    std::string word;
+    while (stream >> word)
+        if (std::uint64_t kib = 0; word == "MemAvailable:" && stream >> kib) return kib << 10;
+    return UINT64_MAX;
+}
+
+}  // namespace
+
+ImportLimits import_limits(const std::filesystem::path& path) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    const std::uint64_t file = error ? 0 : std::min<std::uintmax_t>(size, std::uint64_t{1} << 50);
+    return {std::min((std::uint64_t{4} << 30) + 40 * file, free_memory() / 2),
+            std::chrono::seconds(300 + (file >> 20))};
+}
+
+ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& progress,
+                        const std::optional<ImportLimits>& limits) {
+    if (!has_foreign_reader(path)) return read_scene(path, progress);
+    Import reading(path, progress, limits ? *limits : import_limits(path));
+    auto parts = reading.read();
+    if (!parts) return tl::unexpected(parts.error());
+    return build_scene(*std::move(parts), path.string());  // while the child ends
+}
+
+}  // namespace vrut::server::scene
