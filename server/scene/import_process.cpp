@@ -7,16 +7,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "base/clock.hpp"
+#include "base/descriptor.hpp"
+#include "observe/log.hpp"
 #include "parts_stream.hpp"
 #include "scene/import_channel.hpp"
 
@@ -32,26 +35,6 @@ int checked(int result, const char* what) {
 void check_error(int error, const char* what) {
     if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
-
-class Descriptor {
-public:
-    explicit Descriptor(int number) : number_(number) {}
-    ~Descriptor() { close(); }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(Descriptor&& other) noexcept {
-        std::swap(number_, other.number_);
-        return *this;
-    }
-
-    int number() const { return number_; }
-    void close() {
-        if (number_ >= 0) ::close(number_);
-        number_ = -1;
-    }
-
-private:
-    int number_;
-};
 
 /// How a process is started: with its end of the channel, and nothing else that is open here.
 class SpawnSetup {
@@ -78,15 +61,9 @@ public:
     SpawnSetup& operator=(const SpawnSetup&) = delete;
 
     pid_t start(std::vector<std::string> arguments) const {
-        std::vector<char*> argv(arguments.size() + 1);  // the last one stays null
-        std::transform(arguments.begin(), arguments.end(), argv.begin(),
-                       [](std::string& argument) { return argument.data(); });
-        std::vector<char*> environment;
-        for (char** variable = environ; *variable != nullptr; ++variable)
-            if (!std::string_view(*variable).starts_with(
-                    "VRUT_PREVIEW_"))  // tokens are not for a foreign file
-                environment.push_back(*variable);
-        environment.push_back(nullptr);
+        std::vector<char*> argv = pointers_to(arguments);
+        std::vector<std::string> variables = passed_variables();
+        std::vector<char*> environment = pointers_to(variables);
         pid_t process = 0;
         check_error(
             posix_spawn(&process, "/proc/self/exe", &actions_, &attributes_, argv.data(), environment.data()),
@@ -95,6 +72,23 @@ public:
     }
 
 private:
+    /// What the program cannot start without, and what the sanitizers are told: the rest, tokens too, is not
+    /// for a foreign file.
+    static std::vector<std::string> passed_variables() {
+        std::vector<std::string> passed;
+        for (const char* name :
+             {"LD_LIBRARY_PATH", "ASAN_OPTIONS", "LSAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"})
+            if (const char* value = std::getenv(name)) passed.push_back(std::string(name) + "=" + value);
+        return passed;
+    }
+    /// With a null at the end.
+    static std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+        std::vector<char*> pointers(texts.size() + 1);
+        std::transform(texts.begin(), texts.end(), pointers.begin(),
+                       [](std::string& text) { return text.data(); });
+        return pointers;
+    }
+
     posix_spawn_file_actions_t actions_{};
     posix_spawnattr_t attributes_{};
 };
@@ -125,19 +119,30 @@ private:
 };
 
 struct Pipe {
-    Descriptor out{-1}, in{-1};
+    base::Descriptor out{-1}, in{-1};
 
     Pipe() {
         int ends[2];
         checked(pipe2(ends, O_CLOEXEC), "no pipe is left");
-        out = Descriptor(ends[0]);
-        in = Descriptor(ends[1]);
+        out = base::Descriptor(ends[0]);
+        in = base::Descriptor(ends[1]);
         // Away from the number that it has in the child.
-        in = Descriptor(checked(fcntl(in.number(), F_DUPFD_CLOEXEC, kChannel + 1), "no descriptor is left"));
+        in = base::Descriptor(
+            checked(fcntl(in.number(), F_DUPFD_CLOEXEC, kChannel + 1), "no descriptor is left"));
         checked(fcntl(out.number(), F_SETFL, O_NONBLOCK), "a pipe cannot be read");
         fcntl(out.number(), F_SETPIPE_SZ, 1 << 20);  // for speed; where it may be no larger, it stays small
     }
 };
+
+/// Once: it is the same for every file.
+void warn_of_open_reader(bool files) {
+    static std::atomic<bool> warned[2];
+    if (!warned[files].exchange(true))
+        observe::log_warning(
+            "reader_not_confined",
+            {{"open", files ? "files, since the kernel has no Landlock or does not let it be used"
+                            : "system calls, since there is no seccomp for them"}});
+}
 
 std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
@@ -157,8 +162,7 @@ public:
 
     PartsResult read() try {
         const ByteSource source = [this](void* to, std::size_t size) { fill(static_cast<char*>(to), size); };
-        for (double told = 0; told >= 0; source(&told, sizeof told))
-            fraction_ = std::clamp(told, fraction_, 1.0);
+        for (double told = 0; told != kReady; source(&told, sizeof told)) heed(told);
         return read_parts(source, limits_.bytes, path_.string());
     } catch (const Fault& fault) {
         return tl::unexpected(path_.string() + ": " + fault.what());
@@ -170,6 +174,12 @@ private:
         using std::runtime_error::runtime_error;
     };
 
+    void heed(double told) {
+        if (told == kFilesOpen || told == kCallsOpen)
+            warn_of_open_reader(told == kFilesOpen);
+        else if (told > fraction_)
+            fraction_ = std::min(told, 1.0);
+    }
     void fill(char* to, std::size_t size) {
         attend();
         while (size > 0) {

@@ -197,7 +197,7 @@ TEST_CASE("a file whose reader crashes is refused, and the old scene goes on") {
     pid_t reader = 0;
     REQUIRE(eventually([&] { return (reader = child()) != 0; }));
     const std::string environment = told_of(std::to_string(reader), "environ");
-    CHECK(environment.find("PATH=") != std::string::npos);
+    CHECK_MESSAGE((environment.empty() || environment.find("SAN_OPTIONS=") != std::string::npos), environment);
     CHECK(environment.find("VRUT_PREVIEW_CONTROL_TOKEN") == std::string::npos);
     kill(reader, SIGABRT);
     room.expect_refusal("its reader ended with signal 6 (Aborted)");
