@@ -290,11 +290,10 @@ void Engine::tell(const protocol::Loading& loading) {
 void Engine::handle(const scene::SceneLoaded& loaded) { arrived_ = loaded; }
 
 std::optional<protocol::Error> Engine::load(const std::string& name) {
-    const auto path = library_.find(name);
-    if (!path) return protocol::Error{{}, code::refused_scene, path.error()};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     try {
-        loader_.start(*path, name, description_, library_.limits());
+        if (const auto refusal = loader_.start(library_, name, description_))
+            return protocol::Error{{}, code::refused_scene, *refusal};
     } catch (const std::system_error& error) {
         return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
     }

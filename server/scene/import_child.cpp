@@ -72,6 +72,8 @@ void run_import_process(char** argv) try {
     tell(kReady);
     write_parts(std::move(parts), write_all);
     _exit(0);
+} catch (const std::bad_alloc&) {
+    _exit(kOutOfMemory);
 } catch (const std::exception&) {
     _exit(1);
 }

@@ -12,11 +12,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
 
+#include "base/abandonable_task.hpp"
 #include "base/clock.hpp"
 #include "base/descriptor.hpp"
 #include "observe/log.hpp"
@@ -100,8 +102,7 @@ public:
     ~Child() {
         if (status_) return;
         kill(process_, SIGKILL);
-        while (waitpid(process_, nullptr, 0) < 0 && errno == EINTR) {
-        }
+        reap();
     }
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
@@ -114,6 +115,16 @@ public:
     }
 
 private:
+    /// One that hangs in the kernel, as on a disk that does not answer, ends when the kernel lets it.
+    void reap() const try {
+        const base::AbandonableTask<void> reaper([process = process_](const std::stop_token&) {
+            while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
+            }
+        });
+    } catch (const std::system_error&) {  // no thread can be had
+        waitpid(process_, nullptr, WNOHANG);
+    }
+
     pid_t process_;
     std::optional<int> status_;
 };
@@ -143,6 +154,9 @@ void warn_of_open_reader(bool files) {
             {{"open", files ? "files, since the kernel has no Landlock or does not let it be used"
                             : "system calls, since there is no seccomp for them"}});
 }
+
+constexpr const char* kMemoryRemedy =
+    "; free some memory on the server's machine, or open a scene with fewer triangles or smaller pictures";
 
 std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 
@@ -220,7 +234,7 @@ private:
         }
         if (WEXITSTATUS(status) == kOutOfMemory)
             return "to read it takes more than the " + memory_text(limits_.bytes) +
-                   " of memory that it may take";
+                   " of memory that it may take" + kMemoryRemedy;
         return "its reader ended with status " + std::to_string(WEXITSTATUS(status)) + " too early";
     }
 
@@ -252,13 +266,19 @@ ImportLimits import_limits(const std::filesystem::path& path) {
             std::chrono::seconds(300 + (file >> 20))};
 }
 
+std::string out_of_memory(const std::filesystem::path& path) {
+    return path.string() + ": there is not enough memory for it" + kMemoryRemedy;
+}
+
 ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& progress,
-                        const std::optional<ImportLimits>& limits) {
+                        const std::optional<ImportLimits>& limits) try {
     if (!has_foreign_reader(path)) return read_scene(path, progress);
     Import reading(path, progress, limits ? *limits : import_limits(path));
     auto parts = reading.read();
     if (!parts) return tl::unexpected(parts.error());
     return build_scene(*std::move(parts), path.string());  // while the child ends
+} catch (const std::bad_alloc&) {
+    return tl::unexpected(out_of_memory(path));
 }
 
 }  // namespace vrut::server::scene

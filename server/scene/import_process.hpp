@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "read_scene.hpp"
 
@@ -24,6 +25,9 @@ ImportLimits import_limits(const std::filesystem::path& path);
 /// std::system_error where no process can be started.
 ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
                         const std::optional<ImportLimits>& limits = {});
+
+/// Says that there is not enough memory for the scene in `path`, and what to do.
+std::string out_of_memory(const std::filesystem::path& path);
 
 /// The child's side: argv of `PROGRAM import FILE BYTES SECONDS`, which import_scene() starts with this very
 /// program; main() comes here first.

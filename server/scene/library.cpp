@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <deque>
 #include <fstream>
-#include <future>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
+#include "base/abandonable_task.hpp"
 #include "utf8.hpp"
 
 namespace vrut::server::scene {
@@ -18,11 +19,15 @@ namespace fs = std::filesystem;
 
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
                                                   const ReadProgress& progress,
-                                                  const std::optional<ImportLimits>& limits) {
-    auto sum = std::async(std::launch::async, sha256_of, path);  // a tenth of the time, while it is read
+                                                  const std::optional<ImportLimits>& limits) try {
+    constexpr std::chrono::milliseconds kBetweenPolls{50};
+    base::AbandonableTask<std::string> sum(
+        [path](const std::stop_token& stop) { return sha256_of(path, stop); });  // while the file is read
     auto scene = import_scene(path, progress, limits);
     if (!scene) return tl::unexpected(scene.error());
-    if (progress) progress(1);
+    do {
+        if (progress) progress(1);
+    } while (!sum.is_done_within(kBetweenPolls));
     LoadedScene loaded;
     loaded.name = name;
     loaded.sha256 = sum.get();
@@ -30,6 +35,8 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     loaded.notices = all_notices(*scene);
     loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
     return loaded;
+} catch (const std::bad_alloc&) {
+    return tl::unexpected(out_of_memory(path));
 }
 
 tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) const {
@@ -113,13 +120,14 @@ private:
 
 }  // namespace
 
-std::string sha256_of(const fs::path& path) {
+std::string sha256_of(const fs::path& path, const std::stop_token& stop) {
     std::ifstream stream;
     if (fs::is_regular_file(path)) stream.open(path, std::ios::binary);  // another may never end
     std::vector<char> block(1 << 20);
     const bool opened = stream.is_open();
     Sha256 sum;
     while (opened && stream) {
+        if (stop.stop_requested()) throw std::runtime_error(path.string() + " is no longer read");
         stream.read(block.data(), static_cast<std::streamsize>(block.size()));
         sum.add({block.data(), static_cast<std::size_t>(stream.gcount())});
     }

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -45,8 +46,8 @@ private:
     std::optional<ImportLimits> limits_;
 };
 
-/// SHA-256 of a file in hexadecimal. Throws std::runtime_error.
-std::string sha256_of(const std::filesystem::path& path);
+/// SHA-256 of a file in hexadecimal. Throws std::runtime_error, also where it is asked to stop.
+std::string sha256_of(const std::filesystem::path& path, const std::stop_token& stop = {});
 std::string sha256_of_text(std::string_view text);
 
 }  // namespace vrut::server::scene

@@ -32,6 +32,16 @@ TEST_CASE("a long file is read in blocks") {
           "5983281b51c767c831104f52c95e4075f27e6f4fa8dd0526e3929f79176a1217");
 }
 
+TEST_CASE("a digest that nobody wants any more is not finished") {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("zeros.vrut", "");
+    fs::resize_file(file, std::uintmax_t{4} << 40);  // which takes an hour
+    std::stop_source stop;
+    stop.request_stop();
+    CHECK_THROWS_WITH(sha256_of(file, stop.get_token()), (file.string() + " is no longer read").c_str());
+    CHECK_FALSE(load_scene(file, "zeros"));  // what it begins with is no scene
+}
+
 TEST_CASE("scenes are found by name, in folders below, too") {
     const TemporaryFolder folder;
     const fs::path room = folder.write("room.vrut", kScene), deep = folder.write("a/b/deep.vrut", kScene);
