@@ -7,12 +7,17 @@
 
 #include "detail_plan.hpp"
 #include "frustum.hpp"
+#include "glass_shape.hpp"
 #include "mirror_plan.hpp"
+#include "step_work.hpp"
 #include "transparency_plan.hpp"
 
 namespace vrut {
 
 namespace {
+
+/// What it takes to plan a node that is shown, and its place among the others, in units of StepWork.
+constexpr std::int64_t kListed = 20, kOrdered = 20;
 
 /// None where the node draws nothing.
 std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, const glm::dmat4& view,
@@ -76,7 +81,7 @@ bool has_cube_map(const Scene& scene) {
 }
 
 /// Of items by rising id; mirrors among them are ordinary surfaces.
-Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShapes* shapes) {
+Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShapes& shapes) {
     const PlacedScene& placed = *view.scene;
     const Scene& scene = *placed.scene;
     const auto is_opaque = [&](const DrawItem& item) {
@@ -90,17 +95,14 @@ Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShap
     std::vector<DrawItem> transparent;
     for (const DrawItem& item : items) (is_opaque(item) ? layers.opaque : transparent).push_back(item);
     mark_hidden_twins(transparent, layers.opaque, scene);
-    std::optional<GlassShapes> own;
-    if (!shapes) shapes = &own.emplace(scene);
-    layers.transparent =
-        order_transparent(transparent, scene, view.light, view.methods.transparency, *shapes);
+    layers.transparent = order_transparent(transparent, scene, view.light, view.methods.transparency, shapes);
     return layers;
 }
 
 /// Of items by rising id. What mirrors show is taken from `all`; those that show none of it reflect the
 /// panorama, where there is one.
 Layers layers_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
-                 GlassShapes* shapes) {
+                 GlassShapes& shapes) {
     Layers layers = layers_in_mirror(std::move(items), view, shapes);
     if (view.mode == DrawMode::stylized) return layers;
     layers.mirrors = take_mirrors(layers.opaque, all, view);
@@ -190,26 +192,70 @@ bool has_exact_group(const Layers& layers) {
                        [](const MirrorItem& mirror) { return has_exact_group(mirror.reflected); });
 }
 
-FramePlan plan_frame(const View& view, GlassShapes* shapes) {
-    FramePlan plan;
-    if (!view.scene) return plan;
+void FramePlanner::find_items(const View& view) {
     const PlacedScene& placed = *view.scene;
-    std::vector<DrawItem> items = shown_items(view), all;
-    if (std::any_of(items.begin(), items.end(), [&](const DrawItem& item) {
+    items_ = shown_items(view);
+    if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
             return is_mirror(*placed.scene, item.geometry, item.material);
         }))
-        all = items;  // what lies beside the picture may be seen in a mirror
-    leave_out_what_lies_outside(items, view);
-    plan.marks = marks_of(view, view_from_world(view.camera));
+        all_ = items_;  // what lies beside the picture may be seen in a mirror
+    leave_out_what_lies_outside(items_, view);
+    plan_.marks = marks_of(view, view_from_world(view.camera));
 
-    if (view.selected != kNone) plan.selected = take(items, subtree(*placed.scene, view.selected));
-    if (view.wireframe || view.mode == DrawMode::stylized) plan.edges = items;
-    if (view.wireframe) return plan;
-    plan.scene = layers_of(std::move(items), all, view, shapes);
-    plan.over = layers_of(plan.selected, all, view, shapes);
-    choose_levels(plan, view);
-    leave_out_backs(plan, view);
-    return plan;
+    if (view.selected != kNone) plan_.selected = take(items_, subtree(*placed.scene, view.selected));
+    if (view.wireframe || view.mode == DrawMode::stylized) plan_.edges = items_;
+}
+
+/// Of glass, which will be put in order; what only mirrors show is left to that.
+bool FramePlanner::find_shapes(const View& view, GlassShapes& shapes, StepWork& work) {
+    if (view.wireframe || view.mode == DrawMode::stylized) return true;
+    const Scene& scene = *view.scene->scene;
+    const std::size_t count = items_.size() + plan_.selected.size();
+    for (; shapes_found_ < count && !work.spent(); ++shapes_found_) {
+        const DrawItem& item = shapes_found_ < items_.size() ? items_[shapes_found_]
+                                                             : plan_.selected[shapes_found_ - items_.size()];
+        if (scene.is_transparent(scene.material(item.material))) work.spend(shapes.find(item));
+    }
+    return shapes_found_ == count;
+}
+
+void FramePlanner::find_layers(const View& view, GlassShapes& shapes) {
+    if (view.wireframe) return;
+    plan_.scene = layers_of(std::move(items_), all_, view, shapes);
+    plan_.over = layers_of(plan_.selected, all_, view, shapes);
+    choose_levels(plan_, view);
+    leave_out_backs(plan_, view);
+}
+
+bool FramePlanner::step(const View& view, GlassShapes& shapes, StepWork& work) {
+    while (stage_ != Stage::whole && !work.spent()) {
+        switch (stage_) {
+            case Stage::items:
+                work.spend(kListed * static_cast<std::int64_t>(view.scene->nodes.size()));
+                find_items(view);
+                stage_ = Stage::shapes;
+                break;
+            case Stage::shapes:
+                if (find_shapes(view, shapes, work)) stage_ = Stage::layers;
+                break;
+            case Stage::layers:
+                work.spend(kOrdered * static_cast<std::int64_t>(items_.size() + plan_.selected.size()));
+                find_layers(view, shapes);
+                stage_ = Stage::whole;
+                break;
+            case Stage::whole:
+                break;
+        }
+    }
+    return stage_ == Stage::whole;
+}
+
+FramePlan plan_frame(const View& view) {
+    if (!view.scene) return {};
+    GlassShapes shapes(*view.scene->scene);
+    FramePlanner planner;
+    for (StepWork work(false); !planner.step(view, shapes, work);) work = StepWork(false);
+    return planner.plan();
 }
 
 std::vector<DrawItem> faces_of(const View& view) {

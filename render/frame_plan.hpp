@@ -79,10 +79,31 @@ struct FramePlan {
 bool is_mirror(const Scene& scene, Index geometry, Index material);
 
 class GlassShapes;
+class StepWork;
 
-/// Empty where the view has no scene. What is found out about its geometries is kept in `shapes`, where it is
-/// given, for the next frame.
-FramePlan plan_frame(const View& view, GlassShapes* shapes = nullptr);
+/// Finds the plan of a view in steps. It is empty where the view has no scene.
+class FramePlanner {
+public:
+    /// Goes on until `work` is spent; true once the plan is whole. The view is always the same; `shapes` are
+    /// of its scene, and keep what is found out about its geometries for the next frame.
+    bool step(const View& view, GlassShapes& shapes, StepWork& work);
+    /// Once it is whole. It stays where it is.
+    const FramePlan& plan() const { return plan_; }
+
+private:
+    enum class Stage { items, shapes, layers, whole };
+    void find_items(const View& view);
+    bool find_shapes(const View& view, GlassShapes& shapes, StepWork& work);
+    void find_layers(const View& view, GlassShapes& shapes);
+
+    Stage stage_ = Stage::items;
+    std::vector<DrawItem> items_, all_;  // in the picture, not selected; with what may be seen in mirrors
+    std::size_t shapes_found_ = 0;       // of so many items
+    FramePlan plan_;
+};
+
+/// In one go.
+FramePlan plan_frame(const View& view);
 
 /// The items of all faces that a view of a scene shows or has beside it, opaque or not, by rising id.
 std::vector<DrawItem> shown_items(const View& view);

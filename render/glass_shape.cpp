@@ -7,6 +7,8 @@ namespace vrut {
 
 namespace {
 
+constexpr std::int64_t kBox = 20;  ///< of the smallest geometry, in units of StepWork
+
 glm::dvec3 doubled_area(const Geometry& geometry, const glm::uvec3& triangle) {
     const glm::dvec3& a = geometry.positions[triangle[0]];
     return glm::cross(geometry.positions[triangle[1]] - a, geometry.positions[triangle[2]] - a);
@@ -74,6 +76,19 @@ OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box) {
     OrientedBox result{glm::dvec3(matrix * glm::dvec4(box.center, 1)), {}};
     for (std::size_t k = 0; k < 3; ++k) result.axes[k] = glm::dmat3(matrix) * box.axes[k];
     return result;
+}
+
+std::int64_t GlassShapes::find(const DrawItem& item) {
+    const Shape& shape = shapes_[static_cast<std::size_t>(item.geometry)];
+    const Geometry& read = geometry(item.geometry);
+    std::int64_t work = 1;
+    if (!shape.box) work += kBox + static_cast<std::int64_t>(read.positions.size() + read.triangles.size());
+    box(item.geometry);
+    if (is_flattened(item.view_from_node)) return work;  // no order is asked for
+    const std::size_t sides = item.sides == Sides::both ? 2 : 1, count = sides * read.triangles.size();
+    if (!shape.orders[sides - 1] && count <= kMostOrdered) work += static_cast<std::int64_t>(count * count);
+    order(item.geometry, item.sides);
+    return work;
 }
 
 const OrientedBox& GlassShapes::box(Index index) {

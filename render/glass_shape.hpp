@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
 #include <vector>
@@ -27,6 +28,8 @@ class GlassShapes {
 public:
     /// The scene must outlive it.
     explicit GlassShapes(const Scene& scene) : scene_(scene), shapes_(scene.geometries().size()) {}
+    /// Finds what is asked below for an item; what that took, in units of StepWork.
+    std::int64_t find(const DrawItem& item);
     const OrientedBox& box(Index geometry);
     const TriangleOrder& order(Index geometry, Sides sides);
 

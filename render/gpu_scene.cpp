@@ -223,6 +223,11 @@ const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
     return level;
 }
 
+bool GpuScene::holds(const DrawItem& item) const {
+    if (!item.level) return bool(geometries_[static_cast<std::size_t>(item.geometry)].vertex_array);
+    return levels_.contains({item.geometry, item.level->number});
+}
+
 const GpuEdges& GpuScene::edges(Index index) {
     std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
     if (!edges) {

@@ -50,6 +50,8 @@ public:
     const GpuGeometry& geometry(Index index);
     /// Of an item: its level's, if it has one.
     const GpuGeometry& geometry(const DrawItem& item);
+    /// Whether that is there already.
+    bool holds(const DrawItem& item) const;
     const GpuEdges& edges(Index index);
     /// Its triangles in an item's order, which is not null.
     const GpuTriangles& ordered(const DrawItem& item);

@@ -8,6 +8,7 @@
 
 #include "drawing_errors.hpp"
 #include "image.hpp"
+#include "rendering.hpp"
 #include "view.hpp"
 
 namespace vrut {
@@ -36,12 +37,21 @@ public:
     /// drawn last stays there, too, until then; for good where this throws.
     void take(const View& view);
 
-    /// Draws `view` into `image`, resized to fit, and says in `stats` what it took. Between two samples asks
-    /// `interrupted`; if that says yes the picture is given up and false comes back. With `kept` its samples
-    /// are left there, and the same view given again goes on from them; `kept` is empty after a whole
-    /// picture, and worthless where this throws. The scene drawn last stays on the GPU.
-    bool render(const View& view, Image& image, FrameStats& stats,
-                const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
+    /// Draws the next sample, or a part of it where that is too much for one step (StepWork); first of all it
+    /// may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
+    /// this throws, the samples drawn before hold, and what was drawn of the next is drawn again: after
+    /// ContextLost a new renderer goes on, or the view is begun anew. The scene drawn last stays on the GPU.
+    bool step(Rendering& rendering);
+
+    /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has
+    /// nothing else to do meanwhile.
+    void render(const View& view, Image& image, FrameStats& stats);
+
+    /// To be removed once the server calls step(): as render(), but between two samples asks `interrupted`;
+    /// if that says yes the picture is given up and false comes back. With `kept` its samples are left there,
+    /// and the same view given again goes on from them; `kept` is empty after a whole picture.
+    bool render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted,
+                Accumulation* kept = nullptr);
 
     /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
     /// is in front of what is seen through it. Rows from the bottom up.

@@ -137,6 +137,7 @@ public:
     bool shows_through_itself(unsigned pane, DrawItem& item) const;
 
 private:
+    bool are_comparable(std::span<const unsigned> from_left) const;
     Order compare(unsigned a, unsigned b);
     const std::vector<FacingTriangle>& facing(unsigned pane);
     /// Of its facing triangles those that may lie before or behind something of the other.
@@ -195,19 +196,31 @@ std::vector<FacingTriangle> Stack::covering(unsigned pane, const Pane& other) {
     return result;
 }
 
+/// Counts pairs that overlap in the width of the screen, which takes far less than to compare them.
+bool Stack::are_comparable(std::span<const unsigned> from_left) const {
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < from_left.size() && pairs <= kMostPairs; ++i) {
+        const auto rest = from_left.subspan(i + 1);
+        const auto end =
+            std::upper_bound(rest.begin(), rest.end(), panes_[from_left[i]].high.x,
+                             [&](double right, unsigned pane) { return right < panes_[pane].low.x; });
+        pairs += static_cast<std::size_t>(end - rest.begin());
+    }
+    return pairs <= kMostPairs;
+}
+
 bool Stack::compare_all() {
     std::vector<unsigned> from_left(panes_.size());
     std::iota(from_left.begin(), from_left.end(), 0U);
     std::sort(from_left.begin(), from_left.end(), [&](unsigned a, unsigned b) {
         return std::tie(panes_[a].low.x, a) < std::tie(panes_[b].low.x, b);
     });
-    std::size_t pairs = 0;
+    if (!are_comparable(from_left)) return false;
     for (std::size_t i = 0; i < from_left.size(); ++i) {
         const Pane& left = panes_[from_left[i]];
         for (std::size_t k = i + 1; k < from_left.size(); ++k) {
             const Pane& right = panes_[from_left[k]];
             if (right.low.x > left.high.x) break;
-            if (++pairs > kMostPairs) return false;
             if (right.low.y > left.high.y || left.low.y > right.high.y) continue;
             const auto [a, b] = std::minmax(from_left[i], from_left[k]);
             const Order order = compare(a, b);

@@ -132,8 +132,9 @@ std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bo
     const double radius = geometry.bounds.radius();
     if (geometry.triangles.size() < 2 * kFewest || !(radius > 0) || !std::isfinite(radius)) return levels;
     Mesh mesh = mesh_of(geometry);
-    if (mesh.triangles.empty()) return levels;
+    if (stop || mesh.triangles.empty()) return levels;
     compact(mesh);
+    if (stop) return levels;
     const std::vector<glm::uvec3> original = renamed(mesh.triangles, mesh.point_of);
     std::vector<glm::uvec3> before = original;
     Deviation deviation(mesh.points, original, kNegligible, stop);
@@ -144,6 +145,7 @@ std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bo
         if (stop || mesh.triangles.empty() || 4 * mesh.triangles.size() > 3 * before.size()) break;
         compact(mesh);
         auto* indices = &mesh.triangles[0].x;
+        if (stop) break;
         meshopt_optimizeVertexCache(indices, indices, mesh.triangles.size() * 3, mesh.point_of.size());
         std::vector<glm::uvec3> after = renamed(mesh.triangles, mesh.point_of);
         const auto moved = deviation.measure(before, after);

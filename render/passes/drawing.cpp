@@ -4,6 +4,20 @@
 
 namespace vrut {
 
+void set_up_drawing() {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glClearDepth(0);
+    glEnable(GL_DEPTH_TEST);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glDisable(GL_DITHER);
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CLIP_DISTANCE0);
+    glDepthMask(GL_TRUE);
+    glDepthRange(0, 1);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
 void cull_sides(const DrawItem& item, bool front_only) {
     if (item.sides == Sides::both && !front_only)
         glDisable(GL_CULL_FACE);

@@ -13,6 +13,9 @@ inline constexpr std::string_view kScreenShader = R"(#version 450 core
 void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
 )";
 
+/// All that drawing changes, as each pass expects it: what was drawn before may have failed in its midst.
+void set_up_drawing();
+
 /// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
 void cull_sides(const DrawItem& item, bool front_only = false);
 

@@ -34,7 +34,6 @@ void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode m
         draw_lines(scene.edges(item.geometry), stats);
     }
     glDepthMask(GL_TRUE);
-    ++stats.passes;
 }
 
 void EdgePass::draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
@@ -46,7 +45,6 @@ void EdgePass::draw_over(std::span<const DrawItem> items, GpuScene& scene, const
         set_place(item, scene.geometry(item.geometry));
         draw_lines(scene.edges(item.geometry), stats);
     }
-    ++stats.passes;
 }
 
 }  // namespace vrut

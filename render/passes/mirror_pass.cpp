@@ -32,17 +32,14 @@ std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene
     return result;
 }
 
-const Framebuffer& MirrorPass::open(const MirrorItem& mirror, GpuScene& scene,
-                                    const glm::dmat4& clip_from_view, const glm::dvec3& background,
-                                    const Framebuffer& picture, FrameStats& stats) {
+void MirrorPass::open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
+                      const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats) {
     if (!target_ || target_->width() != picture.width() || target_->height() != picture.height() ||
         target_->deep() != picture.deep()) {
         target_.reset();
         target_.emplace(picture.width(), picture.height(), picture.deep());
     }
-    target_->bind();
-    glEnable(GL_SCISSOR_TEST);
-    scissor(mirror.box);
+    bind(mirror);
     // Nothing comes before what is nearest; but at the mirror's pixels everything does.
     glClearDepth(1);
     glClear(GL_DEPTH_BUFFER_BIT);
@@ -57,7 +54,12 @@ const Framebuffer& MirrorPass::open(const MirrorItem& mirror, GpuScene& scene,
     cull_sides(mirror.surface);
     draw_triangles(geometry, stats);
     glDepthRange(0, 1);
-    return *target_;
+}
+
+void MirrorPass::bind(const MirrorItem& mirror) const {
+    target_->bind();
+    glEnable(GL_SCISSOR_TEST);
+    scissor(mirror.box);
 }
 
 void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,

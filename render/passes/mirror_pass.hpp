@@ -20,8 +20,10 @@ public:
                            const glm::dmat4& clip_from_view, FrameStats& stats);
     /// Makes the target that a mirror's reflection is drawn into the current one, empty before `background`
     /// and open only at the pixels that the mirror can be seen at.
-    const Framebuffer& open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
-                            const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats);
+    void open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
+              const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats);
+    /// Makes that target the current one again.
+    void bind(const MirrorItem& mirror) const;
     /// Draws the surface, with what was drawn since, into `picture`, which is bound afterwards.
     void close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
                SurfacePrograms& programs, FrameStats& stats);

@@ -24,7 +24,6 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode
         draw_triangles(geometry, stats);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
-    ++stats.passes;
 }
 
 void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
@@ -42,7 +41,6 @@ void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthRange(0, 1);
-    ++stats.passes;
 }
 
 }  // namespace vrut

@@ -71,6 +71,12 @@ void use(const GlProgram& program, int width, const PixelBox& box, const GlTextu
     glBindTextureUnit(0, texture.get());
 }
 
+PixelBox box_of(const DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
+                const glm::ivec2& picture) {
+    const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+    return pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+}
+
 }  // namespace
 
 int outline_width(int picture_height) { return std::clamp((picture_height + 431) / 432, 1, 200); }
@@ -94,32 +100,61 @@ void OutlinePass::prepare(const Framebuffer& target) {
     nothing_ = make_vertex_array();
 }
 
-void OutlinePass::draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-                       const Framebuffer& target, FrameStats& stats) {
+void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+                        const glm::dmat4& clip_from_view, const Framebuffer& target) {
     prepare(target);
     const glm::ivec2 picture{target.width(), target.height()};
     const int width = outline_width(target.height());
-    std::vector<PixelBox> boxes;
-    PixelBox all{picture, {0, 0}};
+    all_ = {picture, {0, 0}};
     for (const DrawItem& item : items) {
-        const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-        const PixelBox& box =
-            boxes.emplace_back(pixel_box(bounds, clip_from_view * item.view_from_node, picture));
-        all = {glm::min(all.low, box.low - width), glm::max(all.high, box.high + width)};
+        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+        all_ = {glm::min(all_.low, box.low - width), glm::max(all_.high, box.high + width)};
     }
-    all = {glm::max(all.low, 0), glm::min(all.high, picture)};
+    all_ = {glm::max(all_.low, 0), glm::min(all_.high, picture)};
+    glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
+    glEnable(GL_SCISSOR_TEST);
+    scissor(all_);
+    glClearColor(0, 0, 0, 0);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
 
+void OutlinePass::cover(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                        FrameStats& stats) {
+    const glm::ivec2 picture{mask_->width, mask_->height};
+    glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glEnable(GL_SCISSOR_TEST);
-    cover(items, boxes, all, scene, clip_from_view, stats);
+    scissor(all_);
+    glClearColor(1, 1, 1, 1);
+    cover_.use(glm::dvec3(1), clip_from_view);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        set_place(item, geometry);
+        draw_triangles(geometry, stats);
+        // So small that it may miss all centres of pixels: it is found all the same.
+        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+        if (box.size().x > 2 || box.size().y > 2) continue;
+        scissor(box);
+        glClear(GL_COLOR_BUFFER_BIT);
+        scissor(all_);
+    }
+}
+
+void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
+    const int width = outline_width(target.height());
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_SCISSOR_TEST);
+    scissor(all_);
     glBindVertexArray(nothing_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
-    use(measure_, width, all, mask_->covered);
+    use(measure_, width, all_, mask_->covered);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.bind();
-    use(mark_, width, all, mask_->across);
+    use(mark_, width, all_, mask_->across);
     const glm::vec3 color(kSelection);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -127,26 +162,6 @@ void OutlinePass::draw(std::span<const DrawItem> items, GpuScene& scene, const g
     glDisable(GL_SCISSOR_TEST);
     stats.draws += 2;
     ++stats.passes;
-}
-
-void OutlinePass::cover(std::span<const DrawItem> items, std::span<const PixelBox> boxes, const PixelBox& all,
-                        GpuScene& scene, const glm::dmat4& clip_from_view, FrameStats& stats) {
-    glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
-    scissor(all);
-    glClearColor(0, 0, 0, 0);
-    glClear(GL_COLOR_BUFFER_BIT);
-    glClearColor(1, 1, 1, 1);
-    cover_.use(glm::dvec3(1), clip_from_view);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const GpuGeometry& geometry = scene.geometry(items[i]);
-        set_place(items[i], geometry);
-        draw_triangles(geometry, stats);
-        // So small that it may miss all centres of pixels: it is found all the same.
-        if (boxes[i].size().x > 2 || boxes[i].size().y > 2) continue;
-        scissor(boxes[i]);
-        glClear(GL_COLOR_BUFFER_BIT);
-        scissor(all);
-    }
 }
 
 }  // namespace vrut

@@ -15,15 +15,17 @@ namespace vrut {
 /// 4w + 2 looks at a pixel.
 class OutlinePass {
 public:
-    /// Draws into `target`, which is bound afterwards; adds its draws and triangles to `stats`.
-    void draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-              const Framebuffer& target, FrameStats& stats);
+    /// Begins an outline around items in a picture like `target`: each is to be covered before it is drawn.
+    void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
+               const Framebuffer& target);
+    /// Draws items into the mask, which is bound afterwards; adds to the draws and triangles of `stats`.
+    void cover(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+               FrameStats& stats);
+    /// Draws the outline into `target`, which is bound afterwards.
+    void draw(const Framebuffer& target, FrameStats& stats);
 
 private:
     void prepare(const Framebuffer& target);
-    /// Draws the mask within `all`; a box for each item.
-    void cover(std::span<const DrawItem> items, std::span<const PixelBox> boxes, const PixelBox& all,
-               GpuScene& scene, const glm::dmat4& clip_from_view, FrameStats& stats);
 
     struct Mask {
         Mask(int width, int height);
@@ -32,6 +34,7 @@ private:
         GlFramebuffer covered_target, across_target;
     };
     std::optional<Mask> mask_;
+    PixelBox all_;  ///< the outline, and all that it surrounds
     PlainProgram cover_;
     GlProgram measure_, mark_;
     GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes

@@ -89,53 +89,43 @@ void PixelSortPass::release() {
     pixels_ = 0;
 }
 
-void PixelSortPass::draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-                         const Framebuffer& target, SurfacePrograms& programs, FrameStats& stats) {
-    const glm::ivec2 picture{target.width(), target.height()};
+void PixelSortPass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+                          const glm::dmat4& clip_from_view, const glm::ivec2& picture,
+                          const PixelBox& within) {
     PixelBox all{picture, {0, 0}};
     for (const DrawItem& item : items) {
         const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const PixelBox box = pixel_box(bounds, clip_from_view * item.view_from_node, picture);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
-    // In a mirror only its pixels count.
-    const bool scissored = glIsEnabled(GL_SCISSOR_TEST) == GL_TRUE;
-    std::array<GLint, 4> before{};
-    glGetIntegerv(GL_SCISSOR_BOX, before.data());
-    if (scissored)
-        all = intersection(all, {{before[0], before[1]}, {before[0] + before[2], before[1] + before[3]}});
+    all = intersection(all, within);
     if (all.empty()) return;
     prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
+    left_.push_back(all);
+}
+
+void PixelSortPass::bind() const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLayersBinding, layers_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kListsBinding, lists_.get());
     glEnable(GL_SCISSOR_TEST);
+    scissor(box());
     glDepthMask(GL_FALSE);
-    std::vector<PixelBox> left{all};
-    while (!left.empty()) {
-        const PixelBox box = left.back();
-        left.pop_back();
-        scissor(box);
-        const std::uint64_t layers = collect(items, box, scene, programs, stats);
-        if (const std::uint64_t most = most_layers(pixels_); layers <= most || box.size() == glm::ivec2(1))
-            composite(stats);
-        else
-            split(box, 2 + layers / most, left);
-    }
-    glDepthMask(GL_TRUE);
-    glScissor(before[0], before[1], before[2], before[3]);
-    if (!scissored) glDisable(GL_SCISSOR_TEST);
 }
 
-std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const PixelBox& box, GpuScene& scene,
-                                     SurfacePrograms& programs, FrameStats& stats) {
-    const auto most = static_cast<GLuint>(most_layers(pixels_));
-    const std::array<GLuint, 2> none{0, most};
+void PixelSortPass::clear_lists() const {
+    const std::array<GLuint, 2> none{0, static_cast<GLuint>(most_layers(pixels_))};
     glNamedBufferSubData(layers_.get(), 0, sizeof none, none.data());
-    const std::array<GLint, 4> place{box.low.x, box.low.y, box.size().x, box.size().y};
+    const std::array<GLint, 4> place{box().low.x, box().low.y, box().size().x, box().size().y};
     glNamedBufferSubData(lists_.get(), 0, sizeof place, place.data());
     glClearNamedBufferSubData(lists_.get(), GL_R32UI, kHeadBytes,
-                              static_cast<GLsizeiptr>(sizeof(GLuint)) * box.size().x * box.size().y,
+                              static_cast<GLsizeiptr>(sizeof(GLuint)) * box().size().x * box().size().y,
                               GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void PixelSortPass::collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
+                            SurfacePrograms& programs, FrameStats& stats) {
+    bind();
+    if (first == 0) clear_lists();
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < items.size(); ++i) {
@@ -143,19 +133,28 @@ std::uint64_t PixelSortPass::collect(std::span<const DrawItem> items, const Pixe
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::Shape::layered_glass, item, geometry,
                      scene.scene()->material(item.material));
-        set_order(static_cast<GLuint>(i));
+        set_order(static_cast<GLuint>(first + i));
         glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
         cull_sides(item);
         draw_triangles(geometry, stats);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    GLuint count = 0;
-    glGetNamedBufferSubData(layers_.get(), 0, sizeof count, &count);
-    return count;
 }
 
-void PixelSortPass::composite(FrameStats& stats) {
+std::uint64_t PixelSortPass::composite(FrameStats& stats) {
+    GLuint layers = 0;
+    glGetNamedBufferSubData(layers_.get(), 0, sizeof layers, &layers);
+    const PixelBox box = left_.back();
+    left_.pop_back();
+    if (const std::size_t most = most_layers(pixels_); layers <= most || box.size() == glm::ivec2(1))
+        blend(stats);
+    else
+        split(box, 2 + layers / most, left_);
+    return layers;
+}
+
+void PixelSortPass::blend(FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_CLIP_DISTANCE0);

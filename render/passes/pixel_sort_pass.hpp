@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "framebuffer.hpp"
 #include "passes/drawing.hpp"
@@ -17,10 +18,22 @@ namespace vrut {
 /// single pixel needs more than all of it.
 class PixelSortPass {
 public:
-    /// Draws into `target`, which is bound; adds its draws and triangles to `stats`, and a pass for each part
-    /// of the picture.
-    void draw(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-              const Framebuffer& target, SurfacePrograms& programs, FrameStats& stats);
+    /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
+    /// composited, again and again while it is drawing.
+    void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
+               const glm::ivec2& picture, const PixelBox& within);
+    bool is_drawing() const { return !left_.empty(); }
+    /// The part of the picture for which items are collected.
+    const PixelBox& box() const { return left_.back(); }
+    /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
+    /// `stats`.
+    void collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
+                 SurfacePrograms& programs, FrameStats& stats);
+    /// Draws all that was collected into the bound target, or divides the box where it does not fit; how many
+    /// layers there are.
+    std::uint64_t composite(FrameStats& stats);
+    /// Gives up what it is drawing.
+    void abandon() { left_.clear(); }
     /// Gives its memory back until it draws again.
     void release();
 
@@ -32,11 +45,11 @@ private:
     }
 
     void prepare(std::size_t pixels);
-    /// Fills the lists of the pixels in `box`; how many layers they should hold, with those that do not fit.
-    std::uint64_t collect(std::span<const DrawItem> items, const PixelBox& box, GpuScene& scene,
-                          SurfacePrograms& programs, FrameStats& stats);
-    void composite(FrameStats& stats);
+    void bind() const;
+    void clear_lists() const;
+    void blend(FrameStats& stats);
 
+    std::vector<PixelBox> left_;  // the last one first
     std::size_t pixels_ = 0;
     GlBuffer layers_, lists_;
     GlProgram composite_;

@@ -22,7 +22,6 @@ void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, Sur
     }
     glDisable(GL_BLEND);
     glDepthMask(GL_TRUE);
-    ++stats.passes;
 }
 
 }  // namespace vrut

@@ -110,9 +110,9 @@ bool have_volume(const Geometry& geometry, std::span<const glm::uvec3> triangles
 }  // namespace
 
 bool is_closed(const Geometry& geometry, const std::atomic<bool>& stop) {
-    if (geometry.triangles.empty()) return false;
+    if (stop || geometry.triangles.empty()) return false;
     const std::vector<glm::uvec3> triangles = joined(geometry);
-    if (triangles.empty()) return false;
+    if (stop || triangles.empty()) return false;
     Pieces pieces(triangles.size());
     return join_at_edges(triangles, geometry.positions.size(), pieces, stop) &&
            have_volume(geometry, triangles, pieces);

@@ -19,13 +19,16 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/files.hpp"
 #include "detail_levels.hpp"
 #include "difference.hpp"
-#include "images.hpp"
+#include "engine/images.hpp"
 #include "read_scene.hpp"
 #include "renderer.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::engine;
 
 namespace {
 

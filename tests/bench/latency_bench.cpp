@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <vector>
 
-#include "scene_library.hpp"
+#include "scene/library.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
 using namespace vrut::test;
 
 namespace {

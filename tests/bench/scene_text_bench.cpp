@@ -20,10 +20,11 @@
 #include <vector>
 
 #include "read_scene.hpp"
-#include "scene_library.hpp"
+#include "scene/library.hpp"
 #include "vrut_text.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
 
 namespace {
 

@@ -16,6 +16,8 @@
 #include "vrut_text.hpp"
 
 using namespace vrut;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 using boost::asio::ip::tcp;
 using client::PreviewClient;

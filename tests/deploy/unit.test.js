@@ -104,4 +104,5 @@ test('it draws, reads foreign files and records in the unit\'s sandbox', { skip:
   const log = fs.readFileSync(at('state/recordings/in-a-sandbox.jsonl'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
   assert.ok(log.some(({ message }) => message?.type === 'navigate'));
   await server.stop();
+  assert.doesNotMatch(server.text, /reader_not_confined/);
 });

@@ -1,9 +1,10 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "http_request.hpp"
+#include "net/http_request.hpp"
 
 using namespace vrut;
+using namespace vrut::server::net;
 
 namespace {
 

@@ -5,10 +5,13 @@
 #include "../unit/temporary_folder.hpp"
 #include "gl_faults.hpp"
 #include "handles.hpp"
-#include "import_process.hpp"
+#include "scene/import_process.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 /// What reads a file is this program, started anew.

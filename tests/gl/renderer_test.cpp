@@ -161,67 +161,6 @@ TEST_CASE("many samples of one colour are that colour") {
     }
 }
 
-TEST_CASE("a picture is given up between two samples, and the next one is whole") {
-    Studio studio;
-    View view = view_from({1, 2, 5});
-    view.scene = scene_of(some_parts());
-    view.samples = 8;
-    const Image whole = studio.draw(view.scene, view);
-    Image image;
-    FrameStats stats;
-    int asked = 0;
-    CHECK_FALSE(studio.renderer().render(view, image, stats, [&] { return ++asked == 3; }));
-    CHECK(asked == 3);
-    CHECK(stats.draws == 3 * 12);
-    asked = 0;
-    CHECK(studio.renderer().render(view, image, stats, [&] { return ++asked == 8; }));
-    CHECK(asked == 7);
-    CHECK(image.rgba == whole.rgba);
-
-    view.samples = 1;
-    CHECK(studio.renderer().render(view, image, stats, [] { return true; }));
-}
-
-TEST_CASE("a picture that had to give way goes on where it was, to the same bytes") {
-    Studio studio;
-    View view = view_from({1, 2, 5});
-    view.scene = scene_of(some_parts());
-    view.samples = 8;
-    const Image whole = studio.draw(view.scene, view);
-    Image image;
-    FrameStats stats;
-    Accumulation kept;
-    for (int sample = 1; sample < 8; ++sample) {
-        CHECK_FALSE(studio.renderer().render(
-            view, image, stats, [] { return true; }, &kept));
-        CHECK(kept.samples == sample);
-        CHECK(stats.draws == 12);
-        // The live picture comes between.
-        View other = view_from({5, 1, 0});
-        other.scene = view.scene;
-        other.samples = 3;
-        CHECK(studio.renderer().render(other, image, stats));
-    }
-    CHECK(studio.renderer().render(
-        view, image, stats, [] { return true; }, &kept));
-    CHECK(stats.draws == 12);
-    CHECK(image.rgba == whole.rgba);
-    CHECK(kept.samples == 0);
-    CHECK(kept.sums.empty());
-
-    // Whole in one go, with nothing kept before; and what was kept of another size is not taken up.
-    CHECK(studio.renderer().render(view, image, stats, {}, &kept));
-    CHECK(image.rgba == whole.rgba);
-    kept = {std::vector<std::uint32_t>(12, 7), 3};
-    CHECK(studio.renderer().render(view, image, stats, {}, &kept));
-    CHECK(image.rgba == whole.rgba);
-    view.samples = 1;
-    const Image plain = studio.draw(view.scene, view);
-    CHECK(studio.renderer().render(
-        view, image, stats, [] { return true; }, &kept));
-    CHECK(image.rgba == plain.rgba);
-}
-
 TEST_CASE("a view without a scene shows the background, with its samples or without") {
     Studio studio;
     View view = view_from({0, 0, 5});

@@ -4,10 +4,11 @@
 
 #include <atomic>
 
-#include "descriptors.hpp"
+#include "net/descriptors.hpp"
 #include "raw_websocket.hpp"
 
 using namespace vrut;
+using namespace vrut::server::net;
 using namespace vrut::test;
 using std::chrono::steady_clock;
 

@@ -8,6 +8,8 @@
 #include "raw_connection.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -4,6 +4,10 @@
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::observe;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -3,6 +3,7 @@
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 TEST_CASE("the page and its files are served, and nothing else") {

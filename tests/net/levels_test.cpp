@@ -8,11 +8,15 @@
 
 #include "../unit/environment_variable.hpp"
 #include "../unit/temporary_folder.hpp"
-#include "level_store.hpp"
-#include "pacing.hpp"
+#include "engine/pacing.hpp"
+#include "renderer.hpp"
+#include "scene/level_store.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::observe;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
 using namespace vrut::test;
 using protocol::Quality;
 

@@ -9,6 +9,8 @@
 #include "process.hpp"
 
 using namespace vrut;
+using namespace vrut::server::observe;
+using namespace vrut::server::net;
 using namespace vrut::test;
 using Clock = std::chrono::steady_clock;
 

@@ -1,4 +1,4 @@
-#include "log.hpp"
+#include "observe/log.hpp"
 
 #include <doctest/doctest.h>
 #include <spdlog/sinks/ostream_sink.h>
@@ -14,6 +14,9 @@
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::observe;
+using namespace vrut::server::scene;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -12,11 +12,15 @@
 #include <set>
 
 #include "drawing_errors.hpp"
-#include "encoder.hpp"
+#include "engine/encoder.hpp"
 #include "exposition.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::observe;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -7,10 +7,13 @@
 #include "../unit/full_disk.hpp"
 #include "../unit/temporary_folder.hpp"
 #include "drawing_errors.hpp"
-#include "replay.hpp"
+#include "room/replay.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::room;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -5,6 +5,8 @@
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 TEST_CASE("hello is answered by welcome, then the state") {

@@ -3,6 +3,7 @@
 #include "test_client.hpp"
 
 using namespace vrut;
+using namespace vrut::server::engine;
 using namespace vrut::test;
 
 namespace {

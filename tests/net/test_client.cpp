@@ -12,8 +12,8 @@
 #include <boost/beast/websocket.hpp>
 #include <random>
 
+#include "engine/pacing.hpp"
 #include "frame_header.hpp"
-#include "pacing.hpp"
 #include "view.hpp"
 #include "vrut_text.hpp"
 
@@ -43,7 +43,7 @@ Json header_of(const std::string& jpeg) {
 
 }  // namespace
 
-LoadedScene scene_of(const std::string& text, const std::string& name) {
+server::scene::LoadedScene scene_of(const std::string& text, const std::string& name) {
     auto scene = read_vrut_text(text, name);
     REQUIRE_MESSAGE(scene.has_value(), scene.error());
     return {name, "", std::make_shared<const PlacedScene>(place(*std::move(scene))), {}};
@@ -65,9 +65,9 @@ static void fill_with_noise(std::vector<std::uint8_t>& bytes, std::size_t seed) 
                     bytes.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-PainterFactory FakePainter::factory() const {
+server::engine::PainterFactory FakePainter::factory() const {
     return [*this] {
-        Painter painter{"fake", false, 16384, {}};
+        server::engine::Painter painter{"fake", false, 16384, {}};
         painter.paint = [*this](const View& view, Image& image, FrameStats& stats,
                                 const std::function<bool()>& interrupted, Accumulation* kept) {
             stats = {};
@@ -88,13 +88,14 @@ PainterFactory FakePainter::factory() const {
     };
 }
 
-TestServer::TestServer(const FakePainter& painter, const ServerOptions& options)
+TestServer::TestServer(const FakePainter& painter, const server::net::ServerOptions& options)
     : TestServer(scene_of(kScene, "triangle.vrut"), painter.factory(), options) {}
 
-TestServer::TestServer(LoadedScene scene, const PainterFactory& painter, ServerOptions options) {
+TestServer::TestServer(server::scene::LoadedScene scene, const server::engine::PainterFactory& painter,
+                       server::net::ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
     options.listen.port = 0;
-    server_ = std::make_unique<Server>(std::move(options), std::move(scene), painter);
+    server_ = std::make_unique<server::net::Server>(std::move(options), std::move(scene), painter);
     thread_ = std::thread([this] { server_->run(); });
 }
 
@@ -236,7 +237,7 @@ Json TestClient::wait_for_still(std::chrono::milliseconds for_each) {
     for (;;) {
         send({{"type", "frame"}});
         Json header = wait_for("frame", for_each);
-        if (header["quality"]["samples"] == kStillSamples.back()) return header;
+        if (header["quality"]["samples"] == server::engine::kStillSamples.back()) return header;
     }
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <thread>
 
-#include "metrics.hpp"
-#include "server.hpp"
+#include "net/server.hpp"
+#include "observe/metrics.hpp"
 
 namespace vrut::test {
 
@@ -20,26 +20,27 @@ using namespace std::chrono_literals;
 struct FakePainter {
     std::chrono::milliseconds takes{0};  ///< for each sample
     bool noise = false;
-    PainterFactory factory() const;
+    server::engine::PainterFactory factory() const;
 };
 
 /// A scene as read from its text.
-LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
+server::scene::LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
 
 /// A server in this process, on a port of its own. It serves one triangle if nothing else is said.
 class TestServer {
 public:
-    explicit TestServer(const FakePainter& painter = {}, const ServerOptions& options = {});
-    TestServer(LoadedScene scene, const PainterFactory& painter, ServerOptions options = {});
+    explicit TestServer(const FakePainter& painter = {}, const server::net::ServerOptions& options = {});
+    TestServer(server::scene::LoadedScene scene, const server::engine::PainterFactory& painter,
+               server::net::ServerOptions options = {});
     ~TestServer();
     std::uint16_t port() const { return server_->port(); }
-    const Metrics& metrics() const { return server_->metrics(); }
+    const server::observe::Metrics& metrics() const { return server_->metrics(); }
     const std::string& description() const { return server_->description(); }
     /// Returns how long it took until run() ended.
     std::chrono::milliseconds stop();
 
 private:
-    std::unique_ptr<Server> server_;
+    std::unique_ptr<server::net::Server> server_;
     std::thread thread_;
 };
 

@@ -5,11 +5,14 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "images.hpp"
+#include "base/files.hpp"
+#include "engine/images.hpp"
 #include "recorded_session.hpp"
 #include "renderer.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::room;
 using namespace vrut::test;
 
 namespace {
@@ -26,7 +29,7 @@ Image drawn_end() {
     Renderer renderer({}, true);
     Image image;
     FrameStats stats;
-    REQUIRE(renderer.render(view, image, stats));
+    renderer.render(view, image, stats);
     for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
     return image;
 }

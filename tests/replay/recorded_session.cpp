@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "scene_library.hpp"
+#include "scene/library.hpp"
 
 namespace vrut::test {
 
@@ -20,16 +20,18 @@ fs::path session_file(const std::string& ending) {
     return fs::path(VRUT_DATA) / "logs" / (session_name() + ending);
 }
 
-EventLog read_session() {
-    auto log = read_event_log(session_file(".jsonl"));
+server::room::EventLog read_session() {
+    auto log = server::room::read_event_log(session_file(".jsonl"));
     REQUIRE_MESSAGE(log, log.error());
     return *std::move(log);
 }
 
-tl::expected<LoadedScene, std::string> find_scene(const std::string& name, const std::string& sha256) {
+tl::expected<server::scene::LoadedScene, std::string> find_scene(const std::string& name,
+                                                                 const std::string& sha256) {
     const fs::path file = fs::path(VRUT_DATA) / "scenes" / name;
-    if (sha256_of(file) != sha256) return tl::unexpected(name + " has changed since it was recorded");
-    return load_scene(file, name);
+    if (server::scene::sha256_of(file) != sha256)
+        return tl::unexpected(name + " has changed since it was recorded");
+    return server::scene::load_scene(file, name);
 }
 
 }  // namespace vrut::test

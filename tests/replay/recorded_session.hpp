@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "replay.hpp"
+#include "room/replay.hpp"
 
 namespace vrut::test {
 
@@ -11,8 +11,9 @@ namespace vrut::test {
 std::string session_name();
 /// NAME and `ending` in the folder of the logs.
 std::filesystem::path session_file(const std::string& ending);
-EventLog read_session();
+server::room::EventLog read_session();
 /// The scenes that the logs were recorded with, of tests/data/scenes.
-tl::expected<LoadedScene, std::string> find_scene(const std::string& name, const std::string& sha256);
+tl::expected<server::scene::LoadedScene, std::string> find_scene(const std::string& name,
+                                                                 const std::string& sha256);
 
 }  // namespace vrut::test

@@ -1,6 +1,6 @@
 // A recorded session leads to the camera that its clients saw at the end: to the last bit however often it is
 // played, however its moves were merged, and whenever frames were drawn.
-#include "replay.hpp"
+#include "room/replay.hpp"
 
 #include <doctest/doctest.h>
 
@@ -12,10 +12,13 @@
 #include <random>
 #include <set>
 
-#include "mailbox.hpp"
+#include "engine/mailbox.hpp"
 #include "recorded_session.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::room;
+using namespace vrut::server::engine;
 using namespace vrut::test;
 using nlohmann::json;
 using protocol::ClientMessage;

@@ -8,9 +8,12 @@
 #include "dying_clients.hpp"
 #include "handles.hpp"
 #include "process.hpp"
-#include "scene_library.hpp"
+#include "scene/library.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
+using namespace vrut::server::net;
 using namespace vrut::test;
 
 namespace {

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-#include "engine.hpp"
+#include "engine/engine.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 
@@ -17,8 +17,8 @@ constexpr std::chrono::milliseconds kPicture{15};  ///< what one takes to draw
 constexpr std::chrono::milliseconds kPatience{5000};
 
 /// Draws nothing, in the time that a picture takes.
-Painter slow_painter() {
-    Painter painter;
+server::engine::Painter slow_painter() {
+    server::engine::Painter painter;
     painter.paint = [](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
                        Accumulation*) {
         std::this_thread::sleep_for(kPicture);
@@ -37,10 +37,12 @@ class Room {
 public:
     Room()
         : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
-                  {[this](const EngineOutput& output) { count_refusals(output); },
-                   [this](const std::shared_ptr<const EncodedPicture>& picture) { take(*picture); },
+                  {[this](const server::engine::EngineOutput& output) { count_refusals(output); },
+                   [this](const std::shared_ptr<const server::engine::EncodedPicture>& picture) {
+                       take(*picture);
+                   },
                    [](const std::string&) {}}) {
-        engine_.mailbox().push(ClientJoined{kClient, protocol::Role::control, {}, 0});
+        engine_.mailbox().push(server::engine::ClientJoined{kClient, protocol::Role::control, {}, 0});
         say(protocol::Control{});
         say(protocol::FrameGrant{});
     }
@@ -49,17 +51,18 @@ public:
         protocol::ClientMessage message;
         message.id = id;
         message.payload = std::move(payload);
-        engine_.mailbox().push(ClientSaid{kClient, std::move(message), Clock::now()});
+        engine_.mailbox().push(
+            server::engine::ClientSaid{kClient, std::move(message), server::base::Clock::now()});
     }
 
     /// How long after `input` a picture came that shows it, and what `is_shown` asks for, in ms; kNothing
     /// where none does.
     double lag_of(
-        Clock::time_point input, const Asked& is_shown = [](const auto&) { return true; }) {
+        server::base::Clock::time_point input, const Asked& is_shown = [](const auto&) { return true; }) {
         std::unique_lock lock(mutex_);
         const auto has_come = [&] { return shown_ && *shown_ >= input && is_shown(header_); };
         if (!arrived_.wait_until(lock, input + kPatience, has_come)) return kNothing;
-        return std::chrono::duration<double, std::milli>(Clock::now() - input).count();
+        return std::chrono::duration<double, std::milli>(server::base::Clock::now() - input).count();
     }
 
     /// Of the newest picture.
@@ -73,13 +76,13 @@ public:
     }
 
 private:
-    void count_refusals(const EngineOutput& output) {
+    void count_refusals(const server::engine::EngineOutput& output) {
         const std::lock_guard lock(mutex_);
-        for (const Answer& answer : output.answers) refused_ += !answer.refusal.empty();
+        for (const server::room::Answer& answer : output.answers) refused_ += !answer.refusal.empty();
     }
 
-    void take(const EncodedPicture& picture) {
-        engine_.mailbox().push(FrameSent{kClient, picture.header.frame});
+    void take(const server::engine::EncodedPicture& picture) {
+        engine_.mailbox().push(server::engine::FrameSent{kClient, picture.header.frame});
         say(protocol::FrameGrant{});
         {
             const std::lock_guard lock(mutex_);
@@ -92,11 +95,11 @@ private:
     static constexpr const char* kClient = "c1";
     std::mutex mutex_;
     std::condition_variable arrived_;
-    std::optional<Clock::time_point> shown_;
+    std::optional<server::base::Clock::time_point> shown_;
     protocol::FrameHeader header_;
     int refused_ = 0;
-    Metrics metrics_;
-    Engine engine_;  // last: its threads use all of the above
+    server::observe::Metrics metrics_;
+    server::engine::Engine engine_;  // last: its threads use all of the above
 };
 
 /// The lag of the last of `rate` inputs a second that came for half a second, until a picture shows what is
@@ -105,20 +108,20 @@ template <class Input>
 double lag_after_burst(double rate, const Input& input, const Asked& is_shown) {
     constexpr std::chrono::milliseconds kBurst{500};
     Room room;
-    const Clock::time_point start = Clock::now();
-    Clock::time_point last = start;
-    for (int sent = 0; last < start + kBurst; last = Clock::now()) {
+    const server::base::Clock::time_point start = server::base::Clock::now();
+    server::base::Clock::time_point last = start;
+    for (int sent = 0; last < start + kBurst; last = server::base::Clock::now()) {
         const double due = rate * std::chrono::duration<double>(last - start).count();
         for (; sent <= due; ++sent) room.say(input(sent));
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
     room.say(input(-1));
-    return room.lag_of(Clock::now() - std::chrono::milliseconds(1), is_shown);
+    return room.lag_of(server::base::Clock::now() - std::chrono::milliseconds(1), is_shown);
 }
 
 glm::dvec3 eye_at_start() {
     Room room;
-    const Clock::time_point now = Clock::now();
+    const server::base::Clock::time_point now = server::base::Clock::now();
     room.say(protocol::Resize{200, 150, 1});
     room.lag_of(now);
     return room.header().camera.pose.eye;
@@ -142,7 +145,7 @@ Turned turned_with_repeats(int turns, double percent) {
         room.say(turn, 2 * i);
         if (comes_again(i, percent)) room.say(turn, 2 * i - i % 2);
     }
-    const Clock::time_point last = Clock::now();
+    const server::base::Clock::time_point last = server::base::Clock::now();
     room.say(turn, 2 * turns + 2);
     room.lag_of(last);
     return {room.header().camera.pose.eye, room.refused()};

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "chart/settings.hpp"
 #include "detail_levels.hpp"
 #include "detail_plan.hpp"
+#include "measure/settings.hpp"
 #include "pictures.hpp"
 #include "shapes.hpp"
 
@@ -65,7 +65,7 @@ Study outlines_of_levels(const Laboratory& laboratory) {
     Geometry whole = bumpy_ball(24);
     whole.normals.assign(whole.positions.size(), {0, 0, 1});  // so that only places count
     const auto scene = scene_of({{1, whole, kBlack}});
-    const auto levels = chart::detail_levels_of(scene);
+    const auto levels = server::measure::detail_levels_of(scene);
     std::vector<double> places;
     for (std::size_t i = 0; i < levels->of(0).size(); ++i)
         if (levels->of(0)[i].number > 0) places.push_back(static_cast<double>(i));
@@ -109,7 +109,7 @@ Study popping_levels(const Laboratory& laboratory) {
         for (int k = 0; k < 3; ++k) whole.normals[t[k]] += across;
     }
     const auto scene = scene_of({{1, whole, material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30)}});
-    const auto levels = chart::detail_levels_of(scene);
+    const auto levels = server::measure::detail_levels_of(scene);
     for (const double pixels : laboratory.chosen({0.125, 0.25, 0.5, 1, 2, 4, 8, 16})) {
         std::vector<double> jumps;
         for (const DetailLevel& level : levels->of(0)) {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "difference.hpp"
-#include "images.hpp"
+#include "engine/images.hpp"
 #include "picture_file.hpp"
 #include "study.hpp"
 
@@ -12,7 +12,7 @@ namespace vrut::stability {
 namespace {
 
 Image sent(const Image& image, int quality, bool subsampled) {
-    JpegEncoder encoder;
+    server::engine::JpegEncoder encoder;
     const auto file = encoder.encode(image, quality, subsampled);
     return decode_picture({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
 }
@@ -55,7 +55,7 @@ Study thin_saturated_lines(const Laboratory& laboratory) {
         };
         study.baseline.points.push_back({density, error(true)});
         study.method.points.push_back({density, error(false)});
-        JpegEncoder encoder;
+        server::engine::JpegEncoder encoder;
         const auto bytes = [&](bool half) {
             return static_cast<double>(encoder.encode(lines, 85, half).size());
         };

@@ -1,8 +1,8 @@
 // Studies of the choice of level while things move.
 #include <cmath>
 
-#include "level_choice.hpp"
-#include "level_store.hpp"
+#include "engine/level_choice.hpp"
+#include "scene/level_store.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
@@ -64,14 +64,14 @@ Study loads_at_a_border(const Laboratory& laboratory) {
         "is not tried again for 2 s, then 4, up to a minute. Times vary by 10 %.";
     study.cost = "At 85 to 100 % of the target the better level would do, and may not be taken.";
     for (const double percent : laboratory.chosen({75, 80, 85, 90, 95, 98, 100})) {
-        LevelChoice choice(built_in_levels());
+        server::engine::LevelChoice choice(server::scene::built_in_levels());
         const auto& levels = choice.levels();
         const std::size_t best = levels.size() / 2;
         const double target = levels[best + 1].ms * 100 / percent;
         Tally tally;
         Machine machine(0.1), same(0.1);
-        const Clock::time_point start{std::chrono::hours(1)};
-        Clock::time_point now = start;
+        const server::base::Clock::time_point start{std::chrono::hours(1)};
+        server::base::Clock::time_point now = start;
         std::size_t level = 0, naive = 0;
         int changes = 0, naive_changes = 0;
         while (now < start + std::chrono::minutes(2)) {
@@ -107,17 +107,17 @@ Study noisy_times(const Laboratory& laboratory) {
         "a while where it was too slow, each time for longer.";
     study.cost = "After a load has gone, the better level comes up to a minute later.";
     for (const double percent : laboratory.chosen({1, 2, 5, 10, 20, 40, 60})) {
-        LevelChoice choice(built_in_levels());
+        server::engine::LevelChoice choice(server::scene::built_in_levels());
         const auto& levels = choice.levels();
         Machine machine(percent / 100), same(percent / 100);
-        Clock::time_point now{std::chrono::hours(1)};
+        server::base::Clock::time_point now{std::chrono::hours(1)};
         std::size_t level = 0, naive = 0;
         int changes = 0, naive_changes = 0;
         // A target between the times of two levels, where it is hardest to stay.
         const std::size_t best = levels.size() / 2;
         const double target = std::sqrt(levels[best].ms * levels[best + 1].ms);
         Tally tally;
-        LevelDemand demand{{1180, 820, 1}, {}, target};
+        server::engine::LevelDemand demand{{1180, 820, 1}, {}, target};
         for (int i = 0; i < kPictures; ++i) {
             const std::size_t next = choice.choose(demand, now);
             changes += next != level && i > 0;

@@ -9,9 +9,9 @@
 #include <memory>
 #include <thread>
 
-#include "pacing.hpp"
+#include "engine/pacing.hpp"
+#include "net/server.hpp"
 #include "page_client.hpp"
-#include "server.hpp"
 #include "shapes.hpp"
 #include "slow_link.hpp"
 #include "study.hpp"
@@ -61,8 +61,8 @@ Image balls(int width, int height) {
 }
 
 /// Draws the balls, turned with the camera.
-Painter painter_of_balls() {
-    Painter painter;
+server::engine::Painter painter_of_balls() {
+    server::engine::Painter painter;
     painter.description = "balls";
     auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
     painter.paint = [drawn](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
@@ -89,7 +89,7 @@ Painter painter_of_balls() {
 /// A server, a slow link, and the page at its other end, with a finger that turns the view on and on.
 class Journey {
 public:
-    Journey(const LinkQuality& quality, const Deadlines& deadlines = {})
+    Journey(const LinkQuality& quality, const server::net::Deadlines& deadlines = {})
         : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, painter_of_balls),
           thread_([this] { server_.run(); }),
           link_(std::make_unique<SlowLink>(context_, server_.port(), quality)),
@@ -106,35 +106,37 @@ public:
     const PageClient& page() const { return *page_; }
     SlowLink& link() { return *link_; }
     void go_on(double seconds) {
-        context_.run_for(std::chrono::duration_cast<Clock::duration>(Seconds(seconds)));
+        context_.run_for(std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds)));
     }
     /// Until so many pictures have come over this connection, or for so long.
     void go_on_until(std::size_t pictures, double seconds) {
-        const Clock::time_point end =
-            Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
-        while (page_->shown().size() < pictures && Clock::now() < end) context_.run_for(10ms);
+        const server::base::Clock::time_point end =
+            server::base::Clock::now() +
+            std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds));
+        while (page_->shown().size() < pictures && server::base::Clock::now() < end) context_.run_for(10ms);
     }
 
     /// The longest that a move of a drag of so many seconds waits for its picture, in ms; kNothing where
     /// there is no move, one has no picture after `patience` more seconds, or the connection was lost.
     double longest_lag(double seconds, double patience) {
         const int connections = page_->connections();
-        const Clock::time_point begin = Clock::now();
+        const server::base::Clock::time_point begin = server::base::Clock::now();
         go_on(seconds);
-        const Clock::time_point end = Clock::now();
+        const server::base::Clock::time_point end = server::base::Clock::now();
         const std::vector<PageClient::Move> all = page_->moves();
         std::vector<PageClient::Move> moves;
         for (const PageClient::Move& move : all)
             if (move.sent >= begin && move.sent <= end) moves.push_back(move);
         if (moves.empty()) return kNothing;
-        while (handled() < moves.back().id && Clock::now() < end + Seconds(patience)) context_.run_for(10ms);
+        while (handled() < moves.back().id && server::base::Clock::now() < end + Seconds(patience))
+            context_.run_for(10ms);
         const bool arrived = handled() >= moves.back().id && page_->connections() == connections;
         return arrived ? longest_lag(moves) : kNothing;
     }
 
 private:
-    static ServerOptions options(const Deadlines& deadlines) {
-        ServerOptions options;
+    static server::net::ServerOptions options(const server::net::Deadlines& deadlines) {
+        server::net::ServerOptions options;
         options.listen = {"127.0.0.1", 0};
         options.deadlines = deadlines;
         return options;
@@ -153,7 +155,7 @@ private:
         return longest;
     }
 
-    Server server_;
+    server::net::Server server_;
     std::thread thread_;
     boost::asio::io_context context_{1};
     std::unique_ptr<SlowLink> link_;
@@ -288,11 +290,13 @@ Study stalls(const Laboratory& laboratory) {
     const std::vector<double> points =
         whole ? std::vector<double>{0.1, 0.3, 1, 3, 6, 10, 15} : std::vector<double>{0.3, 2.3};
     study.method.points = measured(points, [&](double x) {
-        Deadlines deadlines;
+        server::net::Deadlines deadlines;
         deadlines.stuck = std::chrono::milliseconds(std::llround(1000 * stuck));
         Journey journey({kLink / 8, 0ms}, deadlines);
         journey.go_on_until(5, 5);
-        const Clock::time_point end = Clock::now() + std::chrono::duration_cast<Clock::duration>(Seconds(x));
+        const server::base::Clock::time_point end =
+            server::base::Clock::now() +
+            std::chrono::duration_cast<server::base::Clock::duration>(Seconds(x));
         journey.link().stall_until(end);
         journey.go_on(x + (whole ? 2.5 : 0.6));
         const bool was_cut = journey.page().connections() > 1;

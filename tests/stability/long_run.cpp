@@ -5,8 +5,8 @@
 #include <future>
 #include <limits>
 
+#include "observe/process_usage.hpp"
 #include "pictures.hpp"
-#include "process_usage.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 
@@ -108,11 +108,11 @@ Study memory_of_long_runs(const Laboratory& laboratory) {
     study.cost = "None.";
     Turning turning(laboratory);
     for (int i = 0; i < kWarmUp; ++i) turning.next();
-    const double before = static_cast<double>(process_usage().resident_bytes);
+    const double before = static_cast<double>(server::observe::process_usage().resident_bytes);
     int drawn = 0;
     for (const double pictures : pictures_of(laboratory.form)) {
         for (; drawn < pictures; ++drawn) turning.next();
-        const double now = static_cast<double>(process_usage().resident_bytes);
+        const double now = static_cast<double>(server::observe::process_usage().resident_bytes);
         study.method.points.push_back(
             {pictures, is_plain(turning.image) ? kNothing : std::max(0.0, now - before) / 1e6});
     }

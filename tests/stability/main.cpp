@@ -2,10 +2,10 @@
 #include <filesystem>
 #include <iostream>
 
-#include "chart/machine.hpp"
-#include "chart/plot.hpp"
-#include "log.hpp"
-#include "progress.hpp"
+#include "measure/machine.hpp"
+#include "measure/plot.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
 #include "stability_page.hpp"
 
 namespace {
@@ -29,7 +29,7 @@ std::vector<Topic> topics_named(const std::vector<std::string>& names) {
 }
 
 std::vector<Study> made(const std::vector<Topic>& chosen, Renderer& renderer) {
-    Progress progress;
+    server::observe::Progress progress;
     std::vector<Study> studies;
     for (const Topic& topic : chosen) {
         progress.show(static_cast<double>(studies.size()) / static_cast<double>(chosen.size()), topic.name);
@@ -48,15 +48,15 @@ int main(int argc, char** argv) try {
         return kUsage;
     }
     const std::vector<Topic> chosen = topics_named({words.begin() + 1, words.end()});
-    start_log();
-    chart::require_gnuplot();
+    server::observe::start_log();
+    server::measure::require_gnuplot();
     Renderer renderer;
     const std::filesystem::path folder = words.front();
     std::filesystem::create_directories(folder);
     const std::vector<Study> studies = made(chosen, renderer);
     write_results(studies, folder / "results.json");
     const auto failures = write_page(studies, renderer.description(),
-                                     chart::machine() + ", VRUT Preview " VRUT_VERSION, folder);
+                                     server::measure::machine() + ", VRUT Preview " VRUT_VERSION, folder);
     for (const std::string& failed : failures) std::cerr << "stability: " << failed << "\n";
     std::cout << (folder / "stability.html").string() << std::endl;
     return failures.empty() ? 0 : kFailed;

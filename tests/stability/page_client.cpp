@@ -103,8 +103,9 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
     void receive_picture(std::string_view file) {
         retries = 0;
         const std::string header(file.substr(0, kHeader));
-        shown.push_back({Clock::now(), static_cast<std::int64_t>(number(header, "handled")), file.size(),
-                         number(header, "scale"), header.find(R"("moving")") != std::string::npos});
+        shown.push_back({server::base::Clock::now(), static_cast<std::int64_t>(number(header, "handled")),
+                         file.size(), number(header, "scale"),
+                         header.find(R"("moving")") != std::string::npos});
         say(protocol::FrameGrant{});
     }
 
@@ -125,7 +126,7 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         const std::int64_t seen = shown.empty() ? 0 : shown.back().handled;
         const auto unseen =
             std::find_if(moves.begin(), moves.end(), [&](const Move& each) { return each.id > seen; });
-        const Clock::time_point now = Clock::now();
+        const server::base::Clock::time_point now = server::base::Clock::now();
         const bool sparing =
             unseen != moves.end() && now - unseen->sent > kLate && now - moves.back().sent < kSparing;
         if (!sparing) {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "pacing.hpp"
+#include "engine/pacing.hpp"
 
 namespace vrut::stability {
 
@@ -16,10 +16,10 @@ class PageClient {
 public:
     struct Move {
         std::int64_t id = 0;
-        Clock::time_point sent;
+        server::base::Clock::time_point sent;
     };
     struct Shown {
-        Clock::time_point at;
+        server::base::Clock::time_point at;
         std::int64_t handled = 0;  ///< the last of its messages that the picture shows
         std::size_t bytes = 0;
         double scale = 0;  ///< of the picture to the view

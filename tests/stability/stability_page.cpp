@@ -8,14 +8,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "chart/page.hpp"
+#include "measure/page.hpp"
 
 namespace vrut::stability {
 
 namespace {
 
-using chart::Plot;
-using chart::Series;
+using server::measure::Plot;
+using server::measure::Series;
 
 /// What the chart shows, from the least above 0 to the greatest.
 struct Range {
@@ -41,7 +41,7 @@ Series series_of(const Curve& curve, int color) {
 }
 
 std::string held(const Study& study) {
-    const std::string end = chart::short_number(study.limit.value_or(study.method.points.back().x));
+    const std::string end = server::measure::short_number(study.limit.value_or(study.method.points.back().x));
     return (study.limit ? "below " : "as far as it was measured, to ") + end + " (" + study.parameter + ")";
 }
 
@@ -50,7 +50,7 @@ std::vector<std::string> sentences_on(const Study& study) {
     const auto& baseline = study.baseline;
     if (const auto fails = fails_from(baseline, study.bound))
         sentences.push_back("For comparison: '" + baseline.title + "' fails from " +
-                            chart::short_number(*fails) + ".");
+                            server::measure::short_number(*fails) + ".");
     sentences.push_back(study.explanation);
     sentences.push_back("Cost: " + study.cost);
     if (const auto why = failure(study)) sentences.push_back("Failed: " + *why + ".");
@@ -84,14 +84,14 @@ std::string csv_of(const std::vector<Study>& studies) {
     for (const Study& study : studies)
         for (const Curve* curve : {&study.method, &study.baseline})
             for (const Curve::Point& point : curve->points)
-                csv << chart::line_of(std::vector{study.file, curve->title}) << ',' << point.x << ','
-                    << point.y << '\n';
+                csv << server::measure::line_of(std::vector{study.file, curve->title}) << ',' << point.x
+                    << ',' << point.y << '\n';
     return csv.str();
 }
 
 }  // namespace
 
-chart::Section section_of(const Study& study) {
+server::measure::Section section_of(const Study& study) {
     constexpr int kMethod = 0, kBaseline = 1, kBound = 3;
     Range range;
     range.add(study.bound);
@@ -116,7 +116,7 @@ chart::Section section_of(const Study& study) {
 
 std::vector<std::string> write_page(const std::vector<Study>& studies, const std::string& renderer,
                                     const std::string& machine, const std::filesystem::path& folder) {
-    std::vector<chart::Section> sections{{"Limits", {}, {}, {{{"method", "holds", "cost"}, {}}}}};
+    std::vector<server::measure::Section> sections{{"Limits", {}, {}, {{{"method", "holds", "cost"}, {}}}}};
     std::vector<std::string> failures;
     for (const Study& study : studies) {
         if (const auto why = failure(study)) {
@@ -129,12 +129,12 @@ std::vector<std::string> write_page(const std::vector<Study>& studies, const std
         sections.push_back(section_of(study));
         sections.back().plots.front().subtitle = renderer;
     }
-    chart::write_text(folder / "stability.csv", csv_of(studies));
-    chart::write_page(folder / "stability.html",
-                      {"VRUT Preview: how far each method holds",
-                       {"Each method was pushed as far as its limit or beyond. Drawn by " + renderer +
-                        " on " + machine + "."}},
-                      sections);
+    server::measure::write_text(folder / "stability.csv", csv_of(studies));
+    server::measure::write_page(folder / "stability.html",
+                                {"VRUT Preview: how far each method holds",
+                                 {"Each method was pushed as far as its limit or beyond. Drawn by " +
+                                  renderer + " on " + machine + "."}},
+                                sections);
     return failures;
 }
 
@@ -142,7 +142,7 @@ void write_results(const std::vector<Study>& studies, const std::filesystem::pat
     std::string text = "[\n";
     for (const Study& study : studies)
         text += json_of(study).dump() + (&study == &studies.back() ? "\n" : ",\n");
-    chart::write_text(file, text + "]\n");
+    server::measure::write_text(file, text + "]\n");
 }
 
 }  // namespace vrut::stability

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "chart/charts.hpp"
+#include "measure/charts.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
 
 /// The study's chart, with its bound and its limit, and what is to be said of it.
-chart::Section section_of(const Study& study);
+server::measure::Section section_of(const Study& study);
 
 /// Writes studies to a folder: stability.csv, the charts, and the page stability.html. `renderer` and
 /// `machine` are what they were measured on. Returns a sentence for each study that failed. Throws

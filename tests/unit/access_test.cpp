@@ -1,4 +1,4 @@
-#include "access.hpp"
+#include "net/access.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -8,6 +8,7 @@
 #include <fstream>
 
 using namespace vrut;
+using namespace vrut::server::net;
 using protocol::Role;
 
 TEST_CASE("without tokens everybody gets the role that he asks for") {

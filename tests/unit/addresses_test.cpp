@@ -1,10 +1,11 @@
-#include "addresses.hpp"
+#include "net/addresses.hpp"
 
 #include <doctest/doctest.h>
 
 #include <stdexcept>
 
 using namespace vrut;
+using namespace vrut::server::net;
 
 TEST_CASE("addresses to listen at") {
     CHECK(parse_listen_address("127.0.0.1:8080").port == 8080);

@@ -2,13 +2,13 @@
 
 #include <filesystem>
 
-#include "chart/charts.hpp"
-#include "chart/page.hpp"
-#include "chart/plot.hpp"
-#include "chart/rows.hpp"
+#include "measure/charts.hpp"
+#include "measure/page.hpp"
+#include "measure/plot.hpp"
+#include "measure/rows.hpp"
 #include "temporary_folder.hpp"
 
-using namespace vrut::chart;
+using namespace vrut::server::measure;
 
 namespace {
 

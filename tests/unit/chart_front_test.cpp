@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "chart/calibrate.hpp"
-#include "chart/front.hpp"
+#include "measure/calibrate.hpp"
+#include "measure/front.hpp"
 
-using namespace vrut::chart;
+using namespace vrut::server::measure;
 using vrut::Image;
 
 namespace {

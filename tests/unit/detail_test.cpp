@@ -1,7 +1,11 @@
 #include <doctest/doctest.h>
 
+#include <atomic>
 #include <cmath>
+#include <cstdlib>
+#include <new>
 #include <random>
+#include <thread>
 
 #include "cache_order.hpp"
 #include "detail_levels.hpp"
@@ -10,6 +14,44 @@
 #include "simplify.hpp"
 
 using namespace vrut;
+
+/// What becomes of allocations on other threads than the one that made the rule, where they are as large as
+/// what a mesh of thousands of triangles needs.
+namespace large_allocations {
+
+enum Kind { allow, halt, fail };
+constexpr std::size_t kLarge = 50'000;
+std::atomic<Kind> rule{allow};
+std::atomic<int> halted{0};
+std::atomic<std::thread::id> maker;
+
+struct Rule {
+    explicit Rule(Kind kind) {
+        halted = 0;
+        maker = std::this_thread::get_id();
+        rule = kind;
+    }
+    ~Rule() { rule = allow; }
+    Rule(const Rule&) = delete;
+    Rule& operator=(const Rule&) = delete;
+};
+
+void meet(std::size_t size) {
+    if (rule == allow || size < kLarge || std::this_thread::get_id() == maker.load()) return;
+    if (rule == fail) throw std::bad_alloc();
+    ++halted;
+    while (rule == halt) std::this_thread::yield();
+}
+
+}  // namespace large_allocations
+
+void* operator new(std::size_t size) {
+    large_allocations::meet(size);
+    if (void* memory = std::malloc(size)) return memory;
+    throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -265,4 +307,28 @@ TEST_CASE("levels can be given up while they are made") {
     }
     std::atomic<bool> stopped{true};
     CHECK(simplify(torus(40, 20), stopped).empty());
+}
+
+TEST_CASE(
+    "whoever gives levels up waits for nothing, and the scene is let go by the thread that makes them") {
+    auto scene = scene_with({torus(120, 60)});
+    const std::weak_ptr<const Scene> held = scene;
+    const large_allocations::Rule rule(large_allocations::halt);
+    {
+        const DetailLevels levels(std::move(scene));
+        while (large_allocations::halted == 0) std::this_thread::yield();
+    }
+    CHECK_FALSE(held.expired());  // it still stands where it was halted
+    large_allocations::rule = large_allocations::allow;
+    while (!held.expired()) std::this_thread::yield();
+}
+
+TEST_CASE("levels for which there is no memory are not made, and that is all") {
+    const auto scene = scene_with({torus(120, 60), ball(16, 8)});
+    const large_allocations::Rule rule(large_allocations::fail);
+    const DetailLevels levels(scene);
+    levels.wait();
+    CHECK(levels.done());
+    CHECK(levels.of(0).empty());
+    CHECK(levels.of(1).empty());
 }

@@ -2,13 +2,15 @@
 
 #include <list>
 
-#include "connection_limit.hpp"
-#include "descriptors.hpp"
-#include "http_request.hpp"
-#include "rate_limit.hpp"
-#include "view_pictures.hpp"
+#include "base/rate_limit.hpp"
+#include "net/connection_limit.hpp"
+#include "net/descriptors.hpp"
+#include "net/http_request.hpp"
+#include "net/view_pictures.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::net;
 using namespace std::chrono_literals;
 
 TEST_CASE("connections are limited in all and for each address; in IPv6 a network is one") {

@@ -1,4 +1,4 @@
-#include "images.hpp"
+#include "engine/images.hpp"
 
 #include <doctest/doctest.h>
 #include <png.h>
@@ -6,9 +6,12 @@
 
 #include <algorithm>
 
+#include "base/files.hpp"
 #include "frame_header.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::engine;
 
 namespace {
 

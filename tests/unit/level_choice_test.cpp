@@ -1,4 +1,4 @@
-#include "level_choice.hpp"
+#include "engine/level_choice.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,9 +6,12 @@
 #include <limits>
 #include <set>
 
-#include "level_store.hpp"
+#include "scene/level_store.hpp"
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::scene;
+using namespace vrut::server::engine;
 using namespace std::chrono_literals;
 using protocol::Quality;
 

@@ -1,8 +1,10 @@
-#include "live_stats.hpp"
+#include "observe/live_stats.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::observe;
 using namespace std::chrono_literals;
 using protocol::Role;
 

@@ -1,10 +1,12 @@
-#include "mailbox.hpp"
+#include "engine/mailbox.hpp"
 
 #include <doctest/doctest.h>
 
 #include <thread>
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::engine;
 using protocol::Pointer;
 
 namespace {

@@ -1,8 +1,10 @@
-#include "pacing.hpp"
+#include "engine/pacing.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace vrut;
+using namespace vrut::server::base;
+using namespace vrut::server::engine;
 using namespace std::chrono_literals;
 using Action = PacingDecision::Action;
 

@@ -1,7 +1,7 @@
 // What patches, keys and other scenes do to the state.
 #include <algorithm>
 
-#include "presentation.hpp"
+#include "room/room.hpp"
 #include "stage.hpp"
 
 using namespace stage;
@@ -386,7 +386,8 @@ TEST_CASE("a picture's header says where the signs in it stand") {
     Stage stage("a");
     const auto places = [&] {
         const View& view = stage.presentation.visible();
-        return header_of(stage.presentation.state(), view, stage.presentation.view_size()).markers;
+        return server::room::header_of(stage.presentation.state(), view, stage.presentation.view_size())
+            .markers;
     };
     using Places = std::map<std::string, glm::dvec3>;
     CHECK(places().empty());

@@ -1,6 +1,5 @@
 // Who steers, and what flies: to the microsecond.
-#include "presentation.hpp"
-
+#include "room/room.hpp"
 #include "stage.hpp"
 
 using namespace stage;
@@ -295,7 +294,7 @@ TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
     Stage none("a");
     CHECK(none.say("a", ask));
     CHECK(none.told().at(0) == json::parse(R"({"type":"scenes","id":4,"scenes":[],"to":"a"})"));
-    PresentationOptions options;
+    server::room::PresentationOptions options;
     options.scenes = [] { return std::vector<std::string>{"car.vrut", "more/bus.vrut"}; };
     Stage stage("ahv", scene(), std::move(options));
     for (const std::string client : {"a", "h", "v"}) {

@@ -1,4 +1,4 @@
-#include "progress.hpp"
+#include "observe/progress.hpp"
 
 #include <doctest/doctest.h>
 #include <pty.h>
@@ -9,6 +9,7 @@
 #include <thread>
 
 using namespace vrut;
+using namespace vrut::server::observe;
 using namespace std::chrono_literals;
 
 namespace {

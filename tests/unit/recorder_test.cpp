@@ -1,5 +1,5 @@
 // Logs as they are written: how they begin, and how they end.
-#include "recorder.hpp"
+#include "room/recorder.hpp"
 
 #include <sched.h>
 #include <spdlog/spdlog.h>
@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "full_disk.hpp"
-#include "replay.hpp"
+#include "room/replay.hpp"
 #include "stage.hpp"
 #include "temporary_folder.hpp"
 
@@ -20,8 +20,8 @@ const std::string kStart = R"({"type":"record","id":1,"action":"start","name":"t
 const std::string kStop = R"({"type":"record","id":2,"action":"stop"})";
 const std::string kTurn = R"({"type":"navigate","id":3,"rotate":[5,0]})";
 
-PresentationOptions recording_to(const std::filesystem::path& folder) {
-    PresentationOptions options;
+server::room::PresentationOptions recording_to(const std::filesystem::path& folder) {
+    server::room::PresentationOptions options;
     options.record_folder = folder;
     return options;
 }
@@ -36,7 +36,7 @@ struct Quiet {
 TEST_CASE("lines are in the file as soon as they are written") {
     const Quiet quiet;
     const TemporaryFolder folder;
-    Recorder recorder(folder.path());
+    server::room::Recorder recorder(folder.path());
     CHECK(recorder.has_folder());
     CHECK_FALSE(recorder.active());
     CHECK(recorder.open("a_B-9") == "a_B-9");
@@ -56,7 +56,7 @@ TEST_CASE("a name that is taken is refused, and its file left alone") {
     const Quiet quiet;
     const TemporaryFolder folder;
     folder.write("mine.jsonl", "precious");
-    Recorder recorder(folder.path());
+    server::room::Recorder recorder(folder.path());
     const auto opened = recorder.open("mine");
     REQUIRE_FALSE(opened);
     CHECK(opened.error().find("'mine'") != std::string::npos);
@@ -67,7 +67,7 @@ TEST_CASE("a name that is taken is refused, and its file left alone") {
 TEST_CASE("without a name one is made, each time another") {
     const Quiet quiet;
     const TemporaryFolder folder;
-    Recorder recorder(folder.path());
+    server::room::Recorder recorder(folder.path());
     std::vector<std::string> names;
     for (int i = 0; i < 3; ++i) {
         const auto name = recorder.open("");
@@ -84,7 +84,7 @@ TEST_CASE("a folder that is gone is told, and the next recording is not hurt by 
     const Quiet quiet;
     const TemporaryFolder folder;
     const std::filesystem::path below = folder.path() / "logs";
-    Recorder recorder(below);
+    server::room::Recorder recorder(below);
     const auto opened = recorder.open("log");
     REQUIRE_FALSE(opened);
     CHECK(opened.error().find("log.jsonl") != std::string::npos);
@@ -98,7 +98,7 @@ TEST_CASE("a folder that is gone is told, and the next recording is not hurt by 
 TEST_CASE("a log that has grown to the largest size ends with the line that made it so") {
     const Quiet quiet;
     const TemporaryFolder folder;
-    Recorder recorder(folder.path(), 8);
+    server::room::Recorder recorder(folder.path(), 8);
     REQUIRE(recorder.open("small"));
     recorder.write("abc");
     CHECK(recorder.active());
@@ -128,7 +128,7 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     CHECK_FALSE(stage.state().contains("recording"));
     CHECK(stage.state()["notices"] == json{"The recording 'take-1' has ended: File too large"});
     CHECK(std::filesystem::file_size(folder.path() / "take-1.jsonl") <= size + 10);
-    const auto log = read_event_log(folder.path() / "take-1.jsonl");
+    const auto log = server::room::read_event_log(folder.path() / "take-1.jsonl");
     REQUIRE_MESSAGE(log, log.error());
     CHECK(log->lines.empty());
     CHECK(log->cut.find("take-1.jsonl:2: ") != std::string::npos);
@@ -153,7 +153,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
     }
     if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
         return 3;
-    const auto log = read_event_log(folder / "take-1.jsonl");
+    const auto log = server::room::read_event_log(folder / "take-1.jsonl");
     if (!log) return 4;
     // All but what did not fit.
     if (log->lines.size() + 1 != static_cast<std::size_t>(said)) return 5;
@@ -177,7 +177,8 @@ TEST_CASE("a disk that is full in truth") {
 TEST_CASE("a recording whose disk takes too long ends, with the line that it took") {
     const Quiet quiet;
     const TemporaryFolder folder;
-    Recorder recorder(folder.path(), Recorder::kLargest, 0ms);  // any time is too long
+    server::room::Recorder recorder(folder.path(), server::room::Recorder::kLargest,
+                                    0ms);  // any time is too long
     REQUIRE(recorder.open("slow"));
     recorder.write("abc");
     CHECK_FALSE(recorder.active());

@@ -1,5 +1,5 @@
 // What begins in the middle of something, ends in it, or is no log at all.
-#include "replay.hpp"
+#include "room/replay.hpp"
 
 #include <spdlog/spdlog.h>
 
@@ -14,8 +14,9 @@ using namespace stage;
 
 namespace {
 
-tl::expected<LoadedScene, std::string> find_scene(const std::string& name, const std::string& sha256) {
-    LoadedScene found = name == "other.vrut" ? other_scene() : scene();
+tl::expected<server::scene::LoadedScene, std::string> find_scene(const std::string& name,
+                                                                 const std::string& sha256) {
+    server::scene::LoadedScene found = name == "other.vrut" ? other_scene() : scene();
     if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
     return found;
 }
@@ -34,15 +35,15 @@ std::string pointer(const std::string& what, double x, double y, int id = 1, con
 /// A stage whose session is recorded from some point on.
 class Recorded {
 public:
-    explicit Recorded(const std::string& clients, LoadedScene shown = scene())
+    explicit Recorded(const std::string& clients, server::scene::LoadedScene shown = scene())
         : stage(clients, std::move(shown), options(folder.path())) {
         spdlog::set_level(spdlog::level::warn);
     }
     void start(const std::string& client = "a") {
         REQUIRE(stage.refusal(client, R"({"type":"record","action":"start","name":"log"})") == "");
     }
-    EventLog log() const {
-        auto log = read_event_log(folder.path() / "log.jsonl");
+    server::room::EventLog log() const {
+        auto log = server::room::read_event_log(folder.path() / "log.jsonl");
         REQUIRE_MESSAGE(log, log.error());
         return *std::move(log);
     }
@@ -84,7 +85,8 @@ public:
 
     void play() {
         for (int step = 0; step < 80; ++step) {
-            recorded.stage.at(recorded.stage.now + Time(number(0, 9) > 0 ? number(0, 40'000) : 1'200'000));
+            recorded.stage.at(recorded.stage.now +
+                              server::room::Time(number(0, 9) > 0 ? number(0, 40'000) : 1'200'000));
             if (step == begins_) {
                 recorded.stage.say("a", R"({"type":"control","action":"take"})");
                 recorded.start();
@@ -207,9 +209,9 @@ std::string failure(const std::string& lines) {
     Recorded recorded("a");
     recorded.start();
     const std::string header = recorded.folder.read("log.jsonl");
-    const auto log = read_event_log(recorded.folder.write("wrong.jsonl", header + lines));
+    const auto log = server::room::read_event_log(recorded.folder.write("wrong.jsonl", header + lines));
     if (!log) return log.error();
-    const auto replayed = replay(*log, find_scene);
+    const auto replayed = server::room::replay(*log, find_scene);
     return replayed ? "" : replayed.error();
 }
 
@@ -339,18 +341,20 @@ TEST_CASE("whatever happens, before and in a recording, the replay ends in the s
 }
 
 TEST_CASE("a light of a file that is brighter than clients may make it is no hindrance") {
-    const LoadedScene shown = scene_of(R"(vrut-text 1
+    const server::scene::LoadedScene shown = scene_of(R"(vrut-text 1
 geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
 node 1 "Part" geometry geometry 1 end
 node 2 "Key" light type point color 1.08 1.06 1.02 1 end
 )",
-                                       "stage.vrut");
+                                                      "stage.vrut");
     Recorded recorded("a", shown);
     recorded.start();
     recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
-    const auto replayed =
-        replay(recorded.log(),
-               [&](const auto&, const auto&) -> tl::expected<LoadedScene, std::string> { return shown; });
+    const auto replayed = server::room::replay(
+        recorded.log(),
+        [&](const auto&, const auto&) -> tl::expected<server::scene::LoadedScene, std::string> {
+            return shown;
+        });
     REQUIRE_MESSAGE(replayed, replayed.error());
     CHECK(replayed->state().camera.eye == recorded.stage.camera().eye);
 }
@@ -371,14 +375,15 @@ TEST_CASE("a log that is cut anywhere is played up to its last whole line, and s
     REQUIRE(text.size() == ends.back());
     for (std::size_t size = ends[0] - 1; size <= text.size(); ++size) {
         CAPTURE(size);
-        const auto log = read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, size)));
+        const auto log =
+            server::room::read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, size)));
         REQUIRE_MESSAGE(log, log.error());
         // A line is whole though its end is missing.
         const auto next =
             std::find_if(ends.begin(), ends.end(), [&](std::size_t end) { return end > size + 1; });
         const auto whole = static_cast<std::size_t>(next - ends.begin()) - 1;
         CHECK(log->lines.size() == whole);
-        CHECK(replay(*log, find_scene)->state().camera.eye == eyes[whole]);
+        CHECK(server::room::replay(*log, find_scene)->state().camera.eye == eyes[whole]);
         const bool at_end = std::find(ends.begin(), ends.end(), size) != ends.end();
         CHECK(log->cut.empty() == at_end);
         const auto line =
@@ -391,7 +396,7 @@ TEST_CASE("a log that is cut anywhere is played up to its last whole line, and s
 TEST_CASE("what is no log is told with file and line") {
     const TemporaryFolder folder;
     const auto error = [&](const std::string& text) {
-        const auto log = read_event_log(folder.write("x.jsonl", text));
+        const auto log = server::room::read_event_log(folder.write("x.jsonl", text));
         REQUIRE_FALSE(log);
         return log.error();
     };
@@ -399,14 +404,15 @@ TEST_CASE("what is no log is told with file and line") {
     CHECK(holds(error("\n"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"vrut-prev"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"another\",\"version\":1}\n"), "'log'"));
-    CHECK(holds(read_event_log(folder.path() / "none.jsonl").error(), "none.jsonl: cannot be opened"));
+    CHECK(holds(server::room::read_event_log(folder.path() / "none.jsonl").error(),
+                "none.jsonl: cannot be opened"));
 }
 
 TEST_CASE("a scene that is another one now is told") {
     Recorded recorded("a");
     recorded.start();
     recorded.stage.presentation.show(other_scene(), 1s);
-    EventLog log = recorded.log();
+    server::room::EventLog log = recorded.log();
     REQUIRE(log.lines.size() == 1);
     std::get<protocol::LogLine::Opened>(log.lines[0].what).sha256 = "ab12";
     CHECK(replay(log, find_scene).error() == "line 2: other.vrut is another one now");
@@ -432,7 +438,7 @@ TEST_CASE("a message that cannot be played is told with its line and why") {
 TEST_CASE("a header that does not fit its scene is told") {
     Recorded recorded("a");
     recorded.start();
-    EventLog log = recorded.log();
+    server::room::EventLog log = recorded.log();
     json state = *log.header.state;
     state["nodes"]["99"] = {{"active", false}};
     log.header.state = std::make_shared<const json>(state);
@@ -448,10 +454,10 @@ TEST_CASE("whoever watches a replay is told of each frame where it was drawn") {
     recorded.stage.say("a", R"({"type":"navigate","zoom":2})");
     recorded.stage.presentation.remember(8);
     std::vector<std::pair<std::int64_t, double>> seen;
-    ReplayWatcher watcher;
+    server::room::ReplayWatcher watcher;
     watcher.on_drawn = [&](std::int64_t frame, const Presentation& presentation) {
         seen.emplace_back(frame, presentation.visible().camera.eye.z);
     };
-    REQUIRE(replay(recorded.log(), find_scene, watcher));
+    REQUIRE(server::room::replay(recorded.log(), find_scene, watcher));
     CHECK(seen == std::vector<std::pair<std::int64_t, double>>{{7, 4.0}, {8, 2.0}});
 }

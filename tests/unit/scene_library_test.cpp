@@ -1,11 +1,11 @@
-#include "scene_library.hpp"
-
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
+#include "scene/library.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut;
+using namespace vrut::server::scene;
 namespace fs = std::filesystem;
 
 namespace {
@@ -30,6 +30,16 @@ TEST_CASE("a long file is read in blocks") {
     const TemporaryFolder folder;  // sha256sum of 3 MiB and one byte of zeros
     CHECK(sha256_of(folder.write("long", std::string((3U << 20) + 1, '\0'))) ==
           "5983281b51c767c831104f52c95e4075f27e6f4fa8dd0526e3929f79176a1217");
+}
+
+TEST_CASE("a digest that nobody wants any more is not finished") {
+    const TemporaryFolder folder;
+    const fs::path file = folder.write("zeros.vrut", "");
+    fs::resize_file(file, std::uintmax_t{4} << 40);  // which takes an hour
+    std::stop_source stop;
+    stop.request_stop();
+    CHECK_THROWS_WITH(sha256_of(file, stop.get_token()), (file.string() + " is no longer read").c_str());
+    CHECK_FALSE(load_scene(file, "zeros"));  // what it begins with is no scene
 }
 
 TEST_CASE("scenes are found by name, in folders below, too") {

@@ -1,4 +1,4 @@
-#include "scene_tree.hpp"
+#include "room/scene_tree.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,6 +7,7 @@
 #include "codec.hpp"
 
 using namespace vrut;
+using namespace vrut::server::room;
 using protocol::Tree;
 using protocol::TreePage;
 

@@ -7,13 +7,15 @@
 #include <vector>
 
 #include "codec.hpp"
-#include "presentation.hpp"
+#include "room/room.hpp"
 #include "vrut_text.hpp"
 
 /// A presentation to which messages are said as they come over the wire, at times that a test gives.
 namespace stage {
 
 using namespace vrut;
+using namespace vrut::server::scene;
+using namespace vrut::server::room;
 using namespace std::chrono_literals;
 using nlohmann::json;
 

@@ -1,8 +1,9 @@
-#include "steering.hpp"
+#include "room/steering.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace vrut;
+using namespace vrut::server::room;
 using namespace std::chrono_literals;
 
 namespace {

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <chrono>
+#include <future>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+namespace vrut::server::base {
+
+/// Work on a thread of its own that may hang for ever in a system call, as reading from a disk that does not
+/// answer does. Nobody can join such a thread: the destructor asks it to stop, waits for kPatience, and then
+/// leaves it behind.
+template <class Result>
+class AbandonableTask {
+public:
+    static constexpr std::chrono::milliseconds kPatience{500};
+
+    /// `work` is called with a std::stop_token, and owns all that it uses. Throws std::system_error where no
+    /// thread can be had.
+    template <class Work>
+    explicit AbandonableTask(Work work) {
+        std::packaged_task<Result(std::stop_token)> task(std::move(work));
+        result_ = task.get_future();
+        std::thread([moved = std::move(task), stop = stop_.get_token()]() mutable {
+            moved.make_ready_at_thread_exit(std::move(stop));
+        }).detach();
+    }
+    ~AbandonableTask() {
+        stop();
+        if (result_.valid()) is_done_within(kPatience);
+    }
+    AbandonableTask(const AbandonableTask&) = delete;
+    AbandonableTask& operator=(const AbandonableTask&) = delete;
+
+    void stop() { stop_.request_stop(); }
+    /// Not after get().
+    bool is_done_within(std::chrono::milliseconds time) const {
+        return result_.wait_for(time) == std::future_status::ready;
+    }
+    /// Waits for it. Once; throws what the work threw.
+    Result get() { return result_.get(); }
+
+private:
+    std::stop_source stop_;
+    std::future<Result> result_;
+};
+
+}  // namespace vrut::server::base

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What the program's subcommands do. Each throws std::exception with one sentence; main prints it.
+namespace vrut::server::commands {
+
+struct ServeArguments {
+    std::filesystem::path scene;  ///< empty: the car
+    std::string listen = "127.0.0.1:8080";
+    std::vector<std::string> allowed_origins;
+    std::optional<int> device;
+    std::size_t max_clients = 64;
+    std::filesystem::path token_file;
+    std::filesystem::path scenes;  ///< what clients may open; empty: nothing
+    std::filesystem::path record;  ///< where recordings go; empty: nowhere
+};
+void serve_command(const ServeArguments& arguments);
+
+struct RenderArguments {
+    std::filesystem::path scene, output;
+    int width = 1280, height = 720;
+    int samples = 4;
+    double detail = 0;
+    int jpeg_quality = 90;
+    std::filesystem::path camera_file;
+    std::optional<glm::dvec3> eye, focus, up;
+    std::optional<double> fov;
+    std::string set;  ///< a merge patch on the state
+    std::vector<std::pair<std::string, std::string>>
+        patches;  ///< further ones, with the option that they are of
+    std::optional<int> device;
+    bool stats = false;
+    bool reference = false;  ///< by the reference renderer, without a GPU
+    std::filesystem::path unrounded,
+        ids;  ///< further pictures: of the reference's values, of node ids; or empty
+};
+void render_command(const RenderArguments& arguments);
+
+struct ReplayArguments {
+    std::filesystem::path log;
+    std::filesystem::path scene;   ///< empty: the log's own, looked for beside it and among the program's
+    std::filesystem::path frames;  ///< folder for the frames; empty: none are drawn
+    std::optional<int> device;
+};
+void replay_command(const ReplayArguments& arguments);
+
+struct InfoArguments {
+    std::filesystem::path scene;
+    bool json = false;
+};
+void info_command(const InfoArguments& arguments);
+
+struct ConvertArguments {
+    std::filesystem::path in, out;
+};
+/// What the new file does not hold goes to standard error, a line each.
+void convert_command(const ConvertArguments& arguments);
+
+struct CompareArguments {
+    std::filesystem::path a, b;
+    std::filesystem::path map;  ///< FLIP's errors as a grey PNG; empty: none is written
+    bool json = false;
+};
+void compare_command(const CompareArguments& arguments);
+
+struct ChartArguments {
+    std::vector<std::filesystem::path> scenes;  ///< empty: the car
+    std::filesystem::path out;
+    bool calibrate = false;  ///< the server's table alone
+    int width = 1280, height = 720;
+    int frames = 12;  ///< of each setting
+    std::uint64_t most_triangles = 10'000'000;
+    std::optional<int> device;
+};
+void chart_command(ChartArguments arguments);
+
+/// Where the program's scenes may lie, seen from the program: as installed, and as built.
+std::vector<std::filesystem::path> scene_folders();
+/// The car, in one of them. Throws where it is in neither.
+std::filesystem::path default_scene();
+
+}  // namespace vrut::server::commands

@@ -1,0 +1,160 @@
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <stdexcept>
+
+#include "base/files.hpp"
+#include "commands/commands.hpp"
+#include "detail_levels.hpp"
+#include "engine/images.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
+#include "reference.hpp"
+#include "renderer.hpp"
+#include "report.hpp"
+#include "room/room.hpp"
+#include "scene/library.hpp"
+
+namespace vrut::server::commands {
+
+namespace {
+
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(stream), {}};
+    if (!stream) throw std::runtime_error(path.string() + " cannot be read");
+    return text;
+}
+
+/// What one client of a server would do to change the state. Throws std::runtime_error.
+void say(room::Presentation& presentation, const std::string& option,
+         decltype(protocol::ClientMessage::payload) payload) {
+    presentation.say("render", {1, std::move(payload)}, room::Time(0));
+    for (const room::Answer& answer : presentation.take_answers())
+        if (!answer.refusal.empty()) throw std::runtime_error(option + ": " + answer.refusal);
+}
+
+void patch(room::Presentation& presentation, const std::string& option, const std::string& text) {
+    auto patch = protocol::parse_patch(text);
+    if (!patch) throw std::runtime_error(option + ": " + patch.error().message);
+    say(presentation, option, *std::move(patch));
+}
+
+/// The camera that the options give: the file's members, then the single ones.
+Camera wanted_camera(const RenderArguments& arguments, const room::Presentation& presentation) {
+    protocol::CameraOverlay overlay;
+    if (!arguments.camera_file.empty()) {
+        auto camera = protocol::parse_camera(read_text(arguments.camera_file));
+        if (!camera) throw std::runtime_error(arguments.camera_file.string() + ": " + camera.error().message);
+        overlay = *camera;
+        if (overlay.eye && overlay.focus) overlay.node.reset();  // a whole pose, maybe of another scene
+    }
+    if (arguments.eye) overlay.eye = arguments.eye;
+    if (arguments.focus) overlay.focus = arguments.focus;
+    if (arguments.up) overlay.up = arguments.up;
+    if (arguments.fov) overlay.fov = arguments.fov;
+    const auto camera = room::overlaid(room::camera_of(presentation.state().camera), overlay,
+                                       presentation.scene(), "the camera");
+    if (!camera) throw std::runtime_error(camera.error().message);
+    return *camera;
+}
+
+View view_of(const RenderArguments& arguments) {
+    const std::string name = arguments.scene.filename().string();
+    auto scene = scene::load_scene(arguments.scene, name, observe::loading_bar(name));
+    if (!scene) throw std::runtime_error(scene.error());
+    for (const std::string& notice : scene->notices) observe::log_warning("notice", {{"text", notice}});
+    room::Presentation presentation(*std::move(scene));
+    presentation.join("render", protocol::Role::control, room::Time(0));
+    const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),
+                                1};
+    say(presentation, "--size", size);
+    patch(presentation, "--set", arguments.set.empty() ? "{}" : arguments.set);
+    for (const auto& [option, text] : arguments.patches) patch(presentation, option, text);
+
+    View view = presentation.visible();
+    view.camera = wanted_camera(arguments, presentation);
+    view.width = arguments.width;
+    view.height = arguments.height;
+    view.samples = arguments.samples;
+    view.detail = arguments.detail;
+    return view;
+}
+
+/// Node ids as 24-bit RGB, white for none. Throws std::runtime_error where one is too high.
+Image picture_of_ids(const View& view, const std::vector<Index>& nodes) {
+    constexpr Id kNobody = 0xffffff;
+    Image image;
+    image.resize(view.width, view.height);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        Id id = kNobody;
+        if (nodes[i] != kNone) {
+            id = view.scene->scene->nodes()[static_cast<std::size_t>(nodes[i])].id;
+            if (id >= kNobody)
+                throw std::runtime_error("--ids: node " + std::to_string(id) +
+                                         " has an id beyond 16777214, the highest that 24 bits can tell");
+        }
+        for (unsigned k = 0; k < 3; ++k)
+            image.rgba[4 * i + k] = static_cast<std::uint8_t>(id >> (16 - 8 * k));
+        image.rgba[4 * i + 3] = 255;
+    }
+    return image;
+}
+
+void write_picture(const RenderArguments& arguments, const Image& image) {
+    base::write_file(arguments.output,
+                     arguments.output.extension() == ".png"
+                         ? encode_png(image)
+                         : engine::JpegEncoder().encode(image, arguments.jpeg_quality, false));
+}
+
+void write_ids(const RenderArguments& arguments, const View& view, const std::vector<Index>& nodes) {
+    base::write_file(arguments.ids, encode_png(picture_of_ids(view, nodes)));
+}
+
+void trace_picture(const RenderArguments& arguments, const View& view) {
+    const ReferencePicture picture = trace(view);
+    if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
+    write_picture(arguments, image_of(picture));
+    if (!arguments.unrounded.empty())
+        base::write_file(arguments.unrounded,
+                         engine::encode_pfm(picture.width, picture.height, picture.color));
+}
+
+void draw_picture(const RenderArguments& arguments, View view) {
+    if (view.detail > 0) {
+        const auto levels = std::make_shared<const DetailLevels>(view.scene->scene);
+        levels->wait();
+        view.levels = levels;
+    }
+    Renderer renderer(arguments.device);
+    if (std::max(view.width, view.height) > renderer.max_size())
+        throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
+                                 " pixels a side");
+    if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
+    Image image;
+    FrameStats stats;
+    renderer.render(view, image, stats);
+    write_picture(arguments, image);
+    if (arguments.stats)
+        std::cout << protocol::encode(protocol::RenderReport{
+                         renderer.description(), view.width, view.height, view.samples, stats.passes,
+                         stats.draws, stats.triangles, stats.render_ms, stats.readback_ms})
+                  << std::endl;
+}
+
+}  // namespace
+
+void render_command(const RenderArguments& arguments) {
+    const std::string extension = arguments.output.extension().string();
+    if (extension != ".png" && extension != ".jpg" && extension != ".jpeg")
+        throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
+    const View view = view_of(arguments);
+    if (arguments.reference)
+        trace_picture(arguments, view);
+    else
+        draw_picture(arguments, view);
+}
+
+}  // namespace vrut::server::commands

@@ -1,0 +1,124 @@
+#include <iostream>
+#include <stdexcept>
+
+#include "base/files.hpp"
+#include "commands/commands.hpp"
+#include "engine/encoder.hpp"
+#include "engine/images.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
+#include "renderer.hpp"
+#include "report.hpp"
+#include "room/replay.hpp"
+#include "scene/library.hpp"
+
+namespace vrut::server::commands {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Scenes of a log: the one that was named, else files of their names beside that, beside the log, in the
+/// folder above it, among the program's scenes or here, with the same content.
+class Scenes {
+public:
+    Scenes(const ReplayArguments& arguments) : given_(arguments.scene) {
+        const fs::path beside = arguments.log.parent_path();
+        folders_ = {given_.parent_path(), given_.parent_path() / "..", beside, beside / "..", fs::path()};
+        for (const fs::path& own : scene_folders()) {
+            folders_.push_back(own);
+            folders_.push_back(own / "car");
+        }
+    }
+
+    tl::expected<scene::LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
+        if (fs::path given = std::exchange(given_, {}); !given.empty()) {
+            auto scene = scene::load_scene(given, name, observe::loading_bar(name));
+            if (scene && scene->sha256 != sha256)
+                observe::log_warning("another_scene", {{"file", given.string()},
+                                                       {"reason", "it is not the scene that was recorded"}});
+            return scene;
+        }
+        bool found = false;
+        for (const fs::path& folder : folders_) {
+            const fs::path file = folder / name;
+            if (!fs::is_regular_file(file)) continue;
+            found = true;
+            if (scene::sha256_of(file) == sha256)
+                return scene::load_scene(file, name, observe::loading_bar(name));
+        }
+        return tl::unexpected("the scene '" + name + "' " +
+                              (found ? "has changed since it was recorded" : "is not found") +
+                              "; name it with --scene");
+    }
+
+private:
+    fs::path given_;  // for the first
+    std::vector<fs::path> folders_;
+};
+
+/// Writes the session's frames as JPEG files, as clients could have got them.
+class FrameWriter {
+public:
+    FrameWriter(fs::path folder, std::optional<int> device) : folder_(std::move(folder)), renderer_(device) {
+        fs::create_directories(folder_);
+    }
+
+    void write(std::int64_t frame, const room::Presentation& presentation) {
+        engine::PictureLimits limits;
+        limits.max_side = std::min(limits.max_side, renderer_.max_size());
+        const protocol::Quality quality =
+            engine::quality_of(engine::kStill, presentation.view_size(), limits, true);
+        const engine::PictureSize size = engine::picture_size(presentation.view_size(), quality.scale);
+        View view = presentation.visible();
+        view.width = size.width;
+        view.height = size.height;
+        view.samples = engine::kStillSamples.front();
+        Image image;
+        FrameStats stats;
+        renderer_.render(view, image, stats);
+        engine::EncodedPicture encoded;
+        encoded.header = room::header_of(presentation.state(), view, presentation.view_size());
+        encoded.header.frame = frame;
+        encoded.header.quality = quality;
+        encoded.header.quality.samples = view.samples;
+        encoded.header.timing.render_ms = stats.render_ms;
+        encoded.file = jpeg_.encode(image, quality.jpeg_quality, false);
+        const std::vector<std::uint8_t> header = engine::header_of_file(encoded, encoded.header);
+        encoded.file.insert(
+            encoded.file.begin() + static_cast<std::ptrdiff_t>(protocol::comment_offset(encoded.file)),
+            header.begin(), header.end());
+        char name[40];
+        std::snprintf(name, sizeof name, "frame-%06lld.jpg", static_cast<long long>(frame));
+        base::write_file(folder_ / name, encoded.file);
+    }
+
+private:
+    fs::path folder_;
+    Renderer renderer_;
+    engine::JpegEncoder jpeg_;
+};
+
+}  // namespace
+
+void replay_command(const ReplayArguments& arguments) {
+    const auto log = room::read_event_log(arguments.log);
+    if (!log) throw std::runtime_error(log.error());
+    if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
+    std::optional<FrameWriter> frames;
+    if (!arguments.frames.empty()) frames.emplace(arguments.frames, arguments.device);
+    Scenes scenes(arguments);
+    room::ReplayWatcher watcher;
+    if (frames)
+        watcher.on_drawn = [&](std::int64_t frame, const room::Presentation& presentation) {
+            frames->write(frame, presentation);
+        };
+    const auto finder = [&](const std::string& name, const std::string& sha256) {
+        return scenes.find(name, sha256);
+    };
+    const auto presentation = room::replay(*log, finder, watcher);
+    if (!presentation) throw std::runtime_error(arguments.log.string() + ": " + presentation.error());
+    std::cout << protocol::encode(presentation->state().camera) << std::endl;
+}
+
+}  // namespace vrut::server::commands

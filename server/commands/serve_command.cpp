@@ -1,0 +1,104 @@
+#include <csignal>
+#include <iostream>
+#include <stdexcept>
+
+#include "commands/commands.hpp"
+#include "net/server.hpp"
+#include "observe/log.hpp"
+#include "observe/progress.hpp"
+#include "scene/library.hpp"
+
+namespace vrut::server::commands {
+
+namespace {
+
+/// RFC 3986: all but unreserved characters as %XX.
+std::string percent_encoded(const std::string& text) {
+    constexpr char kDigits[] = "0123456789ABCDEF";
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (letter || c == '-' || c == '.' || c == '_' || c == '~')
+            result += c;
+        else
+            result += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+    return result;
+}
+
+std::string url(const std::string& host, std::uint16_t port, const std::string& token) {
+    const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
+    return "http://" + name + ":" + std::to_string(port) + "/" +
+           (token.empty() ? "" : "#token=" + percent_encoded(token));
+}
+
+/// An empty path stays one. Throws std::runtime_error where there is no such folder.
+std::filesystem::path existing_folder(const std::string& option, const std::filesystem::path& path) {
+    if (!path.empty() && !std::filesystem::is_directory(path))
+        throw std::runtime_error(option + ": there is no folder " + path.string());
+    return path;
+}
+
+void announce(const net::ListenAddress& listen, std::uint16_t port, const net::Access& access) {
+    const std::string& token = access.control_token.empty() ? access.view_token : access.control_token;
+    std::vector<std::string> hosts{listen.host};
+    if (net::is_any(listen.host)) {
+        hosts = net::network_addresses();
+        if (hosts.empty()) hosts = {"127.0.0.1"};
+    }
+    if (!net::is_loopback(hosts[0])) {
+        std::cout << net::qr_code(url(hosts[0], port, token))
+                  << "Scan it with the tablet, or open the address.\n";
+        if (!access.control_token.empty() && !access.view_token.empty())
+            std::cout << "To watch without steering: " << url(hosts[0], port, access.view_token) << "\n";
+    }
+    for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
+}
+
+/// Whoever asks again for an end that has begun does not change what it is.
+void ignore_further_signals() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // those that come stay pending; this thread is the last
+}
+
+}  // namespace
+
+void serve_command(const ServeArguments& arguments) {
+    std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
+    net::ServerOptions options;
+    options.listen = net::parse_listen_address(arguments.listen);
+    options.max_clients = arguments.max_clients;
+    options.access = net::read_access(arguments.token_file);
+    options.access.allowed_origins = arguments.allowed_origins;
+    if (!net::is_loopback(options.listen.host) && !options.access.needs_token()) {
+        options.access.control_token = net::make_token();
+        options.access.view_token = net::make_token();
+    }
+
+    const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
+    const std::string name = path.filename().string();
+    auto scene = scene::load_scene(path, name, observe::loading_bar(name));
+    if (!scene) throw std::runtime_error(scene.error());
+    const Scene& read = *scene->placed->scene;
+    for (const std::string& notice : scene->notices)
+        observe::log_warning("notice", {{"scene", name}, {"text", notice}});
+    observe::log_info(
+        "scene_read",
+        {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});
+    options.library = scene::SceneLibrary(existing_folder("--scenes", arguments.scenes));
+    options.record_folder = existing_folder("--record", arguments.record);
+
+    net::Server server(options, *std::move(scene), engine::gl_painter(arguments.device));
+    server.stop_on_signals();  // before the address is told: from then on somebody may stop it
+    announce(options.listen, server.port(), options.access);
+    observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
+    server.run();
+    ignore_further_signals();
+    observe::log_info("shut_down", {});
+}
+
+}  // namespace vrut::server::commands

@@ -1,0 +1,115 @@
+#include "engine/encoder.hpp"
+
+#include <cassert>
+
+#include "engine/images.hpp"
+
+namespace vrut::server::engine {
+
+namespace {
+
+/// A picture that is counted as long as anybody holds it.
+std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
+    const std::uint64_t held = ++metrics.pictures_held;
+    std::uint64_t most = metrics.pictures_held_most;
+    while (held > most && !metrics.pictures_held_most.compare_exchange_weak(most, held)) {
+    }
+    return {new EncodedPicture, [&metrics](EncodedPicture* picture) {
+                delete picture;
+                --metrics.pictures_held;
+            }};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header) {
+    const std::string text = protocol::encode(header);
+    return picture.format == protocol::ImageFormat::png ? png_text_chunk(text)
+                                                        : protocol::comment_segment(text);
+}
+
+Encoder::Encoder(observe::Metrics& metrics,
+                 std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
+                 std::function<void()> on_free, std::function<void(const std::string&)> on_failure)
+    : metrics_(metrics),
+      on_encoded_(std::move(on_encoded)),
+      on_free_(std::move(on_free)),
+      on_failure_(std::move(on_failure)),
+      thread_([this] {
+          try {
+              run();
+          } catch (const std::exception& error) {
+              on_failure_(error.what());
+          }
+      }) {}
+
+Encoder::~Encoder() {
+    {
+        const std::lock_guard lock(mutex_);
+        closed_ = true;
+    }
+    condition_.notify_one();
+    thread_.join();
+}
+
+bool Encoder::is_free() const {
+    const std::lock_guard lock(mutex_);
+    return !slot_;
+}
+
+void Encoder::offer(Picture picture, Image image) {
+    {
+        const std::lock_guard lock(mutex_);
+        assert(!slot_);
+        slot_.emplace(std::move(picture), std::move(image));
+    }
+    condition_.notify_one();
+}
+
+Image Encoder::take_spare() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(spare_, {});
+}
+
+void Encoder::give_spare(Image image) {
+    const std::lock_guard lock(mutex_);
+    spare_ = std::move(image);
+}
+
+void Encoder::run() {
+    JpegEncoder jpeg;
+    for (;;) {
+        std::optional<std::pair<Picture, Image>> job;
+        heart_.rest();
+        {
+            std::unique_lock lock(mutex_);
+            condition_.wait(lock, [&] { return slot_ || closed_; });
+            if (closed_) return;
+            job.swap(slot_);
+        }
+        heart_.beat();
+        on_free_();
+        auto& [picture, image] = *job;
+        const base::Clock::time_point start = base::Clock::now();
+        const std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
+        const protocol::Quality& quality = picture.header.quality;
+        if (picture.format == protocol::ImageFormat::png) {
+            encoded->file = encode_png(image);
+            encoded->header_offset = kPngTextOffset;
+        } else {
+            encoded->file = jpeg.encode(image, quality.jpeg_quality,
+                                        quality.subsampling == protocol::Quality::Subsampling::yuv420);
+            encoded->header_offset = protocol::comment_offset(encoded->file);
+        }
+        static_cast<Picture&>(*encoded) = std::move(picture);
+        encoded->header.timing.encode_ms =
+            std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();
+        metrics_.encode.observe(encoded->header.timing.encode_ms / 1000);
+        ++metrics_.frames_encoded;
+        metrics_.bytes_encoded += encoded->file.size();
+        give_spare(std::move(image));
+        on_encoded_(encoded);
+    }
+}
+
+}  // namespace vrut::server::engine

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "engine/pacing.hpp"
+#include "level_table.hpp"
+
+namespace vrut::server::engine {
+
+/// The milliseconds that a picture took, or is expected to take.
+struct PictureTimes {
+    double server = 0;  ///< to draw, read back and encode
+    std::optional<double> client =
+        {};  ///< until its client asked for the next, less the way; none: nobody told
+    double all() const { return server + client.value_or(0); }
+};
+
+/// What a picture of the moving view is to hold.
+struct LevelDemand {
+    protocol::Resize view;
+    PictureLimits limits;
+    double target_ms = 50;
+};
+
+/// The target that `preference` makes of one: from 0 for the quickest level to infinity for the most
+/// accurate, by the odds p / (1 - p).
+double preferred_target(double target_ms, double preference);
+
+/// Chooses the level of each picture while things move: the most accurate of a table that holds the target,
+/// by running means of what pictures took. A more accurate one is tried when it is expected to be well within
+/// the target; one that then was too slow is not tried again for a while, each time for longer.
+class LevelChoice {
+public:
+    /// Of the table's levels those for pictures that move.
+    explicit LevelChoice(const protocol::LevelTable& table);
+
+    const std::vector<protocol::Level>& levels() const { return levels_; }
+    std::size_t choose(const LevelDemand& demand, base::Clock::time_point now);
+    /// A picture of so many pixels at `level` has taken so long.
+    void took(std::size_t level, const PictureTimes& times, double pixels, base::Clock::time_point now);
+    /// The level's running mean, if it is of pictures of that size and of late; else in proportion to its
+    /// costs in the table from the mean of the level measured last; else as in the table.
+    PictureTimes expected(std::size_t level, double pixels, base::Clock::time_point now) const;
+
+private:
+    struct Mean {
+        PictureTimes times;
+        double pixels = 0;
+        std::optional<base::Clock::time_point> last = {};
+    };
+    bool holds(std::size_t level, double target_ms, base::Clock::time_point now) const;
+    void was_too_slow(base::Clock::time_point now);
+    void begin_anew();
+
+    std::vector<protocol::Level> levels_;
+    double table_pixels_;
+    std::vector<Mean> means_;  // of each level
+    std::optional<std::size_t> measured_last_;
+    std::size_t level_ = 0;
+    LevelDemand demand_{};
+    std::optional<base::Clock::time_point> went_up_;
+    std::size_t ceiling_ = 0;  // from this level on none is tried before...
+    base::Clock::time_point ceiling_until_{};
+    std::chrono::seconds backoff_{0};
+};
+
+}  // namespace vrut::server::engine

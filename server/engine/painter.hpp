@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace vrut {
+struct Accumulation;
+struct FrameStats;
+struct Image;
+struct View;
+}  // namespace vrut
+
+namespace vrut::server::engine {
+
+/// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
+/// thread; made anew when it throws ContextLost.
+struct Painter {
+    std::string description;
+    bool software = false;
+    int max_size = 16384;
+    /// As Renderer::take; empty: there is nothing to be taken.
+    std::function<void(const View&)> take = {};
+    /// As Renderer::render.
+    std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
+                       Accumulation* kept)>
+        paint = {};
+    std::function<long()> gl_objects = {};  ///< how many live; where there may be any
+};
+using PainterFactory = std::function<Painter()>;
+
+/// The renderer as a painter, on EGL device `device` or the first that works.
+PainterFactory gl_painter(std::optional<int> device);
+
+}  // namespace vrut::server::engine

@@ -1,0 +1,106 @@
+#include "net/access.hpp"
+
+#include <arpa/inet.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "tokens.hpp"
+
+namespace vrut::server::net {
+
+namespace {
+
+/// Rights that nobody may have to a file of tokens. What lies in the folder of credentials is for this
+/// service alone; systemd 254 and later give it to the service by an access list, which shows as rights of
+/// the group.
+mode_t forbidden_rights(const std::filesystem::path& file) {
+    const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
+    const bool credential = credentials && file.parent_path() == credentials;
+    return credential ? S_IRWXO : S_IRWXG | S_IRWXO;
+}
+
+}  // namespace
+
+bool equal_in_constant_time(std::string_view a, std::string_view b) {
+    unsigned difference = a.size() == b.size() ? 0 : 1;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        difference |= static_cast<unsigned>(static_cast<unsigned char>(a[i]) ^
+                                            static_cast<unsigned char>(i < b.size() ? b[i] : 0));
+    return difference == 0;
+}
+
+std::optional<protocol::Role> Access::role_for(protocol::Role wanted, std::string_view token) const {
+    if (!needs_token()) return wanted;
+    // Both are compared whatever the first says.
+    const bool control = !control_token.empty() && equal_in_constant_time(token, control_token);
+    const bool view = !view_token.empty() && equal_in_constant_time(token, view_token);
+    if (control) return wanted;
+    return view ? std::optional(protocol::Role::view) : std::nullopt;
+}
+
+bool Access::accepts_host(std::string_view host) const {
+    if (needs_token()) return true;
+    const std::size_t colon = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
+    const std::string_view name = host.substr(0, colon);
+    in_addr address{};
+    // Only a number is one: "127.example.org" is a name, and may lead anywhere.
+    const bool loopback_number =
+        ::inet_pton(AF_INET, std::string(name).c_str(), &address) == 1 && ntohl(address.s_addr) >> 24 == 127;
+    return name == "localhost" || name == "[::1]" || loopback_number;
+}
+
+bool Access::accepts_origin(std::string_view origin, std::string_view host) const {
+    if (std::find(allowed_origins.begin(), allowed_origins.end(), origin) != allowed_origins.end())
+        return true;
+    for (const std::string_view scheme : {"http://", "https://"})
+        if (!host.empty() && origin.starts_with(scheme) && origin.substr(scheme.size()) == host) return true;
+    return false;
+}
+
+Access read_access(const std::filesystem::path& token_file) {
+    Access access;
+    if (const char* token = std::getenv("VRUT_PREVIEW_CONTROL_TOKEN")) access.control_token = token;
+    if (const char* token = std::getenv("VRUT_PREVIEW_VIEW_TOKEN")) access.view_token = token;
+    for (const std::string* token : {&access.control_token, &access.view_token})
+        if (!token->empty() && !protocol::is_token(*token))
+            throw std::runtime_error("a token in the environment must be 16 to 1000 bytes long");
+    if (token_file.empty()) return access;
+
+    struct stat status {};
+    if (::stat(token_file.c_str(), &status) != 0)
+        throw std::runtime_error("token file " + token_file.string() + " cannot be opened");
+    if ((status.st_mode & forbidden_rights(token_file)) != 0)
+        throw std::runtime_error("token file " + token_file.string() +
+                                 " can be read by others: chmod 600 it");
+    std::ifstream stream(token_file, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    const auto tokens = protocol::parse_tokens(text);
+    if (!tokens)
+        throw std::runtime_error("token file " + token_file.string() + ": " + tokens.error().message);
+    if (!tokens->control.empty()) access.control_token = tokens->control;
+    if (!tokens->view.empty()) access.view_token = tokens->view;
+    return access;
+}
+
+std::string make_token() {
+    std::array<std::uint8_t, 16> bytes{};
+    if (::getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
+        throw std::runtime_error("the system gives no random numbers for a token");
+    constexpr char kDigits[] = "0123456789abcdef";
+    std::string token;
+    for (const std::uint8_t byte : bytes) {
+        token += kDigits[byte >> 4];
+        token += kDigits[byte & 15];
+    }
+    return token;
+}
+
+}  // namespace vrut::server::net

@@ -1,0 +1,82 @@
+#include "net/addresses.hpp"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <netinet/in.h>
+#include <qrencode.h>
+
+#include <charconv>
+#include <memory>
+#include <stdexcept>
+
+namespace vrut::server::net {
+
+namespace {
+
+bool is_numeric(const std::string& host) {
+    in6_addr buffer{};
+    return inet_pton(AF_INET, host.c_str(), &buffer) == 1 || inet_pton(AF_INET6, host.c_str(), &buffer) == 1;
+}
+
+}  // namespace
+
+ListenAddress parse_listen_address(std::string_view text) {
+    const auto fail = [&]() -> ListenAddress {
+        throw std::invalid_argument(
+            "'" + std::string(text) +
+            "' is no address to listen at: expected ADDR:PORT, as 127.0.0.1:8080 or [::1]:8080");
+    };
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string_view::npos) return fail();
+    std::string_view host = text.substr(0, colon);
+    const std::string_view port = text.substr(colon + 1);
+    if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+    ListenAddress address{std::string(host), 0};
+    if (address.host == "localhost") address.host = "127.0.0.1";
+    const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), address.port);
+    if (error != std::errc() || end != port.data() + port.size() || !is_numeric(address.host)) return fail();
+    return address;
+}
+
+bool is_loopback(const std::string& host) { return host == "::1" || host.starts_with("127."); }
+
+bool is_any(const std::string& host) { return host == "0.0.0.0" || host == "::"; }
+
+std::vector<std::string> network_addresses() {
+    ifaddrs* list = nullptr;
+    if (getifaddrs(&list) != 0) return {};
+    const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> owner(list, freeifaddrs);
+    std::vector<std::string> addresses;
+    for (const ifaddrs* entry = list; entry; entry = entry->ifa_next) {
+        if (!entry->ifa_addr || entry->ifa_addr->sa_family != AF_INET) continue;
+        if ((entry->ifa_flags & IFF_LOOPBACK) != 0 || (entry->ifa_flags & IFF_UP) == 0) continue;
+        char text[INET_ADDRSTRLEN] = "";
+        const auto* address = reinterpret_cast<const sockaddr_in*>(entry->ifa_addr);
+        if (inet_ntop(AF_INET, &address->sin_addr, text, sizeof text)) addresses.emplace_back(text);
+    }
+    return addresses;
+}
+
+std::string qr_code(const std::string& text) {
+    const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
+        QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L), QRcode_free);
+    if (!code) throw std::runtime_error("the address does not fit into a QR code");
+    constexpr int kQuietZone = 2;
+    const auto dark = [&](int x, int y) {
+        const bool inside = x >= 0 && y >= 0 && x < code->width && y < code->width;
+        return inside && (code->data[y * code->width + x] & 1) != 0;
+    };
+    std::string out;
+    for (int y = -kQuietZone; y < code->width + kQuietZone; y += 2) {
+        out += "\x1b[30;107m";  // black on white
+        for (int x = -kQuietZone; x < code->width + kQuietZone; ++x) {
+            const bool upper = dark(x, y), lower = dark(x, y + 1);
+            out += upper && lower ? "█" : upper ? "▀" : lower ? "▄" : " ";
+        }
+        out += "\x1b[0m\n";
+    }
+    return out;
+}
+
+}  // namespace vrut::server::net

@@ -1,0 +1,460 @@
+#include "net/connection.hpp"
+
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+
+#include "codec.hpp"
+#include "engine/images.hpp"
+#include "observe/log.hpp"
+#include "utf8.hpp"
+
+namespace vrut::server::net {
+
+namespace beast = boost::beast;
+namespace websocket = beast::websocket;
+using websocket::close_code;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kGoodbye = 3s;               // for the peer to answer a close
+constexpr int kMessagesPerSecond = 10'000;  // of one client; who sends more is read more slowly
+// Who has sent so much that is not handled, or has not taken so much of its answers, is not read until that
+// is done.
+constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers = 1 << 18;
+// Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
+// overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
+constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
+constexpr auto kTellsAgain = 20ms;
+constexpr auto kLongestSilence = 10s;    // though news would wait in the socket, or others come before them
+constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
+
+/// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
+/// s.
+void find_dead_peers(int socket) {
+    const int on = 1, idle_s = 10, interval_s = 5, probes = 2;
+    ::setsockopt(socket, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPIDLE, &idle_s, sizeof idle_s);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPINTVL, &interval_s, sizeof interval_s);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
+}
+
+/// Why the other side's end of a connection is at its end, of kCloseReasons.
+const char* reason_of(beast::error_code error) {
+    if (error == websocket::error::closed) return "normal";
+    return error.category() == make_error_code(websocket::error::closed).category() ? "protocol" : "gone";
+}
+
+/// Why this side closes a connection, of kCloseReasons.
+const char* reason_of(const protocol::Error& error, close_code code) {
+    if (error.code == protocol::error_code::not_allowed) return "token";
+    if (code == close_code::try_again_later) return "too-many";
+    if (code == close_code::too_big) return "too-large";
+    if (code == close_code::bad_payload) return "protocol";
+    return code == close_code::unknown_data ? "binary" : "hello";
+}
+
+}  // namespace
+
+Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub)
+    : socket_(std::move(stream)),
+      hub_(hub),
+      hello_deadline_(socket_.get_executor()),
+      watch_(socket_.get_executor()),
+      rate_timer_(socket_.get_executor()),
+      news_timer_(socket_.get_executor()),
+      frame_timer_(socket_.get_executor()),
+      place_(std::move(place)),
+      progress_at_(base::Clock::now()),
+      rate_(kMessagesPerSecond),
+      heard_at_(progress_at_) {
+    hub_.connections.insert(this);
+    ++hub_.metrics->connections_opened;
+}
+
+Session::~Session() { hub_.connections.erase(this); }
+
+void Session::accept(const HttpRequest& request) {
+    beast::tcp_stream& stream = beast::get_lowest_layer(socket_);
+    stream.expires_never();  // from here on the WebSocket's own deadlines hold
+    beast::error_code ignored;
+    stream.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
+    stream.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer), ignored);
+    const auto endpoint = stream.socket().remote_endpoint(ignored);
+    peer_ = endpoint.address().to_string() + ":" + std::to_string(endpoint.port());
+
+    websocket::stream_base::timeout deadlines{};
+    deadlines.handshake_timeout = kGoodbye;
+    // Beast's own deadline counts what is read only: it would cut a slow reader, whose pings wait behind a
+    // frame. See look_after().
+    deadlines.idle_timeout = websocket::stream_base::none();
+    deadlines.keep_alive_pings = false;
+    find_dead_peers(stream.socket().native_handle());
+    socket_.set_option(deadlines);
+    socket_.read_message_max(kMaxRead);
+    socket_.auto_fragment(false);  // one frame, one write
+    if (request.find(beast::http::field::sec_websocket_protocol) != request.end())
+        socket_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+            response.set(beast::http::field::sec_websocket_protocol, protocol::kSubprotocol);
+        }));
+
+    socket_.control_callback([this](websocket::frame_type type, beast::string_view) {
+        if (type == websocket::frame_type::pong) on_pong(base::Clock::now());
+    });
+    socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+        if (error) return self->drop("handshake");
+        self->hello_deadline_.expires_after(self->hub_.deadlines.hello);
+        self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
+            const auto session = weak.lock();
+            if (!stopped && session)
+                session->refuse_and_close(
+                    {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
+                    close_code::policy_error);
+        });
+        self->watch();
+        self->read();
+    });
+}
+
+// --- reading
+
+void Session::read() {
+    if (reading_ || dropped_ || closing_ || (!begun_ && must_wait())) return;
+    receive();
+}
+
+/// Before the next message.
+bool Session::must_wait() {
+    if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
+        answer_bytes_ >= kMaxAnswers)
+        return true;
+    const base::Clock::duration wait = rate_.wait(base::Clock::now());
+    if (throttled_ || wait <= 0s) return throttled_;
+    throttled_ = true;
+    rate_timer_.expires_after(wait + 10ms);  // a hundred messages, and no timer for each
+    rate_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self) return;
+        self->throttled_ = false;
+        self->read();
+    });
+    return true;
+}
+
+void Session::receive() {
+    reading_ = true;
+    socket_.async_read_some(incoming_, kReadAtOnce,
+                            [self = shared_from_this()](beast::error_code error, std::size_t size) {
+                                self->reading_ = false;
+                                if (error) return self->drop(reason_of(error));
+                                if (!self->closing_) self->on_received(size);
+                                self->read();
+                            });
+}
+
+void Session::on_received(std::size_t size) {
+    if (!begun_) begun_ = base::Clock::now();
+    message_size_ += size;
+    hub_.metrics->bytes_received += size;
+    if (message_size_ > protocol::kMaxMessageBytes) incoming_.clear();
+    if (!socket_.is_message_done()) return;
+    ++hub_.metrics->messages_received;
+    rate_.spend(base::Clock::now());
+    begun_.reset();
+    const bool too_large = std::exchange(message_size_, 0) > protocol::kMaxMessageBytes;
+    const auto data = incoming_.data();
+    const std::string_view text{static_cast<const char*>(data.data()), data.size()};
+    if (!socket_.got_text())
+        refuse_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
+                         close_code::unknown_data);
+    else if (too_large)
+        refuse_and_close(
+            {{},
+             protocol::error_code::bad_message,
+             "the message is longer than " + std::to_string(protocol::kMaxMessageBytes) + " bytes"},
+            close_code::too_big);
+    else if (find_invalid_utf8(text) !=
+             std::string_view::npos)  // Beast overlooks it where an empty fragment ends it
+        refuse_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
+                         close_code::bad_payload);
+    else
+        on_text(text);
+    incoming_.clear();
+}
+
+void Session::on_text(std::string_view text) {
+    auto message = protocol::decode(text);
+    const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
+    if (client_.empty() && !hello) {
+        if (message)
+            message = tl::unexpected(protocol::Error{message->id, protocol::error_code::bad_message,
+                                                     "the first message must be 'hello'"});
+        return refuse_and_close(message.error(), close_code::policy_error);
+    }
+    if (hello && !client_.empty())
+        return refuse_and_close(
+            {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
+            close_code::policy_error);
+    if (hello) return on_hello(*hello, message->id);
+    engine::ClientSaid said{client_, std::move(message), base::Clock::now(), text.size(),
+                            role_ == protocol::Role::control};
+    if (said.message && std::holds_alternative<protocol::FrameGrant>(said.message->payload)) {
+        said.has_frame = writes_frame_ || has_frame();
+        said.is_late = frames_are_late_;
+    }
+    unhandled_bytes_ += said.bytes;
+    unhandled_requests_ += said.is_request();
+    hub_.engine->mailbox().push(std::move(said));
+}
+
+void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
+    const std::optional<protocol::Role> role = hub_.access.role_for(hello.role, hello.token);
+    if (!role)
+        return refuse_and_close({id, protocol::error_code::not_allowed,
+                                 hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
+                                close_code::policy_error);
+    if (hub_.sessions.size() >= hub_.max_clients)
+        return refuse_and_close(
+            {id, protocol::error_code::too_many,
+             "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
+            close_code::try_again_later);
+    if (hub_.stopping) return;  // the close is on its way
+    hello_deadline_.cancel();
+    role_ = *role;
+    client_ = "c" + std::to_string(hub_.next_client++);
+    hub_.sessions[client_] = shared_from_this();
+    if (!hub_.loads) loading_ = hub_.loading;  // is no news any more
+    ++hub_.metrics->clients_joined;
+    ++hub_.metrics->clients[name_of(*role)];
+    observe::log_info("joined",
+                      {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
+    if (!pinging_) ping(base::Clock::now());  // while nothing else is on its way
+    hub_.engine->mailbox().push(engine::ClientJoined{client_, *role, hello.name, id.value_or(0)});
+
+    protocol::Welcome welcome;
+    welcome.id = id;
+    welcome.server = VRUT_VERSION;
+    welcome.client = client_;
+    welcome.role = *role;
+    welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
+    welcome.limits.messages_per_second = kMessagesPerSecond;
+    welcome.limits.max_server_message = std::size_t{64} << 20;
+    answer({client_, protocol::encode(welcome), 0});
+}
+
+void Session::refuse_and_close(const protocol::Error& error, close_code code) {
+    ++hub_.metrics->errors[error.code];
+    observe::log_info(
+        "refused", {{"client", client_}, {"peer", peer_}, {"code", error.code}, {"reason", error.message}});
+    if (!closing_) close_reason_ = reason_of(error, code);
+    answer({client_, protocol::encode(error), 0, error.message});
+    close(code, error.message);
+}
+
+// --- what there is to send
+
+void Session::answer(room::Answer answer) {
+    answer_bytes_ += answer.text.size();
+    answers_.push_back(std::move(answer));
+    pump();
+}
+
+void Session::owe(std::int64_t frame) {
+    if (frame <= last_frame_) {
+        // A newer one went out meanwhile: the grant is for what comes next.
+        hub_.engine->mailbox().push(engine::FrameSent{client_, last_frame_, 1});
+        return;
+    }
+    owed_.push_back(frame);
+    pump();
+}
+
+void Session::take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture) {
+    snapshots_.push_back(std::move(picture));
+    pump();
+}
+
+void Session::handled(const engine::EngineOutput::Handled& handled) {
+    unhandled_bytes_ -= std::min(handled.bytes, unhandled_bytes_);
+    unhandled_requests_ -= std::min(handled.requests, unhandled_requests_);
+    read();
+}
+
+void Session::newest_changed(std::int64_t before) {
+    const bool waited = !owed_.empty() && writing_ && before >= owed_.front() && before > last_frame_;
+    if (waited) ++hub_.metrics->frames_replaced;
+    pump();
+}
+
+bool Session::frame_is_due() const {
+    return !owed_.empty() && hub_.newest && hub_.newest->header.frame >= owed_.front();
+}
+
+void Session::pump() {
+    if (writing_ || dropped_) return;
+    const std::int64_t known = document_ ? document_->revision() : 0;
+    if (closing_) {
+        if (!answers_.empty()) return send_answer();
+        writing_ = true;  // nothing goes out behind the close
+        return socket_.async_close(*closing_,
+                                   [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
+    }
+    // A frame or answer goes when the client knows the revision that it speaks of.
+    if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
+    if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
+    if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
+    if (client_.empty() || !hub_.document || !has_news()) return;
+    const base::Clock::time_point now = base::Clock::now();
+    const bool has_all_news = loading_ == hub_.loading && stats_ == hub_.stats;
+    if (has_all_news) had_all_news_ = now;
+    if (!has_all_news && now - had_all_news_ >= kLongestSilence) return send_news();
+    const bool waited_for = frame_is_due() || !answers_.empty() || !snapshots_.empty();
+    if (!waited_for && now - told_at_ < kLongestSilence && is_behind()) return tell_later();
+    told_at_ = now;
+    if (document_ == hub_.document) return send_news();
+    const auto before = std::exchange(document_, hub_.document);
+    if (!before || !document_->has_scene_of(*before)) return send_text(document_->encode());
+    const bool one_author = before->revision() + 1 >= hub_.document_by_since;
+    send_text(document_->encode_patch_from(*before, one_author ? hub_.document_by : ""));
+}
+
+bool Session::has_news() const {
+    return document_ != hub_.document || loading_ != hub_.loading || stats_ != hub_.stats;
+}
+
+/// Once what was sent has mostly arrived: what waits here is replaced, and what waits in the socket is not.
+void Session::tell_later() {
+    if (std::exchange(tells_later_, true)) return;
+    news_timer_.expires_after(kTellsAgain);
+    news_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self) return;
+        self->tells_later_ = false;
+        self->pump();
+    });
+}
+
+/// What is told to all, and of which only the newest counts.
+void Session::send_news() {
+    had_all_news_ = base::Clock::now();
+    for (const auto& [newest, sent] : {std::pair(&hub_.loading, &loading_), std::pair(&hub_.stats, &stats_)})
+        if (*newest != *sent) {
+            *sent = *newest;
+            return send_text(**sent);
+        }
+}
+
+void Session::send_answer() {
+    std::string text = std::move(answers_.front().text);
+    answers_.pop_front();
+    answer_bytes_ -= text.size();
+    send_text(std::move(text));
+}
+
+void Session::send_frame() {
+    picture_ = hub_.newest;
+    last_frame_ = picture_->header.frame;
+    writes_frame_ = true;
+    frame_bytes_ = picture_->file.size();
+    int grants = 0;
+    for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
+    // One frame answers one grant; the others are for what comes next.
+    hub_.engine->mailbox().push(engine::FrameSent{client_, last_frame_, grants - 1,
+                                                  picture_->header.timing.encode_ms, picture_->newest_input,
+                                                  round_trip_.value_or(base::Clock::duration{})});
+
+    protocol::FrameHeader header = picture_->header;
+    const auto handled = picture_->handled.find(client_);
+    // A snapshot may have told of more.
+    if (handled != picture_->handled.end()) handled_ = std::max(handled_, handled->second);
+    header.handled = handled_;
+    if (picture_->newest_input)
+        header.timing.since_input_ms =
+            std::chrono::duration<double, std::milli>(base::Clock::now() - *picture_->newest_input).count();
+    if (picture_->newest_input > shown_input_) {
+        shown_input_ = *picture_->newest_input;
+        hub_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
+    }
+    ++hub_.metrics->frames_sent;
+    observe::log_debug("frame_sent", {{"client", client_},
+                                      {"frame", last_frame_},
+                                      {"bytes", picture_->file.size()},
+                                      {"ms", header.timing.since_input_ms.value_or(0)}});
+    send_picture(header);
+}
+
+void Session::send_snapshot() {
+    picture_ = std::move(snapshots_.front());
+    snapshots_.pop_front();
+    ++hub_.metrics->snapshots_sent;
+    hub_.engine->mailbox().push(engine::SnapshotSent{client_});
+    protocol::FrameHeader header = picture_->header;
+    header.handled = handled_ = std::max(handled_, header.handled);
+    send_picture(header);
+}
+
+void Session::send_picture(const protocol::FrameHeader& header) {
+    header_ = engine::header_of_file(*picture_, header);
+    const auto& file = picture_->file;
+    const std::size_t cut = picture_->header_offset;
+    socket_.binary(true);
+    write({boost::asio::buffer(file.data(), cut), boost::asio::buffer(header_),
+           boost::asio::buffer(file.data() + cut, file.size() - cut)});
+}
+
+void Session::send_text(std::string text) {
+    text_ = std::move(text);
+    socket_.text(true);
+    write({boost::asio::buffer(text_)});
+}
+
+// One type of buffers for all: Beast's write operation takes seconds to compile for each.
+void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
+    writing_ = true;
+    hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
+    socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
+        self->on_written(error);
+    });
+}
+
+void Session::on_written(beast::error_code error) {
+    writing_ = false;
+    picture_.reset();
+    if (error) return drop("gone");
+    if (std::exchange(writes_frame_, false)) frame_written();
+    pump();
+    read();
+}
+
+// --- the end
+
+void Session::close(close_code code, const std::string& reason) {
+    if (closing_ || dropped_) return;
+    // A close frame holds 123 bytes of reason at most, and whole characters.
+    std::size_t length = std::min<std::size_t>(reason.size(), 123);
+    while (length < reason.size() && (static_cast<unsigned char>(reason[length]) & 0xC0) == 0x80) --length;
+    closing_.emplace(code, reason.substr(0, length));
+    hello_deadline_.cancel();
+    pump();
+}
+
+void Session::drop(const char* reason) {
+    if (std::exchange(dropped_, true)) return;
+    reason = closing_ ? close_reason_ : reason;
+    ++hub_.metrics->closes[reason];
+    hello_deadline_.cancel();
+    watch_.cancel();
+    rate_timer_.cancel();
+    news_timer_.cancel();
+    frame_timer_.cancel();
+    beast::get_lowest_layer(socket_).close();
+    if (client_.empty()) return;
+    observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
+    ++hub_.metrics->clients_left;
+    --hub_.metrics->clients[name_of(role_)];
+    hub_.engine->mailbox().push(engine::ClientLeft{client_});
+    hub_.sessions.erase(client_);
+}
+
+}  // namespace vrut::server::net

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <chrono>
+
+namespace vrut::server::net {
+
+/// How long a peer may take; who takes longer is cut.
+struct Deadlines {
+    std::chrono::milliseconds request{
+        4'500};  ///< HTTP: from the connection's begin or its first byte to its last; over within 5 s
+    std::chrono::milliseconds answer{10'000};   ///< HTTP: to be taken
+    std::chrono::milliseconds hello{5'000};     ///< from the handshake to the end of `hello`
+    std::chrono::milliseconds message{10'000};  ///< from a message's first bytes to its last
+    std::chrono::milliseconds stuck{10'000};    ///< with something to take, and nothing taken
+    std::chrono::milliseconds ping{20'000};     ///< silence, after which a ping asks for an answer
+    std::chrono::milliseconds silence{60'000};  ///< silence in all, when everything sent has arrived
+};
+
+}  // namespace vrut::server::net

@@ -1,0 +1,307 @@
+#include "net/http_connection.hpp"
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <charconv>
+#include <memory>
+#include <optional>
+
+#include "codec.hpp"
+#include "net/connection.hpp"
+#include "net/http_request.hpp"
+#include "net/http_response.hpp"
+#include "net/monitoring.hpp"
+#include "net/page_response.hpp"
+#include "observe/log.hpp"
+
+namespace vrut::server::net {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr auto kForEnd = 1s;  // for the peer to take the last answer and to close, too
+
+std::string_view path_of(const HttpRequest& request) {
+    const std::string_view target = view(request.target());
+    return target.substr(0, target.find('?'));
+}
+
+bool has_token(const HttpRequest& request, const Hub& hub) {
+    constexpr std::string_view kScheme = "Bearer ";
+    const std::string_view header = view(request[http::field::authorization]);
+    const std::string_view token = header.starts_with(kScheme) ? header.substr(kScheme.size()) : "";
+    return hub.access.role_for(protocol::Role::view, token).has_value();
+}
+
+/// Subprotocols are a comma-separated list; a client that offers none gets version 1.
+bool speaks_our_subprotocol(const HttpRequest& request) {
+    if (request.find(http::field::sec_websocket_protocol) == request.end()) return true;
+    std::string_view list = view(request[http::field::sec_websocket_protocol]);
+    while (!list.empty()) {
+        const std::size_t comma = std::min(list.find(','), list.size());
+        std::string_view offer = list.substr(0, comma);
+        while (offer.starts_with(' ') || offer.starts_with('\t')) offer.remove_prefix(1);
+        while (offer.ends_with(' ') || offer.ends_with('\t')) offer.remove_suffix(1);
+        if (offer == protocol::kSubprotocol) return true;
+        list.remove_prefix(std::min(comma + 1, list.size()));
+    }
+    return false;
+}
+
+/// A whole number of the query, 0 where it is not there; none where it is something else.
+std::optional<std::int64_t> query_number(const HttpRequest& request, std::string_view name) {
+    std::string_view target = view(request.target());
+    target.remove_prefix(std::min(target.find('?'), target.size()));
+    while (!target.empty()) {
+        target.remove_prefix(1);  // ? or &
+        const std::string_view pair = target.substr(0, target.find('&'));
+        target.remove_prefix(pair.size());
+        if (pair.substr(0, pair.find('=')) != name) continue;
+        const std::string_view value = pair.substr(std::min(pair.find('=') + 1, pair.size()));
+        std::int64_t number = 0;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+        constexpr std::int64_t kLargest = 1 << 20;
+        if (error != std::errc() || end != value.data() + value.size() || number < 1 || number > kLargest)
+            return std::nullopt;
+        return number;
+    }
+    return 0;
+}
+
+/// Why nothing at all is served to whoever sends this request.
+std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access& access) {
+    const std::string_view host = view(request[http::field::host]);
+    if (!access.accepts_host(host))
+        return refusal(http::status::forbidden, "this server is to be reached as localhost");
+    const auto origin = request.find(http::field::origin);
+    if (origin != request.end() && !access.accepts_origin(view(origin->value()), host)) {
+        observe::log_info("origin_refused", {{"origin", view(origin->value())}, {"host", host}});
+        return refusal(http::status::forbidden, "pages of this origin are not served");
+    }
+    return std::nullopt;
+}
+
+HttpResponse respond(const HttpRequest& request, const Hub& hub) {
+    const std::string_view path = path_of(request);
+    if (auto file = page_response(request, path)) return *std::move(file);
+    if (path == "/ws")
+        return refusal(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
+    const auto state = [](const std::optional<std::string>& fault, const char* good) {
+        return fault ? refusal(http::status::service_unavailable, *fault)
+                     : text_response(http::status::ok, good);
+    };
+    if (path == "/healthz") return state(why_unhealthy(hub), "ok\n");
+    if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
+        if (!has_token(request, hub))
+            return refusal(http::status::unauthorized, "this route asks for a token");
+        if (path == "/protocol.schema.json")
+            return {http::status::ok, "application/schema+json",
+                    std::make_shared<const std::string>(protocol::json_schema())};
+        if (path == "/frame.jpg") return {};  // the session's, who can wait for it
+        if (path == "/readyz") return state(why_unready(hub), "ready\n");
+        return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
+                std::make_shared<const std::string>(metrics_text(hub))};
+    }
+    return refusal(http::status::not_found, "there is nothing at this address");
+}
+
+/// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
+/// by another.
+class HttpSession : public std::enable_shared_from_this<HttpSession> {
+public:
+    HttpSession(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub)
+        : socket_(std::move(socket)),
+          place_(std::move(place)),
+          deadline_timer_(socket_.get_executor()),
+          hub_(hub) {}
+
+    void start() {
+        beast::error_code ignored;
+        socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+        expire_after(hub_.deadlines.request);
+        watch();
+        read();
+    }
+
+private:
+    // --- reading
+
+    void next() {
+        if (!answer_buffered()) read();
+    }
+
+    /// What came behind a request is looked at when that is answered.
+    bool answer_buffered() {
+        const auto bytes = incoming_.data();
+        auto read = read_request({static_cast<const char*>(bytes.data()), bytes.size()});
+        if (!read) return false;
+        if (*read) {
+            incoming_.consume((*read)->size);
+            on_request((*read)->request);
+        } else {
+            keep_alive_ = false;
+            host_.clear();
+            send(refusal(read->error().status, read->error().sentence));
+        }
+        return true;
+    }
+
+    void read() {
+        constexpr std::size_t kAtOnce = 2048;
+        const auto room = incoming_.prepare(std::min(kAtOnce, kMaxRequest - incoming_.size()));
+        socket_.async_read_some(room, [self = shared_from_this()](beast::error_code error, std::size_t size) {
+            if (error) return;
+            if (self->answered_ && self->incoming_.size() == 0)
+                self->expire_after(self->hub_.deadlines.request);
+            self->incoming_.commit(size);
+            self->next();
+        });
+    }
+
+    void on_request(const HttpRequest& request) {
+        keep_alive_ = request.keep_alive() && request.version() == 11;
+        head_only_ = request.method() == http::verb::head;
+        host_ = std::string(view(request[http::field::host]));
+        if (auto response = turned_away(request, hub_.access)) return send(*std::move(response));
+        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request) &&
+            view(request[http::field::sec_websocket_version]) == "13")
+            return open_websocket(request);
+        HttpResponse response = respond(request, hub_);
+        if (path_of(request) == "/frame.jpg" && response.status == http::status::ok)
+            return send_picture(request);
+        send(std::move(response));
+    }
+
+    /// The present view, in the size asked for or the view's own.
+    void send_picture(const HttpRequest& request) {
+        const engine::PictureLimits& limits = hub_.engine->limits();
+        const auto width = query_number(request, "width"), height = query_number(request, "height");
+        if (!width || !height || (*width == 0) != (*height == 0) || !engine::fits(*width, *height, limits))
+            return send(
+                refusal(http::status::bad_request,
+                        "'width' and 'height' must be given together, as numbers from 1, of at most " +
+                            std::to_string(limits.max_pixels) + " pixels"));
+        ViewPictureKey key{hub_.document ? hub_.document->revision() : 0, hub_.size, hub_.size};
+        if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
+        const std::string tag = hub_.pictures.tag(key);
+        if (hub_.document && names_tag(view(request[http::field::if_none_match]), tag))
+            return send({http::status::not_modified, "image/jpeg", nullptr, "ETag: " + tag + "\r\n"});
+        if (const ViewPicture* kept = hub_.pictures.find(key)) return send_file(*kept);
+        if (head_only_)
+            return send({http::status::ok, "image/jpeg", nullptr,
+                         hub_.document ? "ETag: " + tag + "\r\n" : std::string{}});
+        deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
+        const bool asked = hub_.pictures.ask(
+            key,
+            [self = shared_from_this()](const ViewPicture* picture) {
+                if (picture) return self->send_file(*picture);
+                self->send(refusal(http::status::service_unavailable,
+                                   "this picture cannot be drawn: the log says why"));
+            },
+            hub_.engine->mailbox());
+        if (!asked) send(refusal(http::status::service_unavailable, "too many pictures are being drawn"));
+    }
+
+    void send_file(const ViewPicture& picture) {
+        send({http::status::ok, "image/jpeg", picture.file,
+              "ETag: " + hub_.pictures.tag(picture.key) + "\r\n"});
+    }
+
+    void open_websocket(const HttpRequest& request) {
+        if (!speaks_our_subprotocol(request))
+            return send(refusal(http::status::bad_request, "the subprotocol is vrut-preview.v1"));
+        if (incoming_.size() > 0) {
+            keep_alive_ = false;
+            return send(
+                refusal(http::status::bad_request, "a handshake is answered before anything follows"));
+        }
+        if (hub_.stopping) return;
+        deadline_timer_.cancel();
+        std::make_shared<Session>(beast::tcp_stream(std::move(socket_)), std::move(place_), hub_)
+            ->accept(request);
+    }
+
+    // --- writing
+
+    void send(HttpResponse response) {
+        keep_alive_ = keep_alive_ && !hub_.stopping;
+        head_ = head_of(response, host_, keep_alive_);
+        body_ = head_only_ ? nullptr : std::move(response.body);
+        head_only_ = false;
+        expire_after(hub_.deadlines.answer);
+        const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_),
+                                                        body_ ? asio::buffer(*body_) : asio::const_buffer()};
+        asio::async_write(socket_, buffers,
+                          [self = shared_from_this()](beast::error_code error, std::size_t) {
+                              self->body_.reset();
+                              if (error) return;
+                              self->expire_after(self->keep_alive_ ? self->hub_.deadlines.request : kForEnd);
+                              self->answered_ = true;
+                              if (self->keep_alive_) return self->next();
+                              beast::error_code ignored;
+                              self->socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+                              self->drain();
+                          });
+    }
+
+    /// Closing with bytes unread would take the last answer away from the peer.
+    void drain() {
+        incoming_.clear();
+        socket_.async_read_some(incoming_.prepare(kMaxRequest),
+                                [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                    if (!error) self->drain();
+                                });
+    }
+
+    // --- deadlines
+
+    void expire_after(base::Clock::duration time) { deadline_ = base::Clock::now() + time; }
+
+    /// Looks after the deadline when one that was set earlier would have passed: setting one costs nothing.
+    void watch() {
+        deadline_timer_.expires_at(std::min(deadline_, base::Clock::now() + kForEnd));
+        deadline_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+            const auto self = weak.lock();
+            if (stopped || !self) return;
+            if (base::Clock::now() < self->deadline_) return self->watch();
+            beast::error_code ignored;
+            self->socket_.close(ignored);
+        });
+    }
+
+    asio::ip::tcp::socket socket_;
+    ConnectionLimit::Place place_;
+    asio::steady_timer deadline_timer_;
+    base::Clock::time_point deadline_;
+    Hub& hub_;
+    beast::flat_buffer incoming_{kMaxRequest};
+    bool keep_alive_ = false, head_only_ = false, answered_ = false;
+    std::string host_, head_;
+    std::shared_ptr<const std::string> body_;
+};
+
+}  // namespace
+
+void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub) {
+    std::make_shared<HttpSession>(std::move(socket), std::move(place), hub)->start();
+}
+
+void turn_away(asio::ip::tcp::socket socket) {
+    const HttpResponse response =
+        refusal(http::status::service_unavailable, "there are too many connections");
+    const std::string text = head_of(response, {}, false) + *response.body;
+    beast::error_code ignored;  // what fits at once has to do
+    socket.non_blocking(true, ignored);
+    socket.write_some(asio::buffer(text), ignored);
+    socket.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+    std::array<char, kMaxRequest> unread{};  // or closing would take the answer away
+    socket.read_some(asio::buffer(unread), ignored);
+}
+
+}  // namespace vrut::server::net

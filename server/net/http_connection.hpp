@@ -1,0 +1,14 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+
+#include "net/registry.hpp"
+
+namespace vrut::server::net {
+
+/// Serves HTTP on a fresh connection: the page, what tells of the server's health, and the door to /ws.
+void serve_http(boost::asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub);
+/// Ends a connection that has no place, with a sentence.
+void turn_away(boost::asio::ip::tcp::socket socket);
+
+}  // namespace vrut::server::net

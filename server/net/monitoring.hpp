@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace vrut::server::net {
+
+struct Hub;
+
+/// What /healthz, /readyz and /metrics tell, on the net thread, which is alive where it tells anything.
+
+/// A sentence that names a thread which has something to do and does not come round; none where all do.
+std::optional<std::string> why_unhealthy(const Hub& hub);
+/// Why no pictures can be had now; none where they can.
+std::optional<std::string> why_unready(const Hub& hub);
+/// As Metrics::text().
+std::string metrics_text(const Hub& hub);
+
+}  // namespace vrut::server::net

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "engine/engine.hpp"
+#include "net/access.hpp"
+#include "net/connection_limit.hpp"
+#include "net/deadlines.hpp"
+#include "net/view_pictures.hpp"
+#include "observe/metrics.hpp"
+#include "state.hpp"
+
+namespace vrut::server::net {
+
+class Session;
+
+/// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
+struct Hub {
+    Access access;
+    std::size_t max_clients = 64;
+    std::chrono::milliseconds longest_silence{30'000};  ///< of a loop that has something to do
+    Deadlines deadlines;
+    std::optional<ConnectionLimit> limit;  ///< of connections of any kind
+    observe::Metrics* metrics = nullptr;
+    engine::Engine* engine = nullptr;
+    std::shared_ptr<const protocol::StateDocument> document;
+    std::string document_by;  ///< who made it and the revisions before it, down to document_by_since
+    std::int64_t document_by_since = 0;
+    std::shared_ptr<const engine::EncodedPicture> newest;
+    std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
+    bool loads = false;                                 ///< a scene is being loaded
+    engine::PictureSize size;                           ///< of a picture of the view
+    ViewPictures pictures;
+    std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
+    std::set<Session*> connections;                            ///< those, and those that did not yet
+    std::int64_t next_client = 1;
+    bool stopping = false;
+};
+
+}  // namespace vrut::server::net

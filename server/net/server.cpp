@@ -1,0 +1,216 @@
+#include "net/server.hpp"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <csignal>
+#include <stdexcept>
+
+#include "net/connection.hpp"
+#include "net/descriptors.hpp"
+#include "net/http_connection.hpp"
+#include "observe/log.hpp"
+
+namespace vrut::server::net {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using namespace std::chrono_literals;
+
+struct Server::Impl {
+    Impl(ServerOptions server_options, scene::LoadedScene scene, const engine::PainterFactory& painter)
+        : options(std::move(server_options)),
+          acceptor(context),
+          accept_pause(context),
+          signals(context),
+          deadline(context) {
+        listen();
+        limit_connections();
+        hub.access = options.access;
+        hub.max_clients = options.max_clients;
+        hub.longest_silence = options.longest_silence;
+        hub.deadlines = options.deadlines;
+        hub.metrics = &metrics;
+        engine::EngineCallbacks callbacks;
+        callbacks.on_output = [this](engine::EngineOutput output) {
+            asio::post(context, [this, moved = std::move(output)]() mutable { take(std::move(moved)); });
+        };
+        callbacks.on_encoded = [this](std::shared_ptr<const engine::EncodedPicture> picture) {
+            asio::post(context, [this, moved = std::move(picture)]() mutable { take(std::move(moved)); });
+        };
+        callbacks.on_failure = [this](const std::string& why) {
+            asio::post(context, [this, why] {
+                failure = why;
+                stop();
+            });
+        };
+        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder};
+        engine = std::make_unique<engine::Engine>(std::move(engine_options), painter, metrics,
+                                                  std::move(callbacks));
+        hub.engine = engine.get();
+    }
+
+    ~Impl() {
+        hub.newest.reset();
+        hub.pictures.stop();
+        hub.sessions.clear();
+    }
+
+    void listen() {
+        const tcp::endpoint endpoint(asio::ip::make_address(options.listen.host), options.listen.port);
+        boost::system::error_code error;
+        acceptor.open(endpoint.protocol(), error);
+        if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+        if (!error) acceptor.bind(endpoint, error);
+        if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+        if (error)
+            throw std::runtime_error("cannot listen at " + options.listen.host + ":" +
+                                     std::to_string(options.listen.port) + ": " + error.message() +
+                                     "; choose another with --listen ADDR:PORT");
+    }
+
+    /// A page comes with several connections, and some are only half made: more than there may be clients.
+    /// Beyond loopback, one address may not take them all; on loopback the clients of a proxy share one.
+    void limit_connections() {
+        constexpr std::size_t kOfOne = 64, kOthers = 1024, kForEachClient = 4, kFiles = 64;
+        const std::size_t most = kOthers + kForEachClient * options.max_clients;
+        hub.limit.emplace(
+            most, is_loopback(options.listen.host) ? most : kOfOne + kForEachClient * options.max_clients);
+        allow_descriptors(most + kFiles);
+    }
+
+    void accept() {
+        acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
+            if (hub.stopping) return;
+            if (!error) {
+                admit(std::move(socket));
+                return accept();
+            }
+            // Out of descriptors, say: trying again at once would spin.
+            observe::log_warning("accept_failed", {{"reason", error.message()}});
+            accept_pause.expires_after(100ms);
+            accept_pause.async_wait([this](boost::system::error_code stopped) {
+                if (!stopped) accept();
+            });
+        });
+    }
+
+    void admit(tcp::socket socket) {
+        boost::system::error_code gone;
+        const tcp::endpoint peer = socket.remote_endpoint(gone);
+        if (gone) return;
+        if (auto place = hub.limit->enter(peer.address()))
+            serve_http(std::move(socket), *std::move(place), hub);
+        else
+            turn_away(std::move(socket));
+    }
+
+    // --- what the engine says, on the net thread
+
+    Session* find(const std::string& client) {
+        const auto session = hub.sessions.find(client);
+        return session == hub.sessions.end() ? nullptr : session->second.get();
+    }
+
+    void take(engine::EngineOutput output) {
+        if (output.document) {
+            hub.document = std::move(output.document);
+            hub.document_by = std::move(output.by);
+            hub.document_by_since = output.by_since;
+            hub.pictures.forget_before(hub.document->revision());
+        }
+        if (output.stats) hub.stats = std::move(output.stats);
+        if (output.loading) {
+            hub.loading = std::move(output.loading);
+            hub.loads = output.loads;
+        }
+        if (output.size) hub.size = *output.size;
+        for (auto& answer : output.answers)
+            if (Session* session = find(answer.client)) session->answer(std::move(answer));
+        for (const std::string& name : output.undrawn) hub.pictures.give_up(name);
+        for (const auto& owed : output.owed)
+            if (Session* session = find(owed.client)) session->owe(owed.frame);
+        for (const auto& [client, handled] : output.handled)
+            if (Session* session = find(client)) session->handled(handled);
+        for_each_session([](Session& session) { session.pump(); });
+    }
+
+    void take(std::shared_ptr<const engine::EncodedPicture> picture) {
+        if (!picture->client.empty()) return take_ordered(std::move(picture));
+        const std::int64_t before = hub.newest ? hub.newest->header.frame : 0;
+        hub.newest = std::move(picture);
+        for_each_session([&](Session& session) { session.newest_changed(before); });
+    }
+
+    void take_ordered(std::shared_ptr<const engine::EncodedPicture> picture) {
+        if (hub.pictures.take(*picture)) return;
+        if (Session* session = find(picture->client)) session->take_snapshot(std::move(picture));
+    }
+
+    template <class Function>
+    void for_each_session(Function function) {
+        for (const auto& [name, session] : hub.sessions) function(*session);
+    }
+
+    // --- the end
+
+    void stop() {
+        if (std::exchange(hub.stopping, true)) return;
+        acceptor.close();
+        accept_pause.cancel();
+        signals.cancel();
+        for (Session* session : hub.connections)
+            session->close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
+        // Whoever has not said goodbye by then is left standing.
+        deadline.expires_after(!hub.connections.empty() ? 2000ms : 0ms);
+        deadline.async_wait([this](boost::system::error_code) { context.stop(); });
+        wait_for_goodbyes();
+    }
+
+    void wait_for_goodbyes() {
+        if (hub.connections.empty()) return context.stop();
+        goodbye.expires_after(10ms);
+        goodbye.async_wait([this](boost::system::error_code) { wait_for_goodbyes(); });
+    }
+
+    ServerOptions options;
+    observe::Metrics metrics;
+    Hub hub;  // before the context: what waits there still knows it at the end
+    asio::io_context context{1};
+    tcp::acceptor acceptor;
+    asio::steady_timer accept_pause;
+    asio::signal_set signals;
+    asio::steady_timer deadline, goodbye{context};
+    std::optional<std::string> failure;
+    std::unique_ptr<engine::Engine> engine;
+};
+
+Server::Server(ServerOptions options, scene::LoadedScene scene, const engine::PainterFactory& painter)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), painter)) {}
+Server::~Server() = default;
+
+std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().port(); }
+const std::string& Server::description() const { return impl_->engine->description(); }
+const observe::Metrics& Server::metrics() const { return impl_->metrics; }
+
+void Server::stop_on_signals() {
+    impl_->signals.add(SIGINT);
+    impl_->signals.add(SIGTERM);
+    impl_->signals.async_wait([this](boost::system::error_code error, int) {
+        if (!error) impl_->stop();
+    });
+}
+
+void Server::run() {
+    impl_->accept();
+    impl_->context.run();
+    if (impl_->failure) throw std::runtime_error("drawing has failed: " + *impl_->failure);
+}
+
+void Server::stop() {
+    asio::post(impl_->context, [this] { impl_->stop(); });
+}
+
+}  // namespace vrut::server::net

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/encoder.hpp"
+#include "engine/mailbox.hpp"
+
+namespace vrut::server::net {
+
+/// What a picture of the view depends on.
+struct ViewPictureKey {
+    std::int64_t revision = 0;       ///< of the state
+    engine::PictureSize size, view;  ///< the view's own, of which its header tells
+    bool operator==(const ViewPictureKey&) const = default;
+};
+
+/// A JPEG file of the view.
+struct ViewPicture {
+    ViewPictureKey key;
+    std::shared_ptr<const std::string> file;
+};
+
+/// Pictures of the view for those who are no clients, on the net thread. Those who ask for the same wait for
+/// one drawing, and what was drawn is kept while nothing changes.
+class ViewPictures {
+public:
+    using Tell = std::function<void(const ViewPicture*)>;  ///< null: it cannot be drawn
+    static constexpr std::size_t kMostWaiting = 8;         ///< drawings
+    static constexpr std::size_t kMostKept = 4, kMostKeptBytes = std::size_t{16} << 20;
+
+    /// Its entity tag: another server, one started anew, has others.
+    std::string tag(const ViewPictureKey& key) const;
+    /// Null if it is not kept.
+    const ViewPicture* find(const ViewPictureKey& key) const;
+    /// Has one drawn, of this revision or a newer one, and told. False where too many are being drawn.
+    bool ask(const ViewPictureKey& key, Tell tell, engine::Mailbox& mailbox);
+    /// False where `picture` is none that was asked for here.
+    bool take(const engine::EncodedPicture& picture);
+    /// The picture that was asked for by this name cannot be drawn.
+    void give_up(const std::string& name);
+    void forget_before(std::int64_t revision);
+    /// Forgets those who wait.
+    void stop() { waiting_.clear(); }
+
+private:
+    struct Drawing {
+        ViewPictureKey key;  ///< when it was asked for
+        std::vector<Tell> waiting;
+    };
+    void keep(const ViewPicture& picture);
+
+    std::string run_ = std::to_string(std::random_device{}());
+    std::map<std::string, Drawing> waiting_;  ///< by the picture's `client`
+    std::int64_t next_ = 1;
+    std::vector<ViewPicture> kept_;  ///< oldest first
+};
+
+}  // namespace vrut::server::net

@@ -1,0 +1,94 @@
+#include "room/replay.hpp"
+
+#include <fstream>
+
+namespace vrut::server::room {
+
+tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) return tl::unexpected(path.string() + ": cannot be opened");
+    EventLog log;
+    std::string text;
+    for (std::size_t number = 1; std::getline(stream, text); ++number) {
+        const bool unfinished = stream.eof();  // no line's end
+        const std::string place = path.string() + ":" + std::to_string(number) + ": ";
+        const auto wrong = [&](const protocol::Error& error) {
+            return tl::unexpected(place + error.message);
+        };
+        if (unfinished) log.cut = place + "the log is cut off here, and its end is missing";
+        if (number == 1) {
+            auto header = protocol::decode_log_header(text);
+            if (!header) return wrong(header.error());
+            log.header = *std::move(header);
+            continue;
+        }
+        auto line = protocol::decode_log_line(text);
+        if (!line && unfinished) break;
+        if (!line) return wrong(line.error());
+        log.lines.push_back(*std::move(line));
+    }
+    if (!log.header.state) return tl::unexpected(path.string() + ": the file is empty");
+    return log;
+}
+
+namespace {
+
+/// What one line does; or what is wrong with it.
+struct Player {
+    Presentation& presentation;
+    const protocol::LogLine& line;
+    const SceneFinder& find_scene;
+    const ReplayWatcher& watcher;
+
+    std::optional<std::string> operator()(const protocol::ClientMessage& message) const {
+        if (presentation.say(line.client, message, line.at)) return std::nullopt;
+        std::string why = "client '" + line.client + "' is not there";
+        for (const Answer& answer : presentation.take_answers())
+            if (!answer.refusal.empty()) why = answer.refusal;
+        return "a message that was accepted is refused now: " + why;
+    }
+    std::optional<std::string> operator()(const protocol::LogLine::Connected& connected) const {
+        presentation.join(line.client, connected.role, line.at, connected.name);
+        return std::nullopt;
+    }
+    std::optional<std::string> operator()(const protocol::LogLine::Disconnected&) const {
+        presentation.leave(line.client, line.at);
+        return std::nullopt;
+    }
+    std::optional<std::string> operator()(const protocol::LogLine::Opened& opened) const {
+        auto scene = find_scene(opened.scene, opened.sha256);
+        if (!scene) return scene.error();
+        presentation.show(*std::move(scene), line.at);
+        return std::nullopt;
+    }
+    std::optional<std::string> operator()(const protocol::LogLine::Drawn& drawn) const {
+        presentation.advance(line.at);
+        presentation.remember(drawn.frame);
+        if (watcher.on_drawn) watcher.on_drawn(drawn.frame, presentation);
+        return std::nullopt;
+    }
+};
+
+}  // namespace
+
+tl::expected<Presentation, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
+                                               const ReplayWatcher& watcher) {
+    auto scene = find_scene(log.header.scene, log.header.scene_sha256);
+    if (!scene) return tl::unexpected(scene.error());
+    PresentationOptions options;
+    options.replaying = true;
+    Presentation presentation(*std::move(scene), std::move(options));
+    if (const auto restored = presentation.restore(log.header); !restored)
+        return tl::unexpected("line 1: " + restored.error().message);
+    std::size_t number = 1;
+    for (const protocol::LogLine& line : log.lines) {
+        ++number;
+        if (const auto wrong = std::visit(Player{presentation, line, find_scene, watcher}, line.what))
+            return tl::unexpected("line " + std::to_string(number) + ": " + *wrong);
+        presentation.take_answers();
+        presentation.take_orders();
+    }
+    return presentation;
+}
+
+}  // namespace vrut::server::room

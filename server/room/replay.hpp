@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "event_log.hpp"
+#include "room/room.hpp"
+
+namespace vrut::server::room {
+
+/// A recorded session, as read.
+struct EventLog {
+    protocol::LogHeader header;
+    std::vector<protocol::LogLine> lines;
+    /// Why its end is missing, a sentence that names file and line; empty: as far as can be told it is there.
+    std::string cut = {};
+};
+
+/// Or one sentence that names file and line. A last line that is not whole is left out: the session was cut
+/// off.
+tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path);
+
+/// Finds a scene of a log by its name and SHA-256, or tells why it cannot be had.
+using SceneFinder = std::function<tl::expected<scene::LoadedScene, std::string>(const std::string& name,
+                                                                                const std::string& sha256)>;
+
+/// What a replay may be told of.
+struct ReplayWatcher {
+    /// Behind each frame that was drawn in the session; the presentation shows what it showed.
+    std::function<void(std::int64_t frame, const Presentation& presentation)> on_drawn = {};
+};
+
+/// Plays a session again, with its own times: the same log and scene give the same camera to the last bit.
+/// The presentation as it stands at the last line; or why not.
+tl::expected<Presentation, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
+                                               const ReplayWatcher& watcher = {});
+
+}  // namespace vrut::server::room

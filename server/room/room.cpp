@@ -1,0 +1,274 @@
+#include "room/room.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "codec.hpp"
+
+namespace vrut::server::room {
+
+using protocol::Role;
+namespace code = protocol::error_code;
+
+Presentation::Presentation(scene::LoadedScene scene, PresentationOptions options)
+    : options_(std::move(options)),
+      loaded_(std::move(scene)),
+      scene_(loaded_.placed),
+      starting_(starting_state(*scene_, aspect(), loaded_.notices)),
+      state_(starting_),
+      document_(protocol::StateDocument::next({}, state_)),
+      at_home_(!state_.camera.node),
+      visible_(view_of(state_, scene_)),
+      recorder_(options_.record_folder) {}
+
+void Presentation::join(const std::string& client, Role role, Time at, const std::string& name) {
+    advance(at);
+    clients_[client].role = role;
+    clients_[client].name = name;
+    record(client, protocol::LogLine::Connected{role, name});
+}
+
+void Presentation::leave(const std::string& client, Time at) {
+    advance(at);
+    document();  // what was before is others' doing, or the client's own
+    changing_.clear();
+    record(client, protocol::LogLine::Disconnected{});
+    clients_.erase(client);
+    gestures_.lift(client, camera());
+    clicks_.lift(client);
+    release(client);
+    if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
+}
+
+bool Presentation::say(const std::string& client, const protocol::ClientMessage& message, Time at) {
+    if (!clients_.contains(client)) return false;  // it has left
+    advance(at);
+    if (changing_ != client) document();  // a revision is one client's doing
+    changing_ = client;
+    accepted_ = false;
+    const bool recorded = recorder_.active();
+    std::visit([&](const auto& payload) { apply({client, message}, payload); }, message.payload);
+    if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
+    visible_ = view_of(state_, scene_);
+    if (accepted_ && recorded) record(client, message);
+    return accepted_;
+}
+
+void Presentation::advance(Time at) {
+    time_ = std::max(time_, at);
+    if (!flight_) return;
+    if (!changing_.empty()) document();
+    changing_.clear();  // what flies is nobody's doing
+    const double ms = static_cast<double>((time_ - flight_->start).count()) / 1000;
+    state_.camera = state_of(flight_->path.at(ms), scene_->bounds);
+    at_home_ = false;
+    visible_ = view_of(state_, scene_);
+    if (ms < flight_->path.duration()) return;
+    // Where it was to end at a camera node, the camera stands there now.
+    const std::optional<Id> node = flight_->asked.keyframes.back().camera.node;
+    const Index index = node ? scene_->scene->find_node(*node) : kNone;
+    if (index != kNone && camera_at(*scene_, index) == camera())
+        state_.camera = state_at_node(camera(), *scene_, index);
+    end_flight(true);
+}
+
+void Presentation::show(scene::LoadedScene scene, Time at) {
+    advance(at);
+    document();
+    changing_.clear();
+    end_flight(false);
+    record({}, protocol::LogLine::Opened{scene.name, scene.sha256});
+    loaded_ = std::move(scene);
+    scene_ = loaded_.placed;
+    starting_ = starting_state(*scene_, aspect(), loaded_.notices);
+    protocol::State next = starting_;
+    next.navigation = state_.navigation;
+    next.renderer.mode = state_.renderer.mode;
+    next.renderer.wireframe = state_.renderer.wireframe;
+    next.renderer.show_selection = state_.renderer.show_selection;
+    next.quality = state_.quality;
+    next.control = state_.control;
+    next.recording = state_.recording;
+    next.notices = state_.notices;
+    state_ = std::move(next);
+    at_home_ = !state_.camera.node;
+    gestures_.restart(camera());
+    visible_ = view_of(state_, scene_);
+}
+
+void Presentation::notice(const std::string& sentence) {
+    document();
+    changing_.clear();  // the server's doing
+    std::erase(state_.notices, sentence);
+    state_.notices.push_back(sentence);
+    if (state_.notices.size() > protocol::kMaxNotices) state_.notices.erase(state_.notices.begin());
+}
+
+void Presentation::remember(std::int64_t frame) {
+    frames_.push_back({frame, visible_.camera, view_size_});
+    if (frames_.size() > kFramesRemembered) frames_.pop_front();
+    record({}, protocol::LogLine::Drawn{frame});
+}
+
+const std::shared_ptr<const protocol::StateDocument>& Presentation::document() {
+    if (!document_->shows(state_)) {
+        document_ = protocol::StateDocument::next(*document_, state_);
+        if (changed_by_ != changing_ || changed_by_since_ == 0) changed_by_since_ = document_->revision();
+        changed_by_ = changing_;
+    }
+    return document_;
+}
+
+// --- messages
+
+void Presentation::apply(const Said&, const protocol::Hello&) {}       // the session's
+void Presentation::apply(const Said&, const protocol::FrameGrant&) {}  // the engine's
+
+void Presentation::apply(const Said& said, const protocol::Resize& resize) {
+    clients_[said.client].wanted = resize;
+    if (steering_.holder() == said.client) use_holders_size();
+    answer(said);
+}
+
+void Presentation::apply(const Said& said, const protocol::Control& control) {
+    if (clients_[said.client].role != Role::control)
+        return refuse(said, code::not_allowed, "only the role 'control' takes and releases control");
+    if (control.action == protocol::Control::Action::take) {
+        steering_.take(said.client, time_);
+        hold(said.client);
+    } else {
+        release(said.client);
+    }
+    answer(said);
+}
+
+void Presentation::apply(const Said& said, const protocol::Shown& shown) {
+    if (clients_[said.client].role != Role::host)
+        return refuse(said, code::not_allowed, "only the role 'host' reports what its walls show");
+    if (!options_.replaying && shown.revision > document()->revision())
+        return refuse(said, code::out_of_range,
+                      "'revision': the newest is " + std::to_string(document()->revision()));
+    answer(said);
+}
+
+void Presentation::answer(const Said& said, std::optional<std::string> name) {
+    accepted_ = true;
+    if (!said.message.id) return;
+    const std::int64_t revision = document()->revision();
+    answers_.push_back(
+        {said.client, protocol::encode(protocol::Ok{*said.message.id, revision, std::move(name)}), revision});
+}
+
+void Presentation::refuse(const Said& said, const char* code, const std::string& sentence) {
+    refuse(said.client, {said.message.id, code, sentence});
+}
+
+void Presentation::refuse(const std::string& client, const protocol::Error& error) {
+    answers_.push_back({client, protocol::encode(error), 0, error.message, error.code});
+}
+
+// --- who steers
+
+bool Presentation::may_steer(const Said& said) {
+    const Role role = clients_[said.client].role;
+    const auto& payload = said.message.payload;
+    if (role == Role::view || (role == Role::host && !std::holds_alternative<protocol::Patch>(payload))) {
+        refuse(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
+        return false;
+    }
+    if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
+    // A watcher's fingers are no error worth a line each.
+    const bool input = std::holds_alternative<protocol::Pointer>(payload) ||
+                       std::holds_alternative<protocol::Wheel>(payload) ||
+                       std::holds_alternative<protocol::Key>(payload);
+    if (said.message.id || !input) refuse(said, code::not_in_control, "another client is in control");
+    return false;
+}
+
+void Presentation::steer(const Said& said) {
+    accepted_ = true;
+    const auto& payload = said.message.payload;
+    if (!std::holds_alternative<protocol::Record>(payload)) end_flight(false);
+    steering_.steer(said.client, time_);
+    if (std::holds_alternative<protocol::Pointer>(payload) && state_.control.holder != said.client)
+        size_waits_ = true;
+    hold(said.client);
+}
+
+/// Whoever holds control and lets go of it stops what moves; nobody inherits.
+void Presentation::release(const std::string& client) {
+    if (!steering_.release(client)) return;
+    end_flight(false);
+    hold(std::nullopt);
+}
+
+/// Brings the state in line with who steers now.
+void Presentation::hold(const std::optional<std::string>& holder) {
+    protocol::ControlState& control = state_.control;
+    if (control.holder != holder) {
+        if (control.holder) {
+            gestures_.lift(*control.holder, camera());
+            clicks_.lift(*control.holder);
+        }
+        control.holder = holder;
+        control.name.reset();
+        if (holder && !clients_.at(*holder).name.empty()) control.name = clients_.at(*holder).name;
+        if (!size_waits_) use_holders_size();
+    }
+    control.kept = steering_.kept();
+}
+
+void Presentation::use_holders_size() {
+    size_waits_ = false;
+    const auto holder = state_.control.holder ? clients_.find(*state_.control.holder) : clients_.end();
+    if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
+    view_size_ = *holder->second.wanted;
+    if (at_home_) {
+        state_.views["home"] = home_view(*scene_, aspect());
+        state_.camera = state_of(camera_of(state_.views["home"]), scene_->bounds);
+    }
+    gestures_.restart(camera());
+}
+
+// --- the camera
+
+NavigationContext Presentation::navigation_context() const {
+    const protocol::NavigationState& navigation = state_.navigation;
+    NavigationContext context;
+    context.width = view_size_.width;
+    context.height = view_size_.height;
+    context.bounds = scene_->bounds;
+    context.keep_upright = navigation.keep_upright;
+    context.rotate_speed = navigation.rotate_speed;
+    context.pan_speed = navigation.pan_speed;
+    context.zoom_speed = navigation.zoom_speed;
+    context.style = static_cast<NavigationStyle>(navigation.style);
+    return context;
+}
+
+void Presentation::drag_camera(const Camera& moved) {
+    // A move beyond what a patch may say, or double hold, is not made.
+    const auto is_far = [](const glm::dvec3& point) {
+        return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > protocol::kFarthest;
+    };
+    if (moved == camera() || !is_valid_pose(moved, 0)) return;
+    if (is_far(moved.eye) || is_far(moved.focus) || is_far(moved.center)) return;
+    state_.camera = state_of(moved, scene_->bounds);
+    at_home_ = false;
+}
+
+void Presentation::move_camera(const Camera& moved) {
+    drag_camera(moved);
+    gestures_.restart(camera());
+}
+
+void Presentation::end_flight(bool completed) {
+    if (!flight_) return;
+    const InFlight flight = *std::exchange(flight_, std::nullopt);
+    gestures_.restart(camera());
+    if (flight.id == 0) return;
+    answers_.push_back(
+        {flight.client, protocol::encode(protocol::Flown{flight.id, completed}), document()->revision()});
+}
+
+}  // namespace vrut::server::room

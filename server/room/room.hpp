@@ -1,0 +1,226 @@
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clicks.hpp"
+#include "event_log.hpp"
+#include "flight.hpp"
+#include "frame_header.hpp"
+#include "gestures.hpp"
+#include "messages.hpp"
+#include "picking.hpp"
+#include "room/recorder.hpp"
+#include "room/scene_state.hpp"
+#include "room/steering.hpp"
+#include "scene/loaded_scene.hpp"
+#include "state.hpp"
+#include "view.hpp"
+
+namespace vrut::server::room {
+
+/// Picks may name one of so many frames.
+inline constexpr std::size_t kFramesRemembered = 64;
+
+/// What a client is to be told; it must know `revision` of the state first.
+struct Answer {
+    std::string client, text;
+    std::int64_t revision = 0;
+    std::string refusal = {};  ///< why, where the message was refused
+    std::string code = {};     ///< of that error
+};
+
+/// A picture that somebody asked for beside the live one, as things stood then.
+struct PictureOrder {
+    std::string client;
+    View view;                     ///< with its size in pixels
+    protocol::FrameHeader header;  ///< but for number, quality and times
+    protocol::ImageFormat format = protocol::ImageFormat::jpeg;
+    int jpeg_quality = 90;
+};
+
+struct PresentationOptions {
+    std::filesystem::path record_folder = {};  ///< empty: nothing is recorded
+    /// Begins to load a scene of this name, or says why not.
+    std::function<std::optional<protocol::Error>(const std::string& name)> load = {};
+    /// Names of the scenes that can be loaded.
+    std::function<std::vector<std::string>()> scenes = {};
+    /// What is said was accepted before: it is not judged again by revisions, nor recorded.
+    bool replaying = false;
+};
+
+/// The scene, the state and the camera that all clients share, who steers them, and what each message does to
+/// them. No thread, no clock, no GL: the same messages at the same times, in the same order, lead to the same
+/// camera to the last bit.
+class Presentation {
+public:
+    explicit Presentation(scene::LoadedScene scene, PresentationOptions options = {});
+
+    // What happens. Times never fall: an earlier one counts as the latest before.
+    /// `name`: as the client calls itself; empty: it does not.
+    void join(const std::string& client, protocol::Role role, Time at, const std::string& name = {});
+    void leave(const std::string& client, Time at);
+    /// Any message but `hello` and `frame`. What is refused changes nothing, and not who steers either; then
+    /// false comes back.
+    bool say(const std::string& client, const protocol::ClientMessage& message, Time at);
+    /// A flight goes on to where it is then.
+    void advance(Time at);
+    /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
+    void show(scene::LoadedScene scene, Time at);
+    /// Tells all clients what has gone wrong in the server, until newer notices take its place.
+    void notice(const std::string& sentence);
+    /// A frame has been drawn of visible() at view_size(): picks name it.
+    void remember(std::int64_t frame);
+    /// To be called first, if at all: as things stood when a recording began.
+    tl::expected<void, protocol::Error> restore(const protocol::LogHeader& header);
+
+    const PlacedScene& scene() const { return *scene_; }
+    const protocol::State& state() const { return state_; }
+    /// CSS size of the view.
+    const protocol::Resize& view_size() const { return view_size_; }
+    /// What is to be seen, but for size and samples.
+    const View& visible() const { return visible_; }
+    bool flies() const { return flight_.has_value(); }
+    std::optional<std::string> holder() const { return steering_.holder(); }
+    const std::string& scene_name() const { return loaded_.name; }
+
+    /// The document of the present state. Changes since the last call become one revision, made by
+    /// `changed_by`.
+    const std::shared_ptr<const protocol::StateDocument>& document();
+    /// Who made the newest revision and those before it, down to `changed_by_since()`; empty: the server.
+    const std::string& changed_by() const { return changed_by_; }
+    std::int64_t changed_by_since() const { return changed_by_since_; }
+
+    /// Answers what a client said that cannot be read.
+    void refuse(const std::string& client, const protocol::Error& error);
+    std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
+    std::vector<PictureOrder> take_orders() { return std::exchange(orders_, {}); }
+    /// The present view in another size, for whoever is no client.
+    PictureOrder order(int width, int height);
+
+private:
+    struct Client {
+        protocol::Role role = protocol::Role::view;
+        std::optional<protocol::Resize> wanted;
+        std::string name = {};
+    };
+    /// The message in hand.
+    struct Said {
+        const std::string& client;
+        const protocol::ClientMessage& message;
+    };
+    struct InFlight {
+        Flight path;
+        std::string client;
+        std::int64_t id = 0;  ///< 0: none
+        Time start{0};
+        protocol::CameraState from;
+        protocol::Fly asked;
+    };
+
+    void apply(const Said& said, const protocol::Hello& hello);
+    void apply(const Said& said, const protocol::FrameGrant& grant);
+    void apply(const Said& said, const protocol::Resize& resize);
+    void apply(const Said& said, const protocol::Pointer& pointer);
+    void apply(const Said& said, const protocol::Wheel& wheel);
+    void apply(const Said& said, const protocol::Key& key);
+    void apply(const Said& said, const protocol::Navigate& navigate);
+    void apply(const Said& said, const protocol::Fit& fit);
+    void apply(const Said& said, const protocol::Patch& patch);
+    void apply(const Said& said, const protocol::Pick& pick);
+    void apply(const Said& said, const protocol::Snapshot& snapshot);
+    void apply(const Said& said, const protocol::Fly& fly);
+    void apply(const Said& said, const protocol::Tree& tree);
+    void apply(const Said& said, const protocol::Open& open);
+    void apply(const Said& said, const protocol::Scenes& scenes);
+    void apply(const Said& said, const protocol::Record& record);
+    void apply(const Said& said, const protocol::Control& control);
+    void apply(const Said& said, const protocol::Shown& shown);
+
+    /// Done; `ok` where the message has an id.
+    void answer(const Said& said, std::optional<std::string> name = {});
+    /// Done, with an answer of its own.
+    template <class Message>
+    void answer_with(const Said& said, const Message& message);
+    void refuse(const Said& said, const char* code, const std::string& sentence);
+
+    // --- who steers
+    /// Whether this message may steer; else it is refused.
+    bool may_steer(const Said& said);
+    /// The message steers: its client holds control.
+    void steer(const Said& said);
+    void release(const std::string& client);
+    void hold(const std::optional<std::string>& holder);
+    void use_holders_size();
+
+    // --- pointing at things
+    /// What a frame showed at a point of its view; none where that frame is not remembered.
+    struct Look {
+        std::optional<Hit> hit;
+    };
+    std::optional<Look> look(double x, double y, std::optional<std::int64_t> frame, bool through) const;
+    void apply(Click::Operation operation, const std::optional<Hit>& hit);
+    void select(Index node);
+    std::vector<std::string> path_of(Index node) const;
+
+    // --- patches
+    std::optional<protocol::Error> use_nodes(protocol::State& next,
+                                             std::shared_ptr<const PlacedScene>& placed);
+    std::optional<protocol::Error> use_camera(protocol::State& next, const PlacedScene& placed,
+                                              const nlohmann::json& patch);
+    std::optional<protocol::Error> use_views(protocol::State& next, const PlacedScene& placed) const;
+    std::optional<protocol::Error> check_names(const protocol::State& next) const;
+
+    // --- recordings
+    void start_recording(const Said& said, const std::string& name);
+    protocol::LogHeader log_header() const;
+    void record(const std::string& client, decltype(protocol::LogLine::what) what);
+    void press_anew(const std::string& client);
+
+    // --- the camera
+    Camera camera() const { return camera_of(state_.camera); }
+    double aspect() const { return view_size_.width / view_size_.height; }
+    NavigationContext navigation_context() const;
+    /// From a drag: it goes on from where it began.
+    void drag_camera(const Camera& camera);
+    /// From anything else: drags begin anew there.
+    void move_camera(const Camera& camera);
+    void end_flight(bool completed);
+
+    PresentationOptions options_;
+    scene::LoadedScene loaded_;
+    std::shared_ptr<const PlacedScene> scene_;  ///< with its nodes as they stand now
+    protocol::Resize view_size_;
+    protocol::State starting_, state_;
+    std::shared_ptr<const protocol::StateDocument> document_;
+    std::string changed_by_, changing_;
+    std::int64_t changed_by_since_ = 0;
+    std::vector<Answer> answers_;
+    std::vector<PictureOrder> orders_;
+    std::map<std::string, Client> clients_;
+    Steering steering_;
+    Gestures gestures_;
+    Clicks clicks_;
+    std::optional<InFlight> flight_;
+    Time time_{0};           ///< of what happens now
+    bool accepted_ = false;  ///< the message in hand
+    bool size_waits_ =
+        false;  ///< for the press that took control to end: it is measured in the view that it began in
+    bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
+    View visible_;
+    struct Frame {
+        std::int64_t number = 0;
+        Camera camera;
+        protocol::Resize view_size;
+    };
+    std::deque<Frame> frames_;  ///< the last kFramesRemembered
+    Recorder recorder_;
+    Time recording_since_{0};
+};
+
+}  // namespace vrut::server::room

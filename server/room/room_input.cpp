@@ -1,0 +1,163 @@
+// What fingers, mouse and keys do, and what they point at.
+#include <algorithm>
+#include <cmath>
+
+#include "codec.hpp"
+#include "keys.hpp"
+#include "room/room.hpp"
+
+namespace vrut::server::room {
+
+using protocol::Role;
+namespace code = protocol::error_code;
+
+namespace {
+
+constexpr std::size_t kLongestPath = 32;
+constexpr double kLeastDeterminant = 1e-12;  // below it a node is flattened, as for the picture
+
+PointerInput input_of(const std::string& client, const protocol::Pointer& pointer) {
+    PointerInput input;
+    input.action = static_cast<PointerInput::Action>(pointer.event);
+    input.client = client;
+    input.pointer = pointer.pointer_id;
+    input.device = static_cast<PointerInput::Device>(pointer.pointer_type);
+    input.x = pointer.x;
+    input.y = pointer.y;
+    input.button = pointer.button;
+    input.buttons = pointer.buttons;
+    const protocol::Modifiers& keys = pointer.modifiers;
+    input.modifiers = {keys.alt, keys.ctrl, keys.shift, keys.meta};
+    return input;
+}
+
+}  // namespace
+
+void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
+    // Only a press asks for control; what follows belongs to it, and hovering does nothing.
+    const bool press = pointer.event == protocol::Pointer::Event::down;
+    // A third finger drags nothing, but its release counts.
+    const bool known = press || gestures_.is_pressed(said.client, pointer.pointer_id) ||
+                       clicks_.is_pressed(said.client, pointer.pointer_id);
+    if ((!known && clients_[said.client].role == Role::control) || !may_steer(said)) return;
+    steer(said);
+    const PointerInput input = input_of(said.client, pointer);
+    const NavigationContext context = navigation_context();
+    drag_camera(gestures_.pointer(input, camera(), context));
+    if (const std::optional<Click> click =
+            clicks_.pointer(input, {pointer.time_stamp, time_}, context.style)) {
+        std::optional<Look> seen = look(click->x, click->y, pointer.frame, false);
+        if (!seen) seen = look(click->x, click->y, std::nullopt, false);  // long forgotten: the newest
+        apply(click->operation, seen->hit);
+    }
+}
+
+void Presentation::apply(const Said& said, const protocol::Wheel& wheel) {
+    if (!may_steer(said)) return;
+    steer(said);
+    const WheelInput input{wheel.delta_y, static_cast<WheelInput::Unit>(wheel.delta_mode)};
+    move_camera(vrut::wheel(input, camera(), navigation_context()));
+}
+
+void Presentation::apply(const Said& said, const protocol::Key& key) {
+    using Kind = KeyOperation::Kind;
+    const KeyInput input{key.key, key.modifiers.shift, key.code};
+    if (!key.down) {
+        accepted_ = steering_.holder() == said.client;
+        return gestures_.key_up(said.client, input);
+    }
+    if (!may_steer(said)) return;
+    const bool flew = flies();
+    steer(said);
+    gestures_.key_down(said.client, input);
+    const std::optional<KeyOperation> operation = key_operation(input);
+    if (!operation) return;
+    protocol::RendererState& renderer = state_.renderer;
+    if (operation->kind == Kind::escape && !flew) select(kNone);
+    if (operation->kind == Kind::toggle_wireframe) renderer.wireframe = !renderer.wireframe;
+    if (operation->kind == Kind::toggle_stylized)
+        renderer.mode = renderer.mode == protocol::DrawMode::stylized ? protocol::DrawMode::realistic
+                                                                      : protocol::DrawMode::stylized;
+    NavigationContext context = navigation_context();
+    if (operation->kind == Kind::fit && state_.selection.node) {
+        const Bounds selected = subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
+        if (!selected.empty()) context.bounds = selected;
+    }
+    move_camera(operated(*operation, camera(), camera_of(state_.views.at("home")), context));
+}
+
+void Presentation::apply(const Said& said, const protocol::Pick& pick) {
+    using Then = protocol::Pick::Then;
+    if (pick.then && !may_steer(said)) return;
+    const std::optional<Look> seen = look(pick.x, pick.y, pick.frame, pick.through);
+    if (!seen)
+        return refuse(said, code::unknown_frame,
+                      "frame " + std::to_string(*pick.frame) + " is not among the last " +
+                          std::to_string(kFramesRemembered));
+    if (pick.then) {
+        steer(said);
+        apply(*pick.then == Then::select   ? Click::Operation::select
+              : *pick.then == Then::center ? Click::Operation::set_center
+                                           : Click::Operation::look_at,
+              seen->hit);
+    }
+    protocol::Picked picked;
+    if (const auto& hit = seen->hit) {
+        const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
+        picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
+        const glm::dmat4& world_from_node = scene_->world[static_cast<std::size_t>(hit->node)];
+        if (std::abs(relative_determinant(glm::dmat3(world_from_node))) > kLeastDeterminant) {
+            const glm::dvec3 local(glm::inverse(world_from_node) * glm::dvec4(hit->point, 1));
+            if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
+        }
+    }
+    answer_with(said, picked);
+}
+
+std::optional<Presentation::Look> Presentation::look(double x, double y, std::optional<std::int64_t> frame,
+                                                     bool through) const {
+    Frame seen{0, camera(), view_size_};
+    if (frame) {
+        const auto found = std::find_if(frames_.begin(), frames_.end(),
+                                        [&](const Frame& candidate) { return candidate.number == *frame; });
+        if (found == frames_.end()) return std::nullopt;
+        seen = *found;
+    } else if (!frames_.empty()) {
+        seen = frames_.back();
+    }
+    const protocol::Resize& size = seen.view_size;
+    const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
+    return Look{vrut::pick(*scene_,
+                           {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)},
+                           through)};
+}
+
+void Presentation::apply(Click::Operation operation, const std::optional<Hit>& hit) {
+    if (operation == Click::Operation::select) return select(hit ? hit->node : kNone);
+    if (!hit) return;
+    Camera moved = camera();
+    moved.center = hit->point;
+    if (operation == Click::Operation::look_at) {
+        moved.eye += hit->point - moved.focus;
+        moved.focus = hit->point;
+    }
+    move_camera(moved);
+}
+
+void Presentation::select(Index node) {
+    state_.selection = {};
+    if (node == kNone) return;
+    const Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
+    state_.selection = {selected.id, selected.name, path_of(node)};
+}
+
+std::vector<std::string> Presentation::path_of(Index node) const {
+    std::vector<std::string> path;
+    for (; node != kNone && path.size() < kLongestPath;
+         node = scene_->scene->nodes()[static_cast<std::size_t>(node)].parent)
+        path.push_back(scene_->scene->nodes()[static_cast<std::size_t>(node)].name);
+    std::reverse(path.begin(), path.end());
+    return path;
+}
+
+}  // namespace vrut::server::room

@@ -1,0 +1,115 @@
+// What a patch of the state does to scene and camera: all of it, or nothing.
+#include <algorithm>
+
+#include "room/room.hpp"
+
+namespace vrut::server::room {
+
+using protocol::Error;
+using protocol::Role;
+namespace code = protocol::error_code;
+
+void Presentation::apply(const Said& said, const protocol::Patch& patch) {
+    if (clients_[said.client].role == Role::host &&
+        !protocol::names_only(*patch.patch, {"camera", "nodes", "selection"}))
+        return refuse(said, code::not_allowed,
+                      "a host may patch nothing but 'camera', 'nodes' and 'selection'");
+    if (!may_steer(said)) return;
+    if (patch.if_revision && !options_.replaying &&
+        document()->last_change(*patch.patch) > *patch.if_revision)
+        return refuse(
+            said, code::stale_revision,
+            "what the patch touches has changed since revision " + std::to_string(*patch.if_revision));
+    auto next = protocol::patched(state_, starting_, *patch.patch);
+    if (!next) return refuse(said, next.error().code.c_str(), next.error().message);
+    std::shared_ptr<const PlacedScene> placed = scene_;
+    auto error = use_nodes(*next, placed);
+    if (!error) error = use_camera(*next, *placed, *patch.patch);
+    if (!error) error = use_views(*next, *placed);
+    if (!error) error = check_names(*next);
+    if (error) return refuse(said, error->code.c_str(), error->message);
+
+    const protocol::ViewState home = state_.views.at("home");
+    if (camera_of(next->camera) != camera() || next->views.at("home") != home) at_home_ = false;
+    const std::optional<Id> selected = next->selection.node;
+    steer(said);  // which may bring another size, and so another home
+    if (at_home_) next->camera = state_of(camera(), placed->bounds);
+    if (next->views.at("home") == home) next->views["home"] = state_.views.at("home");
+    next->control = state_.control;
+    state_ = *std::move(next);
+    scene_ = std::move(placed);
+    select(selected ? scene_->scene->find_node(*selected) : kNone);
+    gestures_.restart(camera());
+    answer(said);
+}
+
+std::optional<Error> Presentation::use_nodes(protocol::State& next,
+                                             std::shared_ptr<const PlacedScene>& placed) {
+    if (next.nodes == state_.nodes) return std::nullopt;
+    auto states = node_states(*scene_->scene, next.nodes);
+    if (!states) return states.error();
+    if (*states != scene_->nodes)
+        placed = std::make_shared<const PlacedScene>(place(scene_->scene, *std::move(states)));
+    count_classes(next, *placed);
+    return std::nullopt;
+}
+
+/// The camera node that is named first, what else is named over it. A camera that stands at a node goes on
+/// to where that is moved.
+std::optional<Error> Presentation::use_camera(protocol::State& next, const PlacedScene& placed,
+                                              const nlohmann::json& patch) {
+    const protocol::NamedCameraMembers named = protocol::named_camera_members(patch);
+    const bool pose_named = named.eye || named.focus || named.up || named.center || named.fov;
+    const auto given = [](bool is_named, const auto& value) {
+        return is_named ? std::optional(value) : std::nullopt;
+    };
+    protocol::CameraOverlay overlay;
+    if (named.node || (next.camera.node && !pose_named && &placed != scene_.get()))
+        overlay.node = next.camera.node;
+    overlay.eye = given(named.eye, next.camera.eye);
+    overlay.focus = given(named.focus, next.camera.focus);
+    overlay.up = given(named.up, next.camera.up);
+    overlay.center = given(named.center, next.camera.center);
+    overlay.fov = given(named.fov, next.camera.fov);
+    const std::optional<Id> node = next.camera.node;
+    Camera pose = camera();
+    if (overlay.node || pose_named) {
+        auto laid = overlaid(pose, overlay, placed, "camera");
+        if (!laid) return laid.error();
+        pose = *laid;
+    }
+    next.camera = state_of(pose, placed.bounds);
+    if (!node) return std::nullopt;
+    const Index index = placed.scene->find_node(*node);
+    if (index != kNone && camera_at(placed, index) == pose) next.camera = state_at_node(pose, placed, index);
+    return std::nullopt;
+}
+
+std::optional<Error> Presentation::use_views(protocol::State& next, const PlacedScene& placed) const {
+    for (auto& [name, view] : next.views) {
+        const auto before = state_.views.find(name);
+        if (before != state_.views.end() && before->second == view) continue;
+        const Camera pose = camera_of(view);
+        if (!is_valid_pose(pose, placed.bounds.radius()))
+            return Error{{},
+                         code::out_of_range,
+                         "'views." + name.substr(0, 40) +
+                             "': eye and focus must be apart, and up neither zero nor along the view"};
+        view = view_state_of(with_orthogonal_up(pose));
+    }
+    return std::nullopt;
+}
+
+std::optional<Error> Presentation::check_names(const protocol::State& next) const {
+    const auto unknown = [&](const std::optional<Id>& node,
+                             const std::string& where) -> std::optional<Error> {
+        if (!node || scene_->scene->find_node(*node) != kNone) return std::nullopt;
+        return Error{{}, code::unknown_node, where + ": there is no node " + std::to_string(*node)};
+    };
+    if (auto error = unknown(next.selection.node, "'selection.node'")) return error;
+    for (const auto& [name, marker] : next.markers)
+        if (auto error = unknown(marker.node, "'markers." + name.substr(0, 40) + ".node'")) return error;
+    return std::nullopt;
+}
+
+}  // namespace vrut::server::room

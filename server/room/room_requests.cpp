@@ -1,0 +1,278 @@
+// What scripts ask for: moves, flights, pictures, the tree, scenes and recordings.
+#include <cmath>
+
+#include "codec.hpp"
+#include "room/room.hpp"
+#include "room/scene_tree.hpp"
+
+namespace vrut::server::room {
+
+using protocol::Error;
+namespace code = protocol::error_code;
+
+template <class Message>
+void Presentation::answer_with(const Said& said, const Message& message) {
+    accepted_ = true;
+    if (!said.message.id) return;
+    Message answer = message;
+    answer.id = *said.message.id;
+    answers_.push_back({said.client, protocol::encode(answer), document()->revision()});
+}
+template void Presentation::answer_with(const Said&, const protocol::Picked&);
+
+void Presentation::apply(const Said& said, const protocol::Navigate& navigate) {
+    if (!may_steer(said)) return;
+    steer(said);
+    Camera moved = rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
+    moved = panned(moved, navigate.pan.x, navigate.pan.y);
+    move_camera(zoomed(moved, navigate.zoom, scene_->bounds.radius()));
+    answer(said);
+}
+
+void Presentation::apply(const Said& said, const protocol::Fit& fit) {
+    if (!may_steer(said)) return;
+    Bounds bounds = scene_->bounds;
+    if (fit.node) {
+        const Index node = scene_->scene->find_node(*fit.node);
+        const std::string name = "node " + std::to_string(*fit.node);
+        if (node == kNone) return refuse(said, code::unknown_node, "there is no " + name);
+        bounds = subtree_bounds(*scene_, node);
+        if (bounds.empty()) return refuse(said, code::failed, "nothing of " + name + " is to be seen");
+    }
+    steer(said);
+    move_camera(fitted(camera(), bounds, aspect()));
+    answer(said);
+}
+
+// --- flights
+
+namespace {
+
+/// The keyframes' cameras: each is laid over the one before, the first over `from`.
+tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly, const Camera& from,
+                                                        const PlacedScene& placed) {
+    std::vector<Keyframe> keyframes;
+    Camera before = from;
+    for (const protocol::Fly::Keyframe& keyframe : fly.keyframes) {
+        auto laid = overlaid(before, keyframe.camera, placed,
+                             "keyframes[" + std::to_string(keyframes.size()) + "].camera");
+        if (!laid) return tl::unexpected(laid.error());
+        keyframes.push_back({keyframe.at, *laid});
+        before = *laid;
+    }
+    return keyframes;
+}
+
+}  // namespace
+
+void Presentation::apply(const Said& said, const protocol::Fly& fly) {
+    if (!may_steer(said)) return;
+    auto keyframes = keyframes_of(fly, camera(), *scene_);
+    if (!keyframes) return refuse(said, keyframes.error().code.c_str(), keyframes.error().message);
+    const Camera before = camera();
+    steer(said);  // which may bring another size, and so another home
+    if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
+    if (!keyframes) return answer(said);  // whose poses do not fit to that: it stays there
+    flight_.emplace(InFlight{{camera(), *keyframes, static_cast<Easing>(fly.easing)},
+                             said.client,
+                             said.message.id.value_or(0),
+                             time_,
+                             state_.camera,
+                             fly});
+    answer(said);
+    document();  // the message is its client's doing, what follows nobody's
+    advance(time_);
+}
+
+// --- pictures and the tree
+
+void Presentation::apply(const Said& said, const protocol::Snapshot& snapshot) {
+    auto laid = overlaid(camera(), snapshot.camera, *scene_, "camera");
+    if (!laid) return refuse(said, laid.error().code.c_str(), laid.error().message);
+    protocol::State state = state_;
+    if (*laid != camera()) state.camera = state_of(*laid, scene_->bounds);
+    protocol::RendererState& renderer = state.renderer;
+    renderer.mode = snapshot.renderer.mode.value_or(renderer.mode);
+    renderer.wireframe = snapshot.renderer.wireframe.value_or(renderer.wireframe);
+    renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
+    accepted_ = true;
+    if (!said.message.id) return;  // nobody could tell the picture from a frame
+    View view = view_of(state, scene_);
+    view.width = snapshot.width;
+    view.height = snapshot.height;
+    PictureOrder order{said.client, view, header_of(state, view, view_size_), snapshot.format,
+                       snapshot.jpeg_quality};
+    order.header.revision = document()->revision();
+    order.header.snapshot = said.message.id;
+    order.header.handled = *said.message.id;
+    orders_.push_back(std::move(order));
+}
+
+PictureOrder Presentation::order(int width, int height) {
+    View view = visible_;
+    view.width = width;
+    view.height = height;
+    PictureOrder order{{}, view, header_of(state_, view, view_size_)};
+    order.header.revision = document()->revision();
+    return order;
+}
+
+void Presentation::apply(const Said& said, const protocol::Tree& tree) {
+    const auto page = tree_page(*scene_, tree);
+    if (!page) return refuse(said, page.error().code.c_str(), page.error().message);
+    answer_with(said, *page);
+}
+
+// --- scenes and recordings
+
+void Presentation::apply(const Said& said, const protocol::Open& open) {
+    if (!may_steer(said)) return;
+    if (options_.load)
+        if (const auto error = options_.load(open.scene))
+            return refuse(said, error->code.c_str(), error->message);
+    steer(said);
+    answer(said);
+}
+
+void Presentation::apply(const Said& said, const protocol::Scenes&) {
+    answer_with(said,
+                protocol::SceneList{0, options_.scenes ? options_.scenes() : std::vector<std::string>()});
+}
+
+void Presentation::apply(const Said& said, const protocol::Record& record) {
+    if (!may_steer(said)) return;
+    if (options_.replaying) {
+        steer(said);
+        return answer(said);
+    }
+    if (!recorder_.has_folder())
+        return refuse(said, code::not_allowed, "this server has no folder for recordings");
+    if (record.action == protocol::Record::Action::start) return start_recording(said, record.name);
+    if (!recorder_.active()) return refuse(said, code::failed, "nothing is being recorded");
+    steer(said);
+    this->record(said.client, said.message);
+    recorder_.close();
+    const std::string name = state_.recording ? state_.recording->name : "";
+    state_.recording.reset();
+    answer(said, name);
+}
+
+void Presentation::start_recording(const Said& said, const std::string& name) {
+    if (recorder_.active())
+        return refuse(said, code::busy, "a recording is going on: '" + state_.recording->name + "'");
+    const auto opened = recorder_.open(name);
+    if (!opened) return refuse(said, code::failed, opened.error());
+    steer(said);
+    if (size_waits_) use_holders_size();
+    state_.recording = protocol::RecordingState{*opened};
+    recording_since_ = time_;
+    recorder_.write(protocol::encode(log_header()));
+    if (!recorder_.active()) {
+        state_.recording.reset();
+        accepted_ = false;
+        return refuse(said, code::failed, recorder_.end());
+    }
+    press_anew(said.client);
+    answer(said, *opened);
+}
+
+/// What is held begins anew, here and in the log, which knows nothing of how it began. All of it is the
+/// holder's, `client`'s.
+void Presentation::press_anew(const std::string& client) {
+    clicks_ = {};
+    const auto again = [&](const auto& payload) {
+        const protocol::ClientMessage message{{}, payload};
+        record(client, message);
+        apply({client, message}, payload);
+    };
+    for (const Gestures::HeldKey& held : gestures_.held_keys()) {
+        const KeyInput input = held.input();
+        protocol::Key key;
+        key.key = input.key;
+        key.code = input.code;
+        again(key);
+    }
+    for (const PointerInput& pressed : gestures_.pressed()) {
+        protocol::Pointer pointer;
+        pointer.event = protocol::Pointer::Event::down;
+        pointer.pointer_id = pressed.pointer;
+        pointer.pointer_type = static_cast<protocol::Pointer::Type>(pressed.device);
+        pointer.x = pressed.x;
+        pointer.y = pressed.y;
+        pointer.button = pressed.button;
+        pointer.buttons = pressed.buttons;
+        const ModifierKeys& keys = pressed.modifiers;
+        pointer.modifiers = {keys.ctrl, keys.shift, keys.alt, keys.meta};
+        again(pointer);
+    }
+}
+
+void Presentation::record(const std::string& client, decltype(protocol::LogLine::what) what) {
+    if (!recorder_.active()) return;
+    recorder_.write(protocol::encode(protocol::LogLine{time_ - recording_since_, client, std::move(what)}));
+    if (recorder_.active()) return;
+    state_.recording.reset();
+    notice(recorder_.end());
+}
+
+protocol::LogHeader Presentation::log_header() const {
+    protocol::LogHeader header;
+    header.scene = loaded_.name;
+    header.scene_sha256 = loaded_.sha256;
+    header.started = iso_time_now();
+    header.state = protocol::document_of(state_);
+    for (const auto& [name, client] : clients_)
+        header.clients.push_back({name, client.role, client.wanted, client.name});
+    header.view = view_size_;
+    header.at_home = at_home_;
+    header.home = starting_.views.at("home");
+    for (const Frame& frame : frames_)
+        header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
+    if (flight_)
+        header.flight = {flight_->client, flight_->id,
+                         static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
+                         flight_->asked};
+    return header;
+}
+
+tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& header) {
+    if (header.home) {
+        starting_.views["home"] = *header.home;
+        if (!starting_.camera.node) starting_.camera = state_of(camera_of(*header.home), scene_->bounds);
+    }
+    auto state = protocol::restored(starting_, *header.state);
+    if (!state) return tl::unexpected(state.error());
+    auto nodes = node_states(*scene_->scene, state->nodes);
+    if (!nodes) return tl::unexpected(nodes.error());
+    scene_ = std::make_shared<const PlacedScene>(place(scene_->scene, *std::move(nodes)));
+    view_size_ = header.view;
+    at_home_ = header.at_home;
+    state_ = *std::move(state);
+    count_classes(state_, *scene_);
+    const std::optional<Id> node = state_.camera.node, selected = state_.selection.node;
+    const Index at = node ? scene_->scene->find_node(*node) : kNone;
+    state_.camera = at != kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
+    select(selected ? scene_->scene->find_node(*selected) : kNone);
+    steering_ = Steering(state_.control.holder, state_.control.kept, time_);
+    for (const protocol::LogHeader::Client& client : header.clients)
+        clients_[client.client] = {client.role, client.wanted, client.name};
+    for (const protocol::LoggedFrame& frame : header.frames)
+        frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
+    if (const auto& flight = header.flight) {
+        const auto keyframes = keyframes_of(flight->fly, camera_of(flight->from), *scene_);
+        if (!keyframes) return tl::unexpected(keyframes.error());
+        const Time since(std::llround(flight->since * 1000));
+        flight_.emplace(
+            InFlight{{camera_of(flight->from), *keyframes, static_cast<Easing>(flight->fly.easing)},
+                     flight->client,
+                     flight->id,
+                     time_ - since,
+                     flight->from,
+                     flight->fly});
+    }
+    gestures_.restart(camera());
+    visible_ = view_of(state_, scene_);
+    return {};
+}
+
+}  // namespace vrut::server::room

@@ -1,0 +1,314 @@
+#include "room/scene_state.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "frame_plan.hpp"
+
+namespace vrut::server::room {
+
+namespace code = protocol::error_code;
+using protocol::Error;
+
+namespace {
+
+std::optional<std::string> picture_of(const BackgroundData& data, const Scene& scene) {
+    if (data.cube_map) return (*data.cube_map)[0];
+    const std::string& image = scene.material(data.material).image;
+    return image.empty() ? std::nullopt : std::optional(image);
+}
+
+void add_backgrounds(const PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
+    Id first = -1;
+    for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
+        const Node& node = placed.scene->nodes()[i];
+        const auto* data = std::get_if<BackgroundData>(&node.data);
+        if (!data) continue;
+        const glm::dvec4 color = glm::min(placed.scene->material(data->material).diffuse, glm::dvec4(1));
+        backgrounds.items[std::to_string(node.id)] = {node.name, color, picture_of(*data, *placed.scene)};
+        if (is_shown(placed, static_cast<Index>(i)) && (first < 0 || node.id < first)) first = node.id;
+    }
+    if (first >= 0) backgrounds.active = std::to_string(first);
+}
+
+const char* name_of(LightData::Type type) {
+    switch (type) {
+        case LightData::Type::point:
+            return "point";
+        case LightData::Type::directional:
+            return "directional";
+        case LightData::Type::spot:
+            return "spot";
+    }
+    return "";
+}
+
+void add_lights(const Scene& scene, protocol::LightsState& lights) {
+    lights.items["headlight"] = {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}};
+    for (const Node& node : scene.nodes())
+        if (const auto* data = std::get_if<LightData>(&node.data))
+            lights.items[std::to_string(node.id)] = {node.name, name_of(data->type), data->color,
+                                                     data->attenuation};
+}
+
+protocol::Shared<protocol::Names> camera_names(const Scene& scene) {
+    protocol::Names names;
+    for (const Node& node : scene.nodes())
+        if (node.type == NodeType::camera) names[std::to_string(node.id)] = {node.name};
+    return {std::make_shared<const protocol::Names>(std::move(names))};
+}
+
+protocol::Shared<protocol::Names> material_names(const Scene& scene) {
+    protocol::Names names;
+    for (const Material& material : scene.materials()) names[std::to_string(material.id)] = {material.name};
+    return {std::make_shared<const protocol::Names>(std::move(names))};
+}
+
+/// A node by its id as a member's name; kNone where there is none.
+Index find_node(const Scene& scene, const std::string& key) {
+    Id id = -1;
+    const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), id);
+    const bool canonical =
+        error == std::errc() && end == key.data() + key.size() && std::to_string(id) == key;
+    return canonical ? scene.find_node(id) : kNone;
+}
+
+Index find_material(const Scene& scene, Id id) {
+    const auto& materials = scene.materials();
+    const auto found = std::find_if(materials.begin(), materials.end(),
+                                    [&](const Material& material) { return material.id == id; });
+    return found == materials.end() ? kNone : static_cast<Index>(found - materials.begin());
+}
+
+/// One node's override, checked and put into its state; what equals the file's is cleared.
+std::optional<Error> apply(protocol::NodeOverride& change, const Scene& scene, const Node& node,
+                           NodeState& state) {
+    const std::string path = "'nodes." + std::to_string(node.id) + ".";
+    const auto use = [](auto& wanted, auto& value) {
+        if (!wanted) return;
+        if (value == static_cast<std::decay_t<decltype(value)>>(*wanted)) wanted.reset();
+    };
+    if (change.active_child) {
+        const bool is_switch = std::holds_alternative<SwitchData>(node.data);
+        if (!is_switch || *change.active_child >= static_cast<int>(node.children.size()))
+            return Error{{},
+                         code::out_of_range,
+                         path + "activeChild': " +
+                             (is_switch ? "the switch has " + std::to_string(node.children.size()) +
+                                              " children, counted from 0"
+                                        : "the node is no switch")};
+    }
+    Index material = state.material;
+    if (change.material) {
+        if (!std::holds_alternative<GeometryData>(node.data))
+            return Error{{}, code::out_of_range, path + "material': the node has no geometry"};
+        material = find_material(scene, *change.material);
+        if (material == kNone)
+            return Error{{},
+                         code::unknown_node,
+                         path + "material': there is no material " + std::to_string(*change.material)};
+    }
+    if (change.matrix) {
+        const glm::dmat4& m = *change.matrix;
+        if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
+            return Error{{}, code::out_of_range, path + "matrix': the last row must be 0 0 0 1"};
+    }
+    use(change.active, state.active);
+    use(change.active_child, state.active_child);
+    use(change.matrix, state.matrix);
+    if (material == state.material) change.material.reset();
+    if (change.active) state.active = *change.active;
+    if (change.active_child) state.active_child = *change.active_child;
+    if (change.matrix) state.matrix = *change.matrix;
+    state.material = material;
+    return std::nullopt;
+}
+
+}  // namespace
+
+protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices) {
+    protocol::State state;
+    const Scene& scene = *placed.scene;
+    state.scene.value = std::make_shared<const protocol::SceneState>(
+        protocol::SceneState{.name = scene.name(),
+                             .nodes = scene.nodes().size(),
+                             .materials = scene.materials().size(),
+                             .geometries = scene.geometries().size(),
+                             .triangles = scene.triangle_count(),
+                             .bounds = {placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.min,
+                                        placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.max},
+                             .notices = std::move(notices)});
+    state.cameras = camera_names(scene);
+    state.materials = material_names(scene);
+    state.views["home"] = home_view(placed, aspect);
+    const Index node = first_camera_node(placed);
+    state.camera = node != kNone ? state_at_node(*camera_at(placed, node), placed, node)
+                                 : state_of(camera_of(state.views["home"]), placed.bounds);
+    add_lights(scene, state.lights);
+    add_backgrounds(placed, state.backgrounds);
+    count_classes(state, placed);
+    return state;
+}
+
+void count_classes(protocol::State& state, const PlacedScene& placed) {
+    const ClassCounts counts = count_classes(placed);
+    state.renderer.solid = counts.solid;
+    state.renderer.transparent = counts.transparent;
+    state.renderer.reflective = counts.reflective;
+}
+
+protocol::ViewState home_view(const PlacedScene& placed, double aspect) {
+    const Index node = first_camera_node(placed);
+    return view_state_of(node != kNone ? fitted(*camera_at(placed, node), placed.bounds, aspect)
+                                       : home_camera(placed.bounds, aspect));
+}
+
+Camera camera_of(const protocol::CameraState& state) {
+    return {state.eye, state.focus, state.up, state.center, state.fov};
+}
+
+Camera camera_of(const protocol::ViewState& view) {
+    return {view.eye, view.focus, view.up, view.center, view.fov};
+}
+
+protocol::ViewState view_state_of(const Camera& camera) {
+    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+}
+
+protocol::CameraState state_of(const Camera& camera, const Bounds& bounds) {
+    const ClipRange range = fit_clip_range(camera, bounds);
+    protocol::CameraState state;
+    state.eye = camera.eye;
+    state.focus = camera.focus;
+    state.up = camera.up;
+    state.center = camera.center;
+    state.fov = camera.fov;
+    state.near = range.near;
+    state.far = range.far;
+    return state;
+}
+
+protocol::CameraState state_at_node(const Camera& camera, const PlacedScene& placed, Index node) {
+    protocol::CameraState state = state_of(camera, placed.bounds);
+    const Node& camera_node = placed.scene->nodes()[static_cast<std::size_t>(node)];
+    state.node = camera_node.id;
+    state.name = camera_node.name;
+    return state;
+}
+
+tl::expected<Camera, Error> node_camera(const PlacedScene& placed, Id node, const std::string& what) {
+    const Index index = placed.scene->find_node(node);
+    if (index == kNone || placed.scene->nodes()[static_cast<std::size_t>(index)].type != NodeType::camera)
+        return tl::unexpected(
+            Error{{}, code::unknown_node, what + ": there is no camera node " + std::to_string(node)});
+    const std::optional<Camera> camera = camera_at(placed, index);
+    if (!camera)
+        return tl::unexpected(
+            Error{{}, code::failed, what + ": camera node " + std::to_string(node) + " sees nothing"});
+    return *camera;
+}
+
+tl::expected<Camera, Error> overlaid(const Camera& base, const protocol::CameraOverlay& overlay,
+                                     const PlacedScene& placed, const std::string& what) {
+    Camera camera = base;
+    if (overlay.node) {
+        auto at_node = node_camera(placed, *overlay.node, what + ".node");
+        if (!at_node) return at_node;
+        camera = *at_node;
+    }
+    const Camera before = camera;
+    camera.eye = overlay.eye.value_or(camera.eye);
+    camera.focus = overlay.focus.value_or(camera.focus);
+    camera.up = overlay.up.value_or(camera.up);
+    camera.center = overlay.center.value_or(camera.center);
+    camera.fov = overlay.fov.value_or(camera.fov);
+    if (!overlay.up && (overlay.eye || overlay.focus)) camera = with_roll_of(before, camera);
+    if (!is_valid_pose(camera, placed.bounds.radius()))
+        return tl::unexpected(
+            Error{{},
+                  code::out_of_range,
+                  what + ": eye and focus must be apart, and up neither zero nor along the view"});
+    return with_orthogonal_up(camera);
+}
+
+tl::expected<std::vector<NodeState>, Error> node_states(
+    const Scene& scene, std::map<std::string, protocol::NodeOverride>& overrides) {
+    std::vector<NodeState> states = file_states(scene);
+    for (auto& [key, change] : overrides) {
+        const Index index = find_node(scene, key);
+        if (index == kNone)
+            return tl::unexpected(
+                Error{{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)});
+        const auto place = static_cast<std::size_t>(index);
+        if (auto error = apply(change, scene, scene.nodes()[place], states[place]))
+            return tl::unexpected(*std::move(error));
+    }
+    std::erase_if(overrides, [](const auto& entry) { return entry.second == protocol::NodeOverride{}; });
+    return states;
+}
+
+namespace {
+
+/// The active one, if its subtree is; its colour is the state's.
+Background background_of(const protocol::BackgroundsState& backgrounds, const PlacedScene& placed) {
+    const Index node = find_node(*placed.scene, backgrounds.active);
+    if (!is_shown(placed, node)) return {glm::dvec3(backgrounds.color), kNone, {}};
+    const auto& data = std::get<BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
+    return {glm::dvec3(backgrounds.items.at(backgrounds.active).color),
+            placed.scene->material(data.material).texture, data.cube_textures};
+}
+
+/// In world space, those whose node shows and lies within the range of double.
+std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers,
+                           const PlacedScene& placed) {
+    std::vector<Mark> marks;
+    for (const auto& [name, marker] : markers) {
+        glm::dvec3 point = marker.point;
+        if (marker.node) {
+            const Index node = placed.scene->find_node(*marker.node);
+            if (!is_shown(placed, node)) continue;
+            point = glm::dvec3(placed.world[static_cast<std::size_t>(node)] * glm::dvec4(point, 1));
+        }
+        const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
+        if (finite) marks.push_back({point, name});
+    }
+    return marks;
+}
+
+}  // namespace
+
+View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
+    View view;
+    view.camera = camera_of(state.camera);
+    const protocol::LightState& light = state.lights.items.at(state.lights.active);
+    if (const Index node = find_node(*placed->scene, state.lights.active); node != kNone)
+        view.light = light_of(*placed, node);
+    view.light.color = light.color;
+    view.light.attenuation = light.attenuation;
+    view.mode = static_cast<DrawMode>(state.renderer.mode);
+    view.wireframe = state.renderer.wireframe;
+    if (state.renderer.show_selection && state.selection.node)
+        view.selected = placed->scene->find_node(*state.selection.node);
+    view.background = background_of(state.backgrounds, *placed);
+    view.marks = marks_of(state.markers, *placed);
+    view.scene = std::move(placed);
+    return view;
+}
+
+protocol::FrameHeader header_of(const protocol::State& state, const View& view,
+                                const protocol::Resize& view_size) {
+    protocol::FrameHeader header;
+    header.camera.pose = state.camera;
+    header.camera.pose.name.reset();  // of any length; the node's id says it
+    header.camera.view_matrix = view_from_world(view.camera);
+    header.camera.projection_matrix = clip_from_view(
+        view.camera, static_cast<double>(view.width) / view.height, {state.camera.near, state.camera.far});
+    header.width = view.width;
+    header.height = view.height;
+    header.view = view_size;
+    header.renderer = {state.renderer.mode, state.renderer.wireframe, state.renderer.show_selection};
+    for (const Mark& mark : view.marks) header.markers[mark.name] = mark.point;
+    return header;
+}
+
+}  // namespace vrut::server::room

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <tl/expected.hpp>
+
+#include "frame_header.hpp"
+#include "scene.hpp"
+#include "state.hpp"
+#include "view.hpp"
+
+namespace vrut::server::room {
+
+/// The state that a scene starts with, its camera at home for a view of `aspect`.
+protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices);
+/// What `fit` gives at loading.
+protocol::ViewState home_view(const PlacedScene& placed, double aspect);
+
+Camera camera_of(const protocol::CameraState& state);
+Camera camera_of(const protocol::ViewState& view);
+protocol::ViewState view_state_of(const Camera& camera);
+/// Near and far are refitted to the scene; the camera stands at no node.
+protocol::CameraState state_of(const Camera& camera, const Bounds& bounds);
+/// The same at camera node `node`.
+protocol::CameraState state_at_node(const Camera& camera, const PlacedScene& placed, Index node);
+
+/// The camera of a camera node where it is now, or what is wrong with `node`. `what` names the culprit.
+tl::expected<Camera, protocol::Error> node_camera(const PlacedScene& placed, Id node,
+                                                  const std::string& what);
+/// `base` with the members of `overlay`, a valid pose with orthogonal up, or what is wrong; where `up` is not
+/// given the roll of `base` is kept.
+tl::expected<Camera, protocol::Error> overlaid(const Camera& base, const protocol::CameraOverlay& overlay,
+                                               const PlacedScene& placed, const std::string& what);
+
+/// How many of its nodes are solid, transparent and reflective, into the state.
+void count_classes(protocol::State& state, const PlacedScene& placed);
+
+/// The states of a scene's nodes with `overrides`, or what is wrong with those. What equals the file's
+/// disappears from `overrides`.
+tl::expected<std::vector<NodeState>, protocol::Error> node_states(
+    const Scene& scene, std::map<std::string, protocol::NodeOverride>& overrides);
+
+/// What of the state and the scene is to be seen, but for size and samples. The background is the active one,
+/// if its subtree is active, else the plain colour.
+View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed);
+/// What a picture says of itself, but for its number, revision, quality and times.
+protocol::FrameHeader header_of(const protocol::State& state, const View& view,
+                                const protocol::Resize& view_size);
+
+}  // namespace vrut::server::room

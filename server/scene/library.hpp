@@ -1,0 +1,53 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <tl/expected.hpp>
+#include <vector>
+
+#include "messages.hpp"
+#include "scene/import_process.hpp"
+#include "scene/loaded_scene.hpp"
+
+namespace vrut::server::scene {
+
+/// Reads a scene file (import_scene()); `name` is by which it was asked for. Or one sentence on what is
+/// wrong.
+tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& path, const std::string& name,
+                                                  const ReadProgress& progress = {},
+                                                  const std::optional<ImportLimits>& limits = {});
+
+/// The folder of scenes that clients may open.
+class SceneLibrary {
+public:
+    /// Without a folder there are none.
+    SceneLibrary() = default;
+    explicit SceneLibrary(std::filesystem::path folder, std::optional<ImportLimits> limits = {})
+        : folder_(std::move(folder)), limits_(limits) {}
+
+    /// Of reading each of its scenes; none: import_limits().
+    const std::optional<ImportLimits>& limits() const { return limits_; }
+
+    /// The file of this name, which may lie in a folder below, but nowhere else; or why there is none.
+    tl::expected<std::filesystem::path, std::string> find(const std::string& name) const;
+
+    static constexpr std::size_t kMostNames = protocol::kMaxScenes, kMostEntries = 10'000;
+    /// Names of scene files that find() finds, by their endings, sorted, at most kMostNames. In a folder of
+    /// more than kMostEntries entries, folders below counted, some may be missing. Folders behind links are
+    /// not looked into, and what cannot be read is passed over.
+    std::vector<std::string> names() const;
+
+private:
+    bool leads_to_scene(const std::string& link) const;
+
+    std::filesystem::path folder_;
+    std::optional<ImportLimits> limits_;
+};
+
+/// SHA-256 of a file in hexadecimal. Throws std::runtime_error, also where it is asked to stop.
+std::string sha256_of(const std::filesystem::path& path, const std::stop_token& stop = {});
+std::string sha256_of_text(std::string_view text);
+
+}  // namespace vrut::server::scene

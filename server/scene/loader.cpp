@@ -1,0 +1,108 @@
+#include "scene/loader.hpp"
+
+#include <mutex>
+#include <utility>
+
+#include "base/clock.hpp"
+#include "scene/level_store.hpp"
+
+namespace vrut::server::scene {
+
+namespace {
+
+struct Closing {};
+
+}  // namespace
+
+/// Shared with the thread, which may outlive the loader.
+struct SceneLoader::Listener {
+    std::mutex mutex;
+    std::function<void(SceneLoading)> on_progress;
+    std::function<void(SceneLoaded)> on_loaded;
+
+    void tell(SceneLoading loading) {
+        const std::lock_guard lock(mutex);
+        if (on_progress) on_progress(std::move(loading));
+    }
+    void tell(SceneLoaded loaded) {
+        const std::lock_guard lock(mutex);
+        if (on_loaded) on_loaded(std::move(loaded));
+    }
+    void close() {
+        const std::lock_guard lock(mutex);
+        on_progress = nullptr;
+        on_loaded = nullptr;
+    }
+};
+
+namespace {
+
+/// Tells how far the reading is, until it is given up.
+ReadProgress progress_of(const std::string& name, std::function<void(SceneLoading)> tell,
+                         const std::stop_token& stop) {
+    return [name, tell = std::move(tell), stop, last = base::Clock::now()](double fraction) mutable {
+        constexpr std::chrono::milliseconds kBetweenReports{100};
+        if (stop.stop_requested()) throw Closing();
+        if (base::Clock::now() - last < kBetweenReports) return;
+        last = base::Clock::now();
+        tell({name, fraction});
+    };
+}
+
+/// Throws what `progress` throws, unless it is a std::exception.
+SceneLoaded load(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
+                 const ReadProgress& progress, const std::optional<ImportLimits>& limits) try {
+    SceneLoaded loaded{name, load_scene(path, name, progress, limits)};
+    progress(1);
+    if (loaded.scene) loaded.levels = levels_of(loaded.scene->sha256, renderer);
+    return loaded;
+} catch (const std::exception& error) {
+    return {name, tl::unexpected(std::string(error.what()))};
+}
+
+}  // namespace
+
+SceneLoader::SceneLoader(std::function<void(SceneLoading)> on_progress,
+                         std::function<void(SceneLoaded)> on_loaded)
+    : listener_(std::make_shared<Listener>()) {
+    listener_->on_progress = std::move(on_progress);
+    listener_->on_loaded = std::move(on_loaded);
+}
+
+SceneLoader::~SceneLoader() { listener_->close(); }
+
+bool SceneLoader::busy() const {
+    return task_ && !(given_up_ && task_->is_done_within(std::chrono::milliseconds(0)));
+}
+
+std::optional<std::string> SceneLoader::start(const SceneLibrary& library, const std::string& name,
+                                              const std::string& renderer) {
+    using Refusal = std::optional<std::string>;
+    constexpr std::chrono::seconds kWaitsForFolder{1};
+    finish();
+    std::promise<Refusal> found;
+    std::future<Refusal> refusal = found.get_future();
+    task_.emplace([library, name, renderer, listener = listener_,
+                   looked_up = std::move(found)](const std::stop_token& stop) mutable {
+        const auto path = library.find(name);
+        looked_up.set_value(path ? Refusal() : path.error());
+        if (!path) return;
+        const auto tell = [listener](SceneLoading loading) { listener->tell(std::move(loading)); };
+        listener->tell(load(*path, name, renderer, progress_of(name, tell, stop), library.limits()));
+    });
+    if (refusal.wait_for(kWaitsForFolder) != std::future_status::ready) {
+        task_->stop();
+        given_up_ = true;
+        return "the folder of scenes does not answer";
+    }
+    Refusal why = refusal.get();
+    if (why) finish();
+    return why;
+}
+
+void SceneLoader::finish() {
+    task_.reset();
+    given_up_ = false;
+}
+
+}  // namespace vrut::server::scene

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "base/abandonable_task.hpp"
+#include "level_table.hpp"
+#include "scene/library.hpp"
+#include "scene/loaded_scene.hpp"
+
+namespace vrut::server::scene {
+
+struct SceneLoading {
+    std::string name;
+    double fraction = 0;
+};
+
+struct SceneLoaded {
+    std::string name;
+    tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
+    protocol::LevelTable levels = {};              ///< of the scene on this machine
+};
+
+/// Reads one scene at a time on a thread of its own, which is left behind where it hangs on a disk.
+class SceneLoader {
+public:
+    /// Both are called on that thread, and not after the destructor has begun: `on_progress` at most ten
+    /// times a second, `on_loaded` once at the end.
+    SceneLoader(std::function<void(SceneLoading)> on_progress, std::function<void(SceneLoaded)> on_loaded);
+    ~SceneLoader();
+    SceneLoader(const SceneLoader&) = delete;
+    SceneLoader& operator=(const SceneLoader&) = delete;
+
+    /// From start() until finish(), or while a refused start() still hangs.
+    bool busy() const;
+    /// Reads the scene of this name, and the levels that are kept for `renderer`; or returns why it does not,
+    /// after a second at most. Throws std::system_error where no thread can be had.
+    std::optional<std::string> start(const SceneLibrary& library, const std::string& name,
+                                     const std::string& renderer);
+    /// To be called after `on_loaded`.
+    void finish();
+
+private:
+    struct Listener;
+
+    std::shared_ptr<Listener> listener_;
+    bool given_up_ = false;  ///< by start(), since the folder does not answer
+    std::optional<base::AbandonableTask<void>> task_;
+};
+
+}  // namespace vrut::server::scene

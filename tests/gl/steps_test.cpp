@@ -1,0 +1,153 @@
+// Images are drawn in steps: they may take turns, and no step does more than so much.
+#include "frame_plan.hpp"
+#include "glass_shape.hpp"
+#include "step_work.hpp"
+#include "studio.hpp"
+
+using namespace vrut;
+
+namespace {
+
+Material glass(double red, double alpha) {
+    Material material = material_of({red, 0.5, 0.9});
+    material.diffuse.a = alpha;
+    material.two_sided = true;
+    return material;
+}
+
+/// So many that a sample takes several steps, for each way in which glass is drawn: sorted, layered, and both
+/// in a mirror.
+std::shared_ptr<const PlacedScene> much_glass(double red) {
+    Material mirror = material_of({0.2, 0.2, 0.2});
+    mirror.reflectivity = 0.8;
+    std::vector<Part> parts{{1, quad(3), mirror, moved_by({0, 0, -3})}};
+    for (int i = 0; i < 2000; ++i)
+        parts.push_back({2 + i, quad(1), glass(red, 0.05), moved_by({0, 0, 0.0003 * i})});
+    for (int i = 0; i < 40; ++i)
+        parts.push_back({3000 + i, quad(1), glass(i % 2, 0.5),
+                         moved_by({0, 0, -1.5}) * turned_by(4.5 * i, {0, 1, 0}) * moved_by({0, 0.01, 0})});
+    return scene_of(parts);
+}
+
+View view_of(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& eye) {
+    View view = view_from(eye);
+    view.scene = scene;
+    view.samples = 2;
+    view.width = 160;
+    view.height = 120;
+    return view;
+}
+
+}  // namespace
+
+TEST_CASE("an ordinary image takes a step for each sample") {
+    Studio studio;
+    View view = view_from({1, 2, 5});
+    view.scene = scene_of({{1, sphere(1, 12), material_of({0.7, 0.5, 0.3}), glm::dmat4(1)}});
+    view.samples = 4;
+    const Image expected = studio.draw(view.scene, view);
+    Rendering rendering(view);
+    for (int sample = 1; sample <= 4; ++sample) {
+        CHECK(studio.renderer().step(rendering) == (sample == 4));
+        CHECK(rendering.samples == sample);
+        CHECK(rendering.stats.draws == sample);
+        CHECK(rendering.stats.readbacks == sample);
+    }
+    CHECK(rendering.image.rgba == expected.rgba);
+}
+
+TEST_CASE("images that are drawn in turns are those that are drawn alone, and no sample is drawn twice") {
+    Studio studio;
+    const auto scene = much_glass(0.1), other = much_glass(0.8);
+    View selected = view_of(scene, {2, 1, 4});
+    selected.selected = 1;
+    selected.marks = {{{0, 0, 1}}};
+    View lines = view_of(other, {-2, 1, 4});
+    lines.mode = DrawMode::stylized;
+    lines.width = 100;
+    const std::vector<View> views{view_of(scene, {1, 2, 5}), selected, view_of(other, {1, 2, 5}), lines};
+    std::vector<Rendering> renderings;
+    std::vector<Image> expected;
+    std::vector<FrameStats> alone;
+    for (const View& view : views) {
+        expected.push_back(studio.draw(view.scene, view));
+        alone.push_back(studio.stats);
+        renderings.emplace_back(view);
+    }
+    int steps = 0, between = 0;
+    for (bool all = false; !all; ++steps) {
+        all = true;
+        for (Rendering& rendering : renderings) {
+            if (rendering.samples == 2) continue;
+            const int before = rendering.samples;
+            const bool whole = studio.renderer().step(rendering);
+            CHECK(whole == (rendering.samples == 2));
+            between += rendering.samples == before;
+            all = all && whole;
+        }
+    }
+    CHECK(between > 10);  // steps that end in the midst of a sample
+    for (std::size_t i = 0; i < views.size(); ++i) {
+        CAPTURE(i);
+        CHECK(renderings[i].image.rgba == expected[i].rgba);
+        CHECK(renderings[i].stats.draws == alone[i].draws);
+        CHECK(renderings[i].stats.triangles == alone[i].triangles);
+        CHECK(renderings[i].stats.passes == alone[i].passes);
+        CHECK(renderings[i].stats.samples == 2);
+    }
+}
+
+TEST_CASE("what is given up in the midst of a sample leaves nothing behind") {
+    Studio studio;
+    const View view = view_of(much_glass(0.1), {1, 2, 5});
+    const Image expected = studio.draw(view.scene, view);
+    const long objects = live_gl_objects();
+    for (int i = 0; i < 5; ++i) {
+        Rendering rendering(view);
+        CHECK_FALSE(studio.renderer().step(rendering));
+        CHECK(rendering.samples == 0);
+    }
+    CHECK(studio.draw(view.scene, view).rgba == expected.rgba);
+    CHECK(live_gl_objects() == objects);
+}
+
+TEST_CASE("no step of a scene of many panes in one place does more than so much") {
+    Studio studio;
+    std::vector<Part> parts;
+    constexpr int kPanes = 30'000;
+    for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
+    View view = view_from({0, 0, 5});
+    view.scene = scene_of(parts);
+    const Image expected = studio.draw(view.scene, view);
+    Rendering rendering(view);
+    int steps = 0, draws = 0;
+    for (bool whole = false; !whole; ++steps) {
+        whole = studio.renderer().step(rendering);
+        // Each covers more than 100 pixels, and takes at least that much.
+        CHECK(rendering.stats.draws - draws <= StepWork::kMost / 100);
+        draws = rendering.stats.draws;
+    }
+    CHECK(draws == kPanes);
+    CHECK(steps >= 3);
+    CHECK(rendering.image.rgba == expected.rgba);
+}
+
+TEST_CASE("planning many panes takes steps, each of which looks at so many") {
+    std::vector<Part> parts;
+    constexpr int kPanes = 100'000;
+    for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
+    View view = view_from({0, 0, 5});
+    view.scene = scene_of(parts);
+    GlassShapes shapes(*view.scene->scene);
+    const auto steps = [&] {
+        FramePlanner planner;
+        int count = 1;
+        for (StepWork work(true); !planner.step(view, shapes, work); ++count) work = StepWork(true);
+        REQUIRE(planner.plan().scene.transparent.size() == 1);
+        CHECK(planner.plan().scene.transparent[0].items.size() == kPanes);
+        return count;
+    };
+    const int first = steps();
+    CHECK(first >= 2);
+    CHECK(steps() <= first);  // what was found of their shapes is kept
+}

@@ -1,0 +1,95 @@
+#include "base/abandonable_task.hpp"
+
+#include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+
+#include "scene/loader.hpp"
+#include "temporary_folder.hpp"
+
+using namespace vrut::server::base;
+using namespace vrut::server::scene;
+
+namespace {
+
+/// A read that hangs until the object ends.
+class HangingRead {
+public:
+    HangingRead() { REQUIRE(pipe2(ends_, O_CLOEXEC) == 0); }
+    ~HangingRead() {
+        close(ends_[1]);
+        close(ends_[0]);
+    }
+    HangingRead(const HangingRead&) = delete;
+    HangingRead& operator=(const HangingRead&) = delete;
+
+    int descriptor() const { return ends_[0]; }
+    void answer() const { REQUIRE(write(ends_[1], "x", 1) == 1); }
+
+private:
+    int ends_[2] = {};
+};
+
+}  // namespace
+
+TEST_CASE("a task gives what its work returns or throws") {
+    AbandonableTask<int> task([](const std::stop_token&) { return 7; });
+    CHECK(task.get() == 7);
+    AbandonableTask<int> failing([](const std::stop_token&) -> int { throw std::runtime_error("no"); });
+    CHECK_THROWS_WITH(failing.get(), "no");
+}
+
+TEST_CASE("work that heeds it is stopped, and is done with the task") {
+    const auto done = std::make_shared<std::atomic<bool>>(false);
+    {
+        const AbandonableTask<void> task([done](const std::stop_token& stop) {
+            while (!stop.stop_requested()) std::this_thread::yield();
+            *done = true;
+        });
+        CHECK_FALSE(*done);
+    }
+    CHECK(*done);
+}
+
+TEST_CASE("work that hangs is left behind, with what it owns") {
+    const HangingRead read_hangs;
+    auto owned = std::make_shared<int>(0);
+    const std::weak_ptr<int> seen = owned;
+    {
+        const AbandonableTask<void> task(
+            [moved = std::move(owned), from = read_hangs.descriptor()](const std::stop_token&) {
+                char byte = 0;
+                *moved = static_cast<int>(read(from, &byte, 1));
+            });
+    }
+    CHECK_FALSE(seen.expired());
+    read_hangs.answer();
+    while (!seen.expired()) std::this_thread::yield();
+}
+
+TEST_CASE("a loader that ends leaves a thread behind whose file does not open, and hears no more of it") {
+    std::signal(SIGIO, SIG_IGN);  // tells that somebody waits for the lease below
+    const TemporaryFolder folder;
+    const auto scene = folder.write("room.vrut", "vrut-text 1\nnode 0 \"Room\" root end\n");
+    const int leased = open(scene.c_str(), O_RDWR | O_CLOEXEC);
+    REQUIRE(fcntl(leased, F_SETLEASE, F_WRLCK) == 0);
+    auto listener = std::make_shared<int>(0);
+    const std::weak_ptr<int> heard = listener;
+    {
+        SceneLoader loader([](const SceneLoading&) {}, [listener](const SceneLoaded&) { ++*listener; });
+        CHECK(loader.start(SceneLibrary(folder.path()), "none.vrut", "renderer") ==
+              "there is no scene 'none.vrut'");
+        CHECK_FALSE(loader.busy());
+        CHECK_FALSE(loader.start(SceneLibrary(folder.path()), "room.vrut", "renderer"));
+        CHECK(loader.busy());
+        listener.reset();
+    }
+    CHECK(heard.expired());  // while the thread hangs
+    close(leased);           // now the file opens
+}
