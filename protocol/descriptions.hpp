@@ -57,7 +57,9 @@ void describe(V& v, const Resize*) {
 }
 
 template <class V>
-void describe(V&, const FrameGrant*) {}
+void describe(V& v, const FrameGrant*) {
+    v.optional("shown", &FrameGrant::shown, Integer{1, kMaxInteger});
+}
 
 template <class V>
 void describe(V& v, const Modifiers*) {

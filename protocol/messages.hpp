@@ -43,7 +43,9 @@ struct Resize {
     bool operator==(const Resize&) const = default;
 };
 
-struct FrameGrant {};
+struct FrameGrant {
+    std::optional<std::int64_t> shown;  ///< the newest frame that the client has displayed
+};
 
 struct Modifiers {
     bool ctrl = false, shift = false, alt = false, meta = false;

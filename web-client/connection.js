@@ -210,7 +210,7 @@ export class Connection {
     try {
       await this.#on.frame({ header, data });
     } finally {
-      if (socket === this.#socket) this.#post({ type: 'frame' });
+      if (socket === this.#socket) this.#post({ type: 'frame', shown: header?.frame });
     }
   }
 

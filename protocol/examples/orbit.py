@@ -30,7 +30,7 @@ async def still_frame(server, message_id):
             quality = header["quality"]
             if header["handled"] >= message_id and quality["level"] == "still" and quality["scale"] == 1:
                 return message
-            await server.send(json.dumps({"type": "frame"}))
+            await server.send(json.dumps({"type": "frame", "shown": header["frame"]}))
         elif (answer := json.loads(message))["type"] == "error":
             raise SystemExit(f"orbit.py: {answer['message']}")
 

@@ -4,6 +4,7 @@
 #include "base/files.hpp"
 #include "commands/commands.hpp"
 #include "engine/encoder.hpp"
+#include "engine/frame_quality.hpp"
 #include "engine/images.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"

@@ -30,18 +30,12 @@ std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const pr
 
 Encoder::Encoder(observe::Metrics& metrics,
                  std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
-                 std::function<void()> on_free, std::function<void(const std::string&)> on_failure)
+                 std::function<void()> on_free, std::function<void(Picture, std::string)> on_failed)
     : metrics_(metrics),
       on_encoded_(std::move(on_encoded)),
       on_free_(std::move(on_free)),
-      on_failure_(std::move(on_failure)),
-      thread_([this] {
-          try {
-              run();
-          } catch (const std::exception& error) {
-              on_failure_(error.what());
-          }
-      }) {}
+      on_failed_(std::move(on_failed)),
+      thread_([this] { run(); }) {}
 
 Encoder::~Encoder() {
     {
@@ -76,8 +70,29 @@ void Encoder::give_spare(Image image) {
     spare_ = std::move(image);
 }
 
+std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& image) {
+    const base::Clock::time_point start = base::Clock::now();
+    std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
+    const protocol::Quality& quality = picture.header.quality;
+    if (picture.format == protocol::ImageFormat::png) {
+        encoded->file = encode_png(image);
+        encoded->header_offset = kPngTextOffset;
+    } else {
+        if (!jpeg_) jpeg_.emplace();
+        encoded->file = jpeg_->encode(image, quality.jpeg_quality,
+                                      quality.subsampling == protocol::Quality::Subsampling::yuv420);
+        encoded->header_offset = protocol::comment_offset(encoded->file);
+    }
+    static_cast<Picture&>(*encoded) = std::move(picture);
+    encoded->header.timing.encode_ms =
+        std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();
+    metrics_.encode.observe(encoded->header.timing.encode_ms / 1000);
+    ++metrics_.frames_encoded;
+    metrics_.bytes_encoded += encoded->file.size();
+    return encoded;
+}
+
 void Encoder::run() {
-    JpegEncoder jpeg;
     for (;;) {
         std::optional<std::pair<Picture, Image>> job;
         heart_.rest();
@@ -90,25 +105,14 @@ void Encoder::run() {
         heart_.beat();
         on_free_();
         auto& [picture, image] = *job;
-        const base::Clock::time_point start = base::Clock::now();
-        const std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
-        const protocol::Quality& quality = picture.header.quality;
-        if (picture.format == protocol::ImageFormat::png) {
-            encoded->file = encode_png(image);
-            encoded->header_offset = kPngTextOffset;
-        } else {
-            encoded->file = jpeg.encode(image, quality.jpeg_quality,
-                                        quality.subsampling == protocol::Quality::Subsampling::yuv420);
-            encoded->header_offset = protocol::comment_offset(encoded->file);
+        try {
+            on_encoded_(encode(picture, image));
+        } catch (const std::bad_alloc&) {
+            on_failed_(std::move(picture), "there is no memory to encode it");
+        } catch (const std::exception& error) {
+            on_failed_(std::move(picture), error.what());
         }
-        static_cast<Picture&>(*encoded) = std::move(picture);
-        encoded->header.timing.encode_ms =
-            std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();
-        metrics_.encode.observe(encoded->header.timing.encode_ms / 1000);
-        ++metrics_.frames_encoded;
-        metrics_.bytes_encoded += encoded->file.size();
         give_spare(std::move(image));
-        on_encoded_(encoded);
     }
 }
 

@@ -10,38 +10,20 @@
 #include <thread>
 
 #include "base/watchdog.hpp"
-#include "engine/pacing.hpp"
-#include "frame_header.hpp"
+#include "engine/images.hpp"
+#include "engine/picture.hpp"
 #include "image.hpp"
 #include "observe/metrics.hpp"
 
 namespace vrut::server::engine {
 
-/// A picture with what is to be said of it, the same for all clients but for `handled`.
-struct Picture {
-    protocol::FrameHeader header;
-    std::map<std::string, std::int64_t>
-        handled;  ///< for each client, its highest message id that the picture shows
-    std::optional<base::Clock::time_point> newest_input;  ///< arrival of the newest input that it shows
-    protocol::ImageFormat format = protocol::ImageFormat::jpeg;
-    std::string client;  ///< of a snapshot: who asked for it
-};
-
-struct EncodedPicture : Picture {
-    std::vector<std::uint8_t> file;
-    std::size_t header_offset = 0;  ///< where the header of each client goes
-};
-
-/// `header` as it stands in the picture's file, at header_offset.
-std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header);
-
 /// The encode thread: one picture waits at most.
 class Encoder {
 public:
-    /// All are called on the encode thread: `on_encoded` with each picture, `on_free` when the next may be
-    /// offered, `on_failure` when there will be no more. Pictures may not outlive `metrics`.
+    /// All are called on the encode thread: `on_encoded` with each picture, or `on_failed` where it cannot be
+    /// encoded, and `on_free` when the next may be offered. Pictures may not outlive `metrics`.
     Encoder(observe::Metrics& metrics, std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded,
-            std::function<void()> on_free, std::function<void(const std::string&)> on_failure);
+            std::function<void()> on_free, std::function<void(Picture, std::string why)> on_failed);
     ~Encoder();
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
@@ -57,17 +39,19 @@ public:
 
 private:
     void run();
+    std::shared_ptr<EncodedPicture> encode(Picture& picture, const Image& image);
 
     observe::Metrics& metrics_;
     std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded_;
     std::function<void()> on_free_;
-    std::function<void(const std::string&)> on_failure_;
+    std::function<void(Picture, std::string)> on_failed_;
     mutable std::mutex mutex_;
     std::condition_variable condition_;
     std::optional<std::pair<Picture, Image>> slot_;
     Image spare_;
     bool closed_ = false;
     base::Heartbeat heart_;
+    std::optional<JpegEncoder> jpeg_;
     std::thread thread_;  // last: it uses all of the above
 };
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "codec.hpp"
+#include "drawing_errors.hpp"
 #include "observe/log.hpp"
 #include "renderer.hpp"
 #include "scene/level_store.hpp"
@@ -50,10 +51,7 @@ PainterFactory gl_painter(std::optional<int> device) {
                        renderer->software(),
                        renderer->max_size(),
                        [renderer](const View& view) { renderer->take(view); },
-                       [renderer](const View& view, Image& image, FrameStats& stats,
-                                  const std::function<bool()>& interrupted, Accumulation* kept) {
-                           return renderer->render(view, image, stats, interrupted, kept);
-                       },
+                       [renderer](Rendering& rendering) { return renderer->step(rendering); },
                        [renderer] { return renderer->gl_objects(); }};
     };
 }
@@ -65,9 +63,22 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
       encoder_(
-          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
+          metrics,
+          [this](std::shared_ptr<const EncodedPicture> picture) {
+              const FrameEncoded encoded{picture->header.frame, picture->header.timing.encode_ms,
+                                         picture->file.size()};
+              callbacks_.on_encoded(std::move(picture));
+              mailbox_.push(encoded);
+          },
+          [this] { mailbox_.wake(); },
+          [this](Picture picture, std::string why) {
+              mailbox_.push(PictureFailed{std::move(picture), std::move(why)});
+          }),
       snapshot_encoder_(
-          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); }, callbacks_.on_failure),
+          metrics, callbacks_.on_encoded, [this] { mailbox_.wake(); },
+          [this](Picture picture, std::string why) {
+              mailbox_.push(PictureFailed{std::move(picture), std::move(why)});
+          }),
       loader_([this](scene::SceneLoading loading) { mailbox_.push(std::move(loading)); },
               [this](scene::SceneLoaded loaded) { mailbox_.push(std::move(loaded)); }),
       factory_(std::move(factory)),
@@ -80,7 +91,7 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
             begin(std::exchange(scene, {}));  // not kept when another is shown
             begun = true;
             started.set_value();
-            while (!mailbox_.closed()) step();
+            run();
         } catch (const std::exception& error) {
             if (begun)
                 callbacks_.on_failure(error.what());
@@ -121,62 +132,35 @@ void Engine::begin(const scene::LoadedScene& scene) {
     options.load = [this](const std::string& name) { return load(name); };
     options.scenes = [this] { return scenes(); };
     presentation_.emplace(with_notices(scene), std::move(options));
-    if (const auto refusal = take(scene)) throw std::runtime_error(*refusal);
+    try {
+        if (painter_.take) painter_.take(presentation_->visible());
+    } catch (const OutOfMemory& error) {
+        throw std::runtime_error(scene.name + ": " + error.what());
+    }
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
-    Image image;
-    FrameStats stats;
     View small = presentation_->visible();
     small.width = small.height = 64;
-    paint(small, image, stats);
+    Rendering first(std::move(small));
+    while (!painter_.step(first)) {
+    }
+    draws_ = true;
 }
 
-void Engine::step() {
-    if (!waiting_.empty()) handle_waiting();
-    if (arrived_) show(*std::exchange(arrived_, std::nullopt));
-    if (presentation_->view_size() != room_for_ || (undrawable_ && !is_undrawable())) {
-        room_for_ = presentation_->view_size();
-        room_ = limits_;
-        undrawable_.reset();
-    }
-    fly();
-    const base::Clock::time_point now = base::Clock::now();
-    serve_newest(now);
-    report();
-    const PacingDecision decision = pace(now);
-    const bool draws = decision.action == PacingDecision::Action::draw;
-    // While things move, snapshots get a fifth of the time: a sample of theirs may take longer than a
-    // picture.
-    const base::Clock::time_point begin = base::Clock::now();
-    const bool moves = begin < last_change_ + kQuiet;
-    const bool snapshot = !snapshots_.empty() && snapshot_encoder_.is_free();
-    if (snapshot && (moves ? begin >= snapshot_turn_ : !draws)) {
-        draw_snapshot();
-        const base::Clock::time_point end = base::Clock::now();
-        snapshot_turn_ = end + 4 * (end - begin);
-    } else if (draws) {
-        draw(decision);
-    } else {
-        wait_for_event(snapshot && moves ? earlier(decision.until, snapshot_turn_) : decision.until);
+void Engine::run() {
+    std::optional<base::Clock::time_point> until = base::Clock::now();
+    while (!mailbox_.closed()) {
+        drain(until);
+        apply();
+        publish();
+        until = take_step(scheduler_.next(situation(base::Clock::now())));
     }
 }
 
-void Engine::wait_for_event(std::optional<base::Clock::time_point> until) {
+void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(until, stats_.due());
     if (presentation_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
-    receive(waiting_.empty() ? until : base::Clock::now());
-    handle_waiting();
-}
-
-void Engine::fly() {
-    if (!presentation_->flies()) return;
-    last_change_ = base::Clock::now();
-    presentation_->advance(time_of(last_change_));
-}
-
-// --- events
-
-void Engine::receive(std::optional<base::Clock::time_point> until) {
+    if (!waiting_.empty()) until = base::Clock::now();
     heart_.rest();
     std::vector<EngineEvent> events = mailbox_.wait(until);
     heart_.beat();
@@ -188,13 +172,62 @@ void Engine::receive(std::optional<base::Clock::time_point> until) {
     }
 }
 
-/// What must not wait for the whole of a long picture; between two of its samples.
-void Engine::attend() {
-    receive(base::Clock::now());
+void Engine::apply() {
     handle_waiting();
+    if (arrived_) show_arrived();
+    if (presentation_->view_size() != room_for_ || (failed_ && !has_failed())) {
+        room_for_ = presentation_->view_size();
+        room_ = limits_;
+        failed_.reset();
+    }
     fly();
-    report();
+    if (frame_ && is_outdated(*frame_)) give_up_frame();
 }
+
+ScheduleInput Engine::situation(base::Clock::time_point now) const {
+    ScheduleInput input;
+    input.now = now;
+    input.last_change = last_change_;
+    if (renewal_) return input;  // there is nothing to draw with
+    input.changed = !shows_present();
+    input.newest_samples = newest_.still_samples;
+    input.encoder_free = encoder_.is_free();
+    input.frame_under_way = frame_.has_value();
+    input.snapshot_waits = !snapshots_.empty() && snapshot_encoder_.is_free();
+    for (const auto& [name, client] : clients_) {
+        if (!wants_newer(client) || has_failed()) continue;
+        const base::Clock::time_point from = last_change_ + delivery_at_rest(client.wanted.link);
+        input.last_refinement_from = input.frame_wanted ? std::min(input.last_refinement_from, from) : from;
+        input.frame_wanted = true;
+    }
+    return input;
+}
+
+std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& step) {
+    using Action = ScheduledStep::Action;
+    if (renewal_) {
+        if (base::Clock::now() >= renewal_->at) renew_painter();
+        return renewal_ ? renewal_->at : base::Clock::now();
+    }
+    if (step.action == Action::wait) return step.until;
+    const base::Clock::time_point begin = base::Clock::now();
+    if (step.action == Action::begin_frame) begin_frame(step.still_samples);
+    if (step.action != Action::draw_snapshot) {
+        draw_frame();
+    } else {
+        draw_snapshot();
+        scheduler_.drew_snapshot(begin, base::Clock::now());
+    }
+    return base::Clock::now();
+}
+
+void Engine::fly() {
+    if (!presentation_->flies()) return;
+    last_change_ = base::Clock::now();
+    presentation_->advance(time_of(last_change_));
+}
+
+// --- events
 
 void Engine::handle_waiting() {
     constexpr std::chrono::milliseconds kSlice{4};  // then it is time for pictures and answers
@@ -226,27 +259,44 @@ void Engine::handle(const ClientLeft& left) {
     stats_.left(left.client, now);
 }
 
-void Engine::handle(const FrameSent& sent) {
-    const auto found = clients_.find(sent.client);
+void Engine::handle(const FramesWanted& wanted) {
+    const auto found = clients_.find(wanted.client);
     if (found == clients_.end()) return;
     Client& client = found->second;
-    client.last_frame = std::max(client.last_frame, sent.frame);
-    client.grants = std::min(client.grants + sent.unused_grants, protocol::kMaxGrants);
-    // One that it had already is not sent again.
-    client.owed = std::max(client.owed - (sent.frame > client.newest_sent) - sent.unused_grants, 0);
-    if (sent.frame > client.newest_sent) client.sent.push_back(sent);
-    client.newest_sent = std::max(client.newest_sent, sent.frame);
-    if (client.sent.size() > protocol::kMaxGrants) client.sent.pop_front();
-    was_delivered(sent.frame);
+    if (wanted.since_sequence != client.wanted.since_sequence || client.wanted.client.empty())
+        client.from_frame = next_frame_;
+    client.wanted = wanted;
 }
 
-/// The first picture of a scene is not kept waiting by coarser surfaces that are made for later ones.
-void Engine::was_delivered(std::int64_t frame) {
+/// What a moving frame cost decides on the levels of those that follow.
+void Engine::handle(const FrameEncoded& encoded) {
+    const auto begun = std::find_if(begun_.begin(), begun_.end(),
+                                    [&](const Begun& frame) { return frame.frame == encoded.frame; });
+    if (begun != begun_.end()) {
+        choice_->took(begun->level, {begun->drawn_ms + encoded.encode_ms, static_cast<double>(encoded.bytes)},
+                      begun->pixels, base::Clock::now());
+        begun_.erase(begun_.begin(), begun + 1);
+    }
+    if (encoded.frame >= scene_since_ && !detail_) make_detail_levels();
+}
+
+void Engine::handle(const PictureFailed& failed) {
+    const Picture& picture = failed.picture;
+    observe::log_warning("picture_not_encoded", {{"frame", picture.header.frame}, {"reason", failed.why}});
+    if (!picture.client.empty())
+        return reject(picture.client, picture.header.snapshot,
+                      "the picture cannot be encoded: " + failed.why);
+    std::erase(drawn_, picture.header.frame);
+    if (picture.header.frame != newest_.frame) return;  // a newer one may do better
+    failed_ = Failed{newest_.visible, newest_.view_size};
+    notice("What is to be seen now cannot be encoded: " + failed.why);
+}
+
+/// The first frame of a scene is not kept waiting by coarser surfaces that are made for later ones.
+void Engine::make_detail_levels() {
     const auto& placed = presentation_->visible().scene;
     const auto simplifies = [](const protocol::Level& level) { return level.quality.detail > 0; };
-    if (detail_ || frame < scene_since_ || !placed ||
-        std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies))
-        return;
+    if (!placed || std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies)) return;
     try {
         detail_ = std::make_shared<const DetailLevels>(placed->scene);
     } catch (const std::exception& error) {  // no memory, or no thread
@@ -262,9 +312,7 @@ void Engine::use(const protocol::LevelTable& table) {
     for (const protocol::Level& level : table.levels)
         if (level.quality.level == protocol::Quality::Level::still) at_rest_.push_back(level);
     begun_.clear();
-    measured_by_.clear();
-    // Elsewhere, since the level that is being made is waited for.
-    if (detail_) given_up_ = std::async([levels = std::move(detail_)]() mutable { levels.reset(); });
+    detail_.reset();
     scene_since_ = next_frame_;
 }
 
@@ -277,7 +325,7 @@ void Engine::handle(const PictureAsked& asked) {
     room::PictureOrder order = presentation_->order(asked.width > 0 ? asked.width : present.width,
                                                     asked.height > 0 ? asked.height : present.height);
     order.client = asked.name;
-    snapshots_.push_back({std::move(order), {}, {}});
+    snapshots_.push_back({std::move(order)});
 }
 
 void Engine::handle(const scene::SceneLoading& loading) { tell({loading.name, loading.fraction, {}, {}}); }
@@ -287,7 +335,10 @@ void Engine::tell(const protocol::Loading& loading) {
     output_.loads = !loading.done && !loading.refused;
 }
 
-void Engine::handle(const scene::SceneLoaded& loaded) { arrived_ = loaded; }
+void Engine::handle(const scene::SceneLoaded& loaded) {
+    arrived_ = loaded;
+    arrival_losses_ = 0;
+}
 
 std::optional<protocol::Error> Engine::load(const std::string& name) {
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
@@ -328,6 +379,7 @@ void Engine::handle(const ClientSaid& said) {
     Client& client = found->second;
     output_.handled[said.client].bytes += said.bytes;
     output_.handled[said.client].requests += said.is_request();
+    output_.handled[said.client].sequence = client.sequence = said.sequence;
     const auto id = said.message ? said.message->id : said.message.error().id;
     if (id && *id <= client.handled)
         presentation_->refuse(said.client, {id, code::out_of_range,
@@ -335,28 +387,9 @@ void Engine::handle(const ClientSaid& said) {
                                                 " came before " + std::to_string(*id)});
     else if (!said.message)
         presentation_->refuse(said.client, said.message.error());
-    else if (std::holds_alternative<protocol::FrameGrant>(said.message->payload))
-        grant(client, said);
-    else
+    else if (!std::holds_alternative<protocol::FrameGrant>(said.message->payload))  // the connection's
         say(said, *said.message, client);
     if (id) client.handled = std::max(client.handled, *id);
-}
-
-void Engine::grant(Client& client, const ClientSaid& said) {
-    ++metrics_.frames_granted;
-    client.grants = std::min(client.grants + 1, protocol::kMaxGrants);
-    client.is_late = said.is_late;
-    const int outstanding = client.grants + client.owed + static_cast<int>(client.sent.size());
-    // With no picture that it can answer: so many grants does this client keep outstanding.
-    if (client.sent.empty() || (client.sent.size() == 1 && !said.has_frame))
-        client.window = std::clamp(outstanding, client.window, protocol::kMaxGrants);
-    if (outstanding <= client.window || client.sent.empty()) return;
-    // It comes when the oldest has arrived, not the newest, which may be on its way still.
-    const FrameSent answered = client.sent.front();
-    client.sent.pop_front();
-    client.tells = true;
-    client.answered = std::max(client.answered, answered.frame);
-    if (presentation_->holder() == said.client) measure(answered, said.arrival);
 }
 
 void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client) {
@@ -381,7 +414,7 @@ void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message,
         stats_.shown(said.client, shown->revision, said.arrival);
     for (room::PictureOrder& order : presentation_->take_orders()) {
         ++client.snapshots;
-        snapshots_.push_back({std::move(order), {}, {}});
+        snapshots_.push_back({std::move(order)});
     }
 }
 
@@ -391,7 +424,7 @@ PictureSize Engine::present_size() const {
 }
 
 /// Hands over what there is to tell.
-void Engine::report() {
+void Engine::publish() {
     const base::Clock::time_point now = base::Clock::now();
     if (const auto& document = presentation_->document(); document != reported_) {
         reported_ = output_.document = document;
@@ -402,6 +435,8 @@ void Engine::report() {
         metrics_.scene_triangles = presentation_->state().scene.value->triangles;
     }
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
+    const std::int64_t present = shows_present() ? newest_.frame : 0;
+    if (present != reported_present_) output_.present_frame = reported_present_ = present;
     output_.answers = presentation_->take_answers();
     for (const room::Answer& answer : output_.answers)
         if (!answer.refusal.empty()) {

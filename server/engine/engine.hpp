@@ -14,12 +14,14 @@
 #include "base/watchdog.hpp"
 #include "detail_levels.hpp"
 #include "engine/encoder.hpp"
+#include "engine/frame_quality.hpp"
 #include "engine/level_choice.hpp"
 #include "engine/mailbox.hpp"
-#include "engine/pacing.hpp"
 #include "engine/painter.hpp"
+#include "engine/scheduler.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
+#include "rendering.hpp"
 #include "room/room.hpp"
 #include "scene/library.hpp"
 #include "scene/loader.hpp"
@@ -30,27 +32,25 @@ namespace vrut::server::engine {
 
 /// What the render thread tells the net thread after it has handled a batch of events.
 struct EngineOutput {
-    struct Owed {
-        std::string client;
-        std::int64_t frame = 0;  ///< this frame or a newer one answers one grant
-    };
     std::shared_ptr<const protocol::StateDocument> document;  ///< the newest; null if unchanged
     std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
     std::int64_t by_since = 0;
     std::vector<room::Answer> answers;
-    std::vector<Owed> owed;
     std::vector<std::string> undrawn;  ///< whose picture cannot be drawn (PictureAsked::name)
     struct Handled {
         std::size_t bytes = 0, requests = 0;
+        std::uint64_t sequence = 0;  ///< of the last
     };
-    std::map<std::string, Handled> handled;             ///< of messages, for each client
-    std::optional<PictureSize> size;                    ///< of a picture of the view; none if unchanged
+    std::map<std::string, Handled> handled;  ///< of messages, for each client
+    std::optional<PictureSize> size;         ///< of a picture of the view; none if unchanged
+    /// Number of the frame that shows what is to be seen now, 0 if none does; none if unchanged.
+    std::optional<std::int64_t> present_frame;
     std::shared_ptr<const std::string> stats, loading;  ///< messages for all; null if there is nothing new
     bool loads = false;                                 ///< with `loading`: it goes on
 
     bool empty() const {
-        return !document && answers.empty() && owed.empty() && undrawn.empty() && handled.empty() && !size &&
-               !stats && !loading;
+        return !document && answers.empty() && undrawn.empty() && handled.empty() && !size &&
+               !present_frame && !stats && !loading;
     }
 };
 
@@ -96,57 +96,62 @@ public:
 
 private:
     struct Client {
-        int grants = 0;
-        int owed = 0;                 ///< pictures that it has been promised, and that are not sent yet
-        int window = 1;               ///< the grants that it keeps outstanding, as far as was seen
-        std::int64_t last_frame = 0;  ///< newest that it has been promised
-        std::int64_t handled = 0;     ///< highest message id
-        int snapshots = 0;            ///< asked for and not sent yet
-        std::deque<FrameSent> sent;   ///< each until it is answered: until another is asked for
-        std::int64_t newest_sent = 0;
-        bool tells = false;         ///< has asked for another picture after one
-        std::int64_t answered = 0;  ///< the newest frame after which it did
-        bool is_late = true;        ///< frames take longer to it than over a quick link, as far as is known
-        base::Clock::time_point promised_at{};
-
-        void owe(std::int64_t frame, base::Clock::time_point now) {
-            --grants;
-            ++owed;
-            last_frame = frame;
-            promised_at = now;
-        }
+        std::int64_t handled = 0;    ///< highest message id
+        std::uint64_t sequence = 0;  ///< of the last message that was handled
+        int snapshots = 0;           ///< asked for and not sent yet
+        FramesWanted wanted;
+        std::int64_t from_frame = 1;  ///< the first begun after its last grant
     };
+    /// A moving frame that was begun, until its cost is known.
     struct Begun {
         std::int64_t frame = 0;
         std::size_t level = 0;
         double pixels = 0, drawn_ms = 0;
-        base::Clock::time_point at;
+    };
+    /// The frame that is being drawn.
+    struct FrameUnderWay {
+        Picture picture;
+        View visible;
+        protocol::Resize view_size;
+        int still_samples = 0;  ///< 0: a moving one
+        std::size_t level = 0;
+        Rendering rendering;
     };
     struct Snapshot {
         room::PictureOrder order;
-        Image image;
-        Accumulation kept;
-        int losses = 0;  ///< of the context, while it was drawn
+        std::optional<Rendering> rendering = {};  ///< none: not begun
+        int losses = 0;                           ///< of the context, while it was drawn
     };
-    enum class Painted { whole, given_up, lost };
-    static constexpr int kMostLosses = 2;  // of the context, by one snapshot or scene
+    /// The graphics driver is lost, and started again at a time.
+    struct Renewal {
+        base::Clock::time_point at;
+        std::string why;
+    };
+    static constexpr int kMostLosses = 2;        // of the context, by one snapshot or scene
+    static constexpr std::size_t kUnderWay = 2;  // snapshots: what is drawn of one takes 20 bytes a pixel
+
+    // --- the loop: drain, apply, publish, schedule, one step
+    void run();
+    void drain(std::optional<base::Clock::time_point> until);
+    void apply();
+    void publish();
+    ScheduleInput situation(base::Clock::time_point now) const;
+    /// Takes the step; until when there is nothing to do then, none: until something happens.
+    std::optional<base::Clock::time_point> take_step(const ScheduledStep& step);
 
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
     void handle(const ClientSaid& said);
-    void handle(const FrameSent& sent);
+    void handle(const FramesWanted& wanted);
+    void handle(const FrameEncoded& encoded);
+    void handle(const PictureFailed& failed);
     void handle(const SnapshotSent& sent);
     void handle(const PictureAsked& asked);
     void handle(const scene::SceneLoading& loading);
     void handle(const scene::SceneLoaded& loaded);
-    /// Takes what has come, after waiting for something until then.
-    void receive(std::optional<base::Clock::time_point> until);
-    /// Handles some of it: the clients in turn, so that none waits behind another's thousand.
+    /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
-    void attend();
     void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
-    void grant(Client& client, const ClientSaid& said);
-    void report();
     std::optional<protocol::Error> load(const std::string& name);
     const std::vector<std::string>& scenes();
     room::Time time_of(base::Clock::time_point when) const {
@@ -156,46 +161,45 @@ private:
     // --- pictures
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
-    bool waits_for_newer(const std::string& name, const Client& client, base::Clock::time_point now) const;
-    base::Clock::duration delivery_at_rest() const;
-    base::Clock::duration delivery_of_moving() const;
-    base::Clock::duration delivery_of(std::size_t level) const;
-    bool is_held(const std::string& name, const Client& client, int still_samples,
-                 base::Clock::time_point now) const;
+    bool wants_newer(const Client& client) const;
+    double bytes_at_rest() const;
+    base::Clock::duration delivery_at_rest(const std::optional<Link>& link) const;
+    std::optional<Link> holders_link() const;
     bool thin_lines() const;
-    void serve_newest(base::Clock::time_point now);
-    PacingDecision pace(base::Clock::time_point now);
-    void step();
+    bool is_outdated(const FrameUnderWay& frame) const;
     void fly();
     PictureSize present_size() const;
     void tell(const protocol::Loading& loading);
-    void wait_for_event(std::optional<base::Clock::time_point> until);
-    void draw(const PacingDecision& decision);
+    std::map<std::string, Applied> applied() const;
+    void begin_frame(int still_samples);
+    void draw_frame();
+    void finish_frame();
+    void give_up_frame();
+    std::deque<Snapshot>::iterator next_snapshot();
     void draw_snapshot();
-    void promise(std::int64_t frame, int still_samples);
-    void measure(const FrameSent& sent, base::Clock::time_point asked);
+    void finish_snapshot(Snapshot snapshot);
 
     // --- what draws, and what fails in it
-    Painted paint(const View& view, Image& image, FrameStats& stats,
-                  const std::function<bool()>& interrupted = {}, Accumulation* kept = nullptr);
-    void renew_painter(std::string why);
-    std::optional<std::string> take(const scene::LoadedScene& scene);
-    void show(const scene::SceneLoaded& loaded);
-    struct Undrawable {
+    enum class Drawn { part, whole, lost };
+    Drawn draw(Rendering& rendering);
+    void lose_painter(const std::string& why);
+    void renew_painter();
+    void show_arrived();
+    void show(const scene::SceneLoaded& loaded, std::optional<std::string> refused);
+    struct Failed {
         View visible;
         protocol::Resize view_size;
     };
-    void draw_smaller(const Undrawable& what, const PictureSize& size, const std::string& why);
-    bool is_undrawable() const;
-    void refuse(const Snapshot& snapshot, const std::string& sentence);
+    void draw_smaller(const Failed& what, const PictureSize& size, const std::string& why);
+    bool has_failed() const;
+    void reject(const Snapshot& snapshot, const std::string& sentence);
+    void reject(const std::string& client, std::optional<std::int64_t> id, const std::string& sentence);
     /// Tells all clients; the log, too.
     void notice(const std::string& sentence);
     void use(const protocol::LevelTable& table);
-    void was_delivered(std::int64_t frame);
+    void make_detail_levels();
     protocol::Quality quality_at_rest(int samples) const;
     std::size_t choose_level();
-    bool knows_link() const;
-    void note(const Begun& begun);
 
     void begin(const scene::LoadedScene& scene);
     scene::LoadedScene with_notices(scene::LoadedScene scene) const;
@@ -220,38 +224,39 @@ private:
     scene::SceneLoader loader_;
     PainterFactory factory_;
     Painter painter_;
+    std::optional<Renewal> renewal_;             ///< while there is no painter
     std::size_t tries_ = 0;                      ///< painters made since the last whole picture
-    std::optional<scene::SceneLoaded> arrived_;  ///< to be shown as soon as nothing is being drawn
+    std::optional<scene::SceneLoaded> arrived_;  ///< to be shown
+    int arrival_losses_ = 0;                     ///< of the context, by what has arrived
     PictureLimits room_;                         ///< of the live picture, as far as is known
     protocol::Resize room_for_;                  ///< of a view of this size
-    std::optional<Undrawable> undrawable_;       ///< for which there is no memory even if it is small
+    std::optional<Failed> failed_;               ///< what cannot be drawn, even small, or not encoded
 
     std::optional<room::Presentation> presentation_;
     std::map<std::string, Client> clients_;
-    std::deque<Snapshot> snapshots_;         ///< in the order of asking; the first may have been begun
-    base::Clock::time_point snapshot_turn_;  ///< while things move: not before
+    Scheduler scheduler_;
+    std::optional<FrameUnderWay> frame_;
+    std::deque<Snapshot> snapshots_;  ///< in the order of their turns
     EngineOutput output_;
     std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output told of
     PictureSize reported_size_;
+    std::int64_t reported_present_ = 0;
     observe::LiveStats stats_;
 
     base::Clock::time_point last_change_;                  ///< of what is to be seen; long ago at the start
     std::optional<base::Clock::time_point> newest_input_;  ///< arrival of the last message that changed it
-    base::Clock::time_point measured_input_{};             ///< the newest whose way to a grant was measured
-    struct Drawn {
+    struct NewestFrame {
         std::int64_t frame = 0;
         View visible;
         protocol::Resize view_size;
         int still_samples = 0;  ///< 0: a moving one
-    } drawn_;
+    } newest_;
+    std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
-    std::int64_t present_since_ = 1;  ///< the first frame of the view as it is
-    std::deque<Begun> begun_;         ///< the last moving frames
-    std::string measured_by_;         ///< the client to whom the last of them that was measured went
+    std::deque<Begun> begun_;  ///< the last moving frames
     std::optional<LevelChoice> choice_;
     std::vector<protocol::Level> at_rest_;        ///< of the table
-    std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first picture was delivered
-    std::future<void> given_up_;                  ///< of the scenes before
+    std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first frame was encoded
     std::int64_t scene_since_ = 1;                ///< first frame of the scene shown
 
     std::thread thread_;  // last: it uses all of the above

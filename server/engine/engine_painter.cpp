@@ -20,70 +20,70 @@ constexpr std::int64_t kFewestPixels = 4096;  // of a live picture
 
 }  // namespace
 
-Engine::Painted Engine::paint(const View& view, Image& image, FrameStats& stats,
-                              const std::function<bool()>& interrupted, Accumulation* kept) {
+/// One step.
+Engine::Drawn Engine::draw(Rendering& rendering) {
+    const int samples = rendering.stats.samples;
+    const int readbacks = rendering.stats.readbacks;
     try {
-        const bool whole = painter_.paint(view, image, stats, interrupted, kept);
-        draws_ = draws_ || whole;
-        metrics_.samples_drawn += static_cast<std::uint64_t>(stats.samples);
-        metrics_.readbacks += static_cast<std::uint64_t>(stats.readbacks);
+        const bool whole = painter_.step(rendering);
+        metrics_.samples_drawn += static_cast<std::uint64_t>(rendering.stats.samples - samples);
+        metrics_.readbacks += static_cast<std::uint64_t>(rendering.stats.readbacks - readbacks);
         if (painter_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(painter_.gl_objects());
-        if (whole) tries_ = 0;
-        return whole ? Painted::whole : Painted::given_up;
+        if (!whole) return Drawn::part;
+        draws_ = true;
+        tries_ = 0;
+        return Drawn::whole;
     } catch (const ContextLost& lost) {
-        if (kept) *kept = {};
-        renew_painter(lost.what());
-        return Painted::lost;
+        lose_painter(lost.what());
+        return Drawn::lost;
     }
 }
 
-/// Scene, state and clients know nothing of it. Throws where none can be had, or each is lost at once.
-void Engine::renew_painter(std::string why) {
+/// Scene, state and clients know nothing of it.
+void Engine::lose_painter(const std::string& why) {
     draws_ = false;
     painter_ = {};
-    while (!painter_.paint) {
-        observe::log_warning("drawing_begins_anew", {{"reason", why}});
-        if (tries_ == kPauses.size()) throw std::runtime_error(why);
-        const base::Clock::time_point end = base::Clock::now() + kPauses[tries_++];
-        while (base::Clock::now() < end && !mailbox_.closed()) {
-            receive(end);
-            attend();
-        }
-        if (mailbox_.closed()) return;
-        try {
-            painter_ = factory_();
-        } catch (const std::exception& error) {
-            why = error.what();
-        }
+    observe::log_warning("drawing_begins_anew", {{"reason", why}});
+    const auto pause = tries_ < kPauses.size() ? kPauses[tries_] : 0ms;
+    renewal_ = Renewal{base::Clock::now() + pause, why};
+}
+
+/// Throws where none can be had, or each is lost at once.
+void Engine::renew_painter() {
+    if (tries_++ == kPauses.size()) throw std::runtime_error(renewal_->why);
+    try {
+        painter_ = factory_();
+    } catch (const std::exception& error) {
+        return lose_painter(error.what());
     }
+    renewal_.reset();
     notice("The graphics driver had to be started again; drawing goes on with " + painter_.description);
 }
 
-/// Before it is shown; why it cannot be, if so: then the one that is shown goes on.
-std::optional<std::string> Engine::take(const scene::LoadedScene& scene) {
-    if (!painter_.take) return std::nullopt;
-    const View first = room::view_of(room::starting_state(*scene.placed, 1, {}), scene.placed);
-    for (int losses = 0; losses < kMostLosses; ++losses) {
+/// Brings what has arrived to the graphics card first; where that fails, the scene that is shown goes on.
+void Engine::show_arrived() {
+    if (renewal_) return;
+    std::optional<std::string> refused;
+    if (!arrived_->scene) {
+        refused = arrived_->scene.error();
+    } else if (painter_.take) {
+        const scene::LoadedScene& next = *arrived_->scene;
         try {
-            painter_.take(first);
-            return std::nullopt;
+            painter_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
         } catch (const OutOfMemory& error) {
-            return scene.name + ": " + error.what();
+            refused = next.name + ": " + error.what();
         } catch (const ContextLost& lost) {
-            renew_painter(lost.what());
-            if (mailbox_.closed()) return std::nullopt;
+            lose_painter(lost.what());
+            if (++arrival_losses_ < kMostLosses) return;
+            refused = next.name + ": the graphics driver is lost whenever it gets this scene";
         }
     }
-    return scene.name + ": the graphics driver is lost whenever it gets this scene";
+    show(*std::exchange(arrived_, std::nullopt), std::move(refused));
 }
 
-void Engine::show(const scene::SceneLoaded& loaded) {
+void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> refused) {
     loader_.finish();
-    protocol::Loading told{loaded.name, 1, {}, {}};
-    if (loaded.scene)
-        told.refused = take(*loaded.scene);
-    else
-        told.refused = loaded.scene.error();
+    protocol::Loading told{loaded.name, 1, {}, std::move(refused)};
     if (told.refused) {
         observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *told.refused}});
     } else {
@@ -99,7 +99,7 @@ void Engine::show(const scene::SceneLoaded& loaded) {
 }
 
 /// A live picture of this size does not fit: one of a quarter of its pixels may.
-void Engine::draw_smaller(const Undrawable& what, const PictureSize& size, const std::string& why) {
+void Engine::draw_smaller(const Failed& what, const PictureSize& size, const std::string& why) {
     const std::int64_t pixels = std::int64_t{size.width} * size.height / 4;
     observe::log_warning("picture_too_large",
                          {{"width", size.width}, {"height", size.height}, {"reason", why}});
@@ -107,18 +107,21 @@ void Engine::draw_smaller(const Undrawable& what, const PictureSize& size, const
         room_.max_pixels = pixels;
         return notice("Memory is short: pictures are drawn smaller");
     }
-    undrawable_ = what;
+    failed_ = what;
     notice("Memory is short: what is to be seen now cannot be drawn");
 }
 
-bool Engine::is_undrawable() const {
-    return undrawable_ && undrawable_->visible == presentation_->visible() &&
-           undrawable_->view_size == presentation_->view_size();
+bool Engine::has_failed() const {
+    return failed_ && failed_->visible == presentation_->visible() &&
+           failed_->view_size == presentation_->view_size();
 }
 
-void Engine::refuse(const Snapshot& snapshot, const std::string& sentence) {
-    const std::string& client = snapshot.order.client;
-    const auto& id = snapshot.order.header.snapshot;
+void Engine::reject(const Snapshot& snapshot, const std::string& sentence) {
+    reject(snapshot.order.client, snapshot.order.header.snapshot, sentence);
+}
+
+/// Answers who asked for a picture: a client, or by HTTP somebody else.
+void Engine::reject(const std::string& client, std::optional<std::int64_t> id, const std::string& sentence) {
     if (id && clients_.contains(client)) {
         --clients_[client].snapshots;
         presentation_->refuse(client, {*id, code::failed, sentence});

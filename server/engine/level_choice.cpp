@@ -36,30 +36,28 @@ LevelChoice::LevelChoice(const protocol::LevelTable& table)
     means_.resize(levels_.size());
 }
 
-PictureTimes LevelChoice::expected(std::size_t level, double pixels, base::Clock::time_point now) const {
+PictureCost LevelChoice::expected(std::size_t level, double pixels, base::Clock::time_point now) const {
     const Mean& own = means_[level];
     if (own.last && own.pixels == pixels && (level == measured_last_ || now - *own.last < kLately))
-        return own.times;
+        return own.cost;
     const protocol::Level& row = levels_[level];
-    if (!measured_last_) return {for_pixels(row.ms, row, pixels) / table_pixels_};
+    if (!measured_last_)
+        return {for_pixels(row.ms, row, pixels) / table_pixels_,
+                for_pixels(row.bytes, row, pixels) / table_pixels_};
     const Mean& other = means_[*measured_last_];
     const protocol::Level& other_row = levels_[*measured_last_];
-    PictureTimes times{other.times.server * for_pixels(row.ms, row, pixels) /
-                       for_pixels(other_row.ms, other_row, other.pixels)};
-    if (other.times.client)
-        times.client = *other.times.client * for_pixels(row.bytes, row, pixels) /
-                       for_pixels(other_row.bytes, other_row, other.pixels);
-    return times;
+    return {
+        other.cost.ms * for_pixels(row.ms, row, pixels) / for_pixels(other_row.ms, other_row, other.pixels),
+        other.cost.bytes * for_pixels(row.bytes, row, pixels) /
+            for_pixels(other_row.bytes, other_row, other.pixels)};
 }
 
 /// The mean of a level that is new begins at what was expected of it: a first picture, for which buffers of
 /// its size are made, tells too little.
-void LevelChoice::took(std::size_t level, const PictureTimes& times, double pixels,
+void LevelChoice::took(std::size_t level, const PictureCost& cost, double pixels,
                        base::Clock::time_point now) {
-    const PictureTimes before = measured_last_ ? expected(level, pixels, now) : times;
-    PictureTimes mean{mean_of(before.server, times.server), times.client};
-    if (before.client && times.client) mean.client = mean_of(*before.client, *times.client);
-    means_[level] = {mean, pixels, now};
+    const PictureCost before = measured_last_ ? expected(level, pixels, now) : cost;
+    means_[level] = {{mean_of(before.ms, cost.ms), mean_of(before.bytes, cost.bytes)}, pixels, now};
     measured_last_ = level;
 }
 
@@ -67,7 +65,8 @@ bool LevelChoice::holds(std::size_t level, double target_ms, base::Clock::time_p
     const protocol::Quality quality = quality_of(levels_[level].quality, demand_.view, demand_.limits, false);
     const PictureSize size = picture_size(demand_.view, quality.scale);
     return target_ms > 0 &&
-           expected(level, static_cast<double>(size.width) * size.height, now).all() <= target_ms;
+           expected(level, static_cast<double>(size.width) * size.height, now).ms_over(demand_.link) <=
+               target_ms;
 }
 
 void LevelChoice::was_too_slow(base::Clock::time_point now) {

@@ -3,17 +3,21 @@
 #include <optional>
 #include <vector>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
+#include "engine/link.hpp"
 #include "level_table.hpp"
 
 namespace vrut::server::engine {
 
-/// The milliseconds that a picture took, or is expected to take.
-struct PictureTimes {
-    double server = 0;  ///< to draw, read back and encode
-    std::optional<double> client =
-        {};  ///< until its client asked for the next, less the way; none: nobody told
-    double all() const { return server + client.value_or(0); }
+/// What a picture cost, or is expected to cost.
+struct PictureCost {
+    double ms = 0;     ///< to draw, read back and encode
+    double bytes = 0;  ///< of its file
+    /// Milliseconds until it is shown over `link`, less the round trip; of the server alone where there is
+    /// none.
+    double ms_over(const std::optional<Link>& link) const {
+        return ms + (link ? 1000 * bytes / link->bytes_per_second : 0);
+    }
 };
 
 /// What a picture of the moving view is to hold.
@@ -21,6 +25,7 @@ struct LevelDemand {
     protocol::Resize view;
     PictureLimits limits;
     double target_ms = 50;
+    std::optional<Link> link = {};  ///< to who steers; none: only the server's time counts
 };
 
 /// The target that `preference` makes of one: from 0 for the quickest level to infinity for the most
@@ -37,15 +42,15 @@ public:
 
     const std::vector<protocol::Level>& levels() const { return levels_; }
     std::size_t choose(const LevelDemand& demand, base::Clock::time_point now);
-    /// A picture of so many pixels at `level` has taken so long.
-    void took(std::size_t level, const PictureTimes& times, double pixels, base::Clock::time_point now);
+    /// A picture of so many pixels at `level` has cost so much.
+    void took(std::size_t level, const PictureCost& cost, double pixels, base::Clock::time_point now);
     /// The level's running mean, if it is of pictures of that size and of late; else in proportion to its
     /// costs in the table from the mean of the level measured last; else as in the table.
-    PictureTimes expected(std::size_t level, double pixels, base::Clock::time_point now) const;
+    PictureCost expected(std::size_t level, double pixels, base::Clock::time_point now) const;
 
 private:
     struct Mean {
-        PictureTimes times;
+        PictureCost cost;
         double pixels = 0;
         std::optional<base::Clock::time_point> last = {};
     };

@@ -13,21 +13,31 @@ const Pointer* plain_move(const ClientSaid& said) {
     return pointer && pointer->event == Pointer::Event::move && pointer->button == -1 ? pointer : nullptr;
 }
 
-/// Lets `next` take the place of `last` where both are moves of one pointer.
-bool merge(EngineEvent& last, const EngineEvent& next) {
-    auto* before = std::get_if<ClientSaid>(&last);
-    const auto* after = std::get_if<ClientSaid>(&next);
-    if (!before || !after || before->client != after->client) return false;
-    const Pointer *a = plain_move(*before), *b = plain_move(*after);
-    if (!a || !b || a->pointer_id != b->pointer_id || a->buttons != b->buttons) return false;
-    if (before->message->id && after->message->id && *after->message->id <= *before->message->id)
-        return false;
-    const std::size_t bytes = before->bytes;
-    const auto id = before->message->id;
-    *before = *after;
-    before->bytes += bytes;
-    if (!before->message->id) before->message->id = id;
+/// Lets `next` take the place of `before`, an earlier move of the same pointer.
+bool merge(const ClientSaid& before, ClientSaid& next) {
+    const Pointer *a = plain_move(before), *b = plain_move(next);
+    if (a->buttons != b->buttons) return false;
+    const auto id = before.message->id;
+    if (id && next.message->id && *next.message->id <= *id) return false;
+    next.bytes += before.bytes;
+    if (!next.message->id) next.message->id = id;
     return true;
+}
+
+/// Takes out the move that `next` replaces: one among the moves of its client that came last. Moves of
+/// several fingers take turns, so it need not be the very last.
+void merge_into(std::vector<EngineEvent>& events, ClientSaid& next) {
+    if (!plain_move(next)) return;
+    bool last = true;
+    for (auto event = events.rbegin(); event != events.rend(); ++event, last = false) {
+        const auto* before = std::get_if<ClientSaid>(&*event);
+        if (!before || before->client != next.client || !plain_move(*before)) return;
+        // Ids rise: one that is inherited may not come behind a later one.
+        if (!last && !next.message->id) return;
+        if (plain_move(*before)->pointer_id != plain_move(next)->pointer_id) continue;
+        if (merge(*before, next)) events.erase(std::next(event).base());
+        return;
+    }
 }
 
 }  // namespace
@@ -40,7 +50,12 @@ void Mailbox::push(EngineEvent event) {
                 const auto* said = std::get_if<ClientSaid>(&waiting);
                 return said && said->client == left->client;
             });
-        if (!events_.empty() && merge(events_.back(), event)) return;
+        if (auto* said = std::get_if<ClientSaid>(&event)) merge_into(events_, *said);
+        if (const auto* wanted = std::get_if<FramesWanted>(&event))
+            std::erase_if(events_, [&](const EngineEvent& waiting) {
+                const auto* before = std::get_if<FramesWanted>(&waiting);
+                return before && before->client == wanted->client;
+            });
         events_.push_back(std::move(event));
     }
     condition_.notify_one();

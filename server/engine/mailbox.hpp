@@ -8,7 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/pacing.hpp"
+#include "engine/link.hpp"
+#include "engine/picture.hpp"
 #include "messages.hpp"
 #include "scene/loader.hpp"
 
@@ -29,10 +30,9 @@ struct ClientSaid {
     std::string client;
     tl::expected<protocol::ClientMessage, protocol::Error> message;  ///< or why it cannot be read
     base::Clock::time_point arrival;
-    std::size_t bytes = 0;  ///< on the wire, merged ones summed
-    bool may_steer = true;  ///< else its moves are not merged: each is answered as wrong
-    bool has_frame = true;  ///< the newest frame sent may have arrived
-    bool is_late = true;    ///< frames were last longer on their way than over a quick link
+    std::size_t bytes = 0;       ///< on the wire, merged ones summed
+    bool may_steer = true;       ///< else its moves are not merged: each is answered as wrong
+    std::uint64_t sequence = 0;  ///< of this client's messages, from 1
 
     /// Anything but input and grants, of which there may be thousands a second.
     bool is_request() const {
@@ -43,14 +43,28 @@ struct ClientSaid {
     }
 };
 
-/// A frame was handed to its client's socket: the promised one, or a newer one.
-struct FrameSent {
+/// A client may be sent frames newer than one, over a link like that. It takes the place of what it wanted
+/// before.
+struct FramesWanted {
     std::string client;
+    std::int64_t newer_than = 0;       ///< number of the newest frame that it was sent; 0: none
+    int count = 0;                     ///< at most so many; 0: none now
+    std::uint64_t since_sequence = 0;  ///< they show what its messages up to this one did
+    std::optional<Link> link = {};     ///< none: not measured yet
+    bool operator==(const FramesWanted&) const = default;
+};
+
+/// A live frame was encoded.
+struct FrameEncoded {
     std::int64_t frame = 0;
-    int unused_grants = 0;  ///< where it is one frame for two grants
     double encode_ms = 0;
-    std::optional<base::Clock::time_point> newest_input{};  ///< that it shows
-    base::Clock::duration round_trip{};                     ///< there and back, the least that was seen
+    std::size_t bytes = 0;
+};
+
+/// A picture could not be encoded.
+struct PictureFailed {
+    Picture picture;
+    std::string why;
 };
 
 struct SnapshotSent {
@@ -63,11 +77,12 @@ struct PictureAsked {
     int width = 0, height = 0;  ///< 0: the view's
 };
 
-using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent, SnapshotSent, PictureAsked,
-                                 scene::SceneLoading, scene::SceneLoaded>;
+using EngineEvent =
+    std::variant<ClientJoined, ClientLeft, ClientSaid, FramesWanted, SnapshotSent, FrameEncoded,
+                 PictureFailed, PictureAsked, scene::SceneLoading, scene::SceneLoaded>;
 
-/// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or
-/// dropped.
+/// The one way into the render thread. Of a client's moves that come one after the other the last of each
+/// pointer is kept, and of what it wants the newest; nothing else is merged or dropped.
 class Mailbox {
 public:
     void push(EngineEvent event);

@@ -5,9 +5,7 @@
 #include <string>
 
 namespace vrut {
-struct Accumulation;
-struct FrameStats;
-struct Image;
+struct Rendering;
 struct View;
 }  // namespace vrut
 
@@ -21,10 +19,8 @@ struct Painter {
     int max_size = 16384;
     /// As Renderer::take; empty: there is nothing to be taken.
     std::function<void(const View&)> take = {};
-    /// As Renderer::render.
-    std::function<bool(const View&, Image&, FrameStats&, const std::function<bool()>& interrupted,
-                       Accumulation* kept)>
-        paint = {};
+    /// As Renderer::step.
+    std::function<bool(Rendering&)> step = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
 using PainterFactory = std::function<Painter()>;

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <optional>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 
 namespace vrut::server::measure {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <functional>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 #include "measure/calibrate.hpp"
 #include "measure/experiments.hpp"
 

@@ -26,9 +26,11 @@ constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers =
 // Beast ends a connection at its own limit in the middle of the message, and the reset that follows may
 // overtake the close frame. So messages that are too large are read to their end, up to here, and answered.
 constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
-constexpr auto kTellsAgain = 20ms;
-constexpr auto kLongestSilence = 10s;    // though news would wait in the socket, or others come before them
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
+constexpr int kNotSent = 16 * 1024;      // bytes that the kernel takes beyond what is on its way
+constexpr int kLeastRate = 1000;         // bytes per second that a client must take at least
+constexpr auto kLongestBroadcast = 3s;   // statistics wait behind states that change all the time
+constexpr std::size_t kInputsRemembered = 64;
 
 /// Lets the kernel end a connection whose peer does not answer at all, as a tablet that fell asleep: after 20
 /// s.
@@ -40,9 +42,18 @@ void find_dead_peers(int socket) {
     ::setsockopt(socket, IPPROTO_TCP, TCP_KEEPCNT, &probes, sizeof probes);
 }
 
+/// Lets the kernel end a connection whose peer acknowledges nothing for so long, and take no more than it can
+/// send.
+void bound_waiting(int socket, std::chrono::milliseconds stuck) {
+    const auto timeout_ms = static_cast<unsigned>(stuck.count());
+    ::setsockopt(socket, IPPROTO_TCP, TCP_USER_TIMEOUT, &timeout_ms, sizeof timeout_ms);
+    ::setsockopt(socket, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kNotSent, sizeof kNotSent);
+}
+
 /// Why the other side's end of a connection is at its end, of kCloseReasons.
 const char* reason_of(beast::error_code error) {
     if (error == websocket::error::closed) return "normal";
+    if (error == boost::asio::error::timed_out) return "stuck";
     return error.category() == make_error_code(websocket::error::closed).category() ? "protocol" : "gone";
 }
 
@@ -63,12 +74,10 @@ Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hu
       hello_deadline_(socket_.get_executor()),
       watch_(socket_.get_executor()),
       rate_timer_(socket_.get_executor()),
-      news_timer_(socket_.get_executor()),
-      frame_timer_(socket_.get_executor()),
+      flow_timer_(socket_.get_executor()),
       place_(std::move(place)),
-      progress_at_(base::Clock::now()),
       rate_(kMessagesPerSecond),
-      heard_at_(progress_at_) {
+      heard_at_(base::Clock::now()) {
     hub_.connections.insert(this);
     ++hub_.metrics->connections_opened;
 }
@@ -91,6 +100,7 @@ void Session::accept(const HttpRequest& request) {
     deadlines.idle_timeout = websocket::stream_base::none();
     deadlines.keep_alive_pings = false;
     find_dead_peers(stream.socket().native_handle());
+    bound_waiting(stream.socket().native_handle(), hub_.deadlines.stuck);
     socket_.set_option(deadlines);
     socket_.read_message_max(kMaxRead);
     socket_.auto_fragment(false);  // one frame, one write
@@ -99,8 +109,8 @@ void Session::accept(const HttpRequest& request) {
             response.set(beast::http::field::sec_websocket_protocol, protocol::kSubprotocol);
         }));
 
-    socket_.control_callback([this](websocket::frame_type type, beast::string_view) {
-        if (type == websocket::frame_type::pong) on_pong(base::Clock::now());
+    socket_.control_callback([this](websocket::frame_type type, beast::string_view text) {
+        if (type == websocket::frame_type::pong) on_pong({text.data(), text.size()}, base::Clock::now());
     });
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
         if (error) return self->drop("handshake");
@@ -154,7 +164,8 @@ void Session::receive() {
 }
 
 void Session::on_received(std::size_t size) {
-    if (!begun_) begun_ = base::Clock::now();
+    heard_at_ = base::Clock::now();
+    if (!begun_) begun_ = heard_at_;
     message_size_ += size;
     hub_.metrics->bytes_received += size;
     if (message_size_ > protocol::kMaxMessageBytes) incoming_.clear();
@@ -197,12 +208,13 @@ void Session::on_text(std::string_view text) {
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
+    if (const auto* grant = message ? std::get_if<protocol::FrameGrant>(&message->payload) : nullptr) {
+        on_grant(*grant, message->id);
+        if (!message->id) return;  // those of the others rise with it
+    }
     engine::ClientSaid said{client_, std::move(message), base::Clock::now(), text.size(),
                             role_ == protocol::Role::control};
-    if (said.message && std::holds_alternative<protocol::FrameGrant>(said.message->payload)) {
-        said.has_frame = writes_frame_ || has_frame();
-        said.is_late = frames_are_late_;
-    }
+    said.sequence = ++sequence_;
     unhandled_bytes_ += said.bytes;
     unhandled_requests_ += said.is_request();
     hub_.engine->mailbox().push(std::move(said));
@@ -229,7 +241,6 @@ void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t>
     ++hub_.metrics->clients[name_of(*role)];
     observe::log_info("joined",
                       {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
-    if (!pinging_) ping(base::Clock::now());  // while nothing else is on its way
     hub_.engine->mailbox().push(engine::ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
@@ -260,14 +271,35 @@ void Session::answer(room::Answer answer) {
     pump();
 }
 
-void Session::owe(std::int64_t frame) {
-    if (frame <= last_frame_) {
-        // A newer one went out meanwhile: the grant is for what comes next.
-        hub_.engine->mailbox().push(engine::FrameSent{client_, last_frame_, 1});
-        return;
+/// Credits are counted here, and what a frame must show is: what the messages before its grant did.
+void Session::on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id) {
+    const base::Clock::time_point now = base::Clock::now();
+    if (grant.shown && !flow_.grant(*grant.shown, now)) {
+        const protocol::Error error{
+            id, protocol::error_code::out_of_range,
+            "'shown': frame " + std::to_string(*grant.shown) + " was never sent to this client"};
+        ++hub_.metrics->errors[error.code];
+        return answer({client_, protocol::encode(error), 0, error.message});
     }
-    owed_.push_back(frame);
+    if (!grant.shown) flow_.grant();
+    ++hub_.metrics->frames_granted;
+    granted_at_ = sequence_;
+    if (const auto input = inputs_.find(grant.shown.value_or(0)); input != inputs_.end()) {
+        hub_.metrics->input_to_grant.observe(std::chrono::duration<double>(now - input->second).count());
+        inputs_.erase(inputs_.begin(), std::next(input));
+    }
+    ask_for_frames(now);
     pump();
+}
+
+/// Tells the engine what may be sent, where that has changed.
+void Session::ask_for_frames(base::Clock::time_point now) {
+    const engine::FramesWanted wanted{client_, last_frame_, flow_.frames_allowed(now), granted_at_,
+                                      flow_.link(now)};
+    if (wanted == wanted_) return;
+    const bool matters = wanted.count > 0 || wanted_.count > 0;
+    wanted_ = wanted;
+    if (matters) hub_.engine->mailbox().push(wanted);
 }
 
 void Session::take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture) {
@@ -278,17 +310,45 @@ void Session::take_snapshot(std::shared_ptr<const engine::EncodedPicture> pictur
 void Session::handled(const engine::EngineOutput::Handled& handled) {
     unhandled_bytes_ -= std::min(handled.bytes, unhandled_bytes_);
     unhandled_requests_ -= std::min(handled.requests, unhandled_requests_);
+    handled_sequence_ = handled.sequence;
     read();
 }
 
 void Session::newest_changed(std::int64_t before) {
-    const bool waited = !owed_.empty() && writing_ && before >= owed_.front() && before > last_frame_;
+    const bool waited = writing_ && flow_.credits() > 0 && before > last_frame_;
     if (waited) ++hub_.metrics->frames_replaced;
     pump();
 }
 
-bool Session::frame_is_due() const {
-    return !owed_.empty() && hub_.newest && hub_.newest->header.frame >= owed_.front();
+/// One that shows what the messages before the newest grant did, or what is to be seen after them.
+bool Session::has_newer_frame() const {
+    const auto& newest = hub_.newest;
+    if (!newest || newest->header.frame <= last_frame_) return false;
+    const auto applied = newest->applied.find(client_);
+    if (applied != newest->applied.end() && applied->second.sequence >= granted_at_) return true;
+    return handled_sequence_ >= granted_at_ && hub_.present_frame == newest->header.frame;
+}
+
+bool Session::frame_is_due(base::Clock::time_point now) const {
+    return has_newer_frame() && flow_.may_send_frame(now) &&
+           flow_.may_send_from(hub_.newest->file.size(), hub_.newest->rests_since, now) <= now;
+}
+
+/// What was not sent because of what is under way is looked at again when that may have changed.
+void Session::ask_again(base::Clock::time_point now) {
+    auto at = flow_.ask_again(now);
+    if (has_newer_frame() && flow_.may_send_frame(now)) {
+        const auto from = flow_.may_send_from(hub_.newest->file.size(), hub_.newest->rests_since, now);
+        if (from > now) at = std::min(at.value_or(from), from);
+    }
+    if (!at) return flow_timer_.cancel(), void();
+    flow_timer_.expires_at(std::max(*at, now + 1ms));
+    flow_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+        const auto self = weak.lock();
+        if (stopped || !self || self->dropped_) return;
+        self->ask_for_frames(base::Clock::now());
+        self->pump();
+    });
 }
 
 void Session::pump() {
@@ -300,47 +360,35 @@ void Session::pump() {
         return socket_.async_close(*closing_,
                                    [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
     }
+    const base::Clock::time_point now = base::Clock::now();
+    if (!has_broadcasts()) had_broadcasts_ = now;
+    if (!client_.empty() && flow_.wants_ping()) return send_ping(now);
     // A frame or answer goes when the client knows the revision that it speaks of.
-    if (frame_is_due() && known >= hub_.newest->header.revision) return send_frame();
+    const bool frame_due = frame_is_due(now);
+    if (frame_due && known >= hub_.newest->header.revision) return send_frame();
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
-    if (client_.empty() || !hub_.document || !has_news()) return;
-    const base::Clock::time_point now = base::Clock::now();
-    const bool has_all_news = loading_ == hub_.loading && stats_ == hub_.stats;
-    if (has_all_news) had_all_news_ = now;
-    if (!has_all_news && now - had_all_news_ >= kLongestSilence) return send_news();
-    const bool waited_for = frame_is_due() || !answers_.empty() || !snapshots_.empty();
-    if (!waited_for && now - told_at_ < kLongestSilence && is_behind()) return tell_later();
-    told_at_ = now;
-    if (document_ == hub_.document) return send_news();
-    const auto before = std::exchange(document_, hub_.document);
-    if (!before || !document_->has_scene_of(*before)) return send_text(document_->encode());
-    const bool one_author = before->revision() + 1 >= hub_.document_by_since;
-    send_text(document_->encode_patch_from(*before, one_author ? hub_.document_by : ""));
+    const bool waited_for = frame_due || !answers_.empty() || !snapshots_.empty();
+    if (has_updates() && (waited_for || flow_.may_send_update(now))) return send_update(now);
+    ask_again(now);
 }
 
-bool Session::has_news() const {
-    return document_ != hub_.document || loading_ != hub_.loading || stats_ != hub_.stats;
+bool Session::has_updates() const {
+    return !client_.empty() && hub_.document && (document_ != hub_.document || has_broadcasts());
 }
 
-/// Once what was sent has mostly arrived: what waits here is replaced, and what waits in the socket is not.
-void Session::tell_later() {
-    if (std::exchange(tells_later_, true)) return;
-    news_timer_.expires_after(kTellsAgain);
-    news_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
-        const auto self = weak.lock();
-        if (stopped || !self) return;
-        self->tells_later_ = false;
-        self->pump();
-    });
-}
+bool Session::has_broadcasts() const { return loading_ != hub_.loading || stats_ != hub_.stats; }
 
-/// What is told to all, and of which only the newest counts.
-void Session::send_news() {
-    had_all_news_ = base::Clock::now();
+/// Of each only the newest counts: the document, how far loading is, and statistics. The document goes first,
+/// unless the others have waited for long.
+void Session::send_update(base::Clock::time_point now) {
+    const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
+    if (document_ != hub_.document && !waits) return send_document();
+    had_broadcasts_ = now;
     for (const auto& [newest, sent] : {std::pair(&hub_.loading, &loading_), std::pair(&hub_.stats, &stats_)})
         if (*newest != *sent) {
             *sent = *newest;
+            flow_.sent_update((*sent)->size(), now);
             return send_text(**sent);
         }
 }
@@ -349,30 +397,43 @@ void Session::send_answer() {
     std::string text = std::move(answers_.front().text);
     answers_.pop_front();
     answer_bytes_ -= text.size();
+    flow_.sent(text.size(), base::Clock::now());
     send_text(std::move(text));
+}
+
+void Session::send_document() {
+    const auto before = std::exchange(document_, hub_.document);
+    const bool one_author = before && before->revision() + 1 >= hub_.document_by_since;
+    std::string text = before && document_->has_scene_of(*before)
+                           ? document_->encode_patch_from(*before, one_author ? hub_.document_by : "")
+                           : document_->encode();
+    flow_.sent_update(text.size(), base::Clock::now());
+    send_text(std::move(text));
+}
+
+void Session::send_ping(base::Clock::time_point now) {
+    writing_ = true;
+    write_by_ = now + hub_.deadlines.stuck;
+    pinged_at_ = now;
+    const websocket::ping_data number(std::to_string(flow_.sent_ping(now)).c_str());
+    socket_.async_ping(number,
+                       [self = shared_from_this()](beast::error_code error) { self->on_written(error); });
 }
 
 void Session::send_frame() {
     picture_ = hub_.newest;
     last_frame_ = picture_->header.frame;
-    writes_frame_ = true;
-    frame_bytes_ = picture_->file.size();
-    int grants = 0;
-    for (; !owed_.empty() && owed_.front() <= last_frame_; owed_.pop_front()) ++grants;
-    // One frame answers one grant; the others are for what comes next.
-    hub_.engine->mailbox().push(engine::FrameSent{client_, last_frame_, grants - 1,
-                                                  picture_->header.timing.encode_ms, picture_->newest_input,
-                                                  round_trip_.value_or(base::Clock::duration{})});
-
     protocol::FrameHeader header = picture_->header;
-    const auto handled = picture_->handled.find(client_);
+    const auto applied = picture_->applied.find(client_);
     // A snapshot may have told of more.
-    if (handled != picture_->handled.end()) handled_ = std::max(handled_, handled->second);
+    if (applied != picture_->applied.end()) handled_ = std::max(handled_, applied->second.id);
     header.handled = handled_;
     if (picture_->newest_input)
         header.timing.since_input_ms =
             std::chrono::duration<double, std::milli>(base::Clock::now() - *picture_->newest_input).count();
     if (picture_->newest_input > shown_input_) {
+        inputs_[last_frame_] = *picture_->newest_input;
+        if (inputs_.size() > kInputsRemembered) inputs_.erase(inputs_.begin());
         shown_input_ = *picture_->newest_input;
         hub_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
     }
@@ -381,7 +442,10 @@ void Session::send_frame() {
                                       {"frame", last_frame_},
                                       {"bytes", picture_->file.size()},
                                       {"ms", header.timing.since_input_ms.value_or(0)}});
+    const base::Clock::time_point now = base::Clock::now();
+    flow_.sent_frame(last_frame_, picture_->file.size(), now);
     send_picture(header);
+    ask_for_frames(now);
 }
 
 void Session::send_snapshot() {
@@ -391,6 +455,7 @@ void Session::send_snapshot() {
     hub_.engine->mailbox().push(engine::SnapshotSent{client_});
     protocol::FrameHeader header = picture_->header;
     header.handled = handled_ = std::max(handled_, header.handled);
+    flow_.sent(picture_->file.size(), base::Clock::now());
     send_picture(header);
 }
 
@@ -412,7 +477,9 @@ void Session::send_text(std::string text) {
 // One type of buffers for all: Beast's write operation takes seconds to compile for each.
 void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
     writing_ = true;
-    hub_.metrics->bytes_sent += boost::asio::buffer_size(buffers);
+    const std::size_t bytes = boost::asio::buffer_size(buffers);
+    hub_.metrics->bytes_sent += bytes;
+    write_by_ = base::Clock::now() + hub_.deadlines.stuck + std::chrono::seconds(bytes / kLeastRate);
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->on_written(error);
     });
@@ -421,8 +488,7 @@ void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
 void Session::on_written(beast::error_code error) {
     writing_ = false;
     picture_.reset();
-    if (error) return drop("gone");
-    if (std::exchange(writes_frame_, false)) frame_written();
+    if (error) return drop(error == boost::asio::error::timed_out ? "stuck" : "gone");
     pump();
     read();
 }
@@ -446,8 +512,7 @@ void Session::drop(const char* reason) {
     hello_deadline_.cancel();
     watch_.cancel();
     rate_timer_.cancel();
-    news_timer_.cancel();
-    frame_timer_.cancel();
+    flow_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
     if (client_.empty()) return;
     observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});

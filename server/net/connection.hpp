@@ -6,19 +6,21 @@
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 #include <deque>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "base/rate_limit.hpp"
+#include "net/flow_control.hpp"
 #include "net/http_request.hpp"
 #include "net/registry.hpp"
 
 namespace vrut::server::net {
 
 /// One WebSocket client, on the net thread. What waits for a slow one is replaced, not queued: it keeps the
-/// document that it last got and is sent the difference; it is owed a number of frames and is sent the
-/// newest. Only answers queue, and who does not take them is not read.
+/// document that it last got and is sent the difference; of frames it is sent the newest, as many as it
+/// granted. Only answers queue, and who does not take them is not read.
 class Session : public std::enable_shared_from_this<Session> {
 public:
     Session(boost::beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub);
@@ -31,7 +33,6 @@ public:
 
     // What the engine says.
     void answer(room::Answer answer);
-    void owe(std::int64_t frame);
     void handled(const engine::EngineOutput::Handled& handled);
     /// The hub has a newer picture than `before`.
     void newest_changed(std::int64_t before);
@@ -51,30 +52,32 @@ private:
     void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
     void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
-    bool frame_is_due() const;
-    bool has_news() const;
-    bool is_behind();
-    void tell_later();
+    void on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id);
+    void ask_for_frames(base::Clock::time_point now);
+    bool has_newer_frame() const;
+    bool frame_is_due(base::Clock::time_point now) const;
+    bool has_updates() const;
+    bool has_broadcasts() const;
+    void ask_again(base::Clock::time_point now);
     void send_frame();
     void send_snapshot();
     void send_picture(const protocol::FrameHeader& header);
-    void send_news();
+    void send_update(base::Clock::time_point now);
+    void send_document();
     void send_answer();
     void send_text(std::string text);
+    void send_ping(base::Clock::time_point now);
     void write(const std::array<boost::asio::const_buffer, 3>& buffers);
     void on_written(boost::beast::error_code error);
     void watch();
     void look_after(base::Clock::time_point now);
-    void ping(base::Clock::time_point now);
-    void on_pong(base::Clock::time_point now);
-    void frame_written();
-    bool has_frame();
+    void on_pong(std::string_view number, base::Clock::time_point now);
     void drop(const char* reason);
 
     boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
-    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, news_timer_, frame_timer_;
+    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;
     std::string client_;  // empty before hello
     protocol::Role role_ = protocol::Role::view;
@@ -88,38 +91,37 @@ private:
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
     std::deque<room::Answer> answers_;
     std::size_t answer_bytes_ = 0;  // of answers_
-    std::deque<std::int64_t> owed_;
     std::int64_t last_frame_ = 0;
     std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
     std::deque<std::shared_ptr<const engine::EncodedPicture>> snapshots_;
-    std::shared_ptr<const std::string> stats_, loading_;         // that it last got
-    base::Clock::time_point told_at_{};                          // something of the document
-    base::Clock::time_point had_all_news_ = base::Clock::now();  // and of what else is told to all
-    bool tells_later_ = false;
+    std::shared_ptr<const std::string> stats_, loading_;  // that it last got
+
+    base::Clock::time_point had_broadcasts_ = base::Clock::now();  // stats and loading: the newest
+
+    // --- what its link takes
+    FlowControl flow_;
+    engine::FramesWanted wanted_;         // as the engine knows it
+    std::uint64_t sequence_ = 0;          // of its messages: the last that was handed to the engine,
+    std::uint64_t granted_at_ = 0;        // before the newest grant,
+    std::uint64_t handled_sequence_ = 0;  // and that was handled
+    std::map<std::int64_t, base::Clock::time_point> inputs_;  // newest that the last frames showed it
 
     // --- what is being sent
     bool writing_ = false;
     std::string text_;
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const engine::EncodedPicture> picture_;
-    bool writes_frame_ = false;
-    std::uint64_t frame_end_ = 0;  // of the newest, in bytes since the connection's begin
-    std::size_t frame_bytes_ = 0;
-    bool frames_are_late_ = false;         // the one before, as far as is known
-    std::uint64_t acknowledged_ = 0;       // bytes, at the watch's last look
-    base::Clock::time_point progress_at_;  // when it last saw more of them, or nothing to acknowledge
+    base::Clock::time_point write_by_;  // else it is stuck
     std::optional<boost::beast::websocket::close_reason> closing_;
 
     // --- what has come and is not handled yet
     std::size_t unhandled_bytes_ = 0, unhandled_requests_ = 0;
-    bool reading_ = false, throttled_ = false, pinging_ = false;
+    bool reading_ = false, throttled_ = false;
     std::optional<base::Clock::time_point> begun_;  // a message that is not all there
     std::size_t message_size_ = 0;                  // of it so far
     base::RateLimit rate_;
-    std::uint64_t received_ = 0;        // bytes, at the watch's last look
-    base::Clock::time_point heard_at_;  // when it last saw more of them, or did not read
+    base::Clock::time_point heard_at_;  // the newest bytes or pong
     base::Clock::time_point pinged_at_;
-    std::optional<base::Clock::duration> round_trip_;  // the least so far
 };
 
 }  // namespace vrut::server::net

@@ -32,6 +32,7 @@ struct Hub {
     std::string document_by;  ///< who made it and the revisions before it, down to document_by_since
     std::int64_t document_by_since = 0;
     std::shared_ptr<const engine::EncodedPicture> newest;
+    std::int64_t present_frame = 0;  ///< the frame that shows what is to be seen now; 0: none
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all
     bool loads = false;                                 ///< a scene is being loaded
     engine::PictureSize size;                           ///< of a picture of the view

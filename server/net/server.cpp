@@ -127,11 +127,10 @@ struct Server::Impl {
             hub.loads = output.loads;
         }
         if (output.size) hub.size = *output.size;
+        if (output.present_frame) hub.present_frame = *output.present_frame;
         for (auto& answer : output.answers)
             if (Session* session = find(answer.client)) session->answer(std::move(answer));
         for (const std::string& name : output.undrawn) hub.pictures.give_up(name);
-        for (const auto& owed : output.owed)
-            if (Session* session = find(owed.client)) session->owe(owed.frame);
         for (const auto& [client, handled] : output.handled)
             if (Session* session = find(client)) session->handled(handled);
         for_each_session([](Session& session) { session.pump(); });

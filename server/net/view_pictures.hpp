@@ -9,8 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/encoder.hpp"
+#include "engine/frame_quality.hpp"
 #include "engine/mailbox.hpp"
+#include "engine/picture.hpp"
 
 namespace vrut::server::net {
 

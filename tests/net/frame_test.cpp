@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include "rendering.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -248,35 +249,54 @@ TEST_CASE("the whole scene stays in view while nobody has moved the camera, and 
     CHECK(client.state["camera"] == own);
 }
 
-TEST_CASE("a painter that fails ends the server with its sentence") {
-    FakePainter fake;
-    ServerOptions options;
-    options.listen = {"127.0.0.1", 0};
-    const PainterFactory broken = [&] {
-        Painter painter = fake.factory()();
-        painter.paint = [count = 0, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
-                                                           const std::function<bool()>& interrupted,
-                                                           Accumulation* kept) mutable {
-            if (++count > 1) throw std::runtime_error("the device is lost");
-            return paint(view, image, stats, interrupted, kept);
+TEST_CASE("a picture that cannot be drawn is told, and ends nothing") {
+    std::atomic<bool> broken{false};
+    const PainterFactory factory = [&] {
+        Painter painter = FakePainter{}.factory()();
+        painter.step = [&, step = painter.step](Rendering& rendering) {
+            if (broken) throw std::runtime_error("the table of colours is gone");
+            return step(rendering);
         };
         return painter;
     };
-    Server server(options, scene_of("vrut-text 1"), broken);
-    std::string sentence;
-    std::thread thread([&] {
-        try {
-            server.run();
-        } catch (const std::exception& error) {
-            sentence = error.what();
-        }
-    });
+    TestServer server(scene_of("vrut-text 1"), factory);
     TestClient client(server.port());
     client.join();
+    broken = true;
     client.send({{"type", "frame"}});
-    CHECK(client.wait_for_close() == 1001);
-    thread.join();
-    CHECK(sentence == "drawing has failed: the device is lost");
+    client.wait_for_notice("What is to be seen now cannot be drawn: the table of colours is gone");
+    client.send({{"type", "snapshot"}, {"id", 1}, {"width", 64}, {"height", 48}});
+    const Json error = client.wait_for("error");
+    CHECK(error["code"] == "failed");
+    CHECK(error["message"] == "the picture cannot be drawn: the table of colours is gone");
+    broken = false;
+    client.send({{"type", "navigate"}, {"id", 2}, {"rotate", {5, 0}}});
+    client.wait_for("frame");
+}
+
+TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
+    std::atomic<bool> broken{false};
+    const PainterFactory factory = [&] {
+        Painter painter = FakePainter{}.factory()();
+        painter.step = [&, step = painter.step](Rendering& rendering) {
+            const bool whole = step(rendering);
+            if (whole && broken) rendering.image.resize(0, 0);  // no encoder takes that
+            return whole;
+        };
+        return painter;
+    };
+    TestServer server(scene_of("vrut-text 1"), factory);
+    TestClient client(server.port());
+    client.join();
+    broken = true;
+    client.send({{"type", "frame"}});
+    client.wait_for_notice("What is to be seen now cannot be encoded: ");
+    client.send({{"type", "snapshot"}, {"id", 1}, {"width", 64}, {"height", 48}, {"format", "png"}});
+    CHECK(client.wait_for("error")["code"] == "failed");
+    CHECK(http(server.port(), "GET", "/frame.jpg").status == 503);
+    broken = false;
+    client.send({{"type", "navigate"}, {"id", 2}, {"rotate", {5, 0}}});
+    client.wait_for("frame");
 }
 
 TEST_CASE("what cannot draw, and a port that is taken, are told at once") {

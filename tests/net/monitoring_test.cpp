@@ -14,6 +14,7 @@
 #include "drawing_errors.hpp"
 #include "engine/encoder.hpp"
 #include "exposition.hpp"
+#include "rendering.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -60,11 +61,9 @@ struct Stoppable {
     PainterFactory factory(const FakePainter& of = {}) const {
         return [stop = stopped, inner = of.factory()] {
             Painter painter = inner();
-            painter.paint = [stop, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
-                                                          const std::function<bool()>& interrupted,
-                                                          Accumulation* kept) {
+            painter.step = [stop, step = painter.step](Rendering& rendering) {
                 while (*stop) std::this_thread::sleep_for(1ms);
-                return paint(view, image, stats, interrupted, kept);
+                return step(rendering);
             };
             return painter;
         };
@@ -256,11 +255,9 @@ TEST_CASE("while a driver that was lost is started again nothing is ready") {
     const auto factory = [&] {
         if (lost) throw std::runtime_error("the driver is not there yet");
         Painter painter = FakePainter{}.factory()();
-        painter.paint = [&, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
-                                                   const std::function<bool()>& interrupted,
-                                                   Accumulation* kept) {
+        painter.step = [&, step = painter.step](Rendering& rendering) {
             if (lost) throw ContextLost("the driver was reset");
-            return paint(view, image, stats, interrupted, kept);
+            return step(rendering);
         };
         return painter;
     };
@@ -294,7 +291,8 @@ TEST_CASE("an encode loop that does not come round is told apart from one that w
     std::promise<void> go_on;
     {
         Encoder encoder(
-            metrics, [&](const auto&) { go_on.get_future().wait(); }, [] {}, [](const std::string&) {});
+            metrics, [&](const auto&) { go_on.get_future().wait(); }, [] {},
+            [](const Picture&, const std::string&) {});
         CHECK(encoder.silence() == 0s);
         Image image;
         image.resize(4, 4);

@@ -7,6 +7,7 @@
 #include "../unit/full_disk.hpp"
 #include "../unit/temporary_folder.hpp"
 #include "drawing_errors.hpp"
+#include "rendering.hpp"
 #include "room/replay.hpp"
 #include "test_client.hpp"
 
@@ -37,12 +38,11 @@ public:
             }
             ++made;
             Painter painter = FakePainter{.takes = 2ms}.factory()();
-            painter.paint = [this, paint = painter.paint](const View& view, Image& image, FrameStats& stats,
-                                                          const std::function<bool()>& interrupted,
-                                                          Accumulation* kept) {
-                const bool whole = paint(view, image, stats, interrupted, kept);
-                if (view.height == resets_at_height || resets.exchange(false)) {
-                    image.rgba.assign(image.rgba.size(), 0xEE);
+            painter.step = [this, step = painter.step](Rendering& rendering) {
+                const bool whole = step(rendering);
+                const bool second = whole || rendering.samples > 1;
+                if (rendering.view.height == resets_at_height || (second && resets.exchange(false))) {
+                    rendering.image.rgba.assign(rendering.image.rgba.size(), 0xEE);
                     throw ContextLost("the driver has reset itself");
                 }
                 return whole;

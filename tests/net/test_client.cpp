@@ -12,8 +12,9 @@
 #include <boost/beast/websocket.hpp>
 #include <random>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 #include "frame_header.hpp"
+#include "rendering.hpp"
 #include "view.hpp"
 #include "vrut_text.hpp"
 
@@ -68,18 +69,12 @@ static void fill_with_noise(std::vector<std::uint8_t>& bytes, std::size_t seed) 
 server::engine::PainterFactory FakePainter::factory() const {
     return [*this] {
         server::engine::Painter painter{"fake", false, 16384, {}};
-        painter.paint = [*this](const View& view, Image& image, FrameStats& stats,
-                                const std::function<bool()>& interrupted, Accumulation* kept) {
-            stats = {};
-            image.resize(view.width, view.height);
-            const int first = kept && kept->samples < view.samples ? kept->samples : 0;
-            for (int sample = first; sample < view.samples; ++sample) {
-                if (sample > first && interrupted && interrupted()) return false;
-                if (takes.count() > 0) std::this_thread::sleep_for(takes);
-                if (kept) kept->samples = sample + 1;
-            }
-            if (kept) *kept = {};
-            const double x = std::abs(view.camera.eye.x);
+        painter.step = [*this](Rendering& rendering) {
+            if (takes.count() > 0) std::this_thread::sleep_for(takes);
+            if (++rendering.samples < rendering.view.samples) return false;
+            Image& image = rendering.image;
+            image.resize(rendering.view.width, rendering.view.height);
+            const double x = std::abs(rendering.view.camera.eye.x);
             std::fill(image.rgba.begin(), image.rgba.end(), static_cast<std::uint8_t>(x * 40));
             if (noise) fill_with_noise(image.rgba, static_cast<std::size_t>(x * 1000));
             return true;
@@ -189,8 +184,10 @@ std::optional<TestClient::Message> TestClient::receive(std::chrono::milliseconds
     message.binary = impl.socket.got_binary();
     message.data = beast::buffers_to_string(impl.buffer.data());
     impl.buffer.consume(impl.buffer.size());
-    if (message.binary) return message;
+    if (message.binary && message.data[0] != '\xFF') return message;
     const Json json = message.json();
+    if (message.binary && !json.contains("snapshot")) newest_frame = json["frame"];
+    if (message.binary) return message;
     if (json["type"] == "stats" && !takes_stats) {
         const auto left =
             std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
@@ -214,6 +211,22 @@ Json TestClient::wait_for(const std::string& type, std::chrono::milliseconds tim
     }
 }
 
+void TestClient::grant() {
+    Json message{{"type", "frame"}};
+    if (newest_frame > 0) message["shown"] = newest_frame;
+    send(message);
+}
+
+void TestClient::wait_for_notice(const std::string& sentence) {
+    const auto has_come = [&] {
+        const Json notices = state.value("notices", Json::array());
+        return std::any_of(notices.begin(), notices.end(), [&](const Json& notice) {
+            return notice.get<std::string>().starts_with(sentence);
+        });
+    };
+    while (!has_come()) wait_for("patch");
+}
+
 int TestClient::wait_for_close(std::chrono::milliseconds timeout) {
     const auto end = std::chrono::steady_clock::now() + timeout;
     while (!impl_->ended) {
@@ -235,7 +248,7 @@ Json TestClient::join(const std::string& role, const std::string& token) {
 
 Json TestClient::wait_for_still(std::chrono::milliseconds for_each) {
     for (;;) {
-        send({{"type", "frame"}});
+        grant();
         Json header = wait_for("frame", for_each);
         if (header["quality"]["samples"] == server::engine::kStillSamples.back()) return header;
     }

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "engine/engine.hpp"
+#include "rendering.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 
@@ -19,12 +20,11 @@ constexpr std::chrono::milliseconds kPatience{5000};
 /// Draws nothing, in the time that a picture takes.
 server::engine::Painter slow_painter() {
     server::engine::Painter painter;
-    painter.paint = [](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
-                       Accumulation*) {
-        std::this_thread::sleep_for(kPicture);
-        image.resize(view.width, view.height);
-        stats = {};
-        stats.render_ms = static_cast<double>(kPicture.count());
+    painter.step = [](Rendering& rendering) {
+        std::this_thread::sleep_for(kPicture / rendering.view.samples);
+        if (++rendering.samples < rendering.view.samples) return false;
+        rendering.image.resize(rendering.view.width, rendering.view.height);
+        rendering.stats.render_ms = static_cast<double>(kPicture.count());
         return true;
     };
     return painter;
@@ -44,7 +44,7 @@ public:
                    [](const std::string&) {}}) {
         engine_.mailbox().push(server::engine::ClientJoined{kClient, protocol::Role::control, {}, 0});
         say(protocol::Control{});
-        say(protocol::FrameGrant{});
+        want_newer_than(0);
     }
 
     void say(decltype(protocol::ClientMessage::payload) payload, std::optional<std::int64_t> id = {}) {
@@ -81,9 +81,12 @@ private:
         for (const server::room::Answer& answer : output.answers) refused_ += !answer.refusal.empty();
     }
 
+    void want_newer_than(std::int64_t frame) {
+        engine_.mailbox().push(server::engine::FramesWanted{kClient, frame, 1, 0, kUnlimited});
+    }
+
     void take(const server::engine::EncodedPicture& picture) {
-        engine_.mailbox().push(server::engine::FrameSent{kClient, picture.header.frame});
-        say(protocol::FrameGrant{});
+        want_newer_than(picture.header.frame);
         {
             const std::lock_guard lock(mutex_);
             shown_ = picture.newest_input;
@@ -93,6 +96,7 @@ private:
     }
 
     static constexpr const char* kClient = "c1";
+    static constexpr server::engine::Link kUnlimited{std::numeric_limits<double>::infinity(), {}};
     std::mutex mutex_;
     std::condition_variable arrived_;
     std::optional<server::base::Clock::time_point> shown_;

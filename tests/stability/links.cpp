@@ -9,9 +9,10 @@
 #include <memory>
 #include <thread>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 #include "net/server.hpp"
 #include "page_client.hpp"
+#include "rendering.hpp"
 #include "shapes.hpp"
 #include "slow_link.hpp"
 #include "study.hpp"
@@ -65,8 +66,10 @@ server::engine::Painter painter_of_balls() {
     server::engine::Painter painter;
     painter.description = "balls";
     auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
-    painter.paint = [drawn](const View& view, Image& image, FrameStats& stats, const std::function<bool()>&,
-                            Accumulation*) {
+    painter.step = [drawn](Rendering& rendering) {
+        rendering.samples = rendering.view.samples;
+        const View& view = rendering.view;
+        Image& image = rendering.image;
         Image& whole = (*drawn)[{view.width, view.height}];
         if (whole.rgba.empty()) whole = balls(view.width, view.height);
         image.resize(view.width, view.height);
@@ -79,8 +82,7 @@ server::engine::Painter painter_of_balls() {
             std::copy_n(&whole.rgba[at] + cut, row - cut, &image.rgba[at]);
             std::copy_n(&whole.rgba[at], cut, &image.rgba[at] + (row - cut));
         }
-        stats = {};
-        stats.render_ms = 1;
+        rendering.stats.render_ms = 1;
         return true;
     };
     return painter;

@@ -106,7 +106,7 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         shown.push_back({server::base::Clock::now(), static_cast<std::int64_t>(number(header, "handled")),
                          file.size(), number(header, "scale"),
                          header.find(R"("moving")") != std::string::npos});
-        say(protocol::FrameGrant{});
+        say(protocol::FrameGrant{static_cast<std::int64_t>(number(header, "frame"))});
     }
 
     void begin(Connection& with) {

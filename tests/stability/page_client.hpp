@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 
 namespace vrut::stability {
 

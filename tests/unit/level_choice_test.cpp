@@ -35,7 +35,7 @@ struct Loop {
     Clock::time_point now{1h};
     LevelDemand demand{{1000, 500, 1}, {}, 50};
     double server_factor = 1;  ///< to what the table says
-    double ms_a_byte = 0, ms_there_and_back = 0;
+    double ms_a_byte = 0;
     double noise = 0;  ///< part of the time, either way
     unsigned random = 1;
     std::size_t level = 0;
@@ -45,17 +45,17 @@ struct Loop {
     };
 
     void picture() {
+        if (ms_a_byte > 0) demand.link = Link{1000 / ms_a_byte, {}};
         const std::size_t next = choice.choose(demand, now);
         changes += next != level;
         level = next;
         random = random * 1664525 + 1013904223;
         const double factor = 1 + noise * (2 * (random >> 16) / 65535.0 - 1);
-        const PictureTimes times{server_ms(level) * factor,
-                                 (choice.levels()[level].bytes * ms_a_byte + ms_there_and_back) * factor};
+        const PictureCost cost{server_ms(level) * factor, choice.levels()[level].bytes * factor};
         now += std::chrono::duration_cast<Clock::duration>(
-            std::chrono::duration<double, std::milli>(std::max(times.all(), 1.0)));
+            std::chrono::duration<double, std::milli>(std::max(cost.ms_over(demand.link), 1.0)));
         const double scale = choice.levels()[level].quality.scale;
-        choice.took(level, times, kPixels * scale * scale, now);
+        choice.took(level, cost, kPixels * scale * scale, now);
     }
     void pictures(int count) {
         for (int i = 0; i < count; ++i) picture();
@@ -76,8 +76,8 @@ TEST_CASE("of a table those levels are taken that are for moving pictures") {
 
 TEST_CASE("before anything is measured the table tells") {
     Loop loop;
-    CHECK(loop.choice.expected(3, kPixels, loop.now).all() == doctest::Approx(42));
-    CHECK(loop.choice.expected(1, kPixels, loop.now).all() == doctest::Approx(48));  // of another view
+    CHECK(loop.choice.expected(3, kPixels, loop.now).ms == doctest::Approx(42));
+    CHECK(loop.choice.expected(1, kPixels, loop.now).ms == doctest::Approx(48));  // of another view
     CHECK(loop.choice.choose(loop.demand, loop.now) == 3);
     loop.demand.target_ms = 15;
     CHECK(loop.choice.choose(loop.demand, loop.now) == 1);
@@ -89,17 +89,17 @@ TEST_CASE("what was not measured of late is expected in proportion to the table,
     Loop loop;
     const double quarter = kPixels / 4;
     loop.choice.took(1, {24, 100}, quarter, loop.now);  // twice as slow as the table says
-    const PictureTimes full = loop.choice.expected(3, kPixels, loop.now);
-    CHECK(full.server == doctest::Approx(84));
-    CHECK(full.client == doctest::Approx(400));
+    const PictureCost full = loop.choice.expected(3, kPixels, loop.now);
+    CHECK(full.ms == doctest::Approx(84));
+    CHECK(full.bytes == doctest::Approx(400));
     // A view of twice the pixels.
-    CHECK(loop.choice.expected(1, 2 * quarter, loop.now).all() == doctest::Approx(248));
+    CHECK(loop.choice.expected(1, 2 * quarter, loop.now).ms_over(Link{1000, {}}) == doctest::Approx(248));
     // A level's mean begins at what was expected of it, and is its own for a while.
     loop.choice.took(3, {34, 300}, kPixels, loop.now);
-    CHECK(loop.choice.expected(3, kPixels, loop.now).server == doctest::Approx(74));
-    CHECK(loop.choice.expected(3, kPixels, loop.now).client == doctest::Approx(380));
-    CHECK(loop.choice.expected(1, quarter, loop.now + 1s).all() == 124.0);
-    CHECK(loop.choice.expected(1, quarter, loop.now + 3s).server == doctest::Approx(74.0 / 42 * 12));
+    CHECK(loop.choice.expected(3, kPixels, loop.now).ms == doctest::Approx(74));
+    CHECK(loop.choice.expected(3, kPixels, loop.now).bytes == doctest::Approx(380));
+    CHECK(loop.choice.expected(1, quarter, loop.now + 1s).ms_over(Link{1000, {}}) == 124.0);
+    CHECK(loop.choice.expected(1, quarter, loop.now + 3s).ms == doctest::Approx(74.0 / 42 * 12));
 }
 
 TEST_CASE("under a steady load the most accurate level that holds the target is found, and kept") {
@@ -179,8 +179,7 @@ TEST_CASE("a slow link takes levels of fewer bytes, though the server is fast") 
     CHECK(loop.settled() == 3);
     loop.ms_a_byte = 8.0 / 8000;  // 8 Mbit/s: 25 ms for half the size
     CHECK(loop.settled() == 1);
-    loop.ms_a_byte = 8.0 / 1000;
-    loop.ms_there_and_back = 200;
+    loop.ms_a_byte = 8.0 / 250;
     CHECK(loop.settled() == 0);
 }
 
@@ -228,11 +227,8 @@ TEST_CASE("the slider is obeyed at once, whatever was too slow before") {
     CHECK(loop.level == 0);
 }
 
-TEST_CASE("while nobody tells when pictures arrive, the server's part counts alone") {
-    Loop loop;
-    loop.choice.took(1, {12}, kPixels / 4, loop.now);
-    CHECK_FALSE(loop.choice.expected(1, kPixels / 4, loop.now).client.has_value());
-    CHECK(loop.choice.expected(1, kPixels / 4, loop.now).all() == 12);
-    loop.choice.took(1, {12, 80}, kPixels / 4, loop.now);
-    CHECK(loop.choice.expected(1, kPixels / 4, loop.now).client == 80.0);
+TEST_CASE("where no link is known, the server's part counts alone") {
+    CHECK(PictureCost{12, 80}.ms_over({}) == 12);
+    CHECK(PictureCost{12, 80}.ms_over(Link{1000, {}}) == 92);
+    CHECK(PictureCost{12, 80}.ms_over(Link{std::numeric_limits<double>::infinity(), {}}) == 12);
 }

@@ -55,10 +55,34 @@ TEST_CASE("nothing else is merged") {
     mailbox.push(pointer("a", Pointer::Event::move, 5, 4, -1, 3));     // other buttons held
     mailbox.push(pointer("a", Pointer::Event::move, 6, 5, -1, 3, 9));  // another pointer
     mailbox.push(pointer("a", Pointer::Event::up, 7, 6, 0, 0));
-    mailbox.push(FrameSent{"a", 1, 1});
-    mailbox.push(FrameSent{"a", 1, 1});
+    mailbox.push(SnapshotSent{"a"});
+    mailbox.push(SnapshotSent{"a"});
     CHECK(take(mailbox).size() == 10);
     CHECK(take(mailbox).empty());
+}
+
+TEST_CASE("moves of two fingers that take turns become one of each, ids rising") {
+    Mailbox mailbox;
+    for (int i = 1; i <= 50; ++i) mailbox.push(pointer("a", Pointer::Event::move, i, i, -1, 1, i % 2));
+    const auto events = take(mailbox);
+    REQUIRE(events.size() == 2);
+    for (const std::int64_t i : {0, 1}) {
+        const auto& said = std::get<ClientSaid>(events[static_cast<std::size_t>(i)]);
+        CHECK(said.message->id == 49 + i);
+        CHECK(std::get<Pointer>(said.message->payload).x == 49.0 + static_cast<double>(i));
+        CHECK(said.bytes == 2500);
+    }
+}
+
+TEST_CASE("of the frames that a client wants the newest wish counts") {
+    Mailbox mailbox;
+    mailbox.push(FramesWanted{"a", 1, 2});
+    mailbox.push(move("a", 1, 0));
+    mailbox.push(FramesWanted{"b", 1, 1});
+    mailbox.push(FramesWanted{"a", 2, 1});
+    const auto events = take(mailbox);
+    REQUIRE(events.size() == 3);
+    CHECK(std::get<FramesWanted>(events[2]) == FramesWanted{"a", 2, 1});
 }
 
 TEST_CASE("moves of a client that may not steer are not merged: each has its answer") {

@@ -1,79 +1,9 @@
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 
 #include <doctest/doctest.h>
 
 using namespace vrut;
-using namespace vrut::server::base;
 using namespace vrut::server::engine;
-using namespace std::chrono_literals;
-using Action = PacingDecision::Action;
-
-namespace {
-
-const Clock::time_point kStart = Clock::time_point(1h);
-
-PacingInput at(std::chrono::milliseconds since_change) {
-    PacingInput input;
-    input.somebody_waits = true;
-    input.last_change = kStart;
-    input.now = kStart + since_change;
-    return input;
-}
-
-}  // namespace
-
-TEST_CASE("nothing is drawn that nobody waits for, or that has been drawn") {
-    PacingInput input = at(1000ms);
-    input.changed = true;
-    input.somebody_waits = false;
-    CHECK(decide(input).action == Action::wait);
-    CHECK_FALSE(decide(input).until.has_value());
-
-    input = at(1000ms);
-    input.newest_samples = 16;
-    CHECK(decide(input).action == Action::wait);
-    CHECK_FALSE(decide(input).until.has_value());
-}
-
-TEST_CASE("a change is drawn at once, at rest again in full, in steps") {
-    PacingInput input = at(0ms);
-    input.changed = true;
-    CHECK(decide(input).action == Action::draw);
-    CHECK(decide(input).still_samples == 0);
-
-    input.changed = false;  // the moving picture is drawn
-    CHECK(decide(input).action == Action::wait);
-    CHECK(decide(input).until == kStart + 150ms);
-    input.now = kStart + 149ms;
-    CHECK(decide(input).action == Action::wait);
-    input.now = kStart + 150ms;
-    CHECK(decide(input).action == Action::draw);
-    CHECK(decide(input).still_samples == 4);
-    input.newest_samples = 4;
-    CHECK(decide(input).still_samples == 16);
-    input.newest_samples = 16;
-    CHECK(decide(input).action == Action::wait);
-
-    // What was still is no more.
-    input.changed = true;
-    input.last_change = input.now;
-    CHECK(decide(input).still_samples == 0);
-}
-
-TEST_CASE("a change that nobody waited for is drawn in full when somebody comes later") {
-    PacingInput input = at(151ms);
-    input.changed = true;
-    input.newest_samples = 16;
-    CHECK(decide(input).still_samples == 4);
-}
-
-TEST_CASE("while a picture waits for the encoder none is drawn behind it") {
-    PacingInput input = at(0ms);
-    input.changed = true;
-    input.encoder_free = false;
-    CHECK(decide(input).action == Action::wait);
-    CHECK_FALSE(decide(input).until.has_value());
-}
 
 TEST_CASE("the size of a picture") {
     CHECK(picture_size({1180, 820, 2}, 1) == PictureSize{2360, 1640});

@@ -1,4 +1,4 @@
-#include "engine/pacing.hpp"
+#include "engine/frame_quality.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,22 +30,6 @@ PictureSize picture_size(const protocol::Resize& view, double scale) {
         return std::max(1, static_cast<int>(std::lround(css * view.pixel_ratio * scale)));
     };
     return {pixels(view.width), pixels(view.height)};
-}
-
-PacingDecision decide(const PacingInput& input) {
-    using Action = PacingDecision::Action;
-    const bool final_one = input.newest_samples == kStillSamples.back();
-    if (!input.somebody_waits || (!input.changed && final_one)) return {};
-    if (!input.encoder_free) return {};  // taking its next picture, the encoder wakes us
-    const base::Clock::time_point quiet_at = input.last_change + kQuiet;
-    if (input.now >= quiet_at) {
-        const int drawn = input.changed ? 0 : input.newest_samples;
-        const auto step = std::find_if(kStillSamples.begin(), kStillSamples.end(),
-                                       [&](int samples) { return samples > drawn; });
-        return {Action::draw, *step};
-    }
-    if (input.changed) return {Action::draw};
-    return {Action::wait, 0, quiet_at};
 }
 
 }  // namespace vrut::server::engine

@@ -1,0 +1,260 @@
+#include <algorithm>
+#include <cmath>
+
+#include "drawing_errors.hpp"
+#include "engine/engine.hpp"
+#include "observe/log.hpp"
+
+// What it draws, and how accurately.
+namespace vrut::server::engine {
+
+namespace {
+
+constexpr std::size_t kFramesRemembered = 64;
+/// A picture at rest that takes longer is held back for as long as it takes: whoever moves again would wait
+/// for it.
+constexpr std::chrono::seconds kLongDelivery{2};
+
+/// Whatever its nodes' states are.
+std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
+
+double pixels_of(const PictureSize& size) { return static_cast<double>(size.width) * size.height; }
+
+/// Counts a frame that was drawn, and logs it.
+void count_frame(const protocol::FrameHeader& drawn, observe::Metrics& metrics, observe::LiveStats& stats) {
+    const bool still = drawn.quality.level == protocol::Quality::Level::still;
+    ++(still ? metrics.frames_rendered_still : metrics.frames_rendered_moving);
+    (still ? metrics.render_still : metrics.render_moving).observe(drawn.timing.render_ms / 1000);
+    metrics.readback.observe(drawn.timing.readback_ms / 1000);
+    stats.drawn(drawn.quality, drawn.timing.render_ms, base::Clock::now());
+    observe::log_debug("frame_drawn", {{"frame", drawn.frame},
+                                       {"revision", drawn.revision},
+                                       {"quality", still ? "still" : "moving"},
+                                       {"width", drawn.width},
+                                       {"height", drawn.height},
+                                       {"samples", drawn.quality.samples},
+                                       {"ms", drawn.timing.render_ms}});
+}
+
+}  // namespace
+
+/// The newest frame shows what is to be seen now.
+bool Engine::shows_present() const {
+    return newest_.frame != 0 && presentation_->visible() == newest_.visible &&
+           presentation_->view_size() == newest_.view_size;
+}
+
+/// Whether a client may be sent more frames than there are for it. One from before its last grant will do for
+/// it while that shows what is to be seen.
+bool Engine::wants_newer(const Client& client) const {
+    const auto will_do = [&](std::int64_t frame) {
+        return frame > client.wanted.newer_than &&
+               (frame >= client.from_frame || (frame == newest_.frame && shows_present()));
+    };
+    return client.wanted.count > std::count_if(drawn_.begin(), drawn_.end(), will_do);
+}
+
+/// Expected of a whole picture: about as many as of the most accurate moving one.
+double Engine::bytes_at_rest() const {
+    const std::size_t level = choice_->levels().size() - 1;
+    const protocol::Resize view_size = presentation_->view_size();
+    const double scale = quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines()).scale;
+    return choice_->expected(level, pixels_of(picture_size(view_size, scale)), base::Clock::now()).bytes;
+}
+
+/// How long a whole picture is expected to be on its way over a slow link; 0 over others.
+base::Clock::duration Engine::delivery_at_rest(const std::optional<Link>& link) const {
+    if (!link) return {};
+    const std::chrono::duration<double> takes(bytes_at_rest() / link->bytes_per_second);
+    return takes > kLongDelivery
+               ? std::chrono::duration_cast<base::Clock::duration>(
+                     std::min<std::chrono::duration<double>>(takes, std::chrono::minutes(1)))
+               : base::Clock::duration{};
+}
+
+/// Of who steers; none where it is not measured, or nobody who wants frames steers.
+std::optional<Link> Engine::holders_link() const {
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    return holder == clients_.end() ? std::nullopt : holder->second.wanted.link;
+}
+
+bool Engine::thin_lines() const {
+    const protocol::State& state = presentation_->state();
+    return state.renderer.wireframe || state.renderer.mode == protocol::DrawMode::stylized ||
+           (state.renderer.show_selection && state.selection.node);
+}
+
+/// With the error that the table has for such a picture. Over a slow link the first one is as small as those
+/// of the moving view.
+protocol::Quality Engine::quality_at_rest(int samples) const {
+    const protocol::Resize view_size = presentation_->view_size();
+    if (samples < kStillSamples.back() && delivery_at_rest(holders_link()) > base::Clock::duration{}) {
+        protocol::Quality quality = quality_of(choice_->levels()[0].quality, view_size, room_, thin_lines());
+        quality.level = protocol::Quality::Level::still;
+        quality.samples = samples;
+        quality.detail = 0;
+        quality.error.reset();
+        return quality;
+    }
+    protocol::Quality quality = quality_of(kStill, view_size, room_, thin_lines());
+    quality.samples = samples;
+    if (thin_lines()) return quality;
+    for (const protocol::Level& level : at_rest_) {
+        quality.error = level.quality.error;
+        if (level.quality == quality) return quality;
+    }
+    quality.error.reset();
+    return quality;
+}
+
+std::size_t Engine::choose_level() {
+    const protocol::QualityState& wanted = presentation_->state().quality;
+    const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
+    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    const bool waits = holder != clients_.end() && holder->second.wanted.count > 0;
+    // The first pictures to a client are small: its link may be slow, and they cannot be taken back.
+    if (std::isfinite(target) && waits && !holder->second.wanted.link) return 0;
+    return choice_->choose({presentation_->view_size(), room_, target, holders_link()}, base::Clock::now());
+}
+
+/// A moving frame is finished though the camera has moved on: while it moves on and on, none would be.
+bool Engine::is_outdated(const FrameUnderWay& frame) const {
+    const View& now = presentation_->visible();
+    if (scene_of(now) != scene_of(frame.visible)) return true;
+    return frame.still_samples > 0 && (now != frame.visible || presentation_->view_size() != frame.view_size);
+}
+
+void Engine::give_up_frame() {
+    ++metrics_.frames_interrupted;
+    encoder_.give_spare(std::move(frame_->rendering.image));
+    frame_.reset();
+}
+
+std::map<std::string, Applied> Engine::applied() const {
+    std::map<std::string, Applied> applied;
+    for (const auto& [name, client] : clients_) applied[name] = {client.handled, client.sequence};
+    return applied;
+}
+
+/// What is drawn is what stands here now, whatever comes in between two steps.
+void Engine::begin_frame(int still_samples) {
+    const protocol::Resize view_size = presentation_->view_size();
+    const bool still = still_samples > 0;
+    const std::size_t level = still ? 0 : choose_level();
+    const protocol::Quality quality =
+        still ? quality_at_rest(still_samples)
+              : quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines());
+    const PictureSize size = picture_size(view_size, quality.scale);
+    const View visible = presentation_->visible();
+    View view = visible;
+    view.width = size.width;
+    view.height = size.height;
+    view.samples = quality.samples;
+    view.detail = quality.detail;
+    view.levels = detail_;
+
+    Picture picture;
+    picture.header = room::header_of(presentation_->state(), view, view_size);
+    picture.header.revision = presentation_->document()->revision();
+    picture.header.quality = quality;
+    picture.newest_input = newest_input_;
+    picture.rests_since = last_change_;
+    picture.applied = applied();
+    if (!still) {
+        picture.header.frame = next_frame_;
+        presentation_->remember(next_frame_++);  // with the camera as it is now
+    }
+    frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, still_samples, level,
+                                 Rendering(std::move(view), encoder_.take_spare())});
+}
+
+void Engine::draw_frame() {
+    try {
+        if (draw(frame_->rendering) == Drawn::whole) finish_frame();
+    } catch (const OutOfMemory& error) {
+        const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
+        draw_smaller({frame.visible, frame.view_size},
+                     {frame.rendering.view.width, frame.rendering.view.height}, error.what());
+    } catch (const std::exception& error) {
+        failed_ = Failed{frame_->visible, frame_->view_size};
+        frame_.reset();
+        notice(std::string("What is to be seen now cannot be drawn: ") + error.what());
+    }
+}
+
+void Engine::finish_frame() {
+    FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
+    protocol::FrameHeader& header = frame.picture.header;
+    if (frame.still_samples > 0) {
+        header.frame = next_frame_;
+        presentation_->remember(next_frame_++);
+        // It shows what came meanwhile, too: that changed nothing.
+        frame.picture.applied = applied();
+    }
+    newest_ = {header.frame, frame.visible, frame.view_size, frame.still_samples};
+    drawn_.push_back(header.frame);
+    if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
+    const FrameStats& stats = frame.rendering.stats;
+    header.timing.render_ms = stats.render_ms;
+    header.timing.readback_ms = stats.readback_ms;
+    count_frame(header, metrics_, stats_);
+    if (frame.still_samples == 0) {
+        begun_.push_back({header.frame, frame.level, pixels_of({header.width, header.height}),
+                          stats.render_ms + stats.readback_ms});
+        if (begun_.size() > kFramesRemembered) begun_.pop_front();
+    }
+    encoder_.offer(std::move(frame.picture), std::move(frame.rendering.image));
+}
+
+/// The clients in turn; of those that were begun only a few, since each takes memory.
+std::deque<Engine::Snapshot>::iterator Engine::next_snapshot() {
+    const auto begun = std::count_if(snapshots_.begin(), snapshots_.end(),
+                                     [](const Snapshot& snapshot) { return snapshot.rendering.has_value(); });
+    return std::find_if(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& snapshot) {
+        return snapshot.rendering || static_cast<std::size_t>(begun) < kUnderWay;
+    });
+}
+
+/// Draws on a snapshot that waits, one step; the next has its turn then.
+void Engine::draw_snapshot() {
+    const auto next = next_snapshot();
+    Snapshot snapshot = std::move(*next);
+    snapshots_.erase(next);
+    if (!snapshot.rendering) {
+        View& view = snapshot.order.view;
+        view.samples = kStill.samples;
+        snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
+    }
+    Drawn drawn = Drawn::part;
+    try {
+        drawn = draw(*snapshot.rendering);
+    } catch (const OutOfMemory& error) {
+        return reject(snapshot, error.what());
+    } catch (const std::exception& error) {
+        return reject(snapshot, std::string("the picture cannot be drawn: ") + error.what());
+    }
+    if (drawn == Drawn::whole) return finish_snapshot(std::move(snapshot));
+    if (drawn == Drawn::lost && ++snapshot.losses == kMostLosses)
+        return reject(snapshot, "the graphics driver is lost whenever this picture is drawn");
+    // Behind those of others, before further ones of its own client.
+    const auto own = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& other) {
+        return other.order.client == snapshot.order.client;
+    });
+    snapshots_.insert(own, std::move(snapshot));
+}
+
+void Engine::finish_snapshot(Snapshot snapshot) {
+    ++metrics_.snapshots_rendered;
+    Picture picture;
+    picture.header = std::move(snapshot.order.header);
+    picture.header.quality = kStill;
+    picture.header.quality.jpeg_quality = snapshot.order.jpeg_quality;
+    picture.header.timing.render_ms = snapshot.rendering->stats.render_ms;
+    picture.header.timing.readback_ms = snapshot.rendering->stats.readback_ms;
+    picture.header.frame = next_frame_++;
+    picture.format = snapshot.order.format;
+    picture.client = snapshot.order.client;
+    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.rendering->image));
+}
+
+}  // namespace vrut::server::engine

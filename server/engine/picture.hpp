@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/clock.hpp"
+#include "frame_header.hpp"
+
+namespace vrut::server::engine {
+
+/// What of a client's messages a picture shows.
+struct Applied {
+    std::int64_t id = 0;         ///< the highest id
+    std::uint64_t sequence = 0;  ///< the last message
+};
+
+/// A picture with what is to be said of it, the same for all clients but for `handled`.
+struct Picture {
+    protocol::FrameHeader header;
+    std::map<std::string, Applied> applied;                    ///< of each client
+    std::optional<base::Clock::time_point> newest_input = {};  ///< arrival of the newest input that it shows
+    base::Clock::time_point rests_since{};                     ///< the newest change of what it shows
+    protocol::ImageFormat format = protocol::ImageFormat::jpeg;
+    std::string client = {};  ///< of a snapshot: who asked for it
+};
+
+struct EncodedPicture : Picture {
+    std::vector<std::uint8_t> file;
+    std::size_t header_offset = 0;  ///< where the header of each client goes
+};
+
+/// `header` as it stands in the picture's file, at header_offset.
+std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header);
+
+}  // namespace vrut::server::engine

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+
+#include "base/clock.hpp"
+
+namespace vrut::server::engine {
+
+/// After this long without a change the picture is drawn at full accuracy.
+inline constexpr std::chrono::milliseconds kQuiet{150};
+
+/// What the next step of the render loop depends on.
+struct ScheduleInput {
+    base::Clock::time_point now;
+    base::Clock::time_point last_change;  ///< of what is to be seen
+    bool frame_wanted = false;            ///< a client may be sent a frame newer than the newest drawn
+    /// From when on one may be sent the last refinement, which takes long on a slow link.
+    base::Clock::time_point last_refinement_from{};
+    bool changed = false;      ///< the newest frame does not show what is to be seen now
+    int newest_samples = 0;    ///< of the newest frame where it is a still one; else 0
+    bool encoder_free = true;  ///< a frame drawn now would not wait behind another
+    bool frame_under_way = false;
+    bool snapshot_waits = false;  ///< and its encoder is free
+};
+
+struct ScheduledStep {
+    enum class Action { wait, begin_frame, draw_frame, draw_snapshot };
+    Action action = Action::wait;
+    int still_samples = 0;  ///< of the frame to begin; 0: a moving one
+    /// When waiting: ask again then even if nothing happens; none: only when something does.
+    std::optional<base::Clock::time_point> until = {};
+};
+
+/// The one place that decides what the render loop does next. While things move, snapshots get a fifth of the
+/// time; at rest frames go before them.
+class Scheduler {
+public:
+    ScheduledStep next(const ScheduleInput& input) const;
+    /// A step of a snapshot was drawn from `begin` to `end`.
+    void drew_snapshot(base::Clock::time_point begin, base::Clock::time_point end);
+
+private:
+    ScheduledStep frame_step(const ScheduleInput& input) const;
+
+    base::Clock::time_point snapshot_turn_{};  ///< while things move: not before
+};
+
+}  // namespace vrut::server::engine

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "base/clock.hpp"
+#include "engine/link.hpp"
+
+namespace vrut::server::net {
+
+/// Decides when a client may be sent a frame or an update of the state, and measures its link. It is told
+/// what was sent, acknowledged and ponged, and at what time; it holds all credits. Proxies and kernels take
+/// bytes long before the client has them, so only two things tell that a message has arrived: the client's
+/// word, and the pong of a ping that was sent behind it. Messages before an arrived one have arrived, too.
+class FlowControl {
+public:
+    using Clock = base::Clock;
+
+    /// The client grants one more frame and acknowledges none. Where it was sent one before, its grants are
+    /// counted from then on and its link is taken as unlimited, until it acknowledges one.
+    void grant();
+    /// The client grants one more frame and has shown `frame`. False: it was never sent, and nothing changes.
+    bool grant(std::int64_t frame, Clock::time_point now);
+
+    /// A frame was handed to the socket, for one credit.
+    void sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_point now);
+    /// An update was.
+    void sent_update(std::size_t bytes, Clock::time_point now);
+    /// Anything else was.
+    void sent(std::size_t bytes, Clock::time_point now);
+
+    /// Whether a ping is to follow what was sent: the first before anything else, then one behind every
+    /// frame, and behind other messages where none is under way.
+    bool wants_ping() const;
+    /// A ping was handed to the socket; its number, which the pong brings back.
+    std::uint64_t sent_ping(Clock::time_point now);
+    /// A number that is not under way is ignored.
+    void pong(std::uint64_t number, Clock::time_point now);
+
+    /// Frames that were granted and not sent.
+    int credits() const { return credits_; }
+    /// Of those, how many may be under way together with what is: 0 while one must wait.
+    int frames_allowed(Clock::time_point now) const;
+    bool may_send_frame(Clock::time_point now) const { return frames_allowed(now) > 0; }
+    /// Updates are what a newer one of replaces: they wait here, not in a queue of the link.
+    bool may_send_update(Clock::time_point now) const;
+    /// When either answer becomes yes though nothing more is heard; none: it is yes, or is never by time
+    /// alone.
+    std::optional<Clock::time_point> ask_again(Clock::time_point now) const;
+
+    /// None before the first measurement; unlimited for a client that does not acknowledge.
+    std::optional<engine::Link> link(Clock::time_point now) const;
+    /// From when on a frame of so many bytes, of a view that rests since `rests_since`, may be sent: one that
+    /// takes long on this link goes once the view has rested for as long, since whoever moves again would
+    /// wait for it.
+    Clock::time_point may_send_from(std::size_t bytes, Clock::time_point rests_since,
+                                    Clock::time_point now) const;
+    /// Bytes that were sent and are not known to have arrived.
+    std::size_t in_flight() const { return sent_ - arrived_; }
+
+private:
+    struct Frame {
+        std::int64_t number = 0;
+        std::size_t bytes = 0, end = 0;  ///< `end`: of all bytes sent
+        Clock::time_point sent_at;
+        std::optional<Clock::time_point> arrived_at = {};
+        bool shown = false;
+    };
+    struct Ping {
+        std::uint64_t number = 0;
+        std::size_t end = 0;  ///< of all bytes sent before it
+        Clock::time_point sent_at;
+        bool idle = false;  ///< nothing was in flight
+    };
+    void credit();
+    void arrive(std::size_t end, Clock::time_point now);
+    void measure(const Frame& frame, Clock::time_point shown_at);
+    Clock::duration round_trip() const { return round_trip_.value_or(Clock::duration{}); }
+    Clock::duration queueing(Clock::time_point now) const;
+
+    int credits_ = 0;
+    bool acknowledges_ = false, counts_grants_ = false;
+    std::size_t sent_ = 0, arrived_ = 0;  ///< bytes
+    std::int64_t newest_ = 0;             ///< frame that was sent
+    std::int64_t forgotten_ = 0;          ///< the newest frame that is not in frames_ any more
+    Clock::time_point sent_at_{};         ///< the newest message
+    Clock::time_point update_from_{};     ///< the earliest next update
+    Clock::time_point heard_at_{};        ///< the newest arrival
+    std::size_t pinged_ = 0;              ///< bytes sent before the newest ping
+    std::deque<Frame> frames_;            ///< the last that were sent
+    std::deque<Ping> pings_;              ///< under way
+    std::uint64_t next_ping_ = 1;
+    std::optional<Clock::duration> round_trip_;
+    std::optional<double> rate_;    ///< bytes per second
+    Clock::time_point free_at_{};   ///< when the frame measured last was shown
+    std::size_t measured_end_ = 0;  ///< of that frame
+};
+
+}  // namespace vrut::server::net
