@@ -18,6 +18,8 @@
 #include "engine/mailbox.hpp"
 #include "engine/pacing.hpp"
 #include "engine/painter.hpp"
+#include "engine/recording_writer.hpp"
+#include "engine/scene_lookup.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
 #include "room/room.hpp"
@@ -139,6 +141,7 @@ private:
     void handle(const PictureAsked& asked);
     void handle(const scene::SceneLoading& loading);
     void handle(const scene::SceneLoaded& loaded);
+    void handle(const FileWorkDone& done);
     /// Takes what has come, after waiting for something until then.
     void receive(std::optional<base::Clock::time_point> until);
     /// Handles some of it: the clients in turn, so that none waits behind another's thousand.
@@ -147,8 +150,10 @@ private:
     void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
     void grant(Client& client, const ClientSaid& said);
     void report();
-    std::optional<protocol::Error> load(const std::string& name);
-    const std::vector<std::string>& scenes();
+    void connect_files(room::PresentationOptions& options);
+    std::optional<protocol::Error> load(const SceneLookup::Found& found);
+    std::optional<base::Clock::time_point> files_due() const;
+    void check_files();
     room::Time time_of(base::Clock::time_point when) const {
         return std::chrono::duration_cast<room::Time>(when - start_);
     }
@@ -201,9 +206,6 @@ private:
     scene::LoadedScene with_notices(scene::LoadedScene scene) const;
 
     scene::SceneLibrary library_;
-    std::vector<std::string> scenes_;                ///< as they were listed last
-    std::future<std::vector<std::string>> listing_;  ///< one that is being made
-    base::Clock::time_point list_again_{};
     std::filesystem::path record_folder_;
     observe::Metrics& metrics_;
     EngineCallbacks callbacks_;
@@ -211,6 +213,9 @@ private:
     std::string description_;
     const base::Clock::time_point start_ = base::Clock::now();
     Mailbox mailbox_;
+    const std::shared_ptr<ResultPost> file_results_;
+    SceneLookup lookup_;
+    RecordingWriter recordings_;
     std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
     std::atomic<std::size_t> taken_{0};                       ///< events in waiting_
     base::Heartbeat heart_;

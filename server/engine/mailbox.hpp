@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -63,8 +64,13 @@ struct PictureAsked {
     int width = 0, height = 0;  ///< 0: the view's
 };
 
+/// Work on files is done: what the render thread does with its result.
+struct FileWorkDone {
+    std::function<void()> use;
+};
+
 using EngineEvent = std::variant<ClientJoined, ClientLeft, ClientSaid, FrameSent, SnapshotSent, PictureAsked,
-                                 scene::SceneLoading, scene::SceneLoaded>;
+                                 scene::SceneLoading, scene::SceneLoaded, FileWorkDone>;
 
 /// The one way into the render thread. Adjacent moves of one pointer become one; nothing else is merged or
 /// dropped.
