@@ -23,6 +23,7 @@ inline constexpr Number kDuration{0, std::numeric_limits<double>::max()};
 inline constexpr double kHuge = kFarthest;
 inline constexpr Vector<glm::dvec3> kPosition{-kHuge, kHuge};
 inline constexpr Vector<glm::dvec4> kColor{0, 1};
+inline constexpr Vector<glm::dvec4> kLightColor{0, kHuge};  // light may be brighter than white
 inline constexpr Vector<glm::dvec3> kAttenuation{0, kHuge};
 inline constexpr Number kFov{1, 170};
 inline constexpr Number kSpeed{0.01, 100};
@@ -394,7 +395,7 @@ template <class V>
 void describe(V& v, const LightState*) {
     v.fixed("name", &LightState::name, kName);
     v.fixed("type", &LightState::type, kName);
-    v.writable("color", &LightState::color, kColor);
+    v.writable("color", &LightState::color, kLightColor);
     v.writable("attenuation", &LightState::attenuation, kAttenuation);
 }
 

@@ -18,8 +18,6 @@ namespace {
 constexpr int kMostSnapshots = 2;  // of a client, waiting
 /// At most, for those who follow the camera without frames.
 constexpr std::chrono::milliseconds kFlightStep{16};
-constexpr std::chrono::seconds kBetweenListings{1};         // of the folder of scenes
-constexpr std::chrono::milliseconds kWaitsForListing{100};  // a loaded machine starts a thread late
 
 /// "" where it is of none.
 std::string client_of(const EngineEvent& event) {
@@ -62,6 +60,25 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
       record_folder_(std::move(options.record_folder)),
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
+      file_results_(
+          std::make_shared<ResultPost>([this](FileWorkDone done) { mailbox_.push(std::move(done)); })),
+      lookup_(
+          {[library = library_] { return library.names(); },
+           [library = library_](const std::string& name) { return library.find(name); }},
+          file_results_,
+          [this](auto request, const auto& names) { presentation_->scenes_listed(request, names); },
+          [this](auto request, const auto& found) {
+              presentation_->load_answered(request, load(found), time_of(base::Clock::now()));
+          }),
+      recordings_([folder = record_folder_](const std::string& name) { return open_log(folder, name); },
+                  file_results_,
+                  [this](auto recording, const auto& name) {
+                      presentation_->recording_opened(recording, name, time_of(base::Clock::now()));
+                  },
+                  [this](auto recording, const auto& why) {
+                      presentation_->recording_ended(recording, why, time_of(base::Clock::now()));
+                  },
+                  {}),
       encoder_(
           metrics,
           [this](std::shared_ptr<const EncodedPicture> picture) {
@@ -112,6 +129,7 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
 Engine::~Engine() {
     mailbox_.close();
     thread_.join();
+    file_results_->close();
 }
 
 scene::LoadedScene Engine::with_notices(scene::LoadedScene scene) const {
@@ -128,9 +146,7 @@ void Engine::begin(const scene::LoadedScene& scene) {
     room_ = limits_;
     use(scene::levels_of(scene.sha256, description_));
     room::PresentationOptions options;
-    options.record_folder = record_folder_;
-    options.load = [this](const std::string& name) { return load(name); };
-    options.scenes = [this] { return scenes(); };
+    connect_files(options);
     presentation_.emplace(with_notices(scene), std::move(options));
     try {
         if (painter_.take) painter_.take(presentation_->visible());
@@ -151,6 +167,7 @@ void Engine::run() {
     std::optional<base::Clock::time_point> until = base::Clock::now();
     while (!mailbox_.closed()) {
         drain(until);
+        check_files();
         apply();
         publish();
         until = take_step(scheduler_.next(situation(base::Clock::now())));
@@ -158,7 +175,7 @@ void Engine::run() {
 }
 
 void Engine::drain(std::optional<base::Clock::time_point> until) {
-    until = earlier(until, stats_.due());
+    until = earlier(earlier(until, stats_.due()), files_due());
     if (presentation_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
     if (!waiting_.empty()) until = base::Clock::now();
     heart_.rest();
@@ -338,39 +355,6 @@ void Engine::tell(const protocol::Loading& loading) {
 void Engine::handle(const scene::SceneLoaded& loaded) {
     arrived_ = loaded;
     arrival_losses_ = 0;
-}
-
-std::optional<protocol::Error> Engine::load(const std::string& name) {
-    if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
-    try {
-        if (const auto refusal = loader_.start(library_, name, description_))
-            return protocol::Error{{}, code::refused_scene, *refusal};
-    } catch (const std::system_error& error) {
-        return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
-    }
-    tell({name, 0, {}, {}});
-    return std::nullopt;
-}
-
-/// Listed anew once a second at most, and not by this thread: the folder may lie on a slow disk. Where that
-/// takes long, the list before is told.
-const std::vector<std::string>& Engine::scenes() {
-    const base::Clock::time_point now = base::Clock::now();
-    std::chrono::milliseconds patience{0};
-    if (!listing_.valid() && now >= list_again_) {
-        std::packaged_task<std::vector<std::string>()> walk([library = library_] { return library.names(); });
-        listing_ = walk.get_future();
-        list_again_ = now + kBetweenListings;
-        patience = kWaitsForListing;
-        try {
-            std::thread(std::move(walk)).detach();  // nobody waits at the end for a disk that never answers
-        } catch (const std::system_error&) {        // no thread can be had: what was listed last will do
-            listing_ = {};
-        }
-    }
-    if (listing_.valid() && listing_.wait_for(patience) == std::future_status::ready)
-        scenes_ = listing_.get();
-    return scenes_;
 }
 
 void Engine::handle(const ClientSaid& said) {

@@ -18,6 +18,8 @@
 #include "engine/level_choice.hpp"
 #include "engine/mailbox.hpp"
 #include "engine/painter.hpp"
+#include "engine/recording_writer.hpp"
+#include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
@@ -149,11 +151,14 @@ private:
     void handle(const PictureAsked& asked);
     void handle(const scene::SceneLoading& loading);
     void handle(const scene::SceneLoaded& loaded);
+    void handle(const FileWorkDone& done);
     /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
     void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
-    std::optional<protocol::Error> load(const std::string& name);
-    const std::vector<std::string>& scenes();
+    void connect_files(room::PresentationOptions& options);
+    std::optional<protocol::Error> load(const SceneLookup::Found& found);
+    std::optional<base::Clock::time_point> files_due() const;
+    void check_files();
     room::Time time_of(base::Clock::time_point when) const {
         return std::chrono::duration_cast<room::Time>(when - start_);
     }
@@ -205,9 +210,6 @@ private:
     scene::LoadedScene with_notices(scene::LoadedScene scene) const;
 
     scene::SceneLibrary library_;
-    std::vector<std::string> scenes_;                ///< as they were listed last
-    std::future<std::vector<std::string>> listing_;  ///< one that is being made
-    base::Clock::time_point list_again_{};
     std::filesystem::path record_folder_;
     observe::Metrics& metrics_;
     EngineCallbacks callbacks_;
@@ -215,6 +217,9 @@ private:
     std::string description_;
     const base::Clock::time_point start_ = base::Clock::now();
     Mailbox mailbox_;
+    const std::shared_ptr<ResultPost> file_results_;
+    SceneLookup lookup_;
+    RecordingWriter recordings_;
     std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
     std::atomic<std::size_t> taken_{0};                       ///< events in waiting_
     base::Heartbeat heart_;

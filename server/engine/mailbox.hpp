@@ -1,6 +1,7 @@
 #pragma once
 
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -77,9 +78,14 @@ struct PictureAsked {
     int width = 0, height = 0;  ///< 0: the view's
 };
 
+/// Work on files is done: what the render thread does with its result.
+struct FileWorkDone {
+    std::function<void()> use;
+};
+
 using EngineEvent =
     std::variant<ClientJoined, ClientLeft, ClientSaid, FramesWanted, SnapshotSent, FrameEncoded,
-                 PictureFailed, PictureAsked, scene::SceneLoading, scene::SceneLoaded>;
+                 PictureFailed, PictureAsked, scene::SceneLoading, scene::SceneLoaded, FileWorkDone>;
 
 /// The one way into the render thread. Of a client's moves that come one after the other the last of each
 /// pointer is kept, and of what it wants the newest; nothing else is merged or dropped.

@@ -100,9 +100,10 @@ HttpResponse respond(const HttpRequest& request, const Hub& hub) {
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
         if (!has_token(request, hub))
             return refusal(http::status::unauthorized, "this route asks for a token");
-        if (path == "/protocol.schema.json")
-            return {http::status::ok, "application/schema+json",
-                    std::make_shared<const std::string>(protocol::json_schema())};
+        if (path == "/protocol.schema.json") {
+            static const auto schema = std::make_shared<const std::string>(protocol::json_schema());
+            return {http::status::ok, "application/schema+json", schema};
+        }
         if (path == "/frame.jpg") return {};  // the session's, who can wait for it
         if (path == "/readyz") return state(why_unready(hub), "ready\n");
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",

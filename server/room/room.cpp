@@ -18,8 +18,7 @@ Presentation::Presentation(scene::LoadedScene scene, PresentationOptions options
       state_(starting_),
       document_(protocol::StateDocument::next({}, state_)),
       at_home_(!state_.camera.node),
-      visible_(view_of(state_, scene_)),
-      recorder_(options_.record_folder) {}
+      visible_(view_of(state_, scene_)) {}
 
 void Presentation::join(const std::string& client, Role role, Time at, const std::string& name) {
     advance(at);
@@ -42,16 +41,54 @@ void Presentation::leave(const std::string& client, Time at) {
 
 bool Presentation::say(const std::string& client, const protocol::ClientMessage& message, Time at) {
     if (!clients_.contains(client)) return false;  // it has left
+    const Said said{client, message};
+    return handle(said, at,
+                  [&] { std::visit([&](const auto& payload) { apply(said, payload); }, message.payload); });
+}
+
+template <class Apply>
+bool Presentation::handle(const Said& said, Time at, Apply apply) {
     advance(at);
-    if (changing_ != client) document();  // a revision is one client's doing
-    changing_ = client;
+    if (changing_ != said.client) document();  // a revision is one client's doing
+    changing_ = said.client;
     accepted_ = false;
-    const bool recorded = recorder_.active();
-    std::visit([&](const auto& payload) { apply({client, message}, payload); }, message.payload);
+    const bool recorded = active_recording() != nullptr;
+    apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     visible_ = view_of(state_, scene_);
-    if (accepted_ && recorded) record(client, message);
+    if (accepted_ && recorded) record(said.client, said.message);
     return accepted_;
+}
+
+std::int64_t Presentation::answer_later(const Said& said) {
+    requests_[++newest_request_] = {said.client, said.message};
+    return newest_request_;
+}
+
+std::optional<AnsweredLater> Presentation::take_request(std::int64_t request) {
+    auto found = requests_.extract(request);
+    if (found.empty() || !is_here(found.mapped())) return std::nullopt;
+    return std::move(found.mapped());
+}
+
+void Presentation::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal,
+                                 Time at) {
+    const auto asked = take_request(request);
+    if (!asked) return;
+    const Said said{asked->client, asked->message};
+    handle(said, at, [&] {
+        if (refusal) return refuse(said, refusal->code.c_str(), refusal->message);
+        // Whether it may be opened was judged when it was asked for; by now another may hold control.
+        const bool steers = steering_.may_steer(said.client, time_, gestures_.any_pressed());
+        if (steers) steer(said);
+        answer(said);
+        accepted_ = steers;  // what stands in a log steers
+    });
+}
+
+void Presentation::scenes_listed(std::int64_t request, std::vector<std::string> names) {
+    if (const auto asked = take_request(request))
+        answer_with({asked->client, asked->message}, protocol::SceneList{0, std::move(names)});
 }
 
 void Presentation::advance(Time at) {

@@ -15,7 +15,7 @@
 #include "gestures.hpp"
 #include "messages.hpp"
 #include "picking.hpp"
-#include "room/recorder.hpp"
+#include "room/recording.hpp"
 #include "room/scene_state.hpp"
 #include "room/steering.hpp"
 #include "scene/loaded_scene.hpp"
@@ -45,11 +45,11 @@ struct PictureOrder {
 };
 
 struct PresentationOptions {
-    std::filesystem::path record_folder = {};  ///< empty: nothing is recorded
-    /// Begins to load a scene of this name, or says why not.
-    std::function<std::optional<protocol::Error>(const std::string& name)> load = {};
-    /// Names of the scenes that can be loaded.
-    std::function<std::vector<std::string>()> scenes = {};
+    std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
+    /// Begins to load a scene of this name; Presentation::load_answered() tells whether it has begun.
+    std::function<void(std::int64_t request, const std::string& name)> load = {};
+    /// Looks up the scenes that can be loaded; Presentation::scenes_listed() tells them.
+    std::function<void(std::int64_t request)> scenes = {};
     /// What is said was accepted before: it is not judged again by revisions, nor recorded.
     bool replaying = false;
 };
@@ -65,8 +65,8 @@ public:
     /// `name`: as the client calls itself; empty: it does not.
     void join(const std::string& client, protocol::Role role, Time at, const std::string& name = {});
     void leave(const std::string& client, Time at);
-    /// Any message but `hello` and `frame`. What is refused changes nothing, and not who steers either; then
-    /// false comes back.
+    /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
+    /// refused changes nothing, and not who steers either; then false comes back.
     bool say(const std::string& client, const protocol::ClientMessage& message, Time at);
     /// A flight goes on to where it is then.
     void advance(Time at);
@@ -74,6 +74,16 @@ public:
     void show(scene::LoadedScene scene, Time at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
     void notice(const std::string& sentence);
+    /// Loading has begun, or why not; once for each call of PresentationOptions::load.
+    void load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, Time at);
+    /// Once for each call of PresentationOptions::scenes.
+    void scenes_listed(std::int64_t request, std::vector<std::string> names);
+    /// Its file is open under this name, or cannot be opened, a sentence; once for each that began.
+    void recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
+                          Time at);
+    /// Its last line is written, or it has ended before that: why, in words that end a sentence. Once for
+    /// each that was opened.
+    void recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at);
     /// A frame has been drawn of visible() at view_size(): picks name it.
     void remember(std::int64_t frame);
     /// To be called first, if at all: as things stood when a recording began.
@@ -142,6 +152,15 @@ private:
     void apply(const Said& said, const protocol::Control& control);
     void apply(const Said& said, const protocol::Shown& shown);
 
+    /// Does what a message does; whether it was accepted.
+    template <class Apply>
+    bool handle(const Said& said, Time at, Apply apply);
+    /// Remembers a message that is answered later: the number by which.
+    std::int64_t answer_later(const Said& said);
+    /// That message; none where its client has left.
+    std::optional<AnsweredLater> take_request(std::int64_t request);
+    bool is_here(const AnsweredLater& asked) const { return clients_.contains(asked.client); }
+
     /// Done; `ok` where the message has an id.
     void answer(const Said& said, std::optional<std::string> name = {});
     /// Done, with an answer of its own.
@@ -178,7 +197,10 @@ private:
 
     // --- recordings
     void start_recording(const Said& said, const std::string& name);
-    protocol::LogHeader log_header() const;
+    void stop_recording(const Said& said);
+    /// The one that takes lines.
+    Recording* active_recording();
+    RecordingSink::Header log_header() const;
     void record(const std::string& client, decltype(protocol::LogLine::what) what);
     void press_anew(const std::string& client);
 
@@ -219,8 +241,9 @@ private:
         protocol::Resize view_size;
     };
     std::deque<Frame> frames_;  ///< the last kFramesRemembered
-    Recorder recorder_;
-    Time recording_since_{0};
+    std::int64_t newest_request_ = 0, newest_recording_ = 0;
+    std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
+    std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written
 };
 
 }  // namespace vrut::server::room

@@ -1,4 +1,4 @@
-// What scripts ask for: moves, flights, pictures, the tree, scenes and recordings.
+// What scripts ask for: moves, flights, pictures, the tree and scenes.
 #include <cmath>
 
 #include "codec.hpp"
@@ -19,6 +19,7 @@ void Presentation::answer_with(const Said& said, const Message& message) {
     answers_.push_back({said.client, protocol::encode(answer), document()->revision()});
 }
 template void Presentation::answer_with(const Said&, const protocol::Picked&);
+template void Presentation::answer_with(const Said&, const protocol::SceneList&);
 
 void Presentation::apply(const Said& said, const protocol::Navigate& navigate) {
     if (!may_steer(said)) return;
@@ -123,117 +124,22 @@ void Presentation::apply(const Said& said, const protocol::Tree& tree) {
     answer_with(said, *page);
 }
 
-// --- scenes and recordings
+// --- scenes
 
 void Presentation::apply(const Said& said, const protocol::Open& open) {
     if (!may_steer(said)) return;
-    if (options_.load)
-        if (const auto error = options_.load(open.scene))
-            return refuse(said, error->code.c_str(), error->message);
+    if (options_.load) return options_.load(answer_later(said), open.scene);
     steer(said);
     answer(said);
 }
 
 void Presentation::apply(const Said& said, const protocol::Scenes&) {
-    answer_with(said,
-                protocol::SceneList{0, options_.scenes ? options_.scenes() : std::vector<std::string>()});
+    if (!options_.scenes) return answer_with(said, protocol::SceneList{});
+    accepted_ = true;
+    options_.scenes(answer_later(said));
 }
 
-void Presentation::apply(const Said& said, const protocol::Record& record) {
-    if (!may_steer(said)) return;
-    if (options_.replaying) {
-        steer(said);
-        return answer(said);
-    }
-    if (!recorder_.has_folder())
-        return refuse(said, code::not_allowed, "this server has no folder for recordings");
-    if (record.action == protocol::Record::Action::start) return start_recording(said, record.name);
-    if (!recorder_.active()) return refuse(said, code::failed, "nothing is being recorded");
-    steer(said);
-    this->record(said.client, said.message);
-    recorder_.close();
-    const std::string name = state_.recording ? state_.recording->name : "";
-    state_.recording.reset();
-    answer(said, name);
-}
-
-void Presentation::start_recording(const Said& said, const std::string& name) {
-    if (recorder_.active())
-        return refuse(said, code::busy, "a recording is going on: '" + state_.recording->name + "'");
-    const auto opened = recorder_.open(name);
-    if (!opened) return refuse(said, code::failed, opened.error());
-    steer(said);
-    if (size_waits_) use_holders_size();
-    state_.recording = protocol::RecordingState{*opened};
-    recording_since_ = time_;
-    recorder_.write(protocol::encode(log_header()));
-    if (!recorder_.active()) {
-        state_.recording.reset();
-        accepted_ = false;
-        return refuse(said, code::failed, recorder_.end());
-    }
-    press_anew(said.client);
-    answer(said, *opened);
-}
-
-/// What is held begins anew, here and in the log, which knows nothing of how it began. All of it is the
-/// holder's, `client`'s.
-void Presentation::press_anew(const std::string& client) {
-    clicks_ = {};
-    const auto again = [&](const auto& payload) {
-        const protocol::ClientMessage message{{}, payload};
-        record(client, message);
-        apply({client, message}, payload);
-    };
-    for (const Gestures::HeldKey& held : gestures_.held_keys()) {
-        const KeyInput input = held.input();
-        protocol::Key key;
-        key.key = input.key;
-        key.code = input.code;
-        again(key);
-    }
-    for (const PointerInput& pressed : gestures_.pressed()) {
-        protocol::Pointer pointer;
-        pointer.event = protocol::Pointer::Event::down;
-        pointer.pointer_id = pressed.pointer;
-        pointer.pointer_type = static_cast<protocol::Pointer::Type>(pressed.device);
-        pointer.x = pressed.x;
-        pointer.y = pressed.y;
-        pointer.button = pressed.button;
-        pointer.buttons = pressed.buttons;
-        const ModifierKeys& keys = pressed.modifiers;
-        pointer.modifiers = {keys.ctrl, keys.shift, keys.alt, keys.meta};
-        again(pointer);
-    }
-}
-
-void Presentation::record(const std::string& client, decltype(protocol::LogLine::what) what) {
-    if (!recorder_.active()) return;
-    recorder_.write(protocol::encode(protocol::LogLine{time_ - recording_since_, client, std::move(what)}));
-    if (recorder_.active()) return;
-    state_.recording.reset();
-    notice(recorder_.end());
-}
-
-protocol::LogHeader Presentation::log_header() const {
-    protocol::LogHeader header;
-    header.scene = loaded_.name;
-    header.scene_sha256 = loaded_.sha256;
-    header.started = iso_time_now();
-    header.state = protocol::document_of(state_);
-    for (const auto& [name, client] : clients_)
-        header.clients.push_back({name, client.role, client.wanted, client.name});
-    header.view = view_size_;
-    header.at_home = at_home_;
-    header.home = starting_.views.at("home");
-    for (const Frame& frame : frames_)
-        header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
-    if (flight_)
-        header.flight = {flight_->client, flight_->id,
-                         static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
-                         flight_->asked};
-    return header;
-}
+// --- as things stood when a recording began
 
 tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& header) {
     if (header.home) {

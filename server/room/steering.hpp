@@ -31,6 +31,8 @@ public:
     const std::optional<std::string>& holder() const { return holder_; }
     bool kept() const { return kept_; }
 
+    bool operator==(const Steering&) const = default;
+
 private:
     std::optional<std::string> holder_;
     bool kept_ = false;

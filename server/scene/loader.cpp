@@ -71,38 +71,12 @@ SceneLoader::SceneLoader(std::function<void(SceneLoading)> on_progress,
 
 SceneLoader::~SceneLoader() { listener_->close(); }
 
-bool SceneLoader::busy() const {
-    return task_ && !(given_up_ && task_->is_done_within(std::chrono::milliseconds(0)));
-}
-
-std::optional<std::string> SceneLoader::start(const SceneLibrary& library, const std::string& name,
-                                              const std::string& renderer) {
-    using Refusal = std::optional<std::string>;
-    constexpr std::chrono::seconds kWaitsForFolder{1};
-    finish();
-    std::promise<Refusal> found;
-    std::future<Refusal> refusal = found.get_future();
-    task_.emplace([library, name, renderer, listener = listener_,
-                   looked_up = std::move(found)](const std::stop_token& stop) mutable {
-        const auto path = library.find(name);
-        looked_up.set_value(path ? Refusal() : path.error());
-        if (!path) return;
+void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
+                        const std::string& renderer, const std::optional<ImportLimits>& limits) {
+    task_.emplace([path, name, renderer, limits, listener = listener_](const std::stop_token& stop) {
         const auto tell = [listener](SceneLoading loading) { listener->tell(std::move(loading)); };
-        listener->tell(load(*path, name, renderer, progress_of(name, tell, stop), library.limits()));
+        listener->tell(load(path, name, renderer, progress_of(name, tell, stop), limits));
     });
-    if (refusal.wait_for(kWaitsForFolder) != std::future_status::ready) {
-        task_->stop();
-        given_up_ = true;
-        return "the folder of scenes does not answer";
-    }
-    Refusal why = refusal.get();
-    if (why) finish();
-    return why;
-}
-
-void SceneLoader::finish() {
-    task_.reset();
-    given_up_ = false;
 }
 
 }  // namespace vrut::server::scene

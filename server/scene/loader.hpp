@@ -34,20 +34,19 @@ public:
     SceneLoader(const SceneLoader&) = delete;
     SceneLoader& operator=(const SceneLoader&) = delete;
 
-    /// From start() until finish(), or while a refused start() still hangs.
-    bool busy() const;
-    /// Reads the scene of this name, and the levels that are kept for `renderer`; or returns why it does not,
-    /// after a second at most. Throws std::system_error where no thread can be had.
-    std::optional<std::string> start(const SceneLibrary& library, const std::string& name,
-                                     const std::string& renderer);
+    /// From start() until finish().
+    bool busy() const { return task_.has_value(); }
+    /// Reads a scene, and the levels that are kept for `renderer`; not while busy(). Throws std::system_error
+    /// where no thread can be had.
+    void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
+               const std::optional<ImportLimits>& limits);
     /// To be called after `on_loaded`.
-    void finish();
+    void finish() { task_.reset(); }
 
 private:
     struct Listener;
 
     std::shared_ptr<Listener> listener_;
-    bool given_up_ = false;  ///< by start(), since the folder does not answer
     std::optional<base::AbandonableTask<void>> task_;
 };
 

@@ -295,8 +295,13 @@ TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
     CHECK(none.say("a", ask));
     CHECK(none.told().at(0) == json::parse(R"({"type":"scenes","id":4,"scenes":[],"to":"a"})"));
     server::room::PresentationOptions options;
-    options.scenes = [] { return std::vector<std::string>{"car.vrut", "more/bus.vrut"}; };
+    std::int64_t request = 0;
+    options.scenes = [&](std::int64_t number) { request = number; };
     Stage stage("ahv", scene(), std::move(options));
+    stage.after_message = [&](Stage& to) {
+        CHECK(to.told().empty());  // the disk has not answered yet
+        to.presentation.scenes_listed(request, {"car.vrut", "more/bus.vrut"});
+    };
     for (const std::string client : {"a", "h", "v"}) {
         CHECK(stage.say(client, ask));
         CHECK(stage.told().at(0)["scenes"] == json::parse(R"(["car.vrut","more/bus.vrut"])"));

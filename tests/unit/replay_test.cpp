@@ -7,6 +7,7 @@
 #include <bit>
 #include <random>
 
+#include "folder_of_logs.hpp"
 #include "stage.hpp"
 #include "temporary_folder.hpp"
 
@@ -36,7 +37,8 @@ std::string pointer(const std::string& what, double x, double y, int id = 1, con
 class Recorded {
 public:
     explicit Recorded(const std::string& clients, server::scene::LoadedScene shown = scene())
-        : stage(clients, std::move(shown), options(folder.path())) {
+        : logs(folder.path()), stage(clients, std::move(shown), logs.options()) {
+        stage.after_message = [this](Stage& told) { logs.tell_results(told); };
         spdlog::set_level(spdlog::level::warn);
     }
     void start(const std::string& client = "a") {
@@ -58,6 +60,7 @@ public:
     }
 
     TemporaryFolder folder;
+    FolderOfLogs logs;
     Stage stage;
 
 private:
@@ -69,11 +72,6 @@ private:
     }
     static std::array<std::uint64_t, 3> bits(const glm::dvec3& point) {
         return std::bit_cast<std::array<std::uint64_t, 3>>(point);
-    }
-    static PresentationOptions options(const std::filesystem::path& folder) {
-        PresentationOptions result;
-        result.record_folder = folder;
-        return result;
     }
 };
 

@@ -165,6 +165,8 @@ const std::vector<const char*> kNoText = {"0", "true", "[]", "{}"};
 const std::vector<const char*> kNoId = {"-1", "1.5", "9007199254740992"};
 const std::vector<const char*> kNoColorType = {"5", "{}", "[0,1,1,null]", "[0,1,1,\"1\"]", "[0,1,1,true]"};
 const std::vector<const char*> kNoColor = {"[]", "[1,1,1]", "[1,1,1,1,1]", "[1,1,1,1.01]", "[-0.01,0,0,0]"};
+const std::vector<const char*> kNoLightColor = {"[]", "[1,1,1]", "[1,1,1,1,1]", "[2e30,1,1,1]",
+                                                "[-0.01,0,0,0]"};
 const std::vector<const char*> kNoSpeed = {"0", "0.0099", "100.1", "-1"};
 const std::vector<const char*> kNoFov = {"0.999", "170.001", "-5"};
 
@@ -187,7 +189,7 @@ const std::vector<Member> kMembers = {
     {"/renderer/wireframe", {"true", "false"}, kNoFlag, {}},
     {"/renderer/showSelection", {"true", "false"}, kNoFlag, {}},
     {"/lights/active", {"\"7\"", "\"headlight\""}, kNoText, {}},
-    {"/lights/items/7/color", {"[0,0,0,0]", "[1,1,1,1]"}, kNoColorType, kNoColor},
+    {"/lights/items/7/color", {"[0,0,0,0]", "[1.08,40,1e30,1]"}, kNoColorType, kNoLightColor},
     {"/lights/items/7/attenuation",
      {"[0,0,1e30]"},
      kNoVector,

@@ -20,6 +20,7 @@ const COLOR = {
 };
 const VECTOR = { range: [[1, 2], [1, 2, 3, 4], []], type: [1, 'x', {}, true, [1, 2, '3'], [1, 2, null]] };
 const FLAG = { good: [true, false], type: [0, 'true', [], {}] };
+const LIGHT_COLOR = { ...COLOR, good: [...COLOR.good, [1.08, 40, 1e30, 1]], range: [[-0.1, 0, 0, 1], [2e30, 0, 0, 1], [1, 1, 1]] };
 const ATTENUATION = { good: [[1, 0, 0], [0, 0, 0], [0.5, 0.25, 0.125]], range: [[-0.1, 0, 0], [1, 0, -0.1], [1, 0]], type: [1, 'x', {}, [1, 0, '0']] };
 const SPEED = { good: [0.01, 100, 2.5], range: [0.0099, 100.1, 0, -1], type: ['1', [1], {}, true] };
 
@@ -39,9 +40,9 @@ const WRITABLE = {
   'renderer/wireframe': FLAG,
   'renderer/showSelection': FLAG,
   'lights/active': { good: ['9', '10', 'headlight'], unknown: ['2', '999', 'torch', ''], type: [9, {}, []] },
-  'lights/items/headlight/color': COLOR,
+  'lights/items/headlight/color': LIGHT_COLOR,
   'lights/items/headlight/attenuation': ATTENUATION,
-  'lights/items/9/color': COLOR,
+  'lights/items/9/color': LIGHT_COLOR,
   'lights/items/10/attenuation': ATTENUATION,
   'backgrounds/active': { good: ['13', '17', 'color'], unknown: ['2', '999', 'sky', ''], type: [13, {}, []] },
   'backgrounds/color': COLOR,

@@ -1,0 +1,57 @@
+// Scenes and recordings: what takes a disk is done elsewhere, and comes back as an event.
+#include "engine/engine.hpp"
+
+namespace vrut::server::engine {
+
+namespace code = protocol::error_code;
+
+void Engine::connect_files(room::PresentationOptions& options) {
+    options.load = [this](std::int64_t request, const std::string& name) {
+        lookup_.find(request, name, base::Clock::now());
+    };
+    options.scenes = [this](std::int64_t request) { lookup_.list(request, base::Clock::now()); };
+    if (record_folder_.empty()) return;
+    room::RecordingSink& sink = options.recordings.emplace();
+    sink.begin = [this](std::int64_t recording, const std::string& name, auto header) {
+        recordings_.begin(recording, name, std::move(header), base::Clock::now());
+    };
+    sink.write = [this](std::int64_t recording, std::string line) {
+        recordings_.write(recording, std::move(line), base::Clock::now());
+    };
+    sink.end = [this](std::int64_t recording) { recordings_.end(recording, base::Clock::now()); };
+}
+
+std::optional<base::Clock::time_point> Engine::files_due() const {
+    const auto lookup = lookup_.due(), recordings = recordings_.due();
+    return lookup && recordings ? std::min(lookup, recordings) : lookup ? lookup : recordings;
+}
+
+void Engine::check_files() {
+    const base::Clock::time_point now = base::Clock::now();
+    lookup_.check(now);
+    recordings_.check(now);
+}
+
+void Engine::handle(const FileWorkDone& done) {
+    const View before = presentation_->visible();
+    const protocol::Resize size_before = presentation_->view_size();
+    done.use();
+    if (presentation_->visible() != before || presentation_->view_size() != size_before)
+        last_change_ = base::Clock::now();
+}
+
+/// Begins to load a scene that was looked for, or says why not.
+std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
+    if (!found.path)
+        return protocol::Error{{}, found.answers ? code::refused_scene : code::busy, found.path.error()};
+    if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
+    try {
+        loader_.start(*found.path, found.name, description_, library_.limits());
+    } catch (const std::system_error& error) {
+        return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
+    }
+    tell({found.name, 0, {}, {}});
+    return std::nullopt;
+}
+
+}  // namespace vrut::server::engine

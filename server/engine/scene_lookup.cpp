@@ -1,0 +1,82 @@
+#include "engine/scene_lookup.hpp"
+
+namespace vrut::server::engine {
+
+namespace {
+
+constexpr std::chrono::seconds kBetweenListings{1};
+constexpr std::chrono::milliseconds kWaitsForListing{100};  // a loaded machine starts a thread late
+constexpr std::chrono::seconds kWaitsForFile{5};
+constexpr std::size_t kMostFindings = 64;  // that wait
+
+}  // namespace
+
+void SceneLookup::list(std::int64_t request, base::Clock::time_point now) {
+    list_requests_.push_back(request);
+    if (!lists_ && now >= list_again_) {
+        list_again_ = now + kBetweenListings;
+        list_until_ = now + kWaitsForListing;
+        lists_ = run_file_work([this, names = folder_.names, post = post_] {
+            post->send([this, listed = names()] { this->listed(listed); });
+        });
+    }
+    if (!lists_ || now >= list_until_) tell_list();
+}
+
+void SceneLookup::listed(std::vector<std::string> names) {
+    lists_ = false;
+    names_ = std::move(names);
+    tell_list();
+}
+
+void SceneLookup::tell_list() {
+    for (const std::int64_t request : std::exchange(list_requests_, {}))
+        post_->send([=, this] { on_listed_(request, names_); });
+}
+
+void SceneLookup::find(std::int64_t request, const std::string& name, base::Clock::time_point now) {
+    if (findings_.size() == kMostFindings)
+        return cannot_find({request, name, now}, "too many scenes are being looked for");
+    findings_.push_back({request, name, now + kWaitsForFile});
+    if (!finds_) find_next();
+}
+
+void SceneLookup::find_next() {
+    if (findings_.empty()) return;
+    finding_ = findings_.front().request;
+    finds_ = run_file_work([this, name = findings_.front().name, find = folder_.find, post = post_] {
+        post->send([this, path = find(name)] { found(path); });
+    });
+    if (finds_) return;
+    for (const Finding& finding : std::exchange(findings_, {}))
+        cannot_find(finding, "a scene cannot be looked for now: no thread can be had");
+}
+
+void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& path) {
+    finds_ = false;
+    if (!findings_.empty() && findings_.front().request == finding_) {
+        const Finding found = findings_.front();
+        findings_.pop_front();
+        on_found_(found.request, {found.name, path});
+    }
+    find_next();
+}
+
+void SceneLookup::cannot_find(const Finding& finding, const std::string& why) {
+    post_->send([=, this] { on_found_(finding.request, {finding.name, tl::unexpected(why), false}); });
+}
+
+std::optional<base::Clock::time_point> SceneLookup::due() const {
+    std::optional<base::Clock::time_point> first;
+    if (!findings_.empty()) first = findings_.front().until;
+    if (!list_requests_.empty()) first = std::min(first.value_or(list_until_), list_until_);
+    return first;
+}
+
+void SceneLookup::check(base::Clock::time_point now) {
+    if (!list_requests_.empty() && now >= list_until_) tell_list();
+    for (; !findings_.empty() && now >= findings_.front().until; findings_.pop_front())
+        cannot_find(findings_.front(), "the folder of scenes does not answer");
+}
+
+}  // namespace vrut::server::engine

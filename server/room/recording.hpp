@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "event_log.hpp"
+#include "messages.hpp"
+#include "room/steering.hpp"
+
+namespace vrut::server::room {
+
+/// Takes the lines of recordings, of which each has a number. The room waits for none of it: how it goes is
+/// told by Presentation::recording_opened() and recording_ended().
+struct RecordingSink {
+    /// The first line of a log of this name, begun then (ISO 8601). May be called once, on any thread.
+    using Header = std::function<std::string(const std::string& name, const std::string& started)>;
+
+    /// Opens a log NAME, or where `name` is empty one that is named after the time.
+    std::function<void(std::int64_t recording, const std::string& name, Header header)> begin;
+    std::function<void(std::int64_t recording, std::string line)> write;
+    /// No more lines come.
+    std::function<void(std::int64_t recording)> end;
+};
+
+/// A message that is answered later.
+struct AnsweredLater {
+    std::string client;
+    protocol::ClientMessage message;
+};
+
+/// A log that is being written.
+struct Recording {
+    protocol::LogTime since{0};  ///< when it began
+    std::string name = {};       ///< empty: it is not open yet
+    AnsweredLater start;
+    std::optional<AnsweredLater> stop = {};     ///< no more lines come
+    std::optional<Steering> took_control = {};  ///< who steered from then on, where that was another before
+};
+
+}  // namespace vrut::server::room

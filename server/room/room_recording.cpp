@@ -1,0 +1,157 @@
+// What is recorded, and how it begins and ends.
+#include "room/room.hpp"
+
+namespace vrut::server::room {
+
+namespace code = protocol::error_code;
+
+Recording* Presentation::active_recording() {
+    if (recordings_.empty()) return nullptr;
+    Recording& newest = recordings_.rbegin()->second;
+    return newest.stop ? nullptr : &newest;
+}
+
+void Presentation::apply(const Said& said, const protocol::Record& record) {
+    if (!may_steer(said)) return;
+    if (options_.replaying) {
+        steer(said);
+        return answer(said);
+    }
+    if (!options_.recordings)
+        return refuse(said, code::not_allowed, "this server has no folder for recordings");
+    if (record.action == protocol::Record::Action::start)
+        start_recording(said, record.name);
+    else
+        stop_recording(said);
+}
+
+/// From here on there are lines, whenever its file is open.
+void Presentation::start_recording(const Said& said, const std::string& name) {
+    if (const Recording* active = active_recording())
+        return refuse(said, code::busy,
+                      active->name.empty() ? "a recording is being begun already"
+                                           : "a recording is going on: '" + active->name + "'");
+    const bool takes_control = steering_.holder() != said.client;
+    steer(said);
+    if (size_waits_) use_holders_size();
+    options_.recordings->begin(++newest_recording_, name, log_header());
+    Recording& recording = recordings_[newest_recording_] = {time_, {}, {said.client, said.message}};
+    press_anew(said.client);
+    if (takes_control) recording.took_control = steering_;
+}
+
+void Presentation::recording_opened(std::int64_t recording,
+                                    const tl::expected<std::string, std::string>& name, Time at) {
+    const auto found = recordings_.find(recording);
+    if (found == recordings_.end()) return;
+    advance(at);
+    const auto [client, message] = found->second.start;
+    const auto stop = found->second.stop;
+    const Said said{client, message};
+    if (!name) {
+        // Who took control by it, and did nothing since, gives it back.
+        const bool gives_back = found->second.took_control == steering_;
+        recordings_.erase(found);
+        if (gives_back && steering_.release(client)) hold(std::nullopt);
+        if (clients_.contains(client)) refuse(said, code::failed, name.error());
+        if (stop && is_here(*stop))
+            refuse({stop->client, stop->message}, code::failed, "nothing has been recorded");
+        return;
+    }
+    document();
+    changing_ = client;
+    found->second.name = *name;
+    if (!stop) state_.recording = protocol::RecordingState{*name};
+    if (clients_.contains(client)) answer(said, *name);
+}
+
+void Presentation::stop_recording(const Said& said) {
+    Recording* active = active_recording();
+    if (!active) return refuse(said, code::failed, "nothing is being recorded");
+    steer(said);
+    record(said.client, said.message);
+    active->stop = {said.client, said.message};
+    options_.recordings->end(recordings_.rbegin()->first);
+    state_.recording.reset();
+}
+
+void Presentation::recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at) {
+    const auto found = recordings_.extract(recording);
+    if (found.empty()) return;
+    advance(at);
+    const std::string& name = found.mapped().name;
+    const auto& stop = found.mapped().stop;
+    if (why) {
+        notice("The recording '" + name + "' has ended: " + *why);
+        if (!stop) state_.recording.reset();
+    }
+    if (!stop || !is_here(*stop)) return;
+    const Said said{stop->client, stop->message};
+    if (why)
+        refuse(said, code::failed, "the end of '" + name + "' is missing: " + *why);
+    else
+        answer(said, name);
+}
+
+/// What is held begins anew, here and in the log, which knows nothing of how it began. All of it is the
+/// holder's, `client`'s.
+void Presentation::press_anew(const std::string& client) {
+    clicks_ = {};
+    const auto again = [&](const auto& payload) {
+        const protocol::ClientMessage message{{}, payload};
+        record(client, message);
+        apply({client, message}, payload);
+    };
+    for (const Gestures::HeldKey& held : gestures_.held_keys()) {
+        const KeyInput input = held.input();
+        protocol::Key key;
+        key.key = input.key;
+        key.code = input.code;
+        again(key);
+    }
+    for (const PointerInput& pressed : gestures_.pressed()) {
+        protocol::Pointer pointer;
+        pointer.event = protocol::Pointer::Event::down;
+        pointer.pointer_id = pressed.pointer;
+        pointer.pointer_type = static_cast<protocol::Pointer::Type>(pressed.device);
+        pointer.x = pressed.x;
+        pointer.y = pressed.y;
+        pointer.button = pressed.button;
+        pointer.buttons = pressed.buttons;
+        const ModifierKeys& keys = pressed.modifiers;
+        pointer.modifiers = {keys.ctrl, keys.shift, keys.alt, keys.meta};
+        again(pointer);
+    }
+}
+
+void Presentation::record(const std::string& client, decltype(protocol::LogLine::what) what) {
+    if (const Recording* active = active_recording())
+        options_.recordings->write(
+            recordings_.rbegin()->first,
+            protocol::encode(protocol::LogLine{time_ - active->since, client, std::move(what)}));
+}
+
+RecordingSink::Header Presentation::log_header() const {
+    protocol::LogHeader header;
+    header.scene = loaded_.name;
+    header.scene_sha256 = loaded_.sha256;
+    for (const auto& [name, client] : clients_)
+        header.clients.push_back({name, client.role, client.wanted, client.name});
+    header.view = view_size_;
+    header.at_home = at_home_;
+    header.home = starting_.views.at("home");
+    for (const Frame& frame : frames_)
+        header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
+    if (flight_)
+        header.flight = {flight_->client, flight_->id,
+                         static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
+                         flight_->asked};
+    return [header, state = state_](const std::string& name, const std::string& started) mutable {
+        header.started = started;
+        state.recording = protocol::RecordingState{name};
+        header.state = protocol::document_of(state);
+        return protocol::encode(header);
+    };
+}
+
+}  // namespace vrut::server::room
