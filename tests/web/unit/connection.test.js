@@ -165,10 +165,10 @@ describe('frames', () => {
     assert.deepEqual(page.socket.take(), []);
     page.frames[1].drawn();
     await settle();
-    assert.deepEqual(page.socket.take(), [{ type: 'frame' }]);
+    assert.deepEqual(page.socket.take(), [{ type: 'frame', shown: 2 }]);
     page.frames[0].drawn();
     await settle();
-    assert.deepEqual(page.socket.take(), [{ type: 'frame' }]);
+    assert.deepEqual(page.socket.take(), [{ type: 'frame', shown: 1 }]);
   });
 
   test('a frame of an unreadable header is passed on without one', () => {
