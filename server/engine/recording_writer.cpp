@@ -126,6 +126,7 @@ void RecordingWriter::begin(std::int64_t recording, const std::string& name,
         }
         post->send([=, opened = log->name] { this_->opened(recording, opened); });
         while (written && !(lines = queue->take()).empty()) written = append_lines(*log->file, lines, left);
+        if (queue->is_given_up()) return;  // who gave it up has told
         end(written ? std::nullopt : std::optional(written.error()));
     };
     const bool may_start = ++*threads_ <= limits_.threads;
