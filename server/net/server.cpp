@@ -197,7 +197,7 @@ const std::string& Server::description() const { return impl_->engine->descripti
 const observe::Metrics& Server::metrics() const { return impl_->metrics; }
 
 void Server::stop_on_signals() {
-    for (const int signal : {SIGINT, SIGTERM}) impl_->signals.add(signal);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) impl_->signals.add(signal);
     impl_->signals.async_wait([this](boost::system::error_code error, int) {
         if (!error) impl_->stop();
     });
