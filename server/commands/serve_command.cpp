@@ -60,8 +60,7 @@ void announce(const net::ListenAddress& listen, std::uint16_t port, const net::A
 void ignore_further_signals() {
     sigset_t signals;
     sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // those that come stay pending; this thread is the last
 }
 

@@ -15,8 +15,9 @@ std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
     while (held > most && !metrics.pictures_held_most.compare_exchange_weak(most, held)) {
     }
     return {new EncodedPicture, [&metrics](EncodedPicture* picture) {
-                delete picture;
+                metrics.bytes_held -= picture->file.capacity();
                 --metrics.pictures_held;
+                delete picture;
             }};
 }
 
@@ -83,6 +84,7 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& i
                                       quality.subsampling == protocol::Quality::Subsampling::yuv420);
         encoded->header_offset = protocol::comment_offset(encoded->file);
     }
+    metrics_.bytes_held += encoded->file.capacity();
     static_cast<Picture&>(*encoded) = std::move(picture);
     encoded->header.timing.encode_ms =
         std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();

@@ -68,7 +68,7 @@ const char* reason_of(const protocol::Error& error, close_code code) {
 
 }  // namespace
 
-Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub)
+Session::Session(Stream stream, ConnectionLimit::Place place, Hub& hub)
     : socket_(std::move(stream)),
       hub_(hub),
       hello_deadline_(socket_.get_executor()),
@@ -85,7 +85,7 @@ Session::Session(beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hu
 Session::~Session() { hub_.connections.erase(this); }
 
 void Session::accept(const HttpRequest& request) {
-    beast::tcp_stream& stream = beast::get_lowest_layer(socket_);
+    Stream& stream = beast::get_lowest_layer(socket_);
     stream.expires_never();  // from here on the WebSocket's own deadlines hold
     beast::error_code ignored;
     stream.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
@@ -110,6 +110,8 @@ void Session::accept(const HttpRequest& request) {
         }));
 
     socket_.control_callback([this](websocket::frame_type type, beast::string_view text) {
+        if (message_size_ == 0) traffic().unfinished.reset();
+        if (type == websocket::frame_type::close) on_close_frame(socket_.reason().code);
         if (type == websocket::frame_type::pong) on_pong({text.data(), text.size()}, base::Clock::now());
     });
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
@@ -130,7 +132,7 @@ void Session::accept(const HttpRequest& request) {
 // --- reading
 
 void Session::read() {
-    if (reading_ || dropped_ || closing_ || (!begun_ && must_wait())) return;
+    if (reading_ || dropped_ || closing_ || (!begun() && must_wait())) return;
     receive();
 }
 
@@ -165,14 +167,14 @@ void Session::receive() {
 
 void Session::on_received(std::size_t size) {
     heard_at_ = base::Clock::now();
-    if (!begun_) begun_ = heard_at_;
+    if (!begun()) traffic().unfinished = heard_at_;
     message_size_ += size;
     hub_.metrics->bytes_received += size;
     if (message_size_ > protocol::kMaxMessageBytes) incoming_.clear();
     if (!socket_.is_message_done()) return;
     ++hub_.metrics->messages_received;
     rate_.spend(base::Clock::now());
-    begun_.reset();
+    traffic().unfinished.reset();
     const bool too_large = std::exchange(message_size_, 0) > protocol::kMaxMessageBytes;
     const auto data = incoming_.data();
     const std::string_view text{static_cast<const char*>(data.data()), data.size()};
@@ -267,7 +269,7 @@ void Session::refuse_and_close(const protocol::Error& error, close_code code) {
 
 void Session::answer(room::Answer answer) {
     answer_bytes_ += answer.text.size();
-    answers_.push_back(std::move(answer));
+    answers_.push_back({held_text(std::move(answer.text), *hub_.metrics), answer.revision});
     pump();
 }
 
@@ -356,9 +358,7 @@ void Session::pump() {
     const std::int64_t known = document_ ? document_->revision() : 0;
     if (closing_) {
         if (!answers_.empty()) return send_answer();
-        writing_ = true;  // nothing goes out behind the close
-        return socket_.async_close(*closing_,
-                                   [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
+        return say_goodbye();
     }
     const base::Clock::time_point now = base::Clock::now();
     if (!has_broadcasts()) had_broadcasts_ = now;
@@ -371,6 +371,23 @@ void Session::pump() {
     const bool waited_for = frame_due || !answers_.empty() || !snapshots_.empty();
     if (has_updates() && (waited_for || flow_.may_send_update(now))) return send_update(now);
     ask_again(now);
+}
+
+/// Nothing goes out behind the close.
+void Session::say_goodbye() {
+    if (std::exchange(said_goodbye_, true)) return;
+    writing_ = true;
+    socket_.async_close(*closing_, [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
+}
+
+/// Beast would echo a code beyond the last that RFC 6455 knows (7.4.2).
+void Session::on_close_frame(std::uint16_t code) {
+    constexpr std::uint16_t kLastCode = 4999;
+    if (code <= kLastCode || said_goodbye_) return;
+    closing_.emplace(close_code::protocol_error);
+    close_reason_ = "protocol";
+    answers_.clear();
+    say_goodbye();
 }
 
 bool Session::has_updates() const {
@@ -389,15 +406,16 @@ void Session::send_update(base::Clock::time_point now) {
         if (*newest != *sent) {
             *sent = *newest;
             flow_.sent_update((*sent)->size(), now);
-            return send_text(**sent);
+            return send_text(*sent);
         }
 }
 
 void Session::send_answer() {
-    std::string text = std::move(answers_.front().text);
+    Text text = std::move(answers_.front().text);
     answers_.pop_front();
-    answer_bytes_ -= text.size();
-    flow_.sent(text.size(), base::Clock::now());
+    answer_bytes_ -= text->size();
+    flow_.sent(text->size(), base::Clock::now());
+    sends_queued_ = true;
     send_text(std::move(text));
 }
 
@@ -408,7 +426,7 @@ void Session::send_document() {
                            ? document_->encode_patch_from(*before, one_author ? hub_.document_by : "")
                            : document_->encode();
     flow_.sent_update(text.size(), base::Clock::now());
-    send_text(std::move(text));
+    send_text(held_text(std::move(text), *hub_.metrics));
 }
 
 void Session::send_ping(base::Clock::time_point now) {
@@ -449,6 +467,7 @@ void Session::send_frame() {
 }
 
 void Session::send_snapshot() {
+    sends_queued_ = true;
     picture_ = std::move(snapshots_.front());
     snapshots_.pop_front();
     ++hub_.metrics->snapshots_sent;
@@ -468,10 +487,10 @@ void Session::send_picture(const protocol::FrameHeader& header) {
            boost::asio::buffer(file.data() + cut, file.size() - cut)});
 }
 
-void Session::send_text(std::string text) {
+void Session::send_text(Text text) {
     text_ = std::move(text);
     socket_.text(true);
-    write({boost::asio::buffer(text_)});
+    write({boost::asio::buffer(*text_)});
 }
 
 // One type of buffers for all: Beast's write operation takes seconds to compile for each.
@@ -486,8 +505,9 @@ void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
 }
 
 void Session::on_written(beast::error_code error) {
-    writing_ = false;
+    writing_ = sends_queued_ = false;
     picture_.reset();
+    text_.reset();
     if (error) return drop(error == boost::asio::error::timed_out ? "stuck" : "gone");
     pump();
     read();
@@ -514,6 +534,8 @@ void Session::drop(const char* reason) {
     rate_timer_.cancel();
     flow_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
+    answers_.clear();
+    snapshots_.clear();
     if (client_.empty()) return;
     observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
     ++hub_.metrics->clients_left;

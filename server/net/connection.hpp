@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
@@ -15,6 +14,7 @@
 #include "net/flow_control.hpp"
 #include "net/http_request.hpp"
 #include "net/registry.hpp"
+#include "net/traffic.hpp"
 
 namespace vrut::server::net {
 
@@ -23,7 +23,7 @@ namespace vrut::server::net {
 /// granted. Only answers queue, and who does not take them is not read.
 class Session : public std::enable_shared_from_this<Session> {
 public:
-    Session(boost::beast::tcp_stream stream, ConnectionLimit::Place place, Hub& hub);
+    Session(Stream stream, ConnectionLimit::Place place, Hub& hub);
     ~Session();
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;
@@ -40,6 +40,11 @@ public:
     void take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture);
     /// Sends what there is to send, if nothing is being sent.
     void pump();
+    /// Bytes that wait for this client alone; of a picture that several share, its part.
+    std::size_t backlog() const;
+    bool is_dropped() const { return dropped_; }
+    /// Ends the connection at once; `reason` is of kCloseReasons.
+    void drop(const char* reason);
     /// Ends the connection after what is being sent.
     void close(boost::beast::websocket::close_code code, const std::string& reason);
 
@@ -65,16 +70,23 @@ private:
     void send_update(base::Clock::time_point now);
     void send_document();
     void send_answer();
-    void send_text(std::string text);
+    void send_text(Text text);
     void send_ping(base::Clock::time_point now);
     void write(const std::array<boost::asio::const_buffer, 3>& buffers);
     void on_written(boost::beast::error_code error);
+    Traffic& traffic() { return boost::beast::get_lowest_layer(socket_).rate_policy(); }
+    /// When the first bytes of a message came that is not all there.
+    const std::optional<base::Clock::time_point>& begun() { return traffic().unfinished; }
+    void say_goodbye();
+    void on_close_frame(std::uint16_t code);
     void watch();
     void look_after(base::Clock::time_point now);
     void on_pong(std::string_view number, base::Clock::time_point now);
-    void drop(const char* reason);
+    std::size_t queued() const;
+    std::size_t sending() const;
+    bool takes_too_little(base::Clock::time_point now);
 
-    boost::beast::websocket::stream<boost::beast::tcp_stream, false> socket_;
+    boost::beast::websocket::stream<Stream, false> socket_;
     Hub& hub_;
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, flow_timer_;
@@ -89,12 +101,16 @@ private:
 
     // --- what the client knows and is owed
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
-    std::deque<room::Answer> answers_;
+    struct Answer {
+        Text text;
+        std::int64_t revision = 0;
+    };
+    std::deque<Answer> answers_;
     std::size_t answer_bytes_ = 0;  // of answers_
     std::int64_t last_frame_ = 0;
     std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
     std::deque<std::shared_ptr<const engine::EncodedPicture>> snapshots_;
-    std::shared_ptr<const std::string> stats_, loading_;  // that it last got
+    Text stats_, loading_;  // that it last got
 
     base::Clock::time_point had_broadcasts_ = base::Clock::now();  // stats and loading: the newest
 
@@ -108,17 +124,20 @@ private:
 
     // --- what is being sent
     bool writing_ = false;
-    std::string text_;
+    Text text_;
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const engine::EncodedPicture> picture_;
     base::Clock::time_point write_by_;  // else it is stuck
+    bool sends_queued_ = false;         // an answer or a snapshot
+    base::Clock::time_point rated_since_ = base::Clock::now();
+    std::uint64_t taken_before_ = 0;  // bytes that it had taken then
     std::optional<boost::beast::websocket::close_reason> closing_;
+    bool said_goodbye_ = false;
 
     // --- what has come and is not handled yet
     std::size_t unhandled_bytes_ = 0, unhandled_requests_ = 0;
     bool reading_ = false, throttled_ = false;
-    std::optional<base::Clock::time_point> begun_;  // a message that is not all there
-    std::size_t message_size_ = 0;                  // of it so far
+    std::size_t message_size_ = 0;  // of one that is not all there
     base::RateLimit rate_;
     base::Clock::time_point heard_at_;  // the newest bytes or pong
     base::Clock::time_point pinged_at_;

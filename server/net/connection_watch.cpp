@@ -12,11 +12,16 @@ namespace {
 
 constexpr auto kLook = 1s;        // between two looks at how the peer is doing
 constexpr int kLeastRate = 1000;  // bytes per second
+// Of answers and snapshots somebody who asks for more than these must take so much: they are kept for him
+// alone, while frames and updates replace each other.
+constexpr std::size_t kMayWait = 64 * 1024;  // bytes
+constexpr int kLeastRateOfQueued = 4000;     // bytes per second
 
 }  // namespace
 
 void Session::watch() {
-    watch_.expires_after(kLook);
+    const auto look = base::Clock::now() + kLook;
+    watch_.expires_at(begun() && !closing_ ? std::min(look, *begun() + hub_.deadlines.message) : look);
     watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
         const auto self = weak.lock();
         if (stopped || !self || self->dropped_) return;
@@ -30,7 +35,8 @@ void Session::watch() {
 void Session::look_after(base::Clock::time_point now) {
     const Deadlines& deadlines = hub_.deadlines;
     if (writing_ && now >= write_by_) return drop("stuck");
-    if (begun_ && !closing_ && now - *begun_ >= deadlines.message) {
+    if (takes_too_little(now)) return drop("stuck");
+    if (begun() && !closing_ && now - *begun() >= deadlines.message) {
         refuse_and_close(
             {{}, protocol::error_code::bad_message, "a message took too long to come to its end"},
             beast::websocket::close_code::policy_error);
@@ -41,6 +47,31 @@ void Session::look_after(base::Clock::time_point now) {
     if (!writing_ && reading_ && now - heard_at_ >= deadlines.silence + waits) return drop("silent");
     if (!closing_ && !client_.empty() && !writing_ && now - std::max(heard_at_, pinged_at_) >= deadlines.ping)
         send_ping(now);
+}
+
+/// Bytes that are kept for this client alone: answers and snapshots.
+std::size_t Session::queued() const {
+    std::size_t bytes = answer_bytes_;
+    for (const auto& picture : snapshots_) bytes += picture->file.size();
+    return bytes + (sends_queued_ ? sending() : 0);
+}
+
+/// Of what is being sent, this client's part.
+std::size_t Session::sending() const {
+    const auto part = [](std::size_t size, long sharers) { return size / static_cast<std::size_t>(sharers); };
+    return (text_ ? part(text_->size(), text_.use_count()) : 0) +
+           (picture_ ? part(picture_->file.size(), picture_.use_count()) : 0);
+}
+
+std::size_t Session::backlog() const { return queued() + (sends_queued_ ? 0 : sending()); }
+
+bool Session::takes_too_little(base::Clock::time_point now) {
+    const bool rated = queued() > kMayWait;
+    const std::chrono::duration<double> passed = now - rated_since_;
+    if (rated && passed < hub_.deadlines.least_rate) return false;
+    const std::uint64_t taken = traffic().taken - std::exchange(taken_before_, traffic().taken);
+    rated_since_ = now;
+    return rated && static_cast<double>(taken) < kLeastRateOfQueued * passed.count();
 }
 
 void Session::on_pong(std::string_view text, base::Clock::time_point now) {

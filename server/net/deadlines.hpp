@@ -12,6 +12,8 @@ struct Deadlines {
     std::chrono::milliseconds hello{5'000};     ///< from the handshake to the end of `hello`
     std::chrono::milliseconds message{10'000};  ///< from a message's first bytes to its last
     std::chrono::milliseconds stuck{10'000};    ///< with something to take, and nothing taken
+    std::chrono::milliseconds least_rate{
+        20'000};  ///< with answers or snapshots that wait, and less than 4 kB a second taken
     std::chrono::milliseconds ping{20'000};     ///< silence, after which a ping asks for an answer
     std::chrono::milliseconds silence{60'000};  ///< silence in all, when everything sent has arrived
 };

@@ -224,8 +224,7 @@ private:
         }
         if (hub_.stopping) return;
         deadline_timer_.cancel();
-        std::make_shared<Session>(beast::tcp_stream(std::move(socket_)), std::move(place_), hub_)
-            ->accept(request);
+        std::make_shared<Session>(Stream(std::move(socket_)), std::move(place_), hub_)->accept(request);
     }
 
     // --- writing

@@ -19,6 +19,11 @@ namespace vrut::server::net {
 
 class Session;
 
+/// A message on its way to clients.
+using Text = std::shared_ptr<const std::string>;
+/// Counts as held (Metrics::bytes_held) as long as anybody has it.
+Text held_text(std::string text, observe::Metrics& metrics);
+
 /// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
 struct Hub {
     Access access;
@@ -42,5 +47,8 @@ struct Hub {
     std::int64_t next_client = 1;
     bool stopping = false;
 };
+
+/// Cuts the clients for whom the most waits, while more waits for all than the server keeps.
+void bound_backlog(Hub& hub);
 
 }  // namespace vrut::server::net

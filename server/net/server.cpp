@@ -134,6 +134,7 @@ struct Server::Impl {
         for (const auto& [client, handled] : output.handled)
             if (Session* session = find(client)) session->handled(handled);
         for_each_session([](Session& session) { session.pump(); });
+        bound_backlog(hub);
     }
 
     void take(std::shared_ptr<const engine::EncodedPicture> picture) {
@@ -146,6 +147,7 @@ struct Server::Impl {
     void take_ordered(std::shared_ptr<const engine::EncodedPicture> picture) {
         if (hub.pictures.take(*picture)) return;
         if (Session* session = find(picture->client)) session->take_snapshot(std::move(picture));
+        bound_backlog(hub);
     }
 
     template <class Function>
@@ -195,8 +197,7 @@ const std::string& Server::description() const { return impl_->engine->descripti
 const observe::Metrics& Server::metrics() const { return impl_->metrics; }
 
 void Server::stop_on_signals() {
-    impl_->signals.add(SIGINT);
-    impl_->signals.add(SIGTERM);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) impl_->signals.add(signal);
     impl_->signals.async_wait([this](boost::system::error_code error, int) {
         if (!error) impl_->stop();
     });

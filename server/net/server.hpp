@@ -43,7 +43,7 @@ public:
     const std::string& description() const;
     const observe::Metrics& metrics() const;
 
-    /// From here on SIGTERM and SIGINT do what stop() does.
+    /// From here on SIGTERM, SIGINT and SIGHUP do what stop() does.
     void stop_on_signals();
     /// Serves until stop(); clients are told, and within 3 s it is over. Throws std::runtime_error where
     /// drawing fails for good.

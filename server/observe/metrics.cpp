@@ -111,6 +111,8 @@ void add_frames(Exposition& to, const Metrics& metrics) {
     to.counter("sent_bytes_total", "Bytes of messages handed to sockets.", metrics.bytes_sent);
     to.counter("snapshots_rendered_total", "Snapshots drawn.", metrics.snapshots_rendered);
     to.counter("snapshots_sent_total", "Snapshots handed to sockets.", metrics.snapshots_sent);
+    to.gauge("held_bytes", "Bytes of encoded pictures and of messages that wait for clients.",
+             metrics.bytes_held);
     to.gauge("pictures_held", "Encoded pictures in memory.", metrics.pictures_held);
     to.gauge("pictures_held_most", "The most encoded pictures that were ever in memory.",
              metrics.pictures_held_most);

@@ -52,11 +52,11 @@ private:
 inline constexpr std::array kRoles{"control", "view", "host"};
 /// Why WebSocket connections ended: the client said goodbye; the handshake failed; no `hello` or more than
 /// one; its token was wrong; too many clients; a message that was too large, or binary, or no WebSocket
-/// frame; it took nothing for 10 s; it was silent for 60 s; a message came too slowly; the server shut down;
-/// the connection was lost.
+/// frame; it took nothing for 10 s, or too little; it was silent for 60 s; a message came too slowly; too
+/// much waited for all clients, and the most for it; the server shut down; the connection was lost.
 inline constexpr std::array kCloseReasons{"normal",    "handshake", "hello",    "token", "too-many",
                                           "too-large", "binary",    "protocol", "stuck", "silent",
-                                          "slow",      "shutdown",  "gone"};
+                                          "slow",      "backlog",   "shutdown", "gone"};
 
 /// What the server did since it started, and what is so now. Written by the thread that does it, read by any.
 struct Metrics {
@@ -72,6 +72,7 @@ struct Metrics {
     Counter frames_encoded{0}, bytes_encoded{0}, frames_sent{0};
     Counter frames_replaced{0};  ///< a newer picture took the place of one that waited for its client
     Counter pictures_held{0}, pictures_held_most{0};  ///< encoded pictures in memory, now and at most so far
+    Counter bytes_held{0};  ///< of encoded pictures and of messages that wait; shared ones count once
     Counter snapshots_rendered{0}, snapshots_sent{0};
     Counter bytes_sent{0};
     Counter scene_nodes{0}, scene_triangles{0};

@@ -6,6 +6,7 @@
 
 #include "net/descriptors.hpp"
 #include "raw_websocket.hpp"
+#include "swarm.hpp"
 
 using namespace vrut;
 using namespace vrut::server::net;
@@ -70,22 +71,22 @@ TEST_CASE("a hello that trickles in is cut like one that does not come") {
 TEST_CASE(
     "a message that does not come to its end ends the connection, one that only takes its time does not") {
     TestServer server({}, with({.message = 2s}));
-    RawWebSocket client(server.port()), patient(server.port());
-    client.join();
-    patient.join();
+    RawWebSocket client(server.port()), first_byte(server.port()), patient(server.port());
+    for (RawWebSocket* each : {&client, &first_byte, &patient}) each->join();
     client.connection.send(frame(kFinal | kText, std::string(100, ' ')).substr(0, 50));
+    first_byte.connection.send(frame(kFinal | kText, "{}").substr(0, 1));
     const std::string whole = frame(kFinal | kText, R"({"type":"tree","id":1})");
     patient.connection.send(whole.substr(0, 12));
     CHECK_FALSE(patient.connection.ended(500ms));
     patient.connection.send(whole.substr(12));
     while (Json::parse(patient.receive()->payload)["type"] != "tree") {
     }
-    int code = 0;
-    while (const auto next = client.receive())
-        if (next->opcode == kClose)
-            code = static_cast<unsigned char>(next->payload[0]) << 8 |
-                   static_cast<unsigned char>(next->payload[1]);
-    CHECK(code == 1008);
+    for (RawWebSocket* each : {&client, &first_byte}) {
+        std::string code;
+        while (const auto next = each->receive())
+            if (next->opcode == kClose) code = next->payload.substr(0, 2);
+        CHECK(code == big_endian(1008, 2));
+    }
 }
 
 TEST_CASE("who is silent is pinged, and cut when no answer comes; who answers is not") {
@@ -166,4 +167,25 @@ TEST_CASE("beyond loopback one address may not take all connections") {
     CHECK(late.answer().status == 503);
     open.pop_back();
     CHECK(eventually([&] { return http(server.port(), "GET", "/healthz").status == 200; }));
+}
+
+TEST_CASE("who takes its snapshots by the drop is cut, who takes them slowly is not") {
+    TestServer server({.noise = true}, with({.least_rate = 2s}));
+    std::vector<RawSocket> clients;  // the first takes 2 kB a second, the other 40
+    for (unsigned i = 0; i < 2; ++i) {
+        clients.push_back(websocket(server.port(), {.receive_buffer = 4096, .source = 2 + i}));
+        clients[i].send(client_frame(R"({"type":"hello","role":"view"})"));
+        for (const char* id : {"1", "2"})
+            clients[i].send(client_frame(R"({"type":"snapshot","width":1000,"height":1000,"id":)" +
+                                         std::string(id) + "}"));
+    }
+    const auto cut = [&] { return server.metrics().closes.sum(); };
+    CHECK(eventually([&] { return server.metrics().snapshots_sent == 2; }));
+    for (int i = 0; i < 60 && cut() == 0; ++i) {
+        clients[0].read(200);
+        clients[1].read(4000);
+        std::this_thread::sleep_for(100ms);
+    }
+    CHECK(cut() == 1);
+    CHECK(clients[0].ended());
 }

@@ -93,8 +93,8 @@ void open(TestClient& client, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("SIGTERM and SIGINT while frames go to clients that do not take them") {
-    for (const int signal : {SIGTERM, SIGINT}) {
+TEST_CASE("SIGTERM, SIGINT and SIGHUP while frames go to clients that do not take them") {
+    for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
         Program program(serve({}, VRUT_CARS "/car-20k.vrut"));
         TestClient presenter(program.port());
         presenter.join();

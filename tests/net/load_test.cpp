@@ -48,6 +48,14 @@ std::vector<std::string> stubborn() {
     };
 }
 
+/// Nodes whose names take several times their length in an answer.
+server::scene::LoadedScene long_names() {
+    std::string name, text = "vrut-text 1\n";
+    for (int i = 0; i < 500; ++i) name += "\\\"";
+    for (int i = 1; i <= 300; ++i) text += "node " + std::to_string(i) + " \"" + name + "\" assembly end\n";
+    return scene_of(text);
+}
+
 /// Who says what it has to say a byte each half second.
 struct SlowClient {
     RawSocket socket;
@@ -155,4 +163,35 @@ TEST_CASE("clients that read nothing, whatever they send, delay nobody, take no 
                             << audience.percentile(0.99) << " ms; memory " << memory << " MB, at most "
                             << most << "; cut after " << cut_s << " s");
     if (kMemoryTells) CHECK(most - memory < 8);
+}
+
+TEST_CASE("what waits for clients that read nothing is bounded for all of them together") {
+    constexpr unsigned kClients = 32, kRequests = 256;
+    TestServer server(long_names(), FakePainter{}.factory(), roomy());
+    TestClient good(server.port());
+    good.join("view");
+    const double memory = use_of(getpid()).resident_mb;
+    double most = memory;
+    std::vector<RawSocket> stalled;
+    for (unsigned i = 0; i < kClients; ++i) {
+        stalled.push_back(standing_client(server.port(), 500 + i));
+        for (unsigned id = 1; id <= kRequests; ++id)
+            stalled.back().send(client_frame(R"({"type":"tree","id":)" + std::to_string(id) + "}"));
+    }
+    const Metrics& metrics = server.metrics();
+    const auto measure = [&] { most = std::max(most, use_of(getpid()).resident_mb); };
+    CHECK(eventually(
+        [&] {
+            measure();
+            return metrics.clients_left > 0;
+        },
+        15s));
+    for (int id = 1; id <= 20; ++id) {
+        good.send({{"type", "tree"}, {"id", id}});
+        CHECK(good.wait_for("tree", 20s)["id"] == id);
+        measure();
+    }
+    MESSAGE("memory " << memory << " MB, at most " << most << "; cut: " << metrics.clients_left.load());
+    CHECK(metrics.clients_left < kClients);
+    if (kMemoryTells) CHECK(most - memory < 512);
 }
