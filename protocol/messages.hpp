@@ -102,11 +102,11 @@ struct Control {
     Action action = Action::take;
 };
 
-/// What is under a point of the view, as a frame showed it.
+/// What is under a point of the view, now or as a frame showed it.
 struct Pick {
     enum class Then { select, center, look_at };
     double x = 0, y = 0;                ///< CSS pixels
-    std::optional<std::int64_t> frame;  ///< none: the newest
+    std::optional<std::int64_t> frame;  ///< none: the present view
     std::optional<Then> then;
     bool through = false;  ///< transparent parts are passed
 };

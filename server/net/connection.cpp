@@ -28,7 +28,6 @@ constexpr std::size_t kMaxUnhandled = 1 << 20, kMaxRequests = 256, kMaxAnswers =
 constexpr std::size_t kMaxRead = 1 << 20, kReadAtOnce = 1 << 16;
 constexpr int kSendBuffer = 128 * 1024;  // the kernel doubles it: at most 256 KiB wait in the socket
 constexpr int kNotSent = 16 * 1024;      // bytes that the kernel takes beyond what is on its way
-constexpr int kLeastRate = 1000;         // bytes per second that a client must take at least
 constexpr auto kLongestBroadcast = 3s;   // statistics wait behind states that change all the time
 constexpr std::size_t kInputsRemembered = 64;
 

@@ -18,6 +18,9 @@
 
 namespace vrut::server::net {
 
+/// Bytes per second of a message that a client must take at least.
+inline constexpr int kLeastRate = 1000;
+
 /// One WebSocket client, on the net thread. What waits for a slow one is replaced, not queued: it keeps the
 /// document that it last got and is sent the difference; of frames it is sent the newest, as many as it
 /// granted. Only answers queue, and who does not take them is not read.

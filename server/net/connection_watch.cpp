@@ -10,8 +10,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kLook = 1s;        // between two looks at how the peer is doing
-constexpr int kLeastRate = 1000;  // bytes per second
+constexpr auto kLook = 1s;  // between two looks at how the peer is doing
 // Of answers and snapshots somebody who asks for more than these must take so much: they are kept for him
 // alone, while frames and updates replace each other.
 constexpr std::size_t kMayWait = 64 * 1024;  // bytes

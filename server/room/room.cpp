@@ -207,18 +207,21 @@ void Presentation::refuse(const std::string& client, const protocol::Error& erro
 // --- who steers
 
 bool Presentation::may_steer(const Said& said) {
-    const Role role = clients_[said.client].role;
+    Client& client = clients_[said.client];
+    const Role role = client.role;
     const auto& payload = said.message.payload;
-    if (role == Role::view || (role == Role::host && !std::holds_alternative<protocol::Patch>(payload))) {
-        refuse(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
-        return false;
-    }
-    if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
     // A watcher's fingers are no error worth a line each.
     const bool input = std::holds_alternative<protocol::Pointer>(payload) ||
                        std::holds_alternative<protocol::Wheel>(payload) ||
                        std::holds_alternative<protocol::Key>(payload);
-    if (said.message.id || !input) refuse(said, code::not_in_control, "another client is in control");
+    const bool quiet = input && !said.message.id;
+    if (role == Role::view || (role == Role::host && !std::holds_alternative<protocol::Patch>(payload))) {
+        if (!quiet || !std::exchange(client.knows_not_allowed, true))
+            refuse(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
+        return false;
+    }
+    if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
+    if (!quiet) refuse(said, code::not_in_control, "another client is in control");
     return false;
 }
 

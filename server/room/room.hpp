@@ -118,6 +118,7 @@ private:
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
         std::string name = {};
+        bool knows_not_allowed = false;  ///< of input without an id
     };
     /// The message in hand.
     struct Said {
@@ -178,11 +179,17 @@ private:
     void use_holders_size();
 
     // --- pointing at things
-    /// What a frame showed at a point of its view; none where that frame is not remembered.
-    struct Look {
-        std::optional<Hit> hit;
+    /// What the view showed, or shows.
+    struct Frame {
+        std::int64_t number = 0;
+        Camera camera;
+        protocol::Resize view_size;
     };
-    std::optional<Look> look(double x, double y, std::optional<std::int64_t> frame, bool through) const;
+    Frame present() const { return {0, camera(), view_size_}; }
+    /// Null where it is not remembered.
+    const Frame* find_frame(std::int64_t number) const;
+    /// What of the present scene lies under a point of a frame's view, in CSS pixels.
+    std::optional<Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
     void apply(Click::Operation operation, const std::optional<Hit>& hit);
     void select(Index node);
     std::vector<std::string> path_of(Index node) const;
@@ -235,11 +242,6 @@ private:
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
     View visible_;
-    struct Frame {
-        std::int64_t number = 0;
-        Camera camera;
-        protocol::Resize view_size;
-    };
     std::deque<Frame> frames_;  ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk

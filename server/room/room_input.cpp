@@ -46,9 +46,9 @@ void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
     drag_camera(gestures_.pointer(input, camera(), context));
     if (const std::optional<Click> click =
             clicks_.pointer(input, {pointer.time_stamp, time_}, context.style)) {
-        std::optional<Look> seen = look(click->x, click->y, pointer.frame, false);
-        if (!seen) seen = look(click->x, click->y, std::nullopt, false);  // long forgotten: the newest
-        apply(click->operation, seen->hit);
+        const Frame* seen = pointer.frame ? find_frame(*pointer.frame) : nullptr;
+        if (!seen && !frames_.empty()) seen = &frames_.back();  // not told, or long forgotten
+        apply(click->operation, hit_at(seen ? *seen : present(), click->x, click->y, false));
     }
 }
 
@@ -89,20 +89,21 @@ void Presentation::apply(const Said& said, const protocol::Key& key) {
 void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
     if (pick.then && !may_steer(said)) return;
-    const std::optional<Look> seen = look(pick.x, pick.y, pick.frame, pick.through);
-    if (!seen)
+    const Frame* named = pick.frame ? find_frame(*pick.frame) : nullptr;
+    if (pick.frame && !named)
         return refuse(said, code::unknown_frame,
                       "frame " + std::to_string(*pick.frame) + " is not among the last " +
-                          std::to_string(kFramesRemembered));
+                          std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
+    const std::optional<Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
     if (pick.then) {
         steer(said);
         apply(*pick.then == Then::select   ? Click::Operation::select
               : *pick.then == Then::center ? Click::Operation::set_center
                                            : Click::Operation::look_at,
-              seen->hit);
+              hit);
     }
     protocol::Picked picked;
-    if (const auto& hit = seen->hit) {
+    if (hit) {
         const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
         picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
         const glm::dmat4& world_from_node = scene_->world[static_cast<std::size_t>(hit->node)];
@@ -114,22 +115,17 @@ void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     answer_with(said, picked);
 }
 
-std::optional<Presentation::Look> Presentation::look(double x, double y, std::optional<std::int64_t> frame,
-                                                     bool through) const {
-    Frame seen{0, camera(), view_size_};
-    if (frame) {
-        const auto found = std::find_if(frames_.begin(), frames_.end(),
-                                        [&](const Frame& candidate) { return candidate.number == *frame; });
-        if (found == frames_.end()) return std::nullopt;
-        seen = *found;
-    } else if (!frames_.empty()) {
-        seen = frames_.back();
-    }
+const Presentation::Frame* Presentation::find_frame(std::int64_t number) const {
+    const auto found = std::find_if(frames_.begin(), frames_.end(),
+                                    [&](const Frame& frame) { return frame.number == number; });
+    return found == frames_.end() ? nullptr : &*found;
+}
+
+std::optional<Hit> Presentation::hit_at(const Frame& seen, double x, double y, bool through) const {
     const protocol::Resize& size = seen.view_size;
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
-    return Look{vrut::pick(*scene_,
-                           {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)},
-                           through)};
+    return vrut::pick(
+        *scene_, {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)}, through);
 }
 
 void Presentation::apply(Click::Operation operation, const std::optional<Hit>& hit) {

@@ -53,7 +53,8 @@ TEST_CASE("every member of every message is read") {
         std::get<Resize>(decoded(R"({"type":"resize","width":819.5,"height":1180,"pixelRatio":2})").payload);
     CHECK(resize == Resize{819.5, 1180, 2});
 
-    CHECK(std::holds_alternative<FrameGrant>(decoded(R"({"type":"frame"})").payload));
+    CHECK(std::get<FrameGrant>(decoded(R"({"type":"frame","shown":3})").payload).shown == 3);
+    CHECK(std::get<FrameGrant>(decoded(R"({"type":"frame"})").payload).shown == std::nullopt);
 
     const ClientMessage move = decoded(kPointer);
     CHECK(move.id == 7);

@@ -239,6 +239,29 @@ TEST_CASE("hosts patch camera, nodes and selection; nobody but control clients d
     CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
 }
 
+TEST_CASE("whose role never steers is told so once of all its input without ids") {
+    Stage stage("vh");
+    const auto codes = [&](const std::string& client, const std::string& text) {
+        stage.told();
+        CHECK_FALSE(stage.say(client, text));
+        std::vector<std::string> result;
+        for (const json& answer : stage.told()) result.push_back(answer["code"]);
+        return result;
+    };
+    const std::vector<std::string> none, refused{"not-allowed"};
+    const std::string wheel = R"({"type":"wheel","x":5,"y":5,"deltaX":0,"deltaY":1,"deltaMode":0)";
+    for (const char* client : {"v", "h"}) {
+        CHECK(codes(client, finger("down", 100, 100)) == refused);
+        CHECK(codes(client, finger("move", 120, 100)) == none);
+        CHECK(codes(client, wheel + "}") == none);
+        CHECK(codes(client, wheel + R"(,"id":4})") == refused);
+        CHECK(codes(client, kNavigate) == refused);
+    }
+    stage.presentation.leave("v", stage.now);
+    stage.join('v');
+    CHECK(codes("v", wheel + "}") == refused);
+}
+
 TEST_CASE("a host tells what its walls show, up to the newest revision") {
     Stage stage("ha");
     const std::int64_t revision = stage.revision();
