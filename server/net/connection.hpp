@@ -130,8 +130,10 @@ private:
     Text text_;
     std::vector<std::uint8_t> header_;
     std::shared_ptr<const engine::EncodedPicture> picture_;
-    base::Clock::time_point write_by_;  // else it is stuck
-    bool sends_queued_ = false;         // an answer or a snapshot
+    base::Clock::time_point write_by_;                          // else it is stuck
+    std::uint64_t taken_seen_ = 0;                              // bytes, at the last check
+    base::Clock::time_point progress_at_ = base::Clock::now();  // the last check that saw more of them
+    bool sends_queued_ = false;                                 // an answer or a snapshot
     base::Clock::time_point rated_since_ = base::Clock::now();
     std::uint64_t taken_before_ = 0;  // bytes that it had taken then
     std::optional<boost::beast::websocket::close_reason> closing_;

@@ -33,7 +33,8 @@ void Session::watch() {
 /// whose ping waits behind a frame may be slow.
 void Session::look_after(base::Clock::time_point now) {
     const Deadlines& deadlines = hub_.deadlines;
-    if (writing_ && now >= write_by_) return drop("stuck");
+    if (!writing_ || std::exchange(taken_seen_, traffic().taken) != traffic().taken) progress_at_ = now;
+    if (now >= write_by_ ? writing_ : now - progress_at_ >= deadlines.stuck) return drop("stuck");
     if (takes_too_little(now)) return drop("stuck");
     if (begun() && !closing_ && now - *begun() >= deadlines.message) {
         refuse_and_close(
