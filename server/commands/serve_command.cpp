@@ -1,6 +1,10 @@
 #include <csignal>
 #include <iostream>
+#include <latch>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
+#include <vector>
 
 #include "commands/commands.hpp"
 #include "net/server.hpp"
@@ -56,6 +60,23 @@ void announce(const net::ListenAddress& listen, std::uint16_t port, const net::A
     for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
 }
 
+/// Throws std::runtime_error where there are fewer threads than the server and a driver in software take:
+/// such a driver does not look whether it got its own, and waits for them for ever.
+void require_threads() {
+    constexpr unsigned kOwn = 8;
+    std::latch all_asked(1);
+    std::vector<std::jthread> threads;
+    const unsigned needed = kOwn + std::thread::hardware_concurrency();
+    try {
+        while (threads.size() < needed) threads.emplace_back([&] { all_asked.wait(); });
+    } catch (const std::system_error&) {
+    }
+    all_asked.count_down();
+    if (threads.size() < needed)
+        throw std::runtime_error("only " + std::to_string(threads.size()) + " threads can be had, and " +
+                                 std::to_string(needed) + " are needed: raise the limit (ulimit -u)");
+}
+
 /// Whoever asks again for an end that has begun does not change what it is.
 void ignore_further_signals() {
     sigset_t signals;
@@ -68,6 +89,7 @@ void ignore_further_signals() {
 
 void serve_command(const ServeArguments& arguments) {
     std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
+    require_threads();
     net::ServerOptions options;
     options.listen = net::parse_listen_address(arguments.listen);
     options.max_clients = arguments.max_clients;
