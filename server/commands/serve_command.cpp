@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <csignal>
 #include <iostream>
 #include <latch>
@@ -63,10 +64,10 @@ void announce(const net::ListenAddress& listen, std::uint16_t port, const net::A
 /// Throws std::runtime_error where there are fewer threads than the server and a driver in software take:
 /// such a driver does not look whether it got its own, and waits for them for ever.
 void require_threads() {
-    constexpr unsigned kOwn = 8;
+    constexpr unsigned kOwn = 8, kMostOfDriver = 32;
     std::latch all_asked(1);
     std::vector<std::jthread> threads;
-    const unsigned needed = kOwn + std::thread::hardware_concurrency();
+    const unsigned needed = kOwn + std::min(std::thread::hardware_concurrency(), kMostOfDriver);
     try {
         while (threads.size() < needed) threads.emplace_back([&] { all_asked.wait(); });
     } catch (const std::system_error&) {
