@@ -7,21 +7,21 @@
 namespace vrut::server::base {
 
 /// Tells other threads whether one that has something to do still comes round.
-class Heartbeat {
+class Watchdog {
 public:
     /// It has something to do, and comes round now.
-    void beat() { since_ = Clock::now().time_since_epoch().count(); }
+    void busy() { since_ = Clock::now().time_since_epoch().count(); }
     /// It waits for something to do.
-    void rest() { since_ = kRests; }
+    void idle() { since_ = kIdle; }
     /// How long it has not come round; 0 while it rests.
-    Clock::duration silence() const {
+    Clock::duration busy_for() const {
         const Clock::rep since = since_;
-        return since == kRests ? Clock::duration{} : Clock::now().time_since_epoch() - Clock::duration(since);
+        return since == kIdle ? Clock::duration{} : Clock::now().time_since_epoch() - Clock::duration(since);
     }
 
 private:
-    static constexpr Clock::rep kRests = 0;
-    std::atomic<Clock::rep> since_{kRests};
+    static constexpr Clock::rep kIdle = 0;
+    std::atomic<Clock::rep> since_{kIdle};
 };
 
 }  // namespace vrut::server::base

@@ -28,21 +28,20 @@ std::string read_text(const std::filesystem::path& path) {
 }
 
 /// What one client of a server would do to change the state. Throws std::runtime_error.
-void say(room::Presentation& presentation, const std::string& option,
-         decltype(protocol::ClientMessage::payload) payload) {
-    presentation.say("render", {1, std::move(payload)}, room::Time(0));
-    for (const room::Answer& answer : presentation.take_answers())
+void say(room::Room& room, const std::string& option, decltype(protocol::ClientMessage::payload) payload) {
+    room.handle_message("render", {1, std::move(payload)}, room::Time(0));
+    for (const room::Answer& answer : room.take_answers())
         if (!answer.refusal.empty()) throw std::runtime_error(option + ": " + answer.refusal);
 }
 
-void patch(room::Presentation& presentation, const std::string& option, const std::string& text) {
+void patch(room::Room& room, const std::string& option, const std::string& text) {
     auto patch = protocol::parse_patch(text);
     if (!patch) throw std::runtime_error(option + ": " + patch.error().message);
-    say(presentation, option, *std::move(patch));
+    say(room, option, *std::move(patch));
 }
 
 /// The camera that the options give: the file's members, then the single ones.
-Camera wanted_camera(const RenderArguments& arguments, const room::Presentation& presentation) {
+Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
     protocol::CameraOverlay overlay;
     if (!arguments.camera_file.empty()) {
         auto camera = protocol::parse_camera(read_text(arguments.camera_file));
@@ -54,8 +53,8 @@ Camera wanted_camera(const RenderArguments& arguments, const room::Presentation&
     if (arguments.focus) overlay.focus = arguments.focus;
     if (arguments.up) overlay.up = arguments.up;
     if (arguments.fov) overlay.fov = arguments.fov;
-    const auto camera = room::overlaid(room::camera_of(presentation.state().camera), overlay,
-                                       presentation.scene(), "the camera");
+    const auto camera =
+        room::overlaid(room::camera_of(room.state().camera), overlay, room.scene(), "the camera");
     if (!camera) throw std::runtime_error(camera.error().message);
     return *camera;
 }
@@ -65,16 +64,16 @@ View view_of(const RenderArguments& arguments) {
     auto scene = scene::load_scene(arguments.scene, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     for (const std::string& notice : scene->notices) observe::log_warning("notice", {{"text", notice}});
-    room::Presentation presentation(*std::move(scene));
-    presentation.join("render", protocol::Role::control, room::Time(0));
+    room::Room room(*std::move(scene));
+    room.join("render", protocol::Role::control, room::Time(0));
     const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),
                                 1};
-    say(presentation, "--size", size);
-    patch(presentation, "--set", arguments.set.empty() ? "{}" : arguments.set);
-    for (const auto& [option, text] : arguments.patches) patch(presentation, option, text);
+    say(room, "--size", size);
+    patch(room, "--set", arguments.set.empty() ? "{}" : arguments.set);
+    for (const auto& [option, text] : arguments.patches) patch(room, option, text);
 
-    View view = presentation.visible();
-    view.camera = wanted_camera(arguments, presentation);
+    View view = room.visible();
+    view.camera = wanted_camera(arguments, room);
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;

@@ -65,13 +65,12 @@ public:
         fs::create_directories(folder_);
     }
 
-    void write(std::int64_t frame, const room::Presentation& presentation) {
+    void write(std::int64_t frame, const room::Room& room) {
         engine::PictureLimits limits;
         limits.max_side = std::min(limits.max_side, renderer_.max_size());
-        const protocol::Quality quality =
-            engine::quality_of(engine::kStill, presentation.view_size(), limits, true);
-        const engine::PictureSize size = engine::picture_size(presentation.view_size(), quality.scale);
-        View view = presentation.visible();
+        const protocol::Quality quality = engine::quality_of(engine::kStill, room.view_size(), limits, true);
+        const engine::PictureSize size = engine::picture_size(room.view_size(), quality.scale);
+        View view = room.visible();
         view.width = size.width;
         view.height = size.height;
         view.samples = engine::kStillSamples.front();
@@ -79,7 +78,7 @@ public:
         FrameStats stats;
         renderer_.render(view, image, stats);
         engine::EncodedPicture encoded;
-        encoded.header = room::header_of(presentation.state(), view, presentation.view_size());
+        encoded.header = room::header_of(room.state(), view, room.view_size());
         encoded.header.frame = frame;
         encoded.header.quality = quality;
         encoded.header.quality.samples = view.samples;
@@ -111,15 +110,13 @@ void replay_command(const ReplayArguments& arguments) {
     Scenes scenes(arguments);
     room::ReplayWatcher watcher;
     if (frames)
-        watcher.on_drawn = [&](std::int64_t frame, const room::Presentation& presentation) {
-            frames->write(frame, presentation);
-        };
+        watcher.on_drawn = [&](std::int64_t frame, const room::Room& room) { frames->write(frame, room); };
     const auto finder = [&](const std::string& name, const std::string& sha256) {
         return scenes.find(name, sha256);
     };
-    const auto presentation = room::replay(*log, finder, watcher);
-    if (!presentation) throw std::runtime_error(arguments.log.string() + ": " + presentation.error());
-    std::cout << protocol::encode(presentation->state().camera) << std::endl;
+    const auto room = room::replay(*log, finder, watcher);
+    if (!room) throw std::runtime_error(arguments.log.string() + ": " + room.error());
+    std::cout << protocol::encode(room->state().camera) << std::endl;
 }
 
 }  // namespace vrut::server::commands

@@ -97,14 +97,14 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& i
 void Encoder::run() {
     for (;;) {
         std::optional<std::pair<Picture, Image>> job;
-        heart_.rest();
+        watchdog_.idle();
         {
             std::unique_lock lock(mutex_);
             condition_.wait(lock, [&] { return slot_ || closed_; });
             if (closed_) return;
             job.swap(slot_);
         }
-        heart_.beat();
+        watchdog_.busy();
         on_free_();
         auto& [picture, image] = *job;
         try {

@@ -30,7 +30,7 @@ public:
 
     bool is_free() const;
     /// How long it has worked at one picture; 0 while it has none. From any thread.
-    base::Clock::duration silence() const { return heart_.silence(); }
+    base::Clock::duration busy_for() const { return watchdog_.busy_for(); }
     /// Only while is_free().
     void offer(Picture picture, Image image);
     /// An image to draw into, used before where possible: its pages are there already.
@@ -50,7 +50,7 @@ private:
     std::optional<std::pair<Picture, Image>> slot_;
     Image spare_;
     bool closed_ = false;
-    base::Heartbeat heart_;
+    base::Watchdog watchdog_;
     std::optional<JpegEncoder> jpeg_;
     std::thread thread_;  // last: it uses all of the above
 };

@@ -65,18 +65,17 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
       lookup_(
           {[library = library_] { return library.names(); },
            [library = library_](const std::string& name) { return library.find(name); }},
-          file_results_,
-          [this](auto request, const auto& names) { presentation_->scenes_listed(request, names); },
+          file_results_, [this](auto request, const auto& names) { room_->scenes_listed(request, names); },
           [this](auto request, const auto& found) {
-              presentation_->load_answered(request, load(found), time_of(base::Clock::now()));
+              room_->load_answered(request, load(found), time_of(base::Clock::now()));
           }),
       recordings_([folder = record_folder_](const std::string& name) { return open_log(folder, name); },
                   file_results_,
                   [this](auto recording, const auto& name) {
-                      presentation_->recording_opened(recording, name, time_of(base::Clock::now()));
+                      room_->recording_opened(recording, name, time_of(base::Clock::now()));
                   },
                   [this](auto recording, const auto& why) {
-                      presentation_->recording_ended(recording, why, time_of(base::Clock::now()));
+                      room_->recording_ended(recording, why, time_of(base::Clock::now()));
                   },
                   {}),
       encoder_(
@@ -116,7 +115,7 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
                 started.set_exception(std::current_exception());
         }
         painter_ = {};  // what belongs to GL ends on the thread that it began on
-        presentation_.reset();
+        room_.reset();
     });
     try {
         start.get();
@@ -139,23 +138,23 @@ scene::LoadedScene Engine::with_notices(scene::LoadedScene scene) const {
 }
 
 void Engine::begin(const scene::LoadedScene& scene) {
-    heart_.beat();
+    watchdog_.busy();
     painter_ = factory_();
     description_ = painter_.description;
     limits_.max_side = std::min(painter_.max_size, limits_.max_side);
-    room_ = limits_;
+    pixel_budget_ = limits_;
     use(scene::levels_of(scene.sha256, description_));
-    room::PresentationOptions options;
+    room::RoomOptions options;
     connect_files(options);
-    presentation_.emplace(with_notices(scene), std::move(options));
+    room_.emplace(with_notices(scene), std::move(options));
     try {
-        if (painter_.take) painter_.take(presentation_->visible());
+        if (painter_.take) painter_.take(room_->visible());
     } catch (const OutOfMemory& error) {
         throw std::runtime_error(scene.name + ": " + error.what());
     }
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
-    View small = presentation_->visible();
+    View small = room_->visible();
     small.width = small.height = 64;
     Rendering first(std::move(small));
     while (!painter_.step(first)) {
@@ -176,11 +175,11 @@ void Engine::run() {
 
 void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(earlier(until, stats_.due()), files_due());
-    if (presentation_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
+    if (room_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
     if (!waiting_.empty()) until = base::Clock::now();
-    heart_.rest();
+    watchdog_.idle();
     std::vector<EngineEvent> events = mailbox_.wait(until);
-    heart_.beat();
+    watchdog_.busy();
     for (EngineEvent& event : events) {
         const std::string client = client_of(event);
         if (std::holds_alternative<ClientLeft>(event)) taken_ -= std::exchange(waiting_[client], {}).size();
@@ -192,9 +191,9 @@ void Engine::drain(std::optional<base::Clock::time_point> until) {
 void Engine::apply() {
     handle_waiting();
     if (arrived_) show_arrived();
-    if (presentation_->view_size() != room_for_ || (failed_ && !has_failed())) {
-        room_for_ = presentation_->view_size();
-        room_ = limits_;
+    if (room_->view_size() != budget_for_ || (failed_ && !has_failed())) {
+        budget_for_ = room_->view_size();
+        pixel_budget_ = limits_;
         failed_.reset();
     }
     fly();
@@ -239,9 +238,9 @@ std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& st
 }
 
 void Engine::fly() {
-    if (!presentation_->flies()) return;
+    if (!room_->flies()) return;
     last_change_ = base::Clock::now();
-    presentation_->advance(time_of(last_change_));
+    room_->advance(time_of(last_change_));
 }
 
 // --- events
@@ -264,7 +263,7 @@ void Engine::handle_waiting() {
 void Engine::handle(const ClientJoined& joined) {
     clients_[joined.client].handled = joined.id;
     const base::Clock::time_point now = base::Clock::now();
-    presentation_->join(joined.client, joined.role, time_of(now), joined.name);
+    room_->join(joined.client, joined.role, time_of(now), joined.name);
     stats_.joined(joined.client, joined.role, joined.name, now);
 }
 
@@ -272,7 +271,7 @@ void Engine::handle(const ClientLeft& left) {
     clients_.erase(left.client);
     std::erase_if(snapshots_, [&](const Snapshot& snapshot) { return snapshot.order.client == left.client; });
     const base::Clock::time_point now = base::Clock::now();
-    presentation_->leave(left.client, time_of(now));
+    room_->leave(left.client, time_of(now));
     stats_.left(left.client, now);
 }
 
@@ -311,7 +310,7 @@ void Engine::handle(const PictureFailed& failed) {
 
 /// The first frame of a scene is not kept waiting by coarser surfaces that are made for later ones.
 void Engine::make_detail_levels() {
-    const auto& placed = presentation_->visible().scene;
+    const auto& placed = room_->visible().scene;
     const auto simplifies = [](const protocol::Level& level) { return level.quality.detail > 0; };
     if (!placed || std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies)) return;
     try {
@@ -339,8 +338,8 @@ void Engine::handle(const SnapshotSent& sent) {
 
 void Engine::handle(const PictureAsked& asked) {
     const PictureSize present = present_size();
-    room::PictureOrder order = presentation_->order(asked.width > 0 ? asked.width : present.width,
-                                                    asked.height > 0 ? asked.height : present.height);
+    room::PictureOrder order = room_->order(asked.width > 0 ? asked.width : present.width,
+                                            asked.height > 0 ? asked.height : present.height);
     order.client = asked.name;
     snapshots_.push_back({std::move(order)});
 }
@@ -357,7 +356,7 @@ void Engine::handle(const scene::SceneLoaded& loaded) {
     arrival_losses_ = 0;
 }
 
-void Engine::handle(const ClientSaid& said) {
+void Engine::handle(const MessageReceived& said) {
     const auto found = clients_.find(said.client);
     if (found == clients_.end()) return;  // it has left
     Client& client = found->second;
@@ -366,62 +365,63 @@ void Engine::handle(const ClientSaid& said) {
     output_.handled[said.client].sequence = client.sequence = said.sequence;
     const auto id = said.message ? said.message->id : said.message.error().id;
     if (id && *id <= client.handled)
-        presentation_->refuse(said.client, {id, code::out_of_range,
-                                            "'id' must rise: " + std::to_string(client.handled) +
-                                                " came before " + std::to_string(*id)});
+        room_->reject(said.client, {id, code::out_of_range,
+                                    "'id' must rise: " + std::to_string(client.handled) + " came before " +
+                                        std::to_string(*id)});
     else if (!said.message)
-        presentation_->refuse(said.client, said.message.error());
+        room_->reject(said.client, said.message.error());
     else if (!std::holds_alternative<protocol::FrameGrant>(said.message->payload))  // the connection's
-        say(said, *said.message, client);
+        handle_message(said, *said.message, client);
     if (id) client.handled = std::max(client.handled, *id);
 }
 
-void Engine::say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client) {
+void Engine::handle_message(const MessageReceived& said, const protocol::ClientMessage& message,
+                            Client& client) {
     if (std::holds_alternative<protocol::Snapshot>(message.payload) && client.snapshots >= kMostSnapshots)
-        return presentation_->refuse(
+        return room_->reject(
             said.client, {message.id, code::busy,
                           std::to_string(kMostSnapshots) + " snapshots of this client are waiting already"});
     if (const auto* snapshot = std::get_if<protocol::Snapshot>(&message.payload))
         if (!fits(snapshot->width, snapshot->height, limits_))
-            return presentation_->refuse(
-                said.client, {message.id, code::out_of_range,
-                              "'width' x 'height' must be at most " + std::to_string(limits_.max_pixels) +
-                                  " pixels, each side at most " + std::to_string(limits_.max_side)});
-    const View before = presentation_->visible();
-    const protocol::Resize size_before = presentation_->view_size();
-    const bool accepted = presentation_->say(said.client, message, time_of(said.arrival));
-    if (presentation_->visible() != before || presentation_->view_size() != size_before) {
+            return room_->reject(said.client,
+                                 {message.id, code::out_of_range,
+                                  "'width' x 'height' must be at most " + std::to_string(limits_.max_pixels) +
+                                      " pixels, each side at most " + std::to_string(limits_.max_side)});
+    const View before = room_->visible();
+    const protocol::Resize size_before = room_->view_size();
+    const bool accepted = room_->handle_message(said.client, message, time_of(said.arrival));
+    if (room_->visible() != before || room_->view_size() != size_before) {
         last_change_ = base::Clock::now();
         newest_input_ = said.arrival;
     }
     if (const auto* shown = std::get_if<protocol::Shown>(&message.payload); shown && accepted)
         stats_.shown(said.client, shown->revision, said.arrival);
-    for (room::PictureOrder& order : presentation_->take_orders()) {
+    for (room::PictureOrder& order : room_->take_orders()) {
         ++client.snapshots;
         snapshots_.push_back({std::move(order)});
     }
 }
 
 PictureSize Engine::present_size() const {
-    const protocol::Resize& view = presentation_->view_size();
-    return picture_size(view, quality_of(kStill, view, room_, false).scale);
+    const protocol::Resize& view = room_->view_size();
+    return picture_size(view, quality_of(kStill, view, pixel_budget_, false).scale);
 }
 
 /// Hands over what there is to tell.
 void Engine::publish() {
     const base::Clock::time_point now = base::Clock::now();
-    if (const auto& document = presentation_->document(); document != reported_) {
+    if (const auto& document = room_->document(); document != reported_) {
         reported_ = output_.document = document;
-        output_.by = presentation_->changed_by();
-        output_.by_since = presentation_->changed_by_since();
+        output_.by = room_->changed_by();
+        output_.by_since = room_->changed_by_since();
         stats_.made(document->revision(), now);
-        metrics_.scene_nodes = presentation_->state().scene.value->nodes;
-        metrics_.scene_triangles = presentation_->state().scene.value->triangles;
+        metrics_.scene_nodes = room_->state().scene.value->nodes;
+        metrics_.scene_triangles = room_->state().scene.value->triangles;
     }
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     const std::int64_t present = shows_present() ? newest_.frame : 0;
     if (present != reported_present_) output_.present_frame = reported_present_ = present;
-    output_.answers = presentation_->take_answers();
+    output_.answers = room_->take_answers();
     for (const room::Answer& answer : output_.answers)
         if (!answer.refusal.empty()) {
             ++metrics_.errors[answer.code];

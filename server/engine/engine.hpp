@@ -88,10 +88,10 @@ public:
     std::size_t events_waiting() const { return mailbox_.size() + taken_; }
     /// How long each of its threads has not come round, 0 where it waits for something to do. From any
     /// thread.
-    std::array<std::pair<const char*, base::Clock::duration>, 3> silences() const {
-        return {{{"render", heart_.silence()},
-                 {"encode", encoder_.silence()},
-                 {"snapshot encode", snapshot_encoder_.silence()}}};
+    std::array<std::pair<const char*, base::Clock::duration>, 3> busy_times() const {
+        return {{{"render", watchdog_.busy_for()},
+                 {"encode", encoder_.busy_for()},
+                 {"snapshot encode", snapshot_encoder_.busy_for()}}};
     }
     /// Whether what draws can draw. From any thread.
     bool draws() const { return draws_; }
@@ -143,7 +143,7 @@ private:
 
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
-    void handle(const ClientSaid& said);
+    void handle(const MessageReceived& said);
     void handle(const FramesWanted& wanted);
     void handle(const FrameEncoded& encoded);
     void handle(const PictureFailed& failed);
@@ -154,8 +154,8 @@ private:
     void handle(const FileWorkDone& done);
     /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
-    void say(const ClientSaid& said, const protocol::ClientMessage& message, Client& client);
-    void connect_files(room::PresentationOptions& options);
+    void handle_message(const MessageReceived& said, const protocol::ClientMessage& message, Client& client);
+    void connect_files(room::RoomOptions& options);
     std::optional<protocol::Error> load(const SceneLookup::Found& found);
     std::optional<base::Clock::time_point> files_due() const;
     void check_files();
@@ -222,7 +222,7 @@ private:
     RecordingWriter recordings_;
     std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
     std::atomic<std::size_t> taken_{0};                       ///< events in waiting_
-    base::Heartbeat heart_;
+    base::Watchdog watchdog_;
     std::atomic<bool> draws_{false};
     std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
@@ -233,11 +233,11 @@ private:
     std::size_t tries_ = 0;                      ///< painters made since the last whole picture
     std::optional<scene::SceneLoaded> arrived_;  ///< to be shown
     int arrival_losses_ = 0;                     ///< of the context, by what has arrived
-    PictureLimits room_;                         ///< of the live picture, as far as is known
-    protocol::Resize room_for_;                  ///< of a view of this size
+    PictureLimits pixel_budget_;                 ///< of the live picture, as far as is known
+    protocol::Resize budget_for_;                ///< of a view of this size
     std::optional<Failed> failed_;               ///< what cannot be drawn, even small, or not encoded
 
-    std::optional<room::Presentation> presentation_;
+    std::optional<room::Room> room_;
     std::map<std::string, Client> clients_;
     Scheduler scheduler_;
     std::optional<FrameUnderWay> frame_;

@@ -40,8 +40,8 @@ void count_frame(const protocol::FrameHeader& drawn, observe::Metrics& metrics, 
 
 /// The newest frame shows what is to be seen now.
 bool Engine::shows_present() const {
-    return newest_.frame != 0 && presentation_->visible() == newest_.visible &&
-           presentation_->view_size() == newest_.view_size;
+    return newest_.frame != 0 && room_->visible() == newest_.visible &&
+           room_->view_size() == newest_.view_size;
 }
 
 /// Whether a client may be sent more frames than there are for it. One from before its last grant will do for
@@ -57,8 +57,9 @@ bool Engine::wants_newer(const Client& client) const {
 /// Expected of a whole picture: about as many as of the most accurate moving one.
 double Engine::bytes_at_rest() const {
     const std::size_t level = choice_->levels().size() - 1;
-    const protocol::Resize view_size = presentation_->view_size();
-    const double scale = quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines()).scale;
+    const protocol::Resize view_size = room_->view_size();
+    const double scale =
+        quality_of(choice_->levels()[level].quality, view_size, pixel_budget_, thin_lines()).scale;
     return choice_->expected(level, pixels_of(picture_size(view_size, scale)), base::Clock::now()).bytes;
 }
 
@@ -74,12 +75,12 @@ base::Clock::duration Engine::delivery_at_rest(const std::optional<Link>& link) 
 
 /// Of who steers; none where it is not measured, or nobody who wants frames steers.
 std::optional<Link> Engine::holders_link() const {
-    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    const auto holder = clients_.find(room_->holder().value_or(""));
     return holder == clients_.end() ? std::nullopt : holder->second.wanted.link;
 }
 
 bool Engine::thin_lines() const {
-    const protocol::State& state = presentation_->state();
+    const protocol::State& state = room_->state();
     return state.renderer.wireframe || state.renderer.mode == protocol::DrawMode::stylized ||
            (state.renderer.show_selection && state.selection.node);
 }
@@ -87,16 +88,17 @@ bool Engine::thin_lines() const {
 /// With the error that the table has for such a picture. Over a slow link the first one is as small as those
 /// of the moving view.
 protocol::Quality Engine::quality_at_rest(int samples) const {
-    const protocol::Resize view_size = presentation_->view_size();
+    const protocol::Resize view_size = room_->view_size();
     if (samples < kStillSamples.back() && delivery_at_rest(holders_link()) > base::Clock::duration{}) {
-        protocol::Quality quality = quality_of(choice_->levels()[0].quality, view_size, room_, thin_lines());
+        protocol::Quality quality =
+            quality_of(choice_->levels()[0].quality, view_size, pixel_budget_, thin_lines());
         quality.level = protocol::Quality::Level::still;
         quality.samples = samples;
         quality.detail = 0;
         quality.error.reset();
         return quality;
     }
-    protocol::Quality quality = quality_of(kStill, view_size, room_, thin_lines());
+    protocol::Quality quality = quality_of(kStill, view_size, pixel_budget_, thin_lines());
     quality.samples = samples;
     if (thin_lines()) return quality;
     for (const protocol::Level& level : at_rest_) {
@@ -108,20 +110,20 @@ protocol::Quality Engine::quality_at_rest(int samples) const {
 }
 
 std::size_t Engine::choose_level() {
-    const protocol::QualityState& wanted = presentation_->state().quality;
+    const protocol::QualityState& wanted = room_->state().quality;
     const double target = preferred_target(wanted.latency_target_ms, wanted.preference);
-    const auto holder = clients_.find(presentation_->holder().value_or(""));
+    const auto holder = clients_.find(room_->holder().value_or(""));
     const bool waits = holder != clients_.end() && holder->second.wanted.count > 0;
     // The first pictures to a client are small: its link may be slow, and they cannot be taken back.
     if (std::isfinite(target) && waits && !holder->second.wanted.link) return 0;
-    return choice_->choose({presentation_->view_size(), room_, target, holders_link()}, base::Clock::now());
+    return choice_->choose({room_->view_size(), pixel_budget_, target, holders_link()}, base::Clock::now());
 }
 
 /// A moving frame is finished though the camera has moved on: while it moves on and on, none would be.
 bool Engine::is_outdated(const FrameUnderWay& frame) const {
-    const View& now = presentation_->visible();
+    const View& now = room_->visible();
     if (scene_of(now) != scene_of(frame.visible)) return true;
-    return frame.still_samples > 0 && (now != frame.visible || presentation_->view_size() != frame.view_size);
+    return frame.still_samples > 0 && (now != frame.visible || room_->view_size() != frame.view_size);
 }
 
 void Engine::give_up_frame() {
@@ -138,14 +140,14 @@ std::map<std::string, Applied> Engine::applied() const {
 
 /// What is drawn is what stands here now, whatever comes in between two steps.
 void Engine::begin_frame(int still_samples) {
-    const protocol::Resize view_size = presentation_->view_size();
+    const protocol::Resize view_size = room_->view_size();
     const bool still = still_samples > 0;
     const std::size_t level = still ? 0 : choose_level();
     const protocol::Quality quality =
         still ? quality_at_rest(still_samples)
-              : quality_of(choice_->levels()[level].quality, view_size, room_, thin_lines());
+              : quality_of(choice_->levels()[level].quality, view_size, pixel_budget_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
-    const View visible = presentation_->visible();
+    const View visible = room_->visible();
     View view = visible;
     view.width = size.width;
     view.height = size.height;
@@ -154,15 +156,15 @@ void Engine::begin_frame(int still_samples) {
     view.levels = detail_;
 
     Picture picture;
-    picture.header = room::header_of(presentation_->state(), view, view_size);
-    picture.header.revision = presentation_->document()->revision();
+    picture.header = room::header_of(room_->state(), view, view_size);
+    picture.header.revision = room_->document()->revision();
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
     picture.rests_since = last_change_;
     picture.applied = applied();
     if (!still) {
         picture.header.frame = next_frame_;
-        presentation_->remember(next_frame_++);  // with the camera as it is now
+        room_->remember(next_frame_++);  // with the camera as it is now
     }
     frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, still_samples, level,
                                  Rendering(std::move(view), encoder_.take_spare())});
@@ -187,7 +189,7 @@ void Engine::finish_frame() {
     protocol::FrameHeader& header = frame.picture.header;
     if (frame.still_samples > 0) {
         header.frame = next_frame_;
-        presentation_->remember(next_frame_++);
+        room_->remember(next_frame_++);
         // It shows what came meanwhile, too: that changed nothing.
         frame.picture.applied = applied();
     }

@@ -5,7 +5,7 @@ namespace vrut::server::engine {
 
 namespace code = protocol::error_code;
 
-void Engine::connect_files(room::PresentationOptions& options) {
+void Engine::connect_files(room::RoomOptions& options) {
     options.load = [this](std::int64_t request, const std::string& name) {
         lookup_.find(request, name, base::Clock::now());
     };
@@ -33,11 +33,10 @@ void Engine::check_files() {
 }
 
 void Engine::handle(const FileWorkDone& done) {
-    const View before = presentation_->visible();
-    const protocol::Resize size_before = presentation_->view_size();
+    const View before = room_->visible();
+    const protocol::Resize size_before = room_->view_size();
     done.use();
-    if (presentation_->visible() != before || presentation_->view_size() != size_before)
-        last_change_ = base::Clock::now();
+    if (room_->visible() != before || room_->view_size() != size_before) last_change_ = base::Clock::now();
 }
 
 /// Begins to load a scene that was looked for, or says why not.

@@ -87,9 +87,9 @@ void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> r
     if (told.refused) {
         observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *told.refused}});
     } else {
-        presentation_->show(with_notices(*loaded.scene), time_of(base::Clock::now()));
+        room_->show(with_notices(*loaded.scene), time_of(base::Clock::now()));
         use(loaded.levels);
-        room_ = limits_;
+        pixel_budget_ = limits_;
         last_change_ = base::Clock::now();
         told.done = true;
         observe::log_info("scene_shown", {{"scene", loaded.name},
@@ -104,7 +104,7 @@ void Engine::draw_smaller(const Failed& what, const PictureSize& size, const std
     observe::log_warning("picture_too_large",
                          {{"width", size.width}, {"height", size.height}, {"reason", why}});
     if (pixels >= kFewestPixels) {
-        room_.max_pixels = pixels;
+        pixel_budget_.max_pixels = pixels;
         return notice("Memory is short: pictures are drawn smaller");
     }
     failed_ = what;
@@ -112,8 +112,7 @@ void Engine::draw_smaller(const Failed& what, const PictureSize& size, const std
 }
 
 bool Engine::has_failed() const {
-    return failed_ && failed_->visible == presentation_->visible() &&
-           failed_->view_size == presentation_->view_size();
+    return failed_ && failed_->visible == room_->visible() && failed_->view_size == room_->view_size();
 }
 
 void Engine::reject(const Snapshot& snapshot, const std::string& sentence) {
@@ -124,7 +123,7 @@ void Engine::reject(const Snapshot& snapshot, const std::string& sentence) {
 void Engine::reject(const std::string& client, std::optional<std::int64_t> id, const std::string& sentence) {
     if (id && clients_.contains(client)) {
         --clients_[client].snapshots;
-        presentation_->refuse(client, {*id, code::failed, sentence});
+        room_->reject(client, {*id, code::failed, sentence});
     } else if (!id) {
         output_.undrawn.push_back(client);
     }
@@ -132,7 +131,7 @@ void Engine::reject(const std::string& client, std::optional<std::int64_t> id, c
 
 void Engine::notice(const std::string& sentence) {
     observe::log_warning("notice", {{"text", sentence}});
-    presentation_->notice(sentence);
+    room_->notice(sentence);
 }
 
 }  // namespace vrut::server::engine

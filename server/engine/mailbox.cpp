@@ -7,14 +7,14 @@ namespace {
 using protocol::Pointer;
 
 /// A move that only says where the pointer is now: no button went down or up with it.
-const Pointer* plain_move(const ClientSaid& said) {
+const Pointer* plain_move(const MessageReceived& said) {
     if (!said.message || !said.may_steer) return nullptr;
     const auto* pointer = std::get_if<Pointer>(&said.message->payload);
     return pointer && pointer->event == Pointer::Event::move && pointer->button == -1 ? pointer : nullptr;
 }
 
 /// Lets `next` take the place of `before`, an earlier move of the same pointer.
-bool merge(const ClientSaid& before, ClientSaid& next) {
+bool merge(const MessageReceived& before, MessageReceived& next) {
     const Pointer *a = plain_move(before), *b = plain_move(next);
     if (a->buttons != b->buttons) return false;
     const auto id = before.message->id;
@@ -26,11 +26,11 @@ bool merge(const ClientSaid& before, ClientSaid& next) {
 
 /// Takes out the move that `next` replaces: one among the moves of its client that came last. Moves of
 /// several fingers take turns, so it need not be the very last.
-void merge_into(std::vector<EngineEvent>& events, ClientSaid& next) {
+void merge_into(std::vector<EngineEvent>& events, MessageReceived& next) {
     if (!plain_move(next)) return;
     bool last = true;
     for (auto event = events.rbegin(); event != events.rend(); ++event, last = false) {
-        const auto* before = std::get_if<ClientSaid>(&*event);
+        const auto* before = std::get_if<MessageReceived>(&*event);
         if (!before || before->client != next.client || !plain_move(*before)) return;
         // Ids rise: one that is inherited may not come behind a later one.
         if (!last && !next.message->id) return;
@@ -47,10 +47,10 @@ void Mailbox::push(EngineEvent event) {
         const std::lock_guard lock(mutex_);
         if (const auto* left = std::get_if<ClientLeft>(&event))
             std::erase_if(events_, [&](const EngineEvent& waiting) {
-                const auto* said = std::get_if<ClientSaid>(&waiting);
+                const auto* said = std::get_if<MessageReceived>(&waiting);
                 return said && said->client == left->client;
             });
-        if (auto* said = std::get_if<ClientSaid>(&event)) merge_into(events_, *said);
+        if (auto* said = std::get_if<MessageReceived>(&event)) merge_into(events_, *said);
         if (const auto* wanted = std::get_if<FramesWanted>(&event))
             std::erase_if(events_, [&](const EngineEvent& waiting) {
                 const auto* before = std::get_if<FramesWanted>(&waiting);

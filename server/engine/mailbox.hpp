@@ -27,7 +27,7 @@ struct ClientLeft {
     std::string client;
 };
 
-struct ClientSaid {
+struct MessageReceived {
     std::string client;
     tl::expected<protocol::ClientMessage, protocol::Error> message;  ///< or why it cannot be read
     base::Clock::time_point arrival;
@@ -84,7 +84,7 @@ struct FileWorkDone {
 };
 
 using EngineEvent =
-    std::variant<ClientJoined, ClientLeft, ClientSaid, FramesWanted, SnapshotSent, FrameEncoded,
+    std::variant<ClientJoined, ClientLeft, MessageReceived, FramesWanted, SnapshotSent, FrameEncoded,
                  PictureFailed, PictureAsked, scene::SceneLoading, scene::SceneLoaded, FileWorkDone>;
 
 /// The one way into the render thread. Of a client's moves that come one after the other the last of each

@@ -23,7 +23,7 @@ class RecordingWriter {
 public:
     /// Opens the file of a recording; see open_log().
     using Open = std::function<tl::expected<OpenedLog, std::string>(const std::string& name)>;
-    /// See room::Presentation::recording_opened() and recording_ended().
+    /// See room::Room::recording_opened() and recording_ended().
     using OnOpened = std::function<void(std::int64_t recording, tl::expected<std::string, std::string> name)>;
     using OnEnded = std::function<void(std::int64_t recording, std::optional<std::string> why)>;
     struct Limits {

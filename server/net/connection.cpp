@@ -67,9 +67,9 @@ const char* reason_of(const protocol::Error& error, close_code code) {
 
 }  // namespace
 
-Session::Session(Stream stream, ConnectionLimit::Place place, Hub& hub)
+Connection::Connection(Stream stream, ConnectionLimit::Place place, ConnectionRegistry& registry)
     : socket_(std::move(stream)),
-      hub_(hub),
+      registry_(registry),
       hello_deadline_(socket_.get_executor()),
       watch_(socket_.get_executor()),
       rate_timer_(socket_.get_executor()),
@@ -77,13 +77,13 @@ Session::Session(Stream stream, ConnectionLimit::Place place, Hub& hub)
       place_(std::move(place)),
       rate_(kMessagesPerSecond),
       heard_at_(base::Clock::now()) {
-    hub_.connections.insert(this);
-    ++hub_.metrics->connections_opened;
+    registry_.connections.insert(this);
+    ++registry_.metrics->connections_opened;
 }
 
-Session::~Session() { hub_.connections.erase(this); }
+Connection::~Connection() { registry_.connections.erase(this); }
 
-void Session::accept(const HttpRequest& request) {
+void Connection::accept(const HttpRequest& request) {
     Stream& stream = beast::get_lowest_layer(socket_);
     stream.expires_never();  // from here on the WebSocket's own deadlines hold
     beast::error_code ignored;
@@ -95,11 +95,11 @@ void Session::accept(const HttpRequest& request) {
     websocket::stream_base::timeout deadlines{};
     deadlines.handshake_timeout = kGoodbye;
     // Beast's own deadline counts what is read only: it would cut a slow reader, whose pings wait behind a
-    // frame. See look_after().
+    // frame. See check_deadlines().
     deadlines.idle_timeout = websocket::stream_base::none();
     deadlines.keep_alive_pings = false;
     find_dead_peers(stream.socket().native_handle());
-    bound_waiting(stream.socket().native_handle(), hub_.deadlines.stuck);
+    bound_waiting(stream.socket().native_handle(), registry_.deadlines.stuck);
     socket_.set_option(deadlines);
     socket_.read_message_max(kMaxRead);
     socket_.auto_fragment(false);  // one frame, one write
@@ -115,11 +115,11 @@ void Session::accept(const HttpRequest& request) {
     });
     socket_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
         if (error) return self->drop("handshake");
-        self->hello_deadline_.expires_after(self->hub_.deadlines.hello);
+        self->hello_deadline_.expires_after(self->registry_.deadlines.hello);
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
-            const auto session = weak.lock();
-            if (!stopped && session)
-                session->refuse_and_close(
+            const auto connection = weak.lock();
+            if (!stopped && connection)
+                connection->reject_and_close(
                     {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
                     close_code::policy_error);
         });
@@ -130,13 +130,13 @@ void Session::accept(const HttpRequest& request) {
 
 // --- reading
 
-void Session::read() {
+void Connection::read() {
     if (reading_ || dropped_ || closing_ || (!begun() && must_wait())) return;
     receive();
 }
 
 /// Before the next message.
-bool Session::must_wait() {
+bool Connection::must_wait() {
     if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
         answer_bytes_ >= kMaxAnswers)
         return true;
@@ -153,7 +153,7 @@ bool Session::must_wait() {
     return true;
 }
 
-void Session::receive() {
+void Connection::receive() {
     reading_ = true;
     socket_.async_read_some(incoming_, kReadAtOnce,
                             [self = shared_from_this()](beast::error_code error, std::size_t size) {
@@ -164,48 +164,48 @@ void Session::receive() {
                             });
 }
 
-void Session::on_received(std::size_t size) {
+void Connection::on_received(std::size_t size) {
     heard_at_ = base::Clock::now();
     if (!begun()) traffic().unfinished = heard_at_;
     message_size_ += size;
-    hub_.metrics->bytes_received += size;
+    registry_.metrics->bytes_received += size;
     if (message_size_ > protocol::kMaxMessageBytes) incoming_.clear();
     if (!socket_.is_message_done()) return;
-    ++hub_.metrics->messages_received;
+    ++registry_.metrics->messages_received;
     rate_.spend(base::Clock::now());
     traffic().unfinished.reset();
     const bool too_large = std::exchange(message_size_, 0) > protocol::kMaxMessageBytes;
     const auto data = incoming_.data();
     const std::string_view text{static_cast<const char*>(data.data()), data.size()};
     if (!socket_.got_text())
-        refuse_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
+        reject_and_close({{}, protocol::error_code::bad_message, "clients send no binary messages"},
                          close_code::unknown_data);
     else if (too_large)
-        refuse_and_close(
+        reject_and_close(
             {{},
              protocol::error_code::bad_message,
              "the message is longer than " + std::to_string(protocol::kMaxMessageBytes) + " bytes"},
             close_code::too_big);
     else if (find_invalid_utf8(text) !=
              std::string_view::npos)  // Beast overlooks it where an empty fragment ends it
-        refuse_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
+        reject_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
                          close_code::bad_payload);
     else
         on_text(text);
     incoming_.clear();
 }
 
-void Session::on_text(std::string_view text) {
+void Connection::on_text(std::string_view text) {
     auto message = protocol::decode(text);
     const auto* hello = message ? std::get_if<protocol::Hello>(&message->payload) : nullptr;
     if (client_.empty() && !hello) {
         if (message)
             message = tl::unexpected(protocol::Error{message->id, protocol::error_code::bad_message,
                                                      "the first message must be 'hello'"});
-        return refuse_and_close(message.error(), close_code::policy_error);
+        return reject_and_close(message.error(), close_code::policy_error);
     }
     if (hello && !client_.empty())
-        return refuse_and_close(
+        return reject_and_close(
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
@@ -213,50 +213,50 @@ void Session::on_text(std::string_view text) {
         on_grant(*grant, message->id);
         if (!message->id) return;  // those of the others rise with it
     }
-    engine::ClientSaid said{client_, std::move(message), base::Clock::now(), text.size(),
-                            role_ == protocol::Role::control};
+    engine::MessageReceived said{client_, std::move(message), base::Clock::now(), text.size(),
+                                 role_ == protocol::Role::control};
     said.sequence = ++sequence_;
     unhandled_bytes_ += said.bytes;
     unhandled_requests_ += said.is_request();
-    hub_.engine->mailbox().push(std::move(said));
+    registry_.engine->mailbox().push(std::move(said));
 }
 
-void Session::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
-    const std::optional<protocol::Role> role = hub_.access.role_for(hello.role, hello.token);
+void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
+    const std::optional<protocol::Role> role = registry_.access.role_for(hello.role, hello.token);
     if (!role)
-        return refuse_and_close({id, protocol::error_code::not_allowed,
+        return reject_and_close({id, protocol::error_code::not_allowed,
                                  hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
                                 close_code::policy_error);
-    if (hub_.sessions.size() >= hub_.max_clients)
-        return refuse_and_close(
+    if (registry_.clients.size() >= registry_.max_clients)
+        return reject_and_close(
             {id, protocol::error_code::too_many,
-             "the server has its " + std::to_string(hub_.max_clients) + " clients already"},
+             "the server has its " + std::to_string(registry_.max_clients) + " clients already"},
             close_code::try_again_later);
-    if (hub_.stopping) return;  // the close is on its way
+    if (registry_.stopping) return;  // the close is on its way
     hello_deadline_.cancel();
     role_ = *role;
-    client_ = "c" + std::to_string(hub_.next_client++);
-    hub_.sessions[client_] = shared_from_this();
-    if (!hub_.loads) loading_ = hub_.loading;  // is no news any more
-    ++hub_.metrics->clients_joined;
-    ++hub_.metrics->clients[name_of(*role)];
+    client_ = "c" + std::to_string(registry_.next_client++);
+    registry_.clients[client_] = shared_from_this();
+    if (!registry_.loads) loading_ = registry_.loading;  // is no news any more
+    ++registry_.metrics->clients_joined;
+    ++registry_.metrics->clients[name_of(*role)];
     observe::log_info("joined",
                       {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
-    hub_.engine->mailbox().push(engine::ClientJoined{client_, *role, hello.name, id.value_or(0)});
+    registry_.engine->mailbox().push(engine::ClientJoined{client_, *role, hello.name, id.value_or(0)});
 
     protocol::Welcome welcome;
     welcome.id = id;
     welcome.server = VRUT_VERSION;
     welcome.client = client_;
     welcome.role = *role;
-    welcome.limits.max_pixels = hub_.engine->limits().max_pixels;
+    welcome.limits.max_pixels = registry_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = kMessagesPerSecond;
     welcome.limits.max_server_message = std::size_t{64} << 20;
     answer({client_, protocol::encode(welcome), 0});
 }
 
-void Session::refuse_and_close(const protocol::Error& error, close_code code) {
-    ++hub_.metrics->errors[error.code];
+void Connection::reject_and_close(const protocol::Error& error, close_code code) {
+    ++registry_.metrics->errors[error.code];
     observe::log_info(
         "refused", {{"client", client_}, {"peer", peer_}, {"code", error.code}, {"reason", error.message}});
     if (!closing_) close_reason_ = reason_of(error, code);
@@ -266,27 +266,27 @@ void Session::refuse_and_close(const protocol::Error& error, close_code code) {
 
 // --- what there is to send
 
-void Session::answer(room::Answer answer) {
+void Connection::answer(room::Answer answer) {
     answer_bytes_ += answer.text.size();
-    answers_.push_back({held_text(std::move(answer.text), *hub_.metrics), answer.revision});
+    answers_.push_back({held_text(std::move(answer.text), *registry_.metrics), answer.revision});
     pump();
 }
 
 /// Credits are counted here, and what a frame must show is: what the messages before its grant did.
-void Session::on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id) {
+void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id) {
     const base::Clock::time_point now = base::Clock::now();
     if (grant.shown && !flow_.grant(*grant.shown, now)) {
         const protocol::Error error{
             id, protocol::error_code::out_of_range,
             "'shown': frame " + std::to_string(*grant.shown) + " was never sent to this client"};
-        ++hub_.metrics->errors[error.code];
+        ++registry_.metrics->errors[error.code];
         return answer({client_, protocol::encode(error), 0, error.message});
     }
     if (!grant.shown) flow_.grant();
-    ++hub_.metrics->frames_granted;
+    ++registry_.metrics->frames_granted;
     granted_at_ = sequence_;
     if (const auto input = inputs_.find(grant.shown.value_or(0)); input != inputs_.end()) {
-        hub_.metrics->input_to_grant.observe(std::chrono::duration<double>(now - input->second).count());
+        registry_.metrics->input_to_grant.observe(std::chrono::duration<double>(now - input->second).count());
         inputs_.erase(inputs_.begin(), std::next(input));
     }
     ask_for_frames(now);
@@ -294,52 +294,53 @@ void Session::on_grant(const protocol::FrameGrant& grant, std::optional<std::int
 }
 
 /// Tells the engine what may be sent, where that has changed.
-void Session::ask_for_frames(base::Clock::time_point now) {
+void Connection::ask_for_frames(base::Clock::time_point now) {
     const engine::FramesWanted wanted{client_, last_frame_, flow_.frames_allowed(now), granted_at_,
                                       flow_.link(now)};
     if (wanted == wanted_) return;
     const bool matters = wanted.count > 0 || wanted_.count > 0;
     wanted_ = wanted;
-    if (matters) hub_.engine->mailbox().push(wanted);
+    if (matters) registry_.engine->mailbox().push(wanted);
 }
 
-void Session::take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture) {
+void Connection::take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture) {
     snapshots_.push_back(std::move(picture));
     pump();
 }
 
-void Session::handled(const engine::EngineOutput::Handled& handled) {
+void Connection::handled(const engine::EngineOutput::Handled& handled) {
     unhandled_bytes_ -= std::min(handled.bytes, unhandled_bytes_);
     unhandled_requests_ -= std::min(handled.requests, unhandled_requests_);
     handled_sequence_ = handled.sequence;
     read();
 }
 
-void Session::newest_changed(std::int64_t before) {
+void Connection::newest_changed(std::int64_t before) {
     const bool waited = writing_ && flow_.credits() > 0 && before > last_frame_;
-    if (waited) ++hub_.metrics->frames_replaced;
+    if (waited) ++registry_.metrics->frames_replaced;
     pump();
 }
 
 /// One that shows what the messages before the newest grant did, or what is to be seen after them.
-bool Session::has_newer_frame() const {
-    const auto& newest = hub_.newest;
+bool Connection::has_newer_frame() const {
+    const auto& newest = registry_.newest;
     if (!newest || newest->header.frame <= last_frame_) return false;
     const auto applied = newest->applied.find(client_);
     if (applied != newest->applied.end() && applied->second.sequence >= granted_at_) return true;
-    return handled_sequence_ >= granted_at_ && hub_.present_frame == newest->header.frame;
+    return handled_sequence_ >= granted_at_ && registry_.present_frame == newest->header.frame;
 }
 
-bool Session::frame_is_due(base::Clock::time_point now) const {
+bool Connection::frame_is_due(base::Clock::time_point now) const {
     return has_newer_frame() && flow_.may_send_frame(now) &&
-           flow_.may_send_from(hub_.newest->file.size(), hub_.newest->rests_since, now) <= now;
+           flow_.may_send_from(registry_.newest->file.size(), registry_.newest->rests_since, now) <= now;
 }
 
 /// What was not sent because of what is under way is looked at again when that may have changed.
-void Session::ask_again(base::Clock::time_point now) {
+void Connection::ask_again(base::Clock::time_point now) {
     auto at = flow_.ask_again(now);
     if (has_newer_frame() && flow_.may_send_frame(now)) {
-        const auto from = flow_.may_send_from(hub_.newest->file.size(), hub_.newest->rests_since, now);
+        const auto from =
+            flow_.may_send_from(registry_.newest->file.size(), registry_.newest->rests_since, now);
         if (from > now) at = std::min(at.value_or(from), from);
     }
     if (!at) return flow_timer_.cancel(), void();
@@ -352,7 +353,7 @@ void Session::ask_again(base::Clock::time_point now) {
     });
 }
 
-void Session::pump() {
+void Connection::pump() {
     if (writing_ || dropped_) return;
     const std::int64_t known = document_ ? document_->revision() : 0;
     if (closing_) {
@@ -364,7 +365,7 @@ void Session::pump() {
     if (!client_.empty() && flow_.wants_ping()) return send_ping(now);
     // A frame or answer goes when the client knows the revision that it speaks of.
     const bool frame_due = frame_is_due(now);
-    if (frame_due && known >= hub_.newest->header.revision) return send_frame();
+    if (frame_due && known >= registry_.newest->header.revision) return send_frame();
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
     const bool waited_for = frame_due || !answers_.empty() || !snapshots_.empty();
@@ -373,14 +374,14 @@ void Session::pump() {
 }
 
 /// Nothing goes out behind the close.
-void Session::say_goodbye() {
+void Connection::say_goodbye() {
     if (std::exchange(said_goodbye_, true)) return;
     writing_ = true;
     socket_.async_close(*closing_, [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
 }
 
 /// Beast would echo a code beyond the last that RFC 6455 knows (7.4.2).
-void Session::on_close_frame(std::uint16_t code) {
+void Connection::on_close_frame(std::uint16_t code) {
     constexpr std::uint16_t kLastCode = 4999;
     if (code <= kLastCode || said_goodbye_) return;
     closing_.emplace(close_code::protocol_error);
@@ -389,19 +390,20 @@ void Session::on_close_frame(std::uint16_t code) {
     say_goodbye();
 }
 
-bool Session::has_updates() const {
-    return !client_.empty() && hub_.document && (document_ != hub_.document || has_broadcasts());
+bool Connection::has_updates() const {
+    return !client_.empty() && registry_.document && (document_ != registry_.document || has_broadcasts());
 }
 
-bool Session::has_broadcasts() const { return loading_ != hub_.loading || stats_ != hub_.stats; }
+bool Connection::has_broadcasts() const { return loading_ != registry_.loading || stats_ != registry_.stats; }
 
 /// Of each only the newest counts: the document, how far loading is, and statistics. The document goes first,
 /// unless the others have waited for long.
-void Session::send_update(base::Clock::time_point now) {
+void Connection::send_update(base::Clock::time_point now) {
     const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
-    if (document_ != hub_.document && !waits) return send_document();
+    if (document_ != registry_.document && !waits) return send_document();
     had_broadcasts_ = now;
-    for (const auto& [newest, sent] : {std::pair(&hub_.loading, &loading_), std::pair(&hub_.stats, &stats_)})
+    for (const auto& [newest, sent] :
+         {std::pair(&registry_.loading, &loading_), std::pair(&registry_.stats, &stats_)})
         if (*newest != *sent) {
             *sent = *newest;
             flow_.sent_update((*sent)->size(), now);
@@ -409,7 +411,7 @@ void Session::send_update(base::Clock::time_point now) {
         }
 }
 
-void Session::send_answer() {
+void Connection::send_answer() {
     Text text = std::move(answers_.front().text);
     answers_.pop_front();
     answer_bytes_ -= text->size();
@@ -418,27 +420,27 @@ void Session::send_answer() {
     send_text(std::move(text));
 }
 
-void Session::send_document() {
-    const auto before = std::exchange(document_, hub_.document);
-    const bool one_author = before && before->revision() + 1 >= hub_.document_by_since;
+void Connection::send_document() {
+    const auto before = std::exchange(document_, registry_.document);
+    const bool one_author = before && before->revision() + 1 >= registry_.document_by_since;
     std::string text = before && document_->has_scene_of(*before)
-                           ? document_->encode_patch_from(*before, one_author ? hub_.document_by : "")
+                           ? document_->encode_patch_from(*before, one_author ? registry_.document_by : "")
                            : document_->encode();
     flow_.sent_update(text.size(), base::Clock::now());
-    send_text(held_text(std::move(text), *hub_.metrics));
+    send_text(held_text(std::move(text), *registry_.metrics));
 }
 
-void Session::send_ping(base::Clock::time_point now) {
+void Connection::send_ping(base::Clock::time_point now) {
     writing_ = true;
-    write_by_ = now + hub_.deadlines.stuck;
+    write_by_ = now + registry_.deadlines.stuck;
     pinged_at_ = now;
     const websocket::ping_data number(std::to_string(flow_.sent_ping(now)).c_str());
     socket_.async_ping(number,
                        [self = shared_from_this()](beast::error_code error) { self->on_written(error); });
 }
 
-void Session::send_frame() {
-    picture_ = hub_.newest;
+void Connection::send_frame() {
+    picture_ = registry_.newest;
     last_frame_ = picture_->header.frame;
     protocol::FrameHeader header = picture_->header;
     const auto applied = picture_->applied.find(client_);
@@ -452,9 +454,9 @@ void Session::send_frame() {
         inputs_[last_frame_] = *picture_->newest_input;
         if (inputs_.size() > kInputsRemembered) inputs_.erase(inputs_.begin());
         shown_input_ = *picture_->newest_input;
-        hub_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
+        registry_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
     }
-    ++hub_.metrics->frames_sent;
+    ++registry_.metrics->frames_sent;
     observe::log_debug("frame_sent", {{"client", client_},
                                       {"frame", last_frame_},
                                       {"bytes", picture_->file.size()},
@@ -465,19 +467,19 @@ void Session::send_frame() {
     ask_for_frames(now);
 }
 
-void Session::send_snapshot() {
+void Connection::send_snapshot() {
     sends_queued_ = true;
     picture_ = std::move(snapshots_.front());
     snapshots_.pop_front();
-    ++hub_.metrics->snapshots_sent;
-    hub_.engine->mailbox().push(engine::SnapshotSent{client_});
+    ++registry_.metrics->snapshots_sent;
+    registry_.engine->mailbox().push(engine::SnapshotSent{client_});
     protocol::FrameHeader header = picture_->header;
     header.handled = handled_ = std::max(handled_, header.handled);
     flow_.sent(picture_->file.size(), base::Clock::now());
     send_picture(header);
 }
 
-void Session::send_picture(const protocol::FrameHeader& header) {
+void Connection::send_picture(const protocol::FrameHeader& header) {
     header_ = engine::header_of_file(*picture_, header);
     const auto& file = picture_->file;
     const std::size_t cut = picture_->header_offset;
@@ -486,24 +488,24 @@ void Session::send_picture(const protocol::FrameHeader& header) {
            boost::asio::buffer(file.data() + cut, file.size() - cut)});
 }
 
-void Session::send_text(Text text) {
+void Connection::send_text(Text text) {
     text_ = std::move(text);
     socket_.text(true);
     write({boost::asio::buffer(*text_)});
 }
 
 // One type of buffers for all: Beast's write operation takes seconds to compile for each.
-void Session::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
+void Connection::write(const std::array<boost::asio::const_buffer, 3>& buffers) {
     writing_ = true;
     const std::size_t bytes = boost::asio::buffer_size(buffers);
-    hub_.metrics->bytes_sent += bytes;
-    write_by_ = base::Clock::now() + hub_.deadlines.stuck + std::chrono::seconds(bytes / kLeastRate);
+    registry_.metrics->bytes_sent += bytes;
+    write_by_ = base::Clock::now() + registry_.deadlines.stuck + std::chrono::seconds(bytes / kLeastRate);
     socket_.async_write(buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
         self->on_written(error);
     });
 }
 
-void Session::on_written(beast::error_code error) {
+void Connection::on_written(beast::error_code error) {
     writing_ = sends_queued_ = false;
     picture_.reset();
     text_.reset();
@@ -514,7 +516,7 @@ void Session::on_written(beast::error_code error) {
 
 // --- the end
 
-void Session::close(close_code code, const std::string& reason) {
+void Connection::close(close_code code, const std::string& reason) {
     if (closing_ || dropped_) return;
     // A close frame holds 123 bytes of reason at most, and whole characters.
     std::size_t length = std::min<std::size_t>(reason.size(), 123);
@@ -524,10 +526,10 @@ void Session::close(close_code code, const std::string& reason) {
     pump();
 }
 
-void Session::drop(const char* reason) {
+void Connection::drop(const char* reason) {
     if (std::exchange(dropped_, true)) return;
     reason = closing_ ? close_reason_ : reason;
-    ++hub_.metrics->closes[reason];
+    ++registry_.metrics->closes[reason];
     hello_deadline_.cancel();
     watch_.cancel();
     rate_timer_.cancel();
@@ -537,10 +539,10 @@ void Session::drop(const char* reason) {
     snapshots_.clear();
     if (client_.empty()) return;
     observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
-    ++hub_.metrics->clients_left;
-    --hub_.metrics->clients[name_of(role_)];
-    hub_.engine->mailbox().push(engine::ClientLeft{client_});
-    hub_.sessions.erase(client_);
+    ++registry_.metrics->clients_left;
+    --registry_.metrics->clients[name_of(role_)];
+    registry_.engine->mailbox().push(engine::ClientLeft{client_});
+    registry_.clients.erase(client_);
 }
 
 }  // namespace vrut::server::net

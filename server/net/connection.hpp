@@ -24,12 +24,12 @@ inline constexpr int kLeastRate = 1000;
 /// One WebSocket client, on the net thread. What waits for a slow one is replaced, not queued: it keeps the
 /// document that it last got and is sent the difference; of frames it is sent the newest, as many as it
 /// granted. Only answers queue, and who does not take them is not read.
-class Session : public std::enable_shared_from_this<Session> {
+class Connection : public std::enable_shared_from_this<Connection> {
 public:
-    Session(Stream stream, ConnectionLimit::Place place, Hub& hub);
-    ~Session();
-    Session(const Session&) = delete;
-    Session& operator=(const Session&) = delete;
+    Connection(Stream stream, ConnectionLimit::Place place, ConnectionRegistry& registry);
+    ~Connection();
+    Connection(const Connection&) = delete;
+    Connection& operator=(const Connection&) = delete;
 
     /// Completes the handshake that `request` asks for.
     void accept(const HttpRequest& request);
@@ -58,7 +58,7 @@ private:
     bool must_wait();
     void on_text(std::string_view text);
     void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
-    void refuse_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
+    void reject_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
     void on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id);
     void ask_for_frames(base::Clock::time_point now);
@@ -83,14 +83,14 @@ private:
     void say_goodbye();
     void on_close_frame(std::uint16_t code);
     void watch();
-    void look_after(base::Clock::time_point now);
+    void check_deadlines(base::Clock::time_point now);
     void on_pong(std::string_view number, base::Clock::time_point now);
     std::size_t queued() const;
     std::size_t sending() const;
     bool takes_too_little(base::Clock::time_point now);
 
     boost::beast::websocket::stream<Stream, false> socket_;
-    Hub& hub_;
+    ConnectionRegistry& registry_;
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;

@@ -18,26 +18,26 @@ constexpr int kLeastRateOfQueued = 4000;     // bytes per second
 
 }  // namespace
 
-void Session::watch() {
+void Connection::watch() {
     const auto look = base::Clock::now() + kLook;
-    watch_.expires_at(begun() && !closing_ ? std::min(look, *begun() + hub_.deadlines.message) : look);
+    watch_.expires_at(begun() && !closing_ ? std::min(look, *begun() + registry_.deadlines.message) : look);
     watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
         const auto self = weak.lock();
         if (stopped || !self || self->dropped_) return;
-        self->look_after(base::Clock::now());
+        self->check_deadlines(base::Clock::now());
         if (!self->dropped_) self->watch();
     });
 }
 
 /// Cuts who does not take a message in its time, who does not come to the end of one, and who is silent: one
 /// whose ping waits behind a frame may be slow.
-void Session::look_after(base::Clock::time_point now) {
-    const Deadlines& deadlines = hub_.deadlines;
+void Connection::check_deadlines(base::Clock::time_point now) {
+    const Deadlines& deadlines = registry_.deadlines;
     if (!writing_ || std::exchange(taken_seen_, traffic().taken) != traffic().taken) progress_at_ = now;
     if (now >= write_by_ ? writing_ : now - progress_at_ >= deadlines.stuck) return drop("stuck");
     if (takes_too_little(now)) return drop("stuck");
     if (begun() && !closing_ && now - *begun() >= deadlines.message) {
-        refuse_and_close(
+        reject_and_close(
             {{}, protocol::error_code::bad_message, "a message took too long to come to its end"},
             beast::websocket::close_code::policy_error);
         close_reason_ = "slow";
@@ -50,31 +50,31 @@ void Session::look_after(base::Clock::time_point now) {
 }
 
 /// Bytes that are kept for this client alone: answers and snapshots.
-std::size_t Session::queued() const {
+std::size_t Connection::queued() const {
     std::size_t bytes = answer_bytes_;
     for (const auto& picture : snapshots_) bytes += picture->file.size();
     return bytes + (sends_queued_ ? sending() : 0);
 }
 
 /// Of what is being sent, this client's part.
-std::size_t Session::sending() const {
+std::size_t Connection::sending() const {
     const auto part = [](std::size_t size, long sharers) { return size / static_cast<std::size_t>(sharers); };
     return (text_ ? part(text_->size(), text_.use_count()) : 0) +
            (picture_ ? part(picture_->file.size(), picture_.use_count()) : 0);
 }
 
-std::size_t Session::backlog() const { return queued() + (sends_queued_ ? 0 : sending()); }
+std::size_t Connection::backlog() const { return queued() + (sends_queued_ ? 0 : sending()); }
 
-bool Session::takes_too_little(base::Clock::time_point now) {
+bool Connection::takes_too_little(base::Clock::time_point now) {
     const bool rated = queued() > kMayWait;
     const std::chrono::duration<double> passed = now - rated_since_;
-    if (rated && passed < hub_.deadlines.least_rate) return false;
+    if (rated && passed < registry_.deadlines.least_rate) return false;
     const std::uint64_t taken = traffic().taken - std::exchange(taken_before_, traffic().taken);
     rated_since_ = now;
     return rated && static_cast<double>(taken) < kLeastRateOfQueued * passed.count();
 }
 
-void Session::on_pong(std::string_view text, base::Clock::time_point now) {
+void Connection::on_pong(std::string_view text, base::Clock::time_point now) {
     heard_at_ = now;
     std::uint64_t number = 0;
     std::from_chars(text.data(), text.data() + text.size(), number);

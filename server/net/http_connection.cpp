@@ -32,11 +32,11 @@ std::string_view path_of(const HttpRequest& request) {
     return target.substr(0, target.find('?'));
 }
 
-bool has_token(const HttpRequest& request, const Hub& hub) {
+bool has_token(const HttpRequest& request, const ConnectionRegistry& registry) {
     constexpr std::string_view kScheme = "Bearer ";
     const std::string_view header = view(request[http::field::authorization]);
     const std::string_view token = header.starts_with(kScheme) ? header.substr(kScheme.size()) : "";
-    return hub.access.role_for(protocol::Role::view, token).has_value();
+    return registry.access.role_for(protocol::Role::view, token).has_value();
 }
 
 /// Subprotocols are a comma-separated list; a client that offers none gets version 1.
@@ -87,7 +87,7 @@ std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access
     return std::nullopt;
 }
 
-HttpResponse respond(const HttpRequest& request, const Hub& hub) {
+HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& registry) {
     const std::string_view path = path_of(request);
     if (auto file = page_response(request, path)) return *std::move(file);
     if (path == "/ws")
@@ -96,36 +96,36 @@ HttpResponse respond(const HttpRequest& request, const Hub& hub) {
         return fault ? refusal(http::status::service_unavailable, *fault)
                      : text_response(http::status::ok, good);
     };
-    if (path == "/healthz") return state(why_unhealthy(hub), "ok\n");
+    if (path == "/healthz") return state(why_unhealthy(registry), "ok\n");
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
-        if (!has_token(request, hub))
+        if (!has_token(request, registry))
             return refusal(http::status::unauthorized, "this route asks for a token");
         if (path == "/protocol.schema.json") {
             static const auto schema = std::make_shared<const std::string>(protocol::json_schema());
             return {http::status::ok, "application/schema+json", schema};
         }
         if (path == "/frame.jpg") return {};  // the session's, who can wait for it
-        if (path == "/readyz") return state(why_unready(hub), "ready\n");
+        if (path == "/readyz") return state(why_unready(registry), "ready\n");
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
-                std::make_shared<const std::string>(metrics_text(hub))};
+                std::make_shared<const std::string>(metrics_text(registry))};
     }
     return refusal(http::status::not_found, "there is nothing at this address");
 }
 
 /// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
 /// by another.
-class HttpSession : public std::enable_shared_from_this<HttpSession> {
+class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 public:
-    HttpSession(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub)
+    HttpConnection(asio::ip::tcp::socket socket, ConnectionLimit::Place place, ConnectionRegistry& registry)
         : socket_(std::move(socket)),
           place_(std::move(place)),
           deadline_timer_(socket_.get_executor()),
-          hub_(hub) {}
+          registry_(registry) {}
 
     void start() {
         beast::error_code ignored;
         socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
-        expire_after(hub_.deadlines.request);
+        expire_after(registry_.deadlines.request);
         watch();
         read();
     }
@@ -159,7 +159,7 @@ private:
         socket_.async_read_some(room, [self = shared_from_this()](beast::error_code error, std::size_t size) {
             if (error) return;
             if (self->answered_ && self->incoming_.size() == 0)
-                self->expire_after(self->hub_.deadlines.request);
+                self->expire_after(self->registry_.deadlines.request);
             self->incoming_.commit(size);
             self->next();
         });
@@ -169,11 +169,11 @@ private:
         keep_alive_ = request.keep_alive() && request.version() == 11;
         head_only_ = request.method() == http::verb::head;
         host_ = std::string(view(request[http::field::host]));
-        if (auto response = turned_away(request, hub_.access)) return send(*std::move(response));
+        if (auto response = turned_away(request, registry_.access)) return send(*std::move(response));
         if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request) &&
             view(request[http::field::sec_websocket_version]) == "13")
             return open_websocket(request);
-        HttpResponse response = respond(request, hub_);
+        HttpResponse response = respond(request, registry_);
         if (path_of(request) == "/frame.jpg" && response.status == http::status::ok)
             return send_picture(request);
         send(std::move(response));
@@ -181,37 +181,38 @@ private:
 
     /// The present view, in the size asked for or the view's own.
     void send_picture(const HttpRequest& request) {
-        const engine::PictureLimits& limits = hub_.engine->limits();
+        const engine::PictureLimits& limits = registry_.engine->limits();
         const auto width = query_number(request, "width"), height = query_number(request, "height");
         if (!width || !height || (*width == 0) != (*height == 0) || !engine::fits(*width, *height, limits))
             return send(
                 refusal(http::status::bad_request,
                         "'width' and 'height' must be given together, as numbers from 1, of at most " +
                             std::to_string(limits.max_pixels) + " pixels"));
-        ViewPictureKey key{hub_.document ? hub_.document->revision() : 0, hub_.size, hub_.size};
+        ViewPictureKey key{registry_.document ? registry_.document->revision() : 0, registry_.size,
+                           registry_.size};
         if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
-        const std::string tag = hub_.pictures.tag(key);
-        if (hub_.document && names_tag(view(request[http::field::if_none_match]), tag))
+        const std::string tag = registry_.pictures.tag(key);
+        if (registry_.document && names_tag(view(request[http::field::if_none_match]), tag))
             return send({http::status::not_modified, "image/jpeg", nullptr, "ETag: " + tag + "\r\n"});
-        if (const ViewPicture* kept = hub_.pictures.find(key)) return send_file(*kept);
+        if (const ViewPicture* kept = registry_.pictures.find(key)) return send_file(*kept);
         if (head_only_)
             return send({http::status::ok, "image/jpeg", nullptr,
-                         hub_.document ? "ETag: " + tag + "\r\n" : std::string{}});
+                         registry_.document ? "ETag: " + tag + "\r\n" : std::string{}});
         deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
-        const bool asked = hub_.pictures.ask(
+        const bool asked = registry_.pictures.ask(
             key,
             [self = shared_from_this()](const ViewPicture* picture) {
                 if (picture) return self->send_file(*picture);
                 self->send(refusal(http::status::service_unavailable,
                                    "this picture cannot be drawn: the log says why"));
             },
-            hub_.engine->mailbox());
+            registry_.engine->mailbox());
         if (!asked) send(refusal(http::status::service_unavailable, "too many pictures are being drawn"));
     }
 
     void send_file(const ViewPicture& picture) {
         send({http::status::ok, "image/jpeg", picture.file,
-              "ETag: " + hub_.pictures.tag(picture.key) + "\r\n"});
+              "ETag: " + registry_.pictures.tag(picture.key) + "\r\n"});
     }
 
     void open_websocket(const HttpRequest& request) {
@@ -222,32 +223,33 @@ private:
             return send(
                 refusal(http::status::bad_request, "a handshake is answered before anything follows"));
         }
-        if (hub_.stopping) return;
+        if (registry_.stopping) return;
         deadline_timer_.cancel();
-        std::make_shared<Session>(Stream(std::move(socket_)), std::move(place_), hub_)->accept(request);
+        std::make_shared<Connection>(Stream(std::move(socket_)), std::move(place_), registry_)
+            ->accept(request);
     }
 
     // --- writing
 
     void send(HttpResponse response) {
-        keep_alive_ = keep_alive_ && !hub_.stopping;
+        keep_alive_ = keep_alive_ && !registry_.stopping;
         head_ = head_of(response, host_, keep_alive_);
         body_ = head_only_ ? nullptr : std::move(response.body);
         head_only_ = false;
-        expire_after(hub_.deadlines.answer);
+        expire_after(registry_.deadlines.answer);
         const std::array<asio::const_buffer, 2> buffers{asio::buffer(head_),
                                                         body_ ? asio::buffer(*body_) : asio::const_buffer()};
-        asio::async_write(socket_, buffers,
-                          [self = shared_from_this()](beast::error_code error, std::size_t) {
-                              self->body_.reset();
-                              if (error) return;
-                              self->expire_after(self->keep_alive_ ? self->hub_.deadlines.request : kForEnd);
-                              self->answered_ = true;
-                              if (self->keep_alive_) return self->next();
-                              beast::error_code ignored;
-                              self->socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-                              self->drain();
-                          });
+        asio::async_write(
+            socket_, buffers, [self = shared_from_this()](beast::error_code error, std::size_t) {
+                self->body_.reset();
+                if (error) return;
+                self->expire_after(self->keep_alive_ ? self->registry_.deadlines.request : kForEnd);
+                self->answered_ = true;
+                if (self->keep_alive_) return self->next();
+                beast::error_code ignored;
+                self->socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+                self->drain();
+            });
     }
 
     /// Closing with bytes unread would take the last answer away from the peer.
@@ -279,7 +281,7 @@ private:
     ConnectionLimit::Place place_;
     asio::steady_timer deadline_timer_;
     base::Clock::time_point deadline_;
-    Hub& hub_;
+    ConnectionRegistry& registry_;
     beast::flat_buffer incoming_{kMaxRequest};
     bool keep_alive_ = false, head_only_ = false, answered_ = false;
     std::string host_, head_;
@@ -288,11 +290,11 @@ private:
 
 }  // namespace
 
-void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub) {
-    std::make_shared<HttpSession>(std::move(socket), std::move(place), hub)->start();
+void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, ConnectionRegistry& registry) {
+    std::make_shared<HttpConnection>(std::move(socket), std::move(place), registry)->start();
 }
 
-void turn_away(asio::ip::tcp::socket socket) {
+void reject_connection(asio::ip::tcp::socket socket) {
     const HttpResponse response =
         refusal(http::status::service_unavailable, "there are too many connections");
     const std::string text = head_of(response, {}, false) + *response.body;

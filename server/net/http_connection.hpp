@@ -7,8 +7,9 @@
 namespace vrut::server::net {
 
 /// Serves HTTP on a fresh connection: the page, what tells of the server's health, and the door to /ws.
-void serve_http(boost::asio::ip::tcp::socket socket, ConnectionLimit::Place place, Hub& hub);
+void serve_http(boost::asio::ip::tcp::socket socket, ConnectionLimit::Place place,
+                ConnectionRegistry& registry);
 /// Ends a connection that has no place, with a sentence.
-void turn_away(boost::asio::ip::tcp::socket socket);
+void reject_connection(boost::asio::ip::tcp::socket socket);
 
 }  // namespace vrut::server::net

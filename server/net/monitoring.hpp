@@ -5,15 +5,15 @@
 
 namespace vrut::server::net {
 
-struct Hub;
+struct ConnectionRegistry;
 
 /// What /healthz, /readyz and /metrics tell, on the net thread, which is alive where it tells anything.
 
 /// A sentence that names a thread which has something to do and does not come round; none where all do.
-std::optional<std::string> why_unhealthy(const Hub& hub);
+std::optional<std::string> why_unhealthy(const ConnectionRegistry& registry);
 /// Why no pictures can be had now; none where they can.
-std::optional<std::string> why_unready(const Hub& hub);
+std::optional<std::string> why_unready(const ConnectionRegistry& registry);
 /// As Metrics::text().
-std::string metrics_text(const Hub& hub);
+std::string metrics_text(const ConnectionRegistry& registry);
 
 }  // namespace vrut::server::net

@@ -21,20 +21,20 @@ Text held_text(std::string text, observe::Metrics& metrics) {
     return counted;
 }
 
-void bound_backlog(Hub& hub) {
-    std::size_t held = hub.metrics->bytes_held;
+void bound_backlog(ConnectionRegistry& registry) {
+    std::size_t held = registry.metrics->bytes_held;
     if (held <= kMostHeld) return;
     // What was being sent to those who were cut is given up soon.
-    for (const Session* session : hub.connections)
-        if (session->is_dropped()) held -= std::min(held, session->backlog());
-    while (held > kMostHeld && !hub.sessions.empty()) {
-        const auto most = std::max_element(hub.sessions.begin(), hub.sessions.end(), [](auto& a, auto& b) {
-            return a.second->backlog() < b.second->backlog();
-        });
-        const std::shared_ptr<Session> session = most->second;
-        if (session->backlog() == 0) return;
-        held -= std::min(held, session->backlog());
-        session->drop("backlog");
+    for (const Connection* connection : registry.connections)
+        if (connection->is_dropped()) held -= std::min(held, connection->backlog());
+    while (held > kMostHeld && !registry.clients.empty()) {
+        const auto most =
+            std::max_element(registry.clients.begin(), registry.clients.end(),
+                             [](auto& a, auto& b) { return a.second->backlog() < b.second->backlog(); });
+        const std::shared_ptr<Connection> connection = most->second;
+        if (connection->backlog() == 0) return;
+        held -= std::min(held, connection->backlog());
+        connection->drop("backlog");
     }
 }
 

@@ -17,7 +17,7 @@
 
 namespace vrut::server::net {
 
-class Session;
+class Connection;
 
 /// A message on its way to clients.
 using Text = std::shared_ptr<const std::string>;
@@ -25,7 +25,7 @@ using Text = std::shared_ptr<const std::string>;
 Text held_text(std::string text, observe::Metrics& metrics);
 
 /// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
-struct Hub {
+struct ConnectionRegistry {
     Access access;
     std::size_t max_clients = 64;
     std::chrono::milliseconds longest_silence{30'000};  ///< of a loop that has something to do
@@ -42,13 +42,13 @@ struct Hub {
     bool loads = false;                                 ///< a scene is being loaded
     engine::PictureSize size;                           ///< of a picture of the view
     ViewPictures pictures;
-    std::map<std::string, std::shared_ptr<Session>> sessions;  ///< those that said hello
-    std::set<Session*> connections;                            ///< those, and those that did not yet
+    std::map<std::string, std::shared_ptr<Connection>> clients;  ///< those that said hello
+    std::set<Connection*> connections;                           ///< those, and those that did not yet
     std::int64_t next_client = 1;
     bool stopping = false;
 };
 
 /// Cuts the clients for whom the most waits, while more waits for all than the server keeps.
-void bound_backlog(Hub& hub);
+void bound_backlog(ConnectionRegistry& registry);
 
 }  // namespace vrut::server::net

@@ -28,11 +28,11 @@ struct Server::Impl {
           deadline(context) {
         listen();
         limit_connections();
-        hub.access = options.access;
-        hub.max_clients = options.max_clients;
-        hub.longest_silence = options.longest_silence;
-        hub.deadlines = options.deadlines;
-        hub.metrics = &metrics;
+        registry.access = options.access;
+        registry.max_clients = options.max_clients;
+        registry.longest_silence = options.longest_silence;
+        registry.deadlines = options.deadlines;
+        registry.metrics = &metrics;
         engine::EngineCallbacks callbacks;
         callbacks.on_output = [this](engine::EngineOutput output) {
             asio::post(context, [this, moved = std::move(output)]() mutable { take(std::move(moved)); });
@@ -49,13 +49,13 @@ struct Server::Impl {
         engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder};
         engine = std::make_unique<engine::Engine>(std::move(engine_options), painter, metrics,
                                                   std::move(callbacks));
-        hub.engine = engine.get();
+        registry.engine = engine.get();
     }
 
     ~Impl() {
-        hub.newest.reset();
-        hub.pictures.stop();
-        hub.sessions.clear();
+        registry.newest.reset();
+        registry.pictures.stop();
+        registry.clients.clear();
     }
 
     void listen() {
@@ -76,14 +76,14 @@ struct Server::Impl {
     void limit_connections() {
         constexpr std::size_t kOfOne = 64, kOthers = 1024, kForEachClient = 4, kFiles = 64;
         const std::size_t most = kOthers + kForEachClient * options.max_clients;
-        hub.limit.emplace(
+        registry.limit.emplace(
             most, is_loopback(options.listen.host) ? most : kOfOne + kForEachClient * options.max_clients);
         allow_descriptors(most + kFiles);
     }
 
     void accept() {
         acceptor.async_accept([this](boost::system::error_code error, tcp::socket socket) {
-            if (hub.stopping) return;
+            if (registry.stopping) return;
             if (!error) {
                 admit(std::move(socket));
                 return accept();
@@ -101,84 +101,84 @@ struct Server::Impl {
         boost::system::error_code gone;
         const tcp::endpoint peer = socket.remote_endpoint(gone);
         if (gone) return;
-        if (auto place = hub.limit->enter(peer.address()))
-            serve_http(std::move(socket), *std::move(place), hub);
+        if (auto place = registry.limit->enter(peer.address()))
+            serve_http(std::move(socket), *std::move(place), registry);
         else
-            turn_away(std::move(socket));
+            reject_connection(std::move(socket));
     }
 
     // --- what the engine says, on the net thread
 
-    Session* find(const std::string& client) {
-        const auto session = hub.sessions.find(client);
-        return session == hub.sessions.end() ? nullptr : session->second.get();
+    Connection* find(const std::string& client) {
+        const auto connection = registry.clients.find(client);
+        return connection == registry.clients.end() ? nullptr : connection->second.get();
     }
 
     void take(engine::EngineOutput output) {
         if (output.document) {
-            hub.document = std::move(output.document);
-            hub.document_by = std::move(output.by);
-            hub.document_by_since = output.by_since;
-            hub.pictures.forget_before(hub.document->revision());
+            registry.document = std::move(output.document);
+            registry.document_by = std::move(output.by);
+            registry.document_by_since = output.by_since;
+            registry.pictures.forget_before(registry.document->revision());
         }
-        if (output.stats) hub.stats = std::move(output.stats);
+        if (output.stats) registry.stats = std::move(output.stats);
         if (output.loading) {
-            hub.loading = std::move(output.loading);
-            hub.loads = output.loads;
+            registry.loading = std::move(output.loading);
+            registry.loads = output.loads;
         }
-        if (output.size) hub.size = *output.size;
-        if (output.present_frame) hub.present_frame = *output.present_frame;
+        if (output.size) registry.size = *output.size;
+        if (output.present_frame) registry.present_frame = *output.present_frame;
         for (auto& answer : output.answers)
-            if (Session* session = find(answer.client)) session->answer(std::move(answer));
-        for (const std::string& name : output.undrawn) hub.pictures.give_up(name);
+            if (Connection* connection = find(answer.client)) connection->answer(std::move(answer));
+        for (const std::string& name : output.undrawn) registry.pictures.give_up(name);
         for (const auto& [client, handled] : output.handled)
-            if (Session* session = find(client)) session->handled(handled);
-        for_each_session([](Session& session) { session.pump(); });
-        bound_backlog(hub);
+            if (Connection* connection = find(client)) connection->handled(handled);
+        for_each_client([](Connection& connection) { connection.pump(); });
+        bound_backlog(registry);
     }
 
     void take(std::shared_ptr<const engine::EncodedPicture> picture) {
         if (!picture->client.empty()) return take_ordered(std::move(picture));
-        const std::int64_t before = hub.newest ? hub.newest->header.frame : 0;
-        hub.newest = std::move(picture);
-        for_each_session([&](Session& session) { session.newest_changed(before); });
+        const std::int64_t before = registry.newest ? registry.newest->header.frame : 0;
+        registry.newest = std::move(picture);
+        for_each_client([&](Connection& connection) { connection.newest_changed(before); });
     }
 
     void take_ordered(std::shared_ptr<const engine::EncodedPicture> picture) {
-        if (hub.pictures.take(*picture)) return;
-        if (Session* session = find(picture->client)) session->take_snapshot(std::move(picture));
-        bound_backlog(hub);
+        if (registry.pictures.take(*picture)) return;
+        if (Connection* connection = find(picture->client)) connection->take_snapshot(std::move(picture));
+        bound_backlog(registry);
     }
 
     template <class Function>
-    void for_each_session(Function function) {
-        for (const auto& [name, session] : hub.sessions) function(*session);
+    void for_each_client(Function function) {
+        for (const auto& [name, connection] : registry.clients) function(*connection);
     }
 
     // --- the end
 
     void stop() {
-        if (std::exchange(hub.stopping, true)) return;
+        if (std::exchange(registry.stopping, true)) return;
         acceptor.close();
         accept_pause.cancel();
         signals.cancel();
-        for (Session* session : hub.connections)
-            session->close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
+        for (Connection* connection : registry.connections)
+            connection->close(boost::beast::websocket::close_code::going_away, "the server is shutting down");
         // Whoever has not said goodbye by then is left standing.
-        deadline.expires_after(!hub.connections.empty() ? 2000ms : 0ms);
+        deadline.expires_after(!registry.connections.empty() ? 2000ms : 0ms);
         deadline.async_wait([this](boost::system::error_code) { context.stop(); });
         wait_for_goodbyes();
     }
 
     void wait_for_goodbyes() {
-        if (hub.connections.empty()) return context.stop();
+        if (registry.connections.empty()) return context.stop();
         goodbye.expires_after(10ms);
         goodbye.async_wait([this](boost::system::error_code) { wait_for_goodbyes(); });
     }
 
     ServerOptions options;
     observe::Metrics metrics;
-    Hub hub;  // before the context: what waits there still knows it at the end
+    ConnectionRegistry registry;  // before the context: what waits there still knows it at the end
     asio::io_context context{1};
     tcp::acceptor acceptor;
     asio::steady_timer accept_pause;

@@ -35,60 +35,60 @@ namespace {
 
 /// What one line does; or what is wrong with it.
 struct Player {
-    Presentation& presentation;
+    Room& room;
     const protocol::LogLine& line;
     const SceneFinder& find_scene;
     const ReplayWatcher& watcher;
 
     std::optional<std::string> operator()(const protocol::ClientMessage& message) const {
-        if (presentation.say(line.client, message, line.at)) return std::nullopt;
+        if (room.handle_message(line.client, message, line.at)) return std::nullopt;
         std::string why = "client '" + line.client + "' is not there";
-        for (const Answer& answer : presentation.take_answers())
+        for (const Answer& answer : room.take_answers())
             if (!answer.refusal.empty()) why = answer.refusal;
         return "a message that was accepted is refused now: " + why;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Connected& connected) const {
-        presentation.join(line.client, connected.role, line.at, connected.name);
+        room.join(line.client, connected.role, line.at, connected.name);
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Disconnected&) const {
-        presentation.leave(line.client, line.at);
+        room.leave(line.client, line.at);
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Opened& opened) const {
         auto scene = find_scene(opened.scene, opened.sha256);
         if (!scene) return scene.error();
-        presentation.show(*std::move(scene), line.at);
+        room.show(*std::move(scene), line.at);
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Drawn& drawn) const {
-        presentation.advance(line.at);
-        presentation.remember(drawn.frame);
-        if (watcher.on_drawn) watcher.on_drawn(drawn.frame, presentation);
+        room.advance(line.at);
+        room.remember(drawn.frame);
+        if (watcher.on_drawn) watcher.on_drawn(drawn.frame, room);
         return std::nullopt;
     }
 };
 
 }  // namespace
 
-tl::expected<Presentation, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
-                                               const ReplayWatcher& watcher) {
+tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
+                                       const ReplayWatcher& watcher) {
     auto scene = find_scene(log.header.scene, log.header.scene_sha256);
     if (!scene) return tl::unexpected(scene.error());
-    PresentationOptions options;
+    RoomOptions options;
     options.replaying = true;
-    Presentation presentation(*std::move(scene), std::move(options));
-    if (const auto restored = presentation.restore(log.header); !restored)
+    Room room(*std::move(scene), std::move(options));
+    if (const auto restored = room.restore(log.header); !restored)
         return tl::unexpected("line 1: " + restored.error().message);
     std::size_t number = 1;
     for (const protocol::LogLine& line : log.lines) {
         ++number;
-        if (const auto wrong = std::visit(Player{presentation, line, find_scene, watcher}, line.what))
+        if (const auto wrong = std::visit(Player{room, line, find_scene, watcher}, line.what))
             return tl::unexpected("line " + std::to_string(number) + ": " + *wrong);
-        presentation.take_answers();
-        presentation.take_orders();
+        room.take_answers();
+        room.take_orders();
     }
-    return presentation;
+    return room;
 }
 
 }  // namespace vrut::server::room

@@ -29,13 +29,13 @@ using SceneFinder = std::function<tl::expected<scene::LoadedScene, std::string>(
 
 /// What a replay may be told of.
 struct ReplayWatcher {
-    /// Behind each frame that was drawn in the session; the presentation shows what it showed.
-    std::function<void(std::int64_t frame, const Presentation& presentation)> on_drawn = {};
+    /// Behind each frame that was drawn in the session; the room shows what it showed.
+    std::function<void(std::int64_t frame, const Room& room)> on_drawn = {};
 };
 
 /// Plays a session again, with its own times: the same log and scene give the same camera to the last bit.
-/// The presentation as it stands at the last line; or why not.
-tl::expected<Presentation, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
-                                               const ReplayWatcher& watcher = {});
+/// The room as it stands at the last line; or why not.
+tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
+                                       const ReplayWatcher& watcher = {});
 
 }  // namespace vrut::server::room

@@ -10,7 +10,7 @@ namespace vrut::server::room {
 using protocol::Role;
 namespace code = protocol::error_code;
 
-Presentation::Presentation(scene::LoadedScene scene, PresentationOptions options)
+Room::Room(scene::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
       loaded_(std::move(scene)),
       scene_(loaded_.placed),
@@ -20,14 +20,14 @@ Presentation::Presentation(scene::LoadedScene scene, PresentationOptions options
       at_home_(!state_.camera.node),
       visible_(view_of(state_, scene_)) {}
 
-void Presentation::join(const std::string& client, Role role, Time at, const std::string& name) {
+void Room::join(const std::string& client, Role role, Time at, const std::string& name) {
     advance(at);
     clients_[client].role = role;
     clients_[client].name = name;
     record(client, protocol::LogLine::Connected{role, name});
 }
 
-void Presentation::leave(const std::string& client, Time at) {
+void Room::leave(const std::string& client, Time at) {
     advance(at);
     document();  // what was before is others' doing, or the client's own
     changing_.clear();
@@ -39,7 +39,7 @@ void Presentation::leave(const std::string& client, Time at) {
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
 }
 
-bool Presentation::say(const std::string& client, const protocol::ClientMessage& message, Time at) {
+bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, Time at) {
     if (!clients_.contains(client)) return false;  // it has left
     const Said said{client, message};
     return handle(said, at,
@@ -47,7 +47,7 @@ bool Presentation::say(const std::string& client, const protocol::ClientMessage&
 }
 
 template <class Apply>
-bool Presentation::handle(const Said& said, Time at, Apply apply) {
+bool Room::handle(const Said& said, Time at, Apply apply) {
     advance(at);
     if (changing_ != said.client) document();  // a revision is one client's doing
     changing_ = said.client;
@@ -60,24 +60,23 @@ bool Presentation::handle(const Said& said, Time at, Apply apply) {
     return accepted_;
 }
 
-std::int64_t Presentation::answer_later(const Said& said) {
+std::int64_t Room::answer_later(const Said& said) {
     requests_[++newest_request_] = {said.client, said.message};
     return newest_request_;
 }
 
-std::optional<AnsweredLater> Presentation::take_request(std::int64_t request) {
+std::optional<AnsweredLater> Room::take_request(std::int64_t request) {
     auto found = requests_.extract(request);
     if (found.empty() || !is_here(found.mapped())) return std::nullopt;
     return std::move(found.mapped());
 }
 
-void Presentation::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal,
-                                 Time at) {
+void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, Time at) {
     const auto asked = take_request(request);
     if (!asked) return;
     const Said said{asked->client, asked->message};
     handle(said, at, [&] {
-        if (refusal) return refuse(said, refusal->code.c_str(), refusal->message);
+        if (refusal) return reject(said, refusal->code.c_str(), refusal->message);
         // Whether it may be opened was judged when it was asked for; by now another may hold control.
         const bool steers = steering_.may_steer(said.client, time_, gestures_.any_pressed());
         if (steers) steer(said);
@@ -86,12 +85,12 @@ void Presentation::load_answered(std::int64_t request, const std::optional<proto
     });
 }
 
-void Presentation::scenes_listed(std::int64_t request, std::vector<std::string> names) {
+void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
     if (const auto asked = take_request(request))
         answer_with({asked->client, asked->message}, protocol::SceneList{0, std::move(names)});
 }
 
-void Presentation::advance(Time at) {
+void Room::advance(Time at) {
     time_ = std::max(time_, at);
     if (!flight_) return;
     if (!changing_.empty()) document();
@@ -109,7 +108,7 @@ void Presentation::advance(Time at) {
     end_flight(true);
 }
 
-void Presentation::show(scene::LoadedScene scene, Time at) {
+void Room::show(scene::LoadedScene scene, Time at) {
     advance(at);
     document();
     changing_.clear();
@@ -133,7 +132,7 @@ void Presentation::show(scene::LoadedScene scene, Time at) {
     visible_ = view_of(state_, scene_);
 }
 
-void Presentation::notice(const std::string& sentence) {
+void Room::notice(const std::string& sentence) {
     document();
     changing_.clear();  // the server's doing
     std::erase(state_.notices, sentence);
@@ -141,13 +140,13 @@ void Presentation::notice(const std::string& sentence) {
     if (state_.notices.size() > protocol::kMaxNotices) state_.notices.erase(state_.notices.begin());
 }
 
-void Presentation::remember(std::int64_t frame) {
+void Room::remember(std::int64_t frame) {
     frames_.push_back({frame, visible_.camera, view_size_});
     if (frames_.size() > kFramesRemembered) frames_.pop_front();
     record({}, protocol::LogLine::Drawn{frame});
 }
 
-const std::shared_ptr<const protocol::StateDocument>& Presentation::document() {
+const std::shared_ptr<const protocol::StateDocument>& Room::document() {
     if (!document_->shows(state_)) {
         document_ = protocol::StateDocument::next(*document_, state_);
         if (changed_by_ != changing_ || changed_by_since_ == 0) changed_by_since_ = document_->revision();
@@ -158,18 +157,18 @@ const std::shared_ptr<const protocol::StateDocument>& Presentation::document() {
 
 // --- messages
 
-void Presentation::apply(const Said&, const protocol::Hello&) {}       // the session's
-void Presentation::apply(const Said&, const protocol::FrameGrant&) {}  // the engine's
+void Room::apply(const Said&, const protocol::Hello&) {}       // the session's
+void Room::apply(const Said&, const protocol::FrameGrant&) {}  // the engine's
 
-void Presentation::apply(const Said& said, const protocol::Resize& resize) {
+void Room::apply(const Said& said, const protocol::Resize& resize) {
     clients_[said.client].wanted = resize;
     if (steering_.holder() == said.client) use_holders_size();
     answer(said);
 }
 
-void Presentation::apply(const Said& said, const protocol::Control& control) {
+void Room::apply(const Said& said, const protocol::Control& control) {
     if (clients_[said.client].role != Role::control)
-        return refuse(said, code::not_allowed, "only the role 'control' takes and releases control");
+        return reject(said, code::not_allowed, "only the role 'control' takes and releases control");
     if (control.action == protocol::Control::Action::take) {
         steering_.take(said.client, time_);
         hold(said.client);
@@ -179,16 +178,16 @@ void Presentation::apply(const Said& said, const protocol::Control& control) {
     answer(said);
 }
 
-void Presentation::apply(const Said& said, const protocol::Shown& shown) {
+void Room::apply(const Said& said, const protocol::Shown& shown) {
     if (clients_[said.client].role != Role::host)
-        return refuse(said, code::not_allowed, "only the role 'host' reports what its walls show");
+        return reject(said, code::not_allowed, "only the role 'host' reports what its walls show");
     if (!options_.replaying && shown.revision > document()->revision())
-        return refuse(said, code::out_of_range,
+        return reject(said, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
     answer(said);
 }
 
-void Presentation::answer(const Said& said, std::optional<std::string> name) {
+void Room::answer(const Said& said, std::optional<std::string> name) {
     accepted_ = true;
     if (!said.message.id) return;
     const std::int64_t revision = document()->revision();
@@ -196,17 +195,17 @@ void Presentation::answer(const Said& said, std::optional<std::string> name) {
         {said.client, protocol::encode(protocol::Ok{*said.message.id, revision, std::move(name)}), revision});
 }
 
-void Presentation::refuse(const Said& said, const char* code, const std::string& sentence) {
-    refuse(said.client, {said.message.id, code, sentence});
+void Room::reject(const Said& said, const char* code, const std::string& sentence) {
+    reject(said.client, {said.message.id, code, sentence});
 }
 
-void Presentation::refuse(const std::string& client, const protocol::Error& error) {
+void Room::reject(const std::string& client, const protocol::Error& error) {
     answers_.push_back({client, protocol::encode(error), 0, error.message, error.code});
 }
 
 // --- who steers
 
-bool Presentation::may_steer(const Said& said) {
+bool Room::may_steer(const Said& said) {
     Client& client = clients_[said.client];
     const Role role = client.role;
     const auto& payload = said.message.payload;
@@ -217,15 +216,15 @@ bool Presentation::may_steer(const Said& said) {
     const bool quiet = input && !said.message.id;
     if (role == Role::view || (role == Role::host && !std::holds_alternative<protocol::Patch>(payload))) {
         if (!quiet || !std::exchange(client.knows_not_allowed, true))
-            refuse(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
+            reject(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
         return false;
     }
     if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
-    if (!quiet) refuse(said, code::not_in_control, "another client is in control");
+    if (!quiet) reject(said, code::not_in_control, "another client is in control");
     return false;
 }
 
-void Presentation::steer(const Said& said) {
+void Room::steer(const Said& said) {
     accepted_ = true;
     const auto& payload = said.message.payload;
     if (!std::holds_alternative<protocol::Record>(payload)) end_flight(false);
@@ -236,14 +235,14 @@ void Presentation::steer(const Said& said) {
 }
 
 /// Whoever holds control and lets go of it stops what moves; nobody inherits.
-void Presentation::release(const std::string& client) {
+void Room::release(const std::string& client) {
     if (!steering_.release(client)) return;
     end_flight(false);
     hold(std::nullopt);
 }
 
 /// Brings the state in line with who steers now.
-void Presentation::hold(const std::optional<std::string>& holder) {
+void Room::hold(const std::optional<std::string>& holder) {
     protocol::ControlState& control = state_.control;
     if (control.holder != holder) {
         if (control.holder) {
@@ -258,7 +257,7 @@ void Presentation::hold(const std::optional<std::string>& holder) {
     control.kept = steering_.kept();
 }
 
-void Presentation::use_holders_size() {
+void Room::use_holders_size() {
     size_waits_ = false;
     const auto holder = state_.control.holder ? clients_.find(*state_.control.holder) : clients_.end();
     if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
@@ -272,7 +271,7 @@ void Presentation::use_holders_size() {
 
 // --- the camera
 
-NavigationContext Presentation::navigation_context() const {
+NavigationContext Room::navigation_context() const {
     const protocol::NavigationState& navigation = state_.navigation;
     NavigationContext context;
     context.width = view_size_.width;
@@ -286,7 +285,7 @@ NavigationContext Presentation::navigation_context() const {
     return context;
 }
 
-void Presentation::drag_camera(const Camera& moved) {
+void Room::drag_camera(const Camera& moved) {
     // A move beyond what a patch may say, or double hold, is not made.
     const auto is_far = [](const glm::dvec3& point) {
         return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > protocol::kFarthest;
@@ -297,12 +296,12 @@ void Presentation::drag_camera(const Camera& moved) {
     at_home_ = false;
 }
 
-void Presentation::move_camera(const Camera& moved) {
+void Room::move_camera(const Camera& moved) {
     drag_camera(moved);
     gestures_.restart(camera());
 }
 
-void Presentation::end_flight(bool completed) {
+void Room::end_flight(bool completed) {
     if (!flight_) return;
     const InFlight flight = *std::exchange(flight_, std::nullopt);
     gestures_.restart(camera());

@@ -44,11 +44,11 @@ struct PictureOrder {
     int jpeg_quality = 90;
 };
 
-struct PresentationOptions {
+struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
-    /// Begins to load a scene of this name; Presentation::load_answered() tells whether it has begun.
+    /// Begins to load a scene of this name; Room::load_answered() tells whether it has begun.
     std::function<void(std::int64_t request, const std::string& name)> load = {};
-    /// Looks up the scenes that can be loaded; Presentation::scenes_listed() tells them.
+    /// Looks up the scenes that can be loaded; Room::scenes_listed() tells them.
     std::function<void(std::int64_t request)> scenes = {};
     /// What is said was accepted before: it is not judged again by revisions, nor recorded.
     bool replaying = false;
@@ -57,9 +57,9 @@ struct PresentationOptions {
 /// The scene, the state and the camera that all clients share, who steers them, and what each message does to
 /// them. No thread, no clock, no GL: the same messages at the same times, in the same order, lead to the same
 /// camera to the last bit.
-class Presentation {
+class Room {
 public:
-    explicit Presentation(scene::LoadedScene scene, PresentationOptions options = {});
+    explicit Room(scene::LoadedScene scene, RoomOptions options = {});
 
     // What happens. Times never fall: an earlier one counts as the latest before.
     /// `name`: as the client calls itself; empty: it does not.
@@ -67,16 +67,16 @@ public:
     void leave(const std::string& client, Time at);
     /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
     /// refused changes nothing, and not who steers either; then false comes back.
-    bool say(const std::string& client, const protocol::ClientMessage& message, Time at);
+    bool handle_message(const std::string& client, const protocol::ClientMessage& message, Time at);
     /// A flight goes on to where it is then.
     void advance(Time at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
     void show(scene::LoadedScene scene, Time at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
     void notice(const std::string& sentence);
-    /// Loading has begun, or why not; once for each call of PresentationOptions::load.
+    /// Loading has begun, or why not; once for each call of RoomOptions::load.
     void load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, Time at);
-    /// Once for each call of PresentationOptions::scenes.
+    /// Once for each call of RoomOptions::scenes.
     void scenes_listed(std::int64_t request, std::vector<std::string> names);
     /// Its file is open under this name, or cannot be opened, a sentence; once for each that began.
     void recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
@@ -107,7 +107,7 @@ public:
     std::int64_t changed_by_since() const { return changed_by_since_; }
 
     /// Answers what a client said that cannot be read.
-    void refuse(const std::string& client, const protocol::Error& error);
+    void reject(const std::string& client, const protocol::Error& error);
     std::vector<Answer> take_answers() { return std::exchange(answers_, {}); }
     std::vector<PictureOrder> take_orders() { return std::exchange(orders_, {}); }
     /// The present view in another size, for whoever is no client.
@@ -167,7 +167,7 @@ private:
     /// Done, with an answer of its own.
     template <class Message>
     void answer_with(const Said& said, const Message& message);
-    void refuse(const Said& said, const char* code, const std::string& sentence);
+    void reject(const Said& said, const char* code, const std::string& sentence);
 
     // --- who steers
     /// Whether this message may steer; else it is refused.
@@ -221,7 +221,7 @@ private:
     void move_camera(const Camera& camera);
     void end_flight(bool completed);
 
-    PresentationOptions options_;
+    RoomOptions options_;
     scene::LoadedScene loaded_;
     std::shared_ptr<const PlacedScene> scene_;  ///< with its nodes as they stand now
     protocol::Resize view_size_;

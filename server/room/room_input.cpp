@@ -33,7 +33,7 @@ PointerInput input_of(const std::string& client, const protocol::Pointer& pointe
 
 }  // namespace
 
-void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
+void Room::apply(const Said& said, const protocol::Pointer& pointer) {
     // Only a press asks for control; what follows belongs to it, and hovering does nothing.
     const bool press = pointer.event == protocol::Pointer::Event::down;
     // A third finger drags nothing, but its release counts.
@@ -52,14 +52,14 @@ void Presentation::apply(const Said& said, const protocol::Pointer& pointer) {
     }
 }
 
-void Presentation::apply(const Said& said, const protocol::Wheel& wheel) {
+void Room::apply(const Said& said, const protocol::Wheel& wheel) {
     if (!may_steer(said)) return;
     steer(said);
     const WheelInput input{wheel.delta_y, static_cast<WheelInput::Unit>(wheel.delta_mode)};
     move_camera(vrut::wheel(input, camera(), navigation_context()));
 }
 
-void Presentation::apply(const Said& said, const protocol::Key& key) {
+void Room::apply(const Said& said, const protocol::Key& key) {
     using Kind = KeyOperation::Kind;
     const KeyInput input{key.key, key.modifiers.shift, key.code};
     if (!key.down) {
@@ -86,12 +86,12 @@ void Presentation::apply(const Said& said, const protocol::Key& key) {
     move_camera(operated(*operation, camera(), camera_of(state_.views.at("home")), context));
 }
 
-void Presentation::apply(const Said& said, const protocol::Pick& pick) {
+void Room::apply(const Said& said, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
     if (pick.then && !may_steer(said)) return;
     const Frame* named = pick.frame ? find_frame(*pick.frame) : nullptr;
     if (pick.frame && !named)
-        return refuse(said, code::unknown_frame,
+        return reject(said, code::unknown_frame,
                       "frame " + std::to_string(*pick.frame) + " is not among the last " +
                           std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
     const std::optional<Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
@@ -115,20 +115,20 @@ void Presentation::apply(const Said& said, const protocol::Pick& pick) {
     answer_with(said, picked);
 }
 
-const Presentation::Frame* Presentation::find_frame(std::int64_t number) const {
+const Room::Frame* Room::find_frame(std::int64_t number) const {
     const auto found = std::find_if(frames_.begin(), frames_.end(),
                                     [&](const Frame& frame) { return frame.number == number; });
     return found == frames_.end() ? nullptr : &*found;
 }
 
-std::optional<Hit> Presentation::hit_at(const Frame& seen, double x, double y, bool through) const {
+std::optional<Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
     const protocol::Resize& size = seen.view_size;
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
     return vrut::pick(
         *scene_, {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)}, through);
 }
 
-void Presentation::apply(Click::Operation operation, const std::optional<Hit>& hit) {
+void Room::apply(Click::Operation operation, const std::optional<Hit>& hit) {
     if (operation == Click::Operation::select) return select(hit ? hit->node : kNone);
     if (!hit) return;
     Camera moved = camera();
@@ -140,14 +140,14 @@ void Presentation::apply(Click::Operation operation, const std::optional<Hit>& h
     move_camera(moved);
 }
 
-void Presentation::select(Index node) {
+void Room::select(Index node) {
     state_.selection = {};
     if (node == kNone) return;
     const Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
     state_.selection = {selected.id, selected.name, path_of(node)};
 }
 
-std::vector<std::string> Presentation::path_of(Index node) const {
+std::vector<std::string> Room::path_of(Index node) const {
     std::vector<std::string> path;
     for (; node != kNone && path.size() < kLongestPath;
          node = scene_->scene->nodes()[static_cast<std::size_t>(node)].parent)

@@ -9,25 +9,25 @@ using protocol::Error;
 using protocol::Role;
 namespace code = protocol::error_code;
 
-void Presentation::apply(const Said& said, const protocol::Patch& patch) {
+void Room::apply(const Said& said, const protocol::Patch& patch) {
     if (clients_[said.client].role == Role::host &&
         !protocol::names_only(*patch.patch, {"camera", "nodes", "selection"}))
-        return refuse(said, code::not_allowed,
+        return reject(said, code::not_allowed,
                       "a host may patch nothing but 'camera', 'nodes' and 'selection'");
     if (!may_steer(said)) return;
     if (patch.if_revision && !options_.replaying &&
         document()->last_change(*patch.patch) > *patch.if_revision)
-        return refuse(
+        return reject(
             said, code::stale_revision,
             "what the patch touches has changed since revision " + std::to_string(*patch.if_revision));
     auto next = protocol::patched(state_, starting_, *patch.patch);
-    if (!next) return refuse(said, next.error().code.c_str(), next.error().message);
+    if (!next) return reject(said, next.error().code.c_str(), next.error().message);
     std::shared_ptr<const PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
     if (!error) error = use_camera(*next, *placed, *patch.patch);
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
-    if (error) return refuse(said, error->code.c_str(), error->message);
+    if (error) return reject(said, error->code.c_str(), error->message);
 
     const protocol::ViewState home = state_.views.at("home");
     if (camera_of(next->camera) != camera() || next->views.at("home") != home) at_home_ = false;
@@ -43,8 +43,7 @@ void Presentation::apply(const Said& said, const protocol::Patch& patch) {
     answer(said);
 }
 
-std::optional<Error> Presentation::use_nodes(protocol::State& next,
-                                             std::shared_ptr<const PlacedScene>& placed) {
+std::optional<Error> Room::use_nodes(protocol::State& next, std::shared_ptr<const PlacedScene>& placed) {
     if (next.nodes == state_.nodes) return std::nullopt;
     auto states = node_states(*scene_->scene, next.nodes);
     if (!states) return states.error();
@@ -56,8 +55,8 @@ std::optional<Error> Presentation::use_nodes(protocol::State& next,
 
 /// The camera node that is named first, what else is named over it. A camera that stands at a node goes on
 /// to where that is moved.
-std::optional<Error> Presentation::use_camera(protocol::State& next, const PlacedScene& placed,
-                                              const nlohmann::json& patch) {
+std::optional<Error> Room::use_camera(protocol::State& next, const PlacedScene& placed,
+                                      const nlohmann::json& patch) {
     const protocol::NamedCameraMembers named = protocol::named_camera_members(patch);
     const bool pose_named = named.eye || named.focus || named.up || named.center || named.fov;
     const auto given = [](bool is_named, const auto& value) {
@@ -85,7 +84,7 @@ std::optional<Error> Presentation::use_camera(protocol::State& next, const Place
     return std::nullopt;
 }
 
-std::optional<Error> Presentation::use_views(protocol::State& next, const PlacedScene& placed) const {
+std::optional<Error> Room::use_views(protocol::State& next, const PlacedScene& placed) const {
     for (auto& [name, view] : next.views) {
         const auto before = state_.views.find(name);
         if (before != state_.views.end() && before->second == view) continue;
@@ -100,7 +99,7 @@ std::optional<Error> Presentation::use_views(protocol::State& next, const Placed
     return std::nullopt;
 }
 
-std::optional<Error> Presentation::check_names(const protocol::State& next) const {
+std::optional<Error> Room::check_names(const protocol::State& next) const {
     const auto unknown = [&](const std::optional<Id>& node,
                              const std::string& where) -> std::optional<Error> {
         if (!node || scene_->scene->find_node(*node) != kNone) return std::nullopt;

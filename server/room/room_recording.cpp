@@ -5,20 +5,20 @@ namespace vrut::server::room {
 
 namespace code = protocol::error_code;
 
-Recording* Presentation::active_recording() {
+Recording* Room::active_recording() {
     if (recordings_.empty()) return nullptr;
     Recording& newest = recordings_.rbegin()->second;
     return newest.stop ? nullptr : &newest;
 }
 
-void Presentation::apply(const Said& said, const protocol::Record& record) {
+void Room::apply(const Said& said, const protocol::Record& record) {
     if (!may_steer(said)) return;
     if (options_.replaying) {
         steer(said);
         return answer(said);
     }
     if (!options_.recordings)
-        return refuse(said, code::not_allowed, "this server has no folder for recordings");
+        return reject(said, code::not_allowed, "this server has no folder for recordings");
     if (record.action == protocol::Record::Action::start)
         start_recording(said, record.name);
     else
@@ -26,9 +26,9 @@ void Presentation::apply(const Said& said, const protocol::Record& record) {
 }
 
 /// From here on there are lines, whenever its file is open.
-void Presentation::start_recording(const Said& said, const std::string& name) {
+void Room::start_recording(const Said& said, const std::string& name) {
     if (const Recording* active = active_recording())
-        return refuse(said, code::busy,
+        return reject(said, code::busy,
                       active->name.empty() ? "a recording is being begun already"
                                            : "a recording is going on: '" + active->name + "'");
     const bool takes_control = steering_.holder() != said.client;
@@ -40,8 +40,8 @@ void Presentation::start_recording(const Said& said, const std::string& name) {
     if (takes_control) recording.took_control = steering_;
 }
 
-void Presentation::recording_opened(std::int64_t recording,
-                                    const tl::expected<std::string, std::string>& name, Time at) {
+void Room::recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
+                            Time at) {
     const auto found = recordings_.find(recording);
     if (found == recordings_.end()) return;
     advance(at);
@@ -53,9 +53,9 @@ void Presentation::recording_opened(std::int64_t recording,
         const bool gives_back = found->second.took_control == steering_;
         recordings_.erase(found);
         if (gives_back && steering_.release(client)) hold(std::nullopt);
-        if (clients_.contains(client)) refuse(said, code::failed, name.error());
+        if (clients_.contains(client)) reject(said, code::failed, name.error());
         if (stop && is_here(*stop))
-            refuse({stop->client, stop->message}, code::failed, "nothing has been recorded");
+            reject({stop->client, stop->message}, code::failed, "nothing has been recorded");
         return;
     }
     document();
@@ -65,9 +65,9 @@ void Presentation::recording_opened(std::int64_t recording,
     if (clients_.contains(client)) answer(said, *name);
 }
 
-void Presentation::stop_recording(const Said& said) {
+void Room::stop_recording(const Said& said) {
     Recording* active = active_recording();
-    if (!active) return refuse(said, code::failed, "nothing is being recorded");
+    if (!active) return reject(said, code::failed, "nothing is being recorded");
     steer(said);
     record(said.client, said.message);
     active->stop = {said.client, said.message};
@@ -75,7 +75,7 @@ void Presentation::stop_recording(const Said& said) {
     state_.recording.reset();
 }
 
-void Presentation::recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at) {
+void Room::recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at) {
     const auto found = recordings_.extract(recording);
     if (found.empty()) return;
     advance(at);
@@ -88,14 +88,14 @@ void Presentation::recording_ended(std::int64_t recording, const std::optional<s
     if (!stop || !is_here(*stop)) return;
     const Said said{stop->client, stop->message};
     if (why)
-        refuse(said, code::failed, "the end of '" + name + "' is missing: " + *why);
+        reject(said, code::failed, "the end of '" + name + "' is missing: " + *why);
     else
         answer(said, name);
 }
 
 /// What is held begins anew, here and in the log, which knows nothing of how it began. All of it is the
 /// holder's, `client`'s.
-void Presentation::press_anew(const std::string& client) {
+void Room::press_anew(const std::string& client) {
     clicks_ = {};
     const auto again = [&](const auto& payload) {
         const protocol::ClientMessage message{{}, payload};
@@ -124,14 +124,14 @@ void Presentation::press_anew(const std::string& client) {
     }
 }
 
-void Presentation::record(const std::string& client, decltype(protocol::LogLine::what) what) {
+void Room::record(const std::string& client, decltype(protocol::LogLine::what) what) {
     if (const Recording* active = active_recording())
         options_.recordings->write(
             recordings_.rbegin()->first,
             protocol::encode(protocol::LogLine{time_ - active->since, client, std::move(what)}));
 }
 
-RecordingSink::Header Presentation::log_header() const {
+RecordingSink::Header Room::log_header() const {
     protocol::LogHeader header;
     header.scene = loaded_.name;
     header.scene_sha256 = loaded_.sha256;

@@ -11,17 +11,17 @@ using protocol::Error;
 namespace code = protocol::error_code;
 
 template <class Message>
-void Presentation::answer_with(const Said& said, const Message& message) {
+void Room::answer_with(const Said& said, const Message& message) {
     accepted_ = true;
     if (!said.message.id) return;
     Message answer = message;
     answer.id = *said.message.id;
     answers_.push_back({said.client, protocol::encode(answer), document()->revision()});
 }
-template void Presentation::answer_with(const Said&, const protocol::Picked&);
-template void Presentation::answer_with(const Said&, const protocol::SceneList&);
+template void Room::answer_with(const Said&, const protocol::Picked&);
+template void Room::answer_with(const Said&, const protocol::SceneList&);
 
-void Presentation::apply(const Said& said, const protocol::Navigate& navigate) {
+void Room::apply(const Said& said, const protocol::Navigate& navigate) {
     if (!may_steer(said)) return;
     steer(said);
     Camera moved = rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
@@ -30,15 +30,15 @@ void Presentation::apply(const Said& said, const protocol::Navigate& navigate) {
     answer(said);
 }
 
-void Presentation::apply(const Said& said, const protocol::Fit& fit) {
+void Room::apply(const Said& said, const protocol::Fit& fit) {
     if (!may_steer(said)) return;
     Bounds bounds = scene_->bounds;
     if (fit.node) {
         const Index node = scene_->scene->find_node(*fit.node);
         const std::string name = "node " + std::to_string(*fit.node);
-        if (node == kNone) return refuse(said, code::unknown_node, "there is no " + name);
+        if (node == kNone) return reject(said, code::unknown_node, "there is no " + name);
         bounds = subtree_bounds(*scene_, node);
-        if (bounds.empty()) return refuse(said, code::failed, "nothing of " + name + " is to be seen");
+        if (bounds.empty()) return reject(said, code::failed, "nothing of " + name + " is to be seen");
     }
     steer(said);
     move_camera(fitted(camera(), bounds, aspect()));
@@ -66,10 +66,10 @@ tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly
 
 }  // namespace
 
-void Presentation::apply(const Said& said, const protocol::Fly& fly) {
+void Room::apply(const Said& said, const protocol::Fly& fly) {
     if (!may_steer(said)) return;
     auto keyframes = keyframes_of(fly, camera(), *scene_);
-    if (!keyframes) return refuse(said, keyframes.error().code.c_str(), keyframes.error().message);
+    if (!keyframes) return reject(said, keyframes.error().code.c_str(), keyframes.error().message);
     const Camera before = camera();
     steer(said);  // which may bring another size, and so another home
     if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
@@ -87,9 +87,9 @@ void Presentation::apply(const Said& said, const protocol::Fly& fly) {
 
 // --- pictures and the tree
 
-void Presentation::apply(const Said& said, const protocol::Snapshot& snapshot) {
+void Room::apply(const Said& said, const protocol::Snapshot& snapshot) {
     auto laid = overlaid(camera(), snapshot.camera, *scene_, "camera");
-    if (!laid) return refuse(said, laid.error().code.c_str(), laid.error().message);
+    if (!laid) return reject(said, laid.error().code.c_str(), laid.error().message);
     protocol::State state = state_;
     if (*laid != camera()) state.camera = state_of(*laid, scene_->bounds);
     protocol::RendererState& renderer = state.renderer;
@@ -109,7 +109,7 @@ void Presentation::apply(const Said& said, const protocol::Snapshot& snapshot) {
     orders_.push_back(std::move(order));
 }
 
-PictureOrder Presentation::order(int width, int height) {
+PictureOrder Room::order(int width, int height) {
     View view = visible_;
     view.width = width;
     view.height = height;
@@ -118,22 +118,22 @@ PictureOrder Presentation::order(int width, int height) {
     return order;
 }
 
-void Presentation::apply(const Said& said, const protocol::Tree& tree) {
+void Room::apply(const Said& said, const protocol::Tree& tree) {
     const auto page = tree_page(*scene_, tree);
-    if (!page) return refuse(said, page.error().code.c_str(), page.error().message);
+    if (!page) return reject(said, page.error().code.c_str(), page.error().message);
     answer_with(said, *page);
 }
 
 // --- scenes
 
-void Presentation::apply(const Said& said, const protocol::Open& open) {
+void Room::apply(const Said& said, const protocol::Open& open) {
     if (!may_steer(said)) return;
     if (options_.load) return options_.load(answer_later(said), open.scene);
     steer(said);
     answer(said);
 }
 
-void Presentation::apply(const Said& said, const protocol::Scenes&) {
+void Room::apply(const Said& said, const protocol::Scenes&) {
     if (!options_.scenes) return answer_with(said, protocol::SceneList{});
     accepted_ = true;
     options_.scenes(answer_later(said));
@@ -141,7 +141,7 @@ void Presentation::apply(const Said& said, const protocol::Scenes&) {
 
 // --- as things stood when a recording began
 
-tl::expected<void, Error> Presentation::restore(const protocol::LogHeader& header) {
+tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (header.home) {
         starting_.views["home"] = *header.home;
         if (!starting_.camera.node) starting_.camera = state_of(camera_of(*header.home), scene_->bounds);

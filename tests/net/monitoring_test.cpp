@@ -293,13 +293,13 @@ TEST_CASE("an encode loop that does not come round is told apart from one that w
         Encoder encoder(
             metrics, [&](const auto&) { go_on.get_future().wait(); }, [] {},
             [](const Picture&, const std::string&) {});
-        CHECK(encoder.silence() == 0s);
+        CHECK(encoder.busy_for() == 0s);
         Image image;
         image.resize(4, 4);
         encoder.offer({}, std::move(image));
-        CHECK(eventually([&] { return encoder.silence() > 50ms; }));
+        CHECK(eventually([&] { return encoder.busy_for() > 50ms; }));
         go_on.set_value();
-        CHECK(eventually([&] { return encoder.silence() == 0s; }));
+        CHECK(eventually([&] { return encoder.busy_for() == 0s; }));
     }
 }
 

@@ -20,9 +20,9 @@ namespace {
 constexpr int kWidth = 320, kHeight = 200;
 
 Image drawn_end() {
-    auto presentation = replay(read_session(), find_scene);
-    REQUIRE_MESSAGE(presentation, presentation.error());
-    View view = presentation->visible();
+    auto room = replay(read_session(), find_scene);
+    REQUIRE_MESSAGE(room, room.error());
+    View view = room->visible();
     view.width = kWidth;
     view.height = kHeight;
     view.samples = 4;

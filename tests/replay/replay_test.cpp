@@ -37,10 +37,10 @@ using Bits = std::array<std::uint64_t, 15>;
 
 Bits bits(const protocol::CameraState& camera) { return std::bit_cast<Bits>(numbers(camera)); }
 
-Presentation played(const EventLog& log) {
-    auto presentation = replay(log, find_scene);
-    REQUIRE_MESSAGE(presentation, presentation.error());
-    return *std::move(presentation);
+Room played(const EventLog& log) {
+    auto room = replay(log, find_scene);
+    REQUIRE_MESSAGE(room, room.error());
+    return *std::move(room);
 }
 
 /// As numbers() gives them, from the camera that the recording client knew.
@@ -90,14 +90,14 @@ EventLog merged(const EventLog& log) {
     Mailbox mailbox;
     const auto take = [&] {
         for (const EngineEvent& event : mailbox.wait(Clock::now())) {
-            const auto& said = std::get<ClientSaid>(event);
+            const auto& said = std::get<MessageReceived>(event);
             const auto at = std::chrono::duration_cast<Time>(said.arrival.time_since_epoch());
             result.lines.push_back({at, said.client, *said.message});
         }
     };
     for (const LogLine& line : log.lines) {
         if (const auto* message = std::get_if<ClientMessage>(&line.what)) {
-            mailbox.push(ClientSaid{line.client, *message, Clock::time_point(line.at)});
+            mailbox.push(MessageReceived{line.client, *message, Clock::time_point(line.at)});
             continue;
         }
         take();
@@ -117,42 +117,42 @@ std::ptrdiff_t moves_of(const EventLog& log) {
 
 /// One line, as replay() does it.
 struct Play {
-    Presentation& presentation;
+    Room& room;
     const LogLine& line;
 
     void operator()(const ClientMessage& message) const {
-        CHECK(presentation.say(line.client, message, line.at));
+        CHECK(room.handle_message(line.client, message, line.at));
     }
     void operator()(const LogLine::Connected& connected) const {
-        presentation.join(line.client, connected.role, line.at);
+        room.join(line.client, connected.role, line.at);
     }
-    void operator()(const LogLine::Disconnected&) const { presentation.leave(line.client, line.at); }
+    void operator()(const LogLine::Disconnected&) const { room.leave(line.client, line.at); }
     void operator()(const LogLine::Opened& opened) const {
-        presentation.show(*find_scene(opened.scene, opened.sha256), line.at);
+        room.show(*find_scene(opened.scene, opened.sha256), line.at);
     }
     void operator()(const LogLine::Drawn& drawn) const {
-        presentation.advance(line.at);
-        presentation.remember(drawn.frame);
+        room.advance(line.at);
+        room.remember(drawn.frame);
     }
 };
 
 /// Played by a server that looks at the time, and tells its clients of it, at whatever moments it likes.
 protocol::CameraState played_restlessly(const EventLog& log, std::mt19937& dice) {
-    PresentationOptions options;
+    RoomOptions options;
     options.replaying = true;
-    Presentation presentation(*find_scene(log.header.scene, log.header.scene_sha256), options);
-    REQUIRE(presentation.restore(log.header));
+    Room room(*find_scene(log.header.scene, log.header.scene_sha256), options);
+    REQUIRE(room.restore(log.header));
     Time now{0};
     for (const LogLine& line : log.lines) {
         for (int looks = static_cast<int>(dice() % 4); looks > 0 && now < line.at; --looks) {
             now += Time(static_cast<std::int64_t>(dice()) % ((line.at - now).count() + 1));
-            presentation.advance(now);
-            if (dice() % 2 == 0) presentation.document();
+            room.advance(now);
+            if (dice() % 2 == 0) room.document();
         }
-        std::visit(Play{presentation, line}, line.what);
+        std::visit(Play{room, line}, line.what);
         now = std::max(now, line.at);
     }
-    return presentation.state().camera;
+    return room.state().camera;
 }
 
 }  // namespace

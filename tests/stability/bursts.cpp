@@ -33,9 +33,9 @@ server::engine::Painter slow_painter() {
 using Asked = std::function<bool(const protocol::FrameHeader&)>;
 
 /// A room of one: a client who steers, and takes each picture at once.
-class Room {
+class OneClient {
 public:
-    Room()
+    OneClient()
         : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
                   {[this](const server::engine::EngineOutput& output) { count_refusals(output); },
                    [this](const std::shared_ptr<const server::engine::EncodedPicture>& picture) {
@@ -52,7 +52,7 @@ public:
         message.id = id;
         message.payload = std::move(payload);
         engine_.mailbox().push(
-            server::engine::ClientSaid{kClient, std::move(message), server::base::Clock::now()});
+            server::engine::MessageReceived{kClient, std::move(message), server::base::Clock::now()});
     }
 
     /// How long after `input` a picture came that shows it, and what `is_shown` asks for, in ms; kNothing
@@ -111,24 +111,24 @@ private:
 template <class Input>
 double lag_after_burst(double rate, const Input& input, const Asked& is_shown) {
     constexpr std::chrono::milliseconds kBurst{500};
-    Room room;
+    OneClient client;
     const server::base::Clock::time_point start = server::base::Clock::now();
     server::base::Clock::time_point last = start;
     for (int sent = 0; last < start + kBurst; last = server::base::Clock::now()) {
         const double due = rate * std::chrono::duration<double>(last - start).count();
-        for (; sent <= due; ++sent) room.say(input(sent));
+        for (; sent <= due; ++sent) client.say(input(sent));
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
-    room.say(input(-1));
-    return room.lag_of(server::base::Clock::now() - std::chrono::milliseconds(1), is_shown);
+    client.say(input(-1));
+    return client.lag_of(server::base::Clock::now() - std::chrono::milliseconds(1), is_shown);
 }
 
 glm::dvec3 eye_at_start() {
-    Room room;
+    OneClient client;
     const server::base::Clock::time_point now = server::base::Clock::now();
-    room.say(protocol::Resize{200, 150, 1});
-    room.lag_of(now);
-    return room.header().camera.pose.eye;
+    client.say(protocol::Resize{200, 150, 1});
+    client.lag_of(now);
+    return client.header().camera.pose.eye;
 }
 
 constexpr int kTurns = 200;
@@ -143,16 +143,16 @@ struct Turned {
     int refused = 0;
 };
 Turned turned_with_repeats(int turns, double percent) {
-    Room room;
+    OneClient client;
     const protocol::Navigate turn{{1, 0}};
     for (int i = 1; i <= turns; ++i) {
-        room.say(turn, 2 * i);
-        if (comes_again(i, percent)) room.say(turn, 2 * i - i % 2);
+        client.say(turn, 2 * i);
+        if (comes_again(i, percent)) client.say(turn, 2 * i - i % 2);
     }
     const server::base::Clock::time_point last = server::base::Clock::now();
-    room.say(turn, 2 * turns + 2);
-    room.lag_of(last);
-    return {room.header().camera.pose.eye, room.refused()};
+    client.say(turn, 2 * turns + 2);
+    client.lag_of(last);
+    return {client.header().camera.pose.eye, client.refused()};
 }
 
 }  // namespace

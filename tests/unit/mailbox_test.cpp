@@ -19,7 +19,7 @@ EngineEvent pointer(const char* client, Pointer::Event event, std::int64_t id, d
     payload.x = x;
     payload.button = button;
     payload.buttons = buttons;
-    ClientSaid said;
+    MessageReceived said;
     said.client = client;
     said.message = protocol::ClientMessage{id, payload};
     said.bytes = 100;
@@ -39,7 +39,7 @@ TEST_CASE("adjacent moves of one pointer become one, with the last place, the la
     for (int i = 1; i <= 50; ++i) mailbox.push(move("a", i, i));
     const auto events = take(mailbox);
     REQUIRE(events.size() == 1);
-    const auto& said = std::get<ClientSaid>(events[0]);
+    const auto& said = std::get<MessageReceived>(events[0]);
     CHECK(said.message->id == 50);
     CHECK(std::get<Pointer>(said.message->payload).x == 50);
     CHECK(said.bytes == 5000);
@@ -67,7 +67,7 @@ TEST_CASE("moves of two fingers that take turns become one of each, ids rising")
     const auto events = take(mailbox);
     REQUIRE(events.size() == 2);
     for (const std::int64_t i : {0, 1}) {
-        const auto& said = std::get<ClientSaid>(events[static_cast<std::size_t>(i)]);
+        const auto& said = std::get<MessageReceived>(events[static_cast<std::size_t>(i)]);
         CHECK(said.message->id == 49 + i);
         CHECK(std::get<Pointer>(said.message->payload).x == 49.0 + static_cast<double>(i));
         CHECK(said.bytes == 2500);
@@ -89,7 +89,7 @@ TEST_CASE("moves of a client that may not steer are not merged: each has its ans
     Mailbox mailbox;
     for (int i = 1; i <= 3; ++i) {
         EngineEvent event = move("a", i, i);
-        std::get<ClientSaid>(event).may_steer = false;
+        std::get<MessageReceived>(event).may_steer = false;
         mailbox.push(event);
     }
     CHECK(take(mailbox).size() == 3);
@@ -102,7 +102,7 @@ TEST_CASE("what a client said and left is dropped") {
     mailbox.push(ClientLeft{"a"});
     const auto events = take(mailbox);
     REQUIRE(events.size() == 2);
-    CHECK(std::get<ClientSaid>(events[0]).client == "b");
+    CHECK(std::get<MessageReceived>(events[0]).client == "b");
     CHECK(std::get<ClientLeft>(events[1]).client == "a");
 }
 
@@ -125,7 +125,7 @@ TEST_CASE("moves whose ids do not rise are not merged: the second is wrong") {
         protocol::Pointer move;
         move.event = protocol::Pointer::Event::move;
         move.buttons = 1;
-        return ClientSaid{"a", protocol::ClientMessage{id, move}, {}, 1};
+        return MessageReceived{"a", protocol::ClientMessage{id, move}, {}, 1};
     };
     mailbox.push(said(6));
     mailbox.push(said(5));

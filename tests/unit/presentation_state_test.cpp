@@ -157,7 +157,7 @@ TEST_CASE("f fits what is selected, or the scene") {
 
 TEST_CASE("Home goes to the view of that name, whatever it is now") {
     Stage stage("a");
-    const auto home = [&] { return stage.presentation.state().views.at("home"); };
+    const auto home = [&] { return stage.room.state().views.at("home"); };
     stage.say("a", key("Home"));
     CHECK(stage.camera().eye == home().eye);
     stage.say("a", patch(R"({"views":{"home":{"eye":[0,0,3]}}})"));
@@ -168,12 +168,12 @@ TEST_CASE("Home goes to the view of that name, whatever it is now") {
 TEST_CASE("keys turn, pan, zoom, and toggle the ways of drawing") {
     Stage stage("a");
     stage.say("a", key("w"));
-    CHECK(stage.presentation.state().renderer.wireframe);
+    CHECK(stage.room.state().renderer.wireframe);
     stage.say("a", key("s"));
     CHECK(stage.state()["renderer"]["mode"] == "stylized");
     stage.say("a", key("w"));
     stage.say("a", key("s"));
-    CHECK_FALSE(stage.presentation.state().renderer.wireframe);
+    CHECK_FALSE(stage.room.state().renderer.wireframe);
     CHECK(stage.state()["renderer"]["mode"] == "realistic");
     CHECK(stage.camera().eye == glm::dvec3(1, 0, 8));
 
@@ -195,8 +195,8 @@ TEST_CASE("Escape stops a flight, or else clears the selection") {
     stage.say("a", patch(R"({"selection":{"node":2}})"));
     stage.say("a", R"({"type":"fly","keyframes":[{"at":1000,"camera":{"fov":60}}]})");
     stage.say("a", key("Escape"));
-    CHECK_FALSE(stage.presentation.flies());
-    CHECK(stage.presentation.state().selection.node == 2);
+    CHECK_FALSE(stage.room.flies());
+    CHECK(stage.room.state().selection.node == 2);
     stage.say("a", key("Escape"));
     CHECK(stage.state()["selection"] == json::object());
 }
@@ -206,12 +206,12 @@ TEST_CASE("a selection has its node's name and path") {
     stage.say("a", patch(R"({"selection":{"node":2}})"));
     CHECK(stage.state()["selection"] ==
           json::parse(R"({"node":2,"name":"Door","path":["Stage","Hinge","Door"]})"));
-    CHECK(stage.presentation.visible().selected != kNone);
+    CHECK(stage.room.visible().selected != kNone);
 }
 
 TEST_CASE("markers are seen where their point is, go with their node, and hide with it") {
     Stage stage("a");
-    const auto marks = [&] { return stage.presentation.visible().marks; };
+    const auto marks = [&] { return stage.room.visible().marks; };
     CHECK(marks().empty());
     stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
     CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
@@ -252,7 +252,7 @@ TEST_CASE("home is fitted to the view until somebody moves the camera") {
     stage.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
     const double tall = std::sqrt(0.5) / std::sin(std::atan(tangent / 2));
     CHECK(distance() == doctest::Approx(tall));
-    CHECK(stage.camera().eye == stage.presentation.state().views.at("home").eye);
+    CHECK(stage.camera().eye == stage.room.state().views.at("home").eye);
     stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
     stage.say("a", R"({"type":"resize","width":200,"height":200,"pixelRatio":1})");
     CHECK(distance() == doctest::Approx(tall));
@@ -270,7 +270,7 @@ TEST_CASE("another scene starts anew, but for control, navigation, the way of dr
     stage.at(500ms);
     const json before = stage.state();
     const std::int64_t revision = stage.revision();
-    stage.presentation.show(other_scene(), 500ms);
+    stage.room.show(other_scene(), 500ms);
     const json after = stage.state();
     for (const char* kept : {"navigation", "quality", "control"}) CHECK(after[kept] == before[kept]);
     CHECK(after["renderer"]["wireframe"] == true);
@@ -288,15 +288,15 @@ TEST_CASE("another scene starts anew, but for control, navigation, the way of dr
     REQUIRE(told.size() == 1);
     CHECK(told[0]["type"] == "flown");
     CHECK(told[0]["completed"] == false);
-    CHECK(stage.presentation.scene_name() == "other.vrut");
+    CHECK(stage.room.scene_name() == "other.vrut");
     CHECK(stage.refusal("a", patch(R"({"selection":{"node":2}})")) == "unknown-node");
 }
 
 TEST_CASE("a pick names one of the last 64 frames") {
     Stage stage("a");
-    stage.presentation.remember(1);
+    stage.room.remember(1);
     stage.say("a", R"({"type":"navigate","rotate":[180,0]})");  // behind it all
-    for (int frame = 2; frame <= 64; ++frame) stage.presentation.remember(frame);
+    for (int frame = 2; frame <= 64; ++frame) stage.room.remember(frame);
     const auto pick = [&](const char* frame) {
         stage.told();
         stage.say("a", std::string(R"({"type":"pick","id":3,"x":640,"y":360)") + frame + "}");
@@ -306,7 +306,7 @@ TEST_CASE("a pick names one of the last 64 frames") {
     CHECK(first["node"] == 2);
     CHECK(first["distance"] == 8);
     CHECK(first["path"] == json::parse(R"(["Stage","Hinge","Door"])"));
-    stage.presentation.remember(65);
+    stage.room.remember(65);
     CHECK(pick(R"(,"frame":1)")["code"] == "unknown-frame");
     CHECK(pick(R"(,"frame":66)")["code"] == "unknown-frame");
     CHECK(std::string(pick(R"(,"frame":66)")["message"]).find("snapshots") != std::string::npos);
@@ -319,7 +319,7 @@ TEST_CASE("a pick that names no frame sees the present view, however old the new
         stage.say("a", R"({"type":"pick","id":3,"x":640,"y":360})");
         return stage.told().at(0).value("node", 0);
     };
-    stage.presentation.remember(1);
+    stage.room.remember(1);
     CHECK(node() == 2);
     stage.say("a", R"({"type":"navigate","rotate":[180,0]})");  // behind it all
     CHECK(node() == 0);
@@ -331,14 +331,14 @@ TEST_CASE("a snapshot overlays the shared view and leaves it alone") {
     CHECK(stage.say("a", R"({"type":"snapshot","id":5,"width":30,"height":20,"format":"png",
         "camera":{"eye":[1,0,4]},"renderer":{"wireframe":true}})"));
     CHECK(stage.state() == before);
-    const auto orders = stage.presentation.take_orders();
+    const auto orders = stage.room.take_orders();
     REQUIRE(orders.size() == 1);
     CHECK(orders[0].view.camera.eye == glm::dvec3(1, 0, 4));
     CHECK(orders[0].view.wireframe);
     CHECK(orders[0].view.width == 30);
     CHECK(orders[0].header.snapshot == 5);
     CHECK(orders[0].header.revision == stage.revision());
-    CHECK(stage.presentation.visible().camera.eye == glm::dvec3(1, 0, 8));
+    CHECK(stage.room.visible().camera.eye == glm::dvec3(1, 0, 8));
     CHECK(stage.refusal("a", R"({"type":"snapshot","id":6,"width":3,"height":2,"camera":{"node":77}})") ==
           "unknown-node");
 }
@@ -388,7 +388,7 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
     stage.say("a", patch(R"({"markers":{"free":{"point":[1,2,3],"text":"here"},
                                         "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
                                         "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
-    const auto marks = [&] { return stage.presentation.visible().marks; };
+    const auto marks = [&] { return stage.room.visible().marks; };
     REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
     stage.say("a", kMoveHinge);
     CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
@@ -401,9 +401,8 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
 TEST_CASE("a picture's header says where the signs in it stand") {
     Stage stage("a");
     const auto places = [&] {
-        const View& view = stage.presentation.visible();
-        return server::room::header_of(stage.presentation.state(), view, stage.presentation.view_size())
-            .markers;
+        const View& view = stage.room.visible();
+        return server::room::header_of(stage.room.state(), view, stage.room.view_size()).markers;
     };
     using Places = std::map<std::string, glm::dvec3>;
     CHECK(places().empty());
@@ -412,9 +411,9 @@ TEST_CASE("a picture's header says where the signs in it stand") {
     CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {1.5, 0, 0}}});
     stage.say("a", kMoveHinge);
     CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {3.5, 0, 0}}});
-    const View before = stage.presentation.visible();
+    const View before = stage.room.visible();
     stage.say("a", patch(R"({"markers":{"free":null,"other":{"point":[5,6,7]}}})"));
-    CHECK(stage.presentation.visible() != before);  // so that a picture with the new name comes
+    CHECK(stage.room.visible() != before);  // so that a picture with the new name comes
     CHECK(places() == Places{{"handle", {3.5, 0, 0}}, {"other", {5, 6, 7}}});
 }
 
@@ -426,7 +425,7 @@ TEST_CASE("a marker that lies out of the range of double is nowhere") {
     Stage stage("a", scene_of(text, "large.vrut"));
     stage.say("a",
               patch(R"({"markers":{"far":{"node":20,"point":[1,1,1]},"gone":{"node":22,"point":[1,1,1]}}})"));
-    const std::vector<Mark> marks = stage.presentation.visible().marks;
+    const std::vector<Mark> marks = stage.room.visible().marks;
     REQUIRE(marks.size() == 1);
     CHECK(marks[0].name == "far");
 }
@@ -449,7 +448,7 @@ TEST_CASE("the view has the active background's colour and pictures, or else the
     add(3, NodeType::background, 0, sky);
     Stage stage("a",
                 {"b", "", std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts)))), {}});
-    const auto background = [&]() -> const Background& { return stage.presentation.visible().background; };
+    const auto background = [&]() -> const Background& { return stage.room.visible().background; };
 
     CHECK(background() == Background{{0.1, 0.2, 0.3}, 0, {}});
     stage.say("a", patch(R"({"backgrounds":{"active":"3","items":{"3":{"color":[1,0,0,1]}}}})"));

@@ -105,11 +105,11 @@ TEST_CASE("a flight does not keep its client in control; who takes over by steer
     stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":5000,"camera":{"eye":[1,0,4]}}]})");
     stage.at(999ms);
     CHECK(stage.refusal("b", kNavigate) == "not-in-control");
-    CHECK(stage.presentation.flies());
+    CHECK(stage.room.flies());
     stage.at(1s);
     CHECK(stage.say("b", kNavigate));
     CHECK(flown(stage.told()) == Flown{false});
-    CHECK_FALSE(stage.presentation.flies());
+    CHECK_FALSE(stage.room.flies());
 }
 
 TEST_CASE("a flight ends exactly at its end and is told once") {
@@ -120,10 +120,10 @@ TEST_CASE("a flight ends exactly at its end and is told once") {
     stage.at(10'500ms);  // from 8 to 4 by equal factors
     CHECK(near_to(stage.camera().eye, {1, 0, 8 / std::sqrt(2.0)}));
     stage.at(10'999'999us);
-    CHECK(stage.presentation.flies());
+    CHECK(stage.room.flies());
     CHECK(flown(stage.told()).empty());
     stage.at(11s);
-    CHECK_FALSE(stage.presentation.flies());
+    CHECK_FALSE(stage.room.flies());
     CHECK(stage.camera().eye == glm::dvec3(1, 0, 4));
     CHECK(flown(stage.told()) == Flown{true});
     stage.at(12s);
@@ -155,7 +155,7 @@ TEST_CASE("any later steering message stops a flight where it is") {
         stage.told();
         CHECK(stage.say("a", message));
         CHECK(flown(stage.told()) == Flown{false});
-        CHECK(stage.presentation.flies() == (message == kFly));
+        CHECK(stage.room.flies() == (message == kFly));
     }
 }
 
@@ -174,7 +174,7 @@ TEST_CASE("nothing else stops a flight") {
         stage.say("a", kFly);
         stage.at(500ms);
         stage.say("a", message);
-        CHECK(stage.presentation.flies());
+        CHECK(stage.room.flies());
         stage.at(1s);
         CHECK(flown(stage.told()) == Flown{true});
     }
@@ -185,10 +185,10 @@ TEST_CASE("another client's take does not stop a flight, which belongs to contro
     stage.say("a", kFly);
     stage.at(100ms);
     stage.say("b", kTake);
-    CHECK(stage.presentation.flies());
+    CHECK(stage.room.flies());
     SUBCASE("its own client's release is not his to give any more") {
         stage.say("a", kRelease);
-        CHECK(stage.presentation.flies());
+        CHECK(stage.room.flies());
         stage.at(1s);
         CHECK(flown(stage.told()) == Flown{true});
     }
@@ -197,7 +197,7 @@ TEST_CASE("another client's take does not stop a flight, which belongs to contro
         CHECK(flown(stage.told()) == Flown{false});
     }
     SUBCASE("when the new holder leaves, it stops") {
-        stage.presentation.leave("b", 200ms);
+        stage.room.leave("b", 200ms);
         CHECK(flown(stage.told()) == Flown{false});
     }
 }
@@ -257,7 +257,7 @@ TEST_CASE("whose role never steers is told so once of all its input without ids"
         CHECK(codes(client, wheel + R"(,"id":4})") == refused);
         CHECK(codes(client, kNavigate) == refused);
     }
-    stage.presentation.leave("v", stage.now);
+    stage.room.leave("v", stage.now);
     stage.join('v');
     CHECK(codes("v", wheel + "}") == refused);
 }
@@ -279,7 +279,7 @@ TEST_CASE("who leaves in mid-drag leaves control free at once, and the camera wh
     stage.say("a", finger("move", 200, 100));
     const glm::dvec3 eye = stage.camera().eye;
     CHECK(eye != glm::dvec3(1, 0, 8));
-    stage.presentation.leave("a", stage.now);
+    stage.room.leave("a", stage.now);
     CHECK(stage.holder() == "");
     CHECK(stage.camera().eye == eye);
     CHECK_FALSE(stage.say("a", finger("move", 300, 100)));
@@ -303,13 +303,13 @@ TEST_CASE("a press that takes control is measured in the view that it began in")
     stage.say("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
     stage.say("b", R"({"type":"resize","width":100,"height":100,"pixelRatio":2})");
     stage.say("a", kNavigate);
-    CHECK(stage.presentation.view_size() == protocol::Resize{400, 200, 1});
+    CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
     stage.at(1s);
     stage.say("b", finger("down", 50, 50));
     CHECK(stage.holder() == "b");
-    CHECK(stage.presentation.view_size() == protocol::Resize{400, 200, 1});
+    CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
     stage.say("b", finger("up", 50, 50));
-    CHECK(stage.presentation.view_size() == protocol::Resize{100, 100, 2});
+    CHECK(stage.room.view_size() == protocol::Resize{100, 100, 2});
 }
 
 TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
@@ -317,13 +317,13 @@ TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
     Stage none("a");
     CHECK(none.say("a", ask));
     CHECK(none.told().at(0) == json::parse(R"({"type":"scenes","id":4,"scenes":[],"to":"a"})"));
-    server::room::PresentationOptions options;
+    server::room::RoomOptions options;
     std::int64_t request = 0;
     options.scenes = [&](std::int64_t number) { request = number; };
     Stage stage("ahv", scene(), std::move(options));
     stage.after_message = [&](Stage& to) {
         CHECK(to.told().empty());  // the disk has not answered yet
-        to.presentation.scenes_listed(request, {"car.vrut", "more/bus.vrut"});
+        to.room.scenes_listed(request, {"car.vrut", "more/bus.vrut"});
     };
     for (const std::string client : {"a", "h", "v"}) {
         CHECK(stage.say(client, ask));
@@ -348,13 +348,13 @@ TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
     Stage stage("ab");
     stage.say("a", R"({"type":"patch","patch":{"camera":{"fov":50}}})");
     stage.revision();
-    CHECK(stage.presentation.changed_by() == "a");
+    CHECK(stage.room.changed_by() == "a");
     stage.at(1s);
     stage.say("b", kFly);
     stage.revision();
     stage.at(1500ms);
     stage.revision();
-    CHECK(stage.presentation.changed_by() == "");
+    CHECK(stage.room.changed_by() == "");
 }
 
 TEST_CASE("a new holder's flight begins at the home of his size, live and replayed") {
@@ -365,7 +365,7 @@ TEST_CASE("a new holder's flight begins at the home of his size, live and replay
     stage.at(2s);
     stage.say("a", R"({"type":"fly","id":1,"keyframes":[{"at":1000,"camera":{"fov":41}}]})");
     const glm::dvec3 home = stage.camera().eye;
-    CHECK(home == stage.presentation.state().views.at("home").eye);
+    CHECK(home == stage.room.state().views.at("home").eye);
     stage.at(4s);
     CHECK(stage.camera().fov == 41);
     CHECK(stage.camera().eye == home);

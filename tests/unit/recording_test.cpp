@@ -190,9 +190,9 @@ TEST_CASE("a log has what was accepted, who came and went, and nothing that was 
     stage.say("b", R"({"type":"pick","id":8,"x":1,"y":1})");  // steers nothing, but counts
     stage.at(2500ms);
     stage.join('v');
-    stage.presentation.leave("b", stage.now);
-    stage.presentation.remember(17);
-    stage.presentation.show(other_scene(), stage.now);
+    stage.room.leave("b", stage.now);
+    stage.room.remember(17);
+    stage.room.show(other_scene(), stage.now);
     stage.say("a", kStop);
     stage.say("a", kTurn);
 
@@ -237,8 +237,8 @@ struct LateSink {
     RecordingSink::Header header;
     std::vector<json> lines;
 
-    PresentationOptions options() {
-        PresentationOptions options;
+    RoomOptions options() {
+        RoomOptions options;
         options.recordings = {
             [this](std::int64_t recording, const std::string&, RecordingSink::Header first) {
                 begun = recording;
@@ -261,7 +261,7 @@ TEST_CASE("a recording is in the state and answered when its file is open, and h
     CHECK(stage.told().back()["id"] == 3);
     CHECK_FALSE(stage.state().contains("recording"));
     CHECK(stage.refusal("a", R"({"type":"record","id":5,"action":"start"})") == "busy");
-    stage.presentation.recording_opened(sink.begun, "take-1", stage.now);
+    stage.room.recording_opened(sink.begun, "take-1", stage.now);
     CHECK(stage.told().at(0) ==
           json{{"type", "ok"}, {"id", 1}, {"name", "take-1"}, {"revision", stage.revision()}, {"to", "a"}});
     CHECK(stage.state()["recording"]["name"] == "take-1");
@@ -275,7 +275,7 @@ TEST_CASE("a file that cannot be opened refuses the message, and nobody steers b
     LateSink sink;
     Stage stage("a", scene(), sink.options());
     stage.say("a", kStart);
-    stage.presentation.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
+    stage.room.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
     const json told = stage.told().at(0);
     CHECK(told["code"] == "failed");
     CHECK(told["message"] == "no");
@@ -284,7 +284,7 @@ TEST_CASE("a file that cannot be opened refuses the message, and nobody steers b
     CHECK(stage.say("a", kStart));
     stage.at(1ms);
     stage.say("a", kTurn);  // who has steered since goes on
-    stage.presentation.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
+    stage.room.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
     CHECK(stage.holder() == "a");
 }
 
@@ -296,18 +296,18 @@ TEST_CASE("the end is answered when all is written; meanwhile another may begin"
     stage.say("a", kStop);  // before its file is open
     CHECK(sink.ended == first);
     CHECK(stage.told().empty());
-    stage.presentation.recording_opened(first, "take-1", stage.now);
+    stage.room.recording_opened(first, "take-1", stage.now);
     CHECK(stage.told().at(0)["id"] == 1);
     CHECK_FALSE(stage.state().contains("recording"));
     stage.say("a", R"({"type":"record","id":7,"action":"start"})");
     CHECK(sink.begun != first);
-    stage.presentation.recording_ended(first, std::nullopt, stage.now);
+    stage.room.recording_ended(first, std::nullopt, stage.now);
     const json told = stage.told().at(0);
     CHECK(told["id"] == 2);
     CHECK(told["name"] == "take-1");
-    stage.presentation.recording_opened(sink.begun, "take-2", stage.now);
+    stage.room.recording_opened(sink.begun, "take-2", stage.now);
     CHECK(stage.state()["recording"]["name"] == "take-2");
-    stage.presentation.recording_ended(sink.begun, "its disk is too slow", stage.now);
+    stage.room.recording_ended(sink.begun, "its disk is too slow", stage.now);
     CHECK_FALSE(stage.state().contains("recording"));
     CHECK(stage.state()["notices"] == json{"The recording 'take-2' has ended: its disk is too slow"});
 }
@@ -316,10 +316,10 @@ TEST_CASE("an end that cannot be written is refused, with a notice") {
     LateSink sink;
     Stage stage("a", scene(), sink.options());
     stage.say("a", kStart);
-    stage.presentation.recording_opened(sink.begun, "take-1", stage.now);
+    stage.room.recording_opened(sink.begun, "take-1", stage.now);
     stage.say("a", kStop);
     stage.told();
-    stage.presentation.recording_ended(sink.begun, "its disk is too slow", stage.now);
+    stage.room.recording_ended(sink.begun, "its disk is too slow", stage.now);
     CHECK(stage.told().at(0)["code"] == "failed");
     CHECK(stage.state()["notices"].size() == 1);
 }
@@ -328,8 +328,8 @@ TEST_CASE("who left before the file was open is not answered, and the recording 
     LateSink sink;
     Stage stage("ab", scene(), sink.options());
     stage.say("a", kStart);
-    stage.presentation.leave("a", stage.now);
-    stage.presentation.recording_opened(sink.begun, "take-1", stage.now);
+    stage.room.leave("a", stage.now);
+    stage.room.recording_opened(sink.begun, "take-1", stage.now);
     CHECK(stage.told().empty());
     CHECK(stage.state()["recording"]["name"] == "take-1");
     CHECK(stage.holder() == "");
@@ -338,7 +338,7 @@ TEST_CASE("who left before the file was open is not answered, and the recording 
 TEST_CASE("open is answered when its file was looked for, and steers and is recorded then") {
     LateSink sink;
     std::int64_t request = 0;
-    PresentationOptions options = sink.options();
+    RoomOptions options = sink.options();
     options.load = [&](std::int64_t number, const std::string&) { request = number; };
     Stage stage("ab", scene(), std::move(options));
     const std::string open = R"({"type":"open","id":9,"scene":"x.vrut"})";
@@ -346,15 +346,15 @@ TEST_CASE("open is answered when its file was looked for, and steers and is reco
     stage.at(1s);
     CHECK_FALSE(stage.say("a", open));
     CHECK(stage.told().empty());
-    stage.presentation.load_answered(request, protocol::Error{{}, "refused-scene", "no"}, stage.now);
+    stage.room.load_answered(request, protocol::Error{{}, "refused-scene", "no"}, stage.now);
     CHECK(stage.told().at(0)["code"] == "refused-scene");
     CHECK(stage.holder() == "b");
     CHECK(sink.lines.empty());
     stage.say("a", R"({"type":"open","id":10,"scene":"y.vrut"})");
-    stage.presentation.load_answered(request, std::nullopt, stage.now);
+    stage.room.load_answered(request, std::nullopt, stage.now);
     CHECK(stage.told().at(0)["id"] == 10);
     CHECK(stage.holder() == "a");
     CHECK(sink.lines.at(0)["message"]["scene"] == "y.vrut");
-    stage.presentation.load_answered(request, std::nullopt, stage.now);  // answered once
+    stage.room.load_answered(request, std::nullopt, stage.now);  // answered once
     CHECK(stage.told().empty());
 }

@@ -53,10 +53,10 @@ public:
     void check() {
         const auto replayed = replay(log(), find_scene);
         REQUIRE_MESSAGE(replayed, replayed.error());
-        CHECK(state_of(*replayed) == state_of(stage.presentation));
+        CHECK(state_of(*replayed) == state_of(stage.room));
         CHECK(bits(replayed->state().camera.eye) == bits(stage.camera().eye));
-        CHECK(replayed->view_size() == stage.presentation.view_size());
-        CHECK(replayed->flies() == stage.presentation.flies());
+        CHECK(replayed->view_size() == stage.room.view_size());
+        CHECK(replayed->flies() == stage.room.flies());
     }
 
     TemporaryFolder folder;
@@ -65,8 +65,8 @@ public:
 
 private:
     /// The document but for the recording; numbers as they are.
-    static json state_of(const Presentation& presentation) {
-        json state = protocol::StateDocument::next({}, presentation.state())->json();
+    static json state_of(const Room& room) {
+        json state = protocol::StateDocument::next({}, room.state())->json();
         state.erase("recording");
         return state;
     }
@@ -106,12 +106,12 @@ private:
         Stage& stage = recorded.stage;
         const int what = number(0, 19);
         if (what < 4) {
-            stage.presentation.remember(++frame_);
+            stage.room.remember(++frame_);
         } else if (what == 4) {
-            stage.presentation.leave("b", stage.now);
+            stage.room.leave("b", stage.now);
             stage.join('b');
         } else if (what == 5 && number(0, 3) == 0) {
-            stage.presentation.show(number(0, 1) == 0 ? scene() : other_scene(), stage.now);
+            stage.room.show(number(0, 1) == 0 ? scene() : other_scene(), stage.now);
         } else {
             stage.say(one_of({"a", "a", "b"}), number(0, 1) == 0 ? input() : request());
         }
@@ -243,7 +243,7 @@ TEST_CASE("begun in a scene that was opened in another view: null gives back its
     Recorded recorded("a");
     recorded.stage.say("a", R"({"type":"resize","width":100,"height":300,"pixelRatio":1})");
     recorded.stage.say("a", R"({"type":"patch","patch":{}})");
-    recorded.stage.presentation.show(other_scene(), 1s);
+    recorded.stage.room.show(other_scene(), 1s);
     const glm::dvec3 eye = recorded.stage.camera().eye;
     recorded.start();
     recorded.stage.say("a", R"({"type":"patch","patch":{"camera":{"fov":60},"views":{"home":{"fov":60}}}})");
@@ -267,12 +267,12 @@ TEST_CASE("begun at a camera node that is moved later, with a door open and a se
 
 TEST_CASE("a pick that names a frame of before the recording sees what that showed") {
     Recorded recorded("a");
-    recorded.stage.presentation.remember(4);
+    recorded.stage.room.remember(4);
     recorded.stage.say("a", R"({"type":"navigate","rotate":[180,0]})");
-    recorded.stage.presentation.remember(5);
+    recorded.stage.room.remember(5);
     recorded.start();
     recorded.stage.say("a", R"({"type":"pick","x":640,"y":360,"frame":4,"then":"select"})");
-    CHECK(recorded.stage.presentation.state().selection.node == 2);
+    CHECK(recorded.stage.room.state().selection.node == 2);
     recorded.check();
 }
 
@@ -283,14 +283,14 @@ TEST_CASE("begun in a flight, which goes on where it was") {
         {"at":1000,"camera":{"eye":[-3,1,2],"fov":70}}]})");
     recorded.stage.at(10'123'457us);
     recorded.start();
-    CHECK(recorded.stage.presentation.flies());
+    CHECK(recorded.stage.room.flies());
     recorded.stage.at(10'654'321us);
     recorded.stage.join('v');
     recorded.check();  // unfinished: where it was at the last line
     SUBCASE("and ends") {
         recorded.stage.at(11s);
         recorded.stage.join('b');
-        CHECK_FALSE(recorded.stage.presentation.flies());
+        CHECK_FALSE(recorded.stage.room.flies());
         CHECK(recorded.stage.camera().eye == glm::dvec3(-3, 1, 2));
         recorded.check();
     }
@@ -409,7 +409,7 @@ TEST_CASE("what is no log is told with file and line") {
 TEST_CASE("a scene that is another one now is told") {
     Recorded recorded("a");
     recorded.start();
-    recorded.stage.presentation.show(other_scene(), 1s);
+    recorded.stage.room.show(other_scene(), 1s);
     server::room::EventLog log = recorded.log();
     REQUIRE(log.lines.size() == 1);
     std::get<protocol::LogLine::Opened>(log.lines[0].what).sha256 = "ab12";
@@ -448,13 +448,13 @@ TEST_CASE("whoever watches a replay is told of each frame where it was drawn") {
     recorded.start();
     recorded.stage.say("a", R"({"type":"fly","keyframes":[{"at":100,"camera":{"eye":[1,0,4]}}]})");
     recorded.stage.at(100ms);
-    recorded.stage.presentation.remember(7);
+    recorded.stage.room.remember(7);
     recorded.stage.say("a", R"({"type":"navigate","zoom":2})");
-    recorded.stage.presentation.remember(8);
+    recorded.stage.room.remember(8);
     std::vector<std::pair<std::int64_t, double>> seen;
     server::room::ReplayWatcher watcher;
-    watcher.on_drawn = [&](std::int64_t frame, const Presentation& presentation) {
-        seen.emplace_back(frame, presentation.visible().camera.eye.z);
+    watcher.on_drawn = [&](std::int64_t frame, const Room& room) {
+        seen.emplace_back(frame, room.visible().camera.eye.z);
     };
     REQUIRE(server::room::replay(recorded.log(), find_scene, watcher));
     CHECK(seen == std::vector<std::pair<std::int64_t, double>>{{7, 4.0}, {8, 2.0}});

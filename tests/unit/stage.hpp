@@ -10,7 +10,7 @@
 #include "room/room.hpp"
 #include "vrut_text.hpp"
 
-/// A presentation to which messages are said as they come over the wire, at times that a test gives.
+/// A room to which messages are said as they come over the wire, at times that a test gives.
 namespace stage {
 
 using namespace vrut;
@@ -65,28 +65,28 @@ inline const char* const kMoveHinge =
 class Stage {
 public:
     /// `clients` join, each a letter: h a host, v a view, others control; b calls itself Bea, others nothing.
-    explicit Stage(const std::string& clients, LoadedScene shown = scene(), PresentationOptions options = {})
-        : presentation(std::move(shown), std::move(options)) {
+    explicit Stage(const std::string& clients, LoadedScene shown = scene(), RoomOptions options = {})
+        : room(std::move(shown), std::move(options)) {
         for (const char name : clients) join(name);
     }
     void join(char name) {
         using protocol::Role;
         const Role role = name == 'h' ? Role::host : name == 'v' ? Role::view : Role::control;
-        presentation.join(std::string(1, name), role, now, name == 'b' ? "Bea" : "");
+        room.join(std::string(1, name), role, now, name == 'b' ? "Bea" : "");
     }
     bool say(const std::string& client, const std::string& text) {
         const auto message = protocol::decode(text);
         INFO(text);
         REQUIRE_MESSAGE(message.has_value(), message.error().message);
-        const bool accepted = presentation.say(client, *message, now);
+        const bool accepted = room.handle_message(client, *message, now);
         if (after_message) after_message(*this);
         return accepted;
     }
-    void at(Time time) { presentation.advance(now = time); }
+    void at(Time time) { room.advance(now = time); }
     /// What clients were told since the last call, each with `to`.
     std::vector<json> told() {
         std::vector<json> result;
-        for (const Answer& answer : presentation.take_answers()) {
+        for (const Answer& answer : room.take_answers()) {
             result.push_back(json::parse(answer.text));
             result.back()["to"] = answer.client;
         }
@@ -104,12 +104,12 @@ public:
         CHECK(accepted);
         return "";
     }
-    json state() { return presentation.document()->json(); }
-    std::int64_t revision() { return presentation.document()->revision(); }
-    const protocol::CameraState& camera() const { return presentation.state().camera; }
-    std::string holder() const { return presentation.holder().value_or(""); }
+    json state() { return room.document()->json(); }
+    std::int64_t revision() { return room.document()->revision(); }
+    const protocol::CameraState& camera() const { return room.state().camera; }
+    std::string holder() const { return room.holder().value_or(""); }
 
-    Presentation presentation;
+    Room room;
     Time now{0};
     std::function<void(Stage&)> after_message = {};  ///< brings what answers later
 };
