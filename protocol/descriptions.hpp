@@ -402,7 +402,7 @@ void describe(V& v, const LightState*) {
 template <class V>
 void describe(V& v, const LightsState*) {
     v.writable("active", &LightsState::active, kName);
-    v.writable("items", &LightsState::items, Items<LightState>{});
+    v.writable("items", &LightsState::items, SharedTable<Items<LightState>>{});
 }
 
 template <class V>
@@ -416,7 +416,7 @@ template <class V>
 void describe(V& v, const BackgroundsState*) {
     v.writable("active", &BackgroundsState::active, kName);
     v.writable("color", &BackgroundsState::color, kColor);
-    v.writable("items", &BackgroundsState::items, Items<BackgroundState>{});
+    v.writable("items", &BackgroundsState::items, SharedTable<Items<BackgroundState>>{});
 }
 
 template <class V>
@@ -479,9 +479,9 @@ void describe(V& v, const State*) {
     v.fixed("materials", &State::materials, SharedKind<Table<Named>>{});
     v.writable("backgrounds", &State::backgrounds, Section<BackgroundsState>{});
     v.writable("selection", &State::selection, Section<SelectionState>{});
-    v.writable("nodes", &State::nodes, Entries<NodeOverride>{{}, kMaxNodes, nullptr});
-    v.writable("markers", &State::markers, Entries<Marker>{{}, kMaxEntries, "point"});
-    v.writable("views", &State::views, Entries<ViewState>{{}, kMaxEntries, nullptr});
+    v.writable("nodes", &State::nodes, SharedTable<Entries<NodeOverride>>{{{}, kMaxNodes, nullptr}});
+    v.writable("markers", &State::markers, SharedTable<Entries<Marker>>{{{}, kMaxEntries, "point"}});
+    v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}});
     v.writable("quality", &State::quality, Section<QualityState>{});
     v.fixed("control", &State::control, Object<ControlState>{});
     v.fixed("recording", &State::recording, Object<RecordingState>{});

@@ -10,9 +10,9 @@ namespace {
 
 /// An entry's key, or `other` where that is allowed.
 template <class Item>
-void check_key(const std::string& key, const char* path, const std::map<std::string, Item>& items,
+void check_key(const std::string& key, const char* path, const SharedMap<Item>& items,
                const char* other = nullptr) {
-    if ((!other || key != other) && !items.contains(key))
+    if ((!other || key != other) && !items->contains(key))
         throw BadJson{error_code::unknown_node,
                       "'" + std::string(path) + "': there is no '" + excerpt(key) + "'"};
 }
@@ -23,16 +23,19 @@ State patched_or_throw(const State& state, const State& starting, const Json& pa
     // What a view that is saved does not say, or gives as null, is the present camera's.
     if (const auto views = patch.find("views"); views != patch.end() && views->is_object()) {
         CameraState camera = state.camera;
-        if (const auto present = patch.find("camera"); present != patch.end() && present->is_object())
-            patch_struct(camera, starting.camera, *present, "camera");
+        if (const auto named = patch.find("camera"); named != patch.end() && named->is_object())
+            patch_struct(camera, starting.camera, *named, "camera");
         const ViewState saved{camera.eye, camera.focus, camera.up, camera.center, camera.fov};
-        start = starting;
+        auto at_start = *starting.views, present = *state.views;
         for (const auto& [name, value] : views->items()) {
-            if (!value.is_object() || starting.views.contains(name)) continue;
-            if (name.empty() || start->views.size() > kMaxEntries) continue;  // to be refused
-            start->views[name] = saved;
-            result.views.try_emplace(name, saved);
+            if (!value.is_object() || starting.views->contains(name)) continue;
+            if (name.empty() || at_start.size() > kMaxEntries) continue;  // to be refused
+            at_start[name] = saved;
+            present.try_emplace(name, saved);
         }
+        start = starting;
+        start->views.set(std::move(at_start));
+        result.views.set(std::move(present));
     }
     patch_struct(result, start ? *start : starting, patch, "");
     check_key(result.lights.active, "lights.active", result.lights.items);

@@ -23,6 +23,29 @@ struct Shared {
     bool operator==(const Shared&) const = default;
 };
 
+/// Entries by name. Copies share them until they are set anew, so that a copy, and a comparison with it, cost
+/// the same for any number.
+template <class T>
+class SharedMap {
+public:
+    using Map = std::map<std::string, T>;
+    const Map& operator*() const { return *map_; }
+    const Map* operator->() const { return map_.get(); }
+    /// Equal entries stay shared.
+    void set(Map map) {
+        if (map != *map_) map_ = std::make_shared<const Map>(std::move(map));
+    }
+    void set(const std::string& name, T value) {
+        Map map = *map_;
+        map[name] = std::move(value);
+        set(std::move(map));
+    }
+    bool operator==(const SharedMap& other) const { return map_ == other.map_ || *map_ == *other.map_; }
+
+private:
+    std::shared_ptr<const Map> map_ = std::make_shared<const Map>();
+};
+
 // --- the state document's members, as values. Those marked r are read-only to clients.
 
 struct SceneState {  // r
@@ -73,7 +96,7 @@ struct LightState {
 
 struct LightsState {
     std::string active = "headlight";  ///< an item's id
-    std::map<std::string, LightState> items;
+    SharedMap<LightState> items;
     bool operator==(const LightsState&) const = default;
 };
 
@@ -87,7 +110,7 @@ struct BackgroundState {
 struct BackgroundsState {
     std::string active = "color";  ///< an item's id, or "color" for the plain one
     glm::dvec4 color{230.0 / 255, 235.0 / 255, 242.0 / 255, 1};
-    std::map<std::string, BackgroundState> items;
+    SharedMap<BackgroundState> items;
     bool operator==(const BackgroundsState&) const = default;
 };
 
@@ -150,9 +173,9 @@ struct State {
     Shared<Names> materials;
     BackgroundsState backgrounds;
     SelectionState selection;
-    std::map<std::string, NodeOverride> nodes;
-    std::map<std::string, Marker> markers;
-    std::map<std::string, ViewState> views;
+    SharedMap<NodeOverride> nodes;
+    SharedMap<Marker> markers;
+    SharedMap<ViewState> views;
     QualityState quality;
     ControlState control;
     std::optional<RecordingState> recording;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fields.hpp"
+#include "state.hpp"
 
 /// Merge patches (RFC 7396) of what is described: null gives a member back the value that it starts with.
 namespace vrut::protocol {
@@ -220,6 +221,31 @@ private:
                                                         std::to_string(kLongest) + " bytes, unlike '" +
                                                         excerpt(key) + "'"};
     }
+};
+
+/// A table whose entries are shared between states.
+template <class Kind>
+struct SharedTable {
+    Kind kind;
+    template <class T>
+    void patch(SharedMap<T>& target, const SharedMap<T>& start, const Json& json,
+               const std::string& path) const {
+        auto map = *target;
+        kind.patch(map, *start, json, path);
+        target.set(std::move(map));
+    }
+    template <class T>
+    void restore(SharedMap<T>& target, const Json& json, const std::string& path) const {
+        auto map = *target;
+        kind.restore(map, json, path);
+        target.set(std::move(map));
+    }
+    template <class T>
+    Json write(const SharedMap<T>& value) const {
+        return kind.write(*value);
+    }
+    Json schema() const { return kind.schema(); }
+    Json patch_schema() const { return kind.patch_schema(); }
 };
 
 }  // namespace vrut::protocol

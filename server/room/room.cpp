@@ -263,8 +263,8 @@ void Room::use_holders_size() {
     if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
     view_size_ = *holder->second.wanted;
     if (at_home_) {
-        state_.views["home"] = home_view(*scene_, aspect());
-        state_.camera = state_of(camera_of(state_.views["home"]), scene_->bounds);
+        state_.views.set("home", home_view(*scene_, aspect()));
+        state_.camera = state_of(camera_of(state_.views->at("home")), scene_->bounds);
     }
     gestures_.restart(camera());
 }

@@ -29,12 +29,12 @@ void Room::apply(const Said& said, const protocol::Patch& patch) {
     if (!error) error = check_names(*next);
     if (error) return reject(said, error->code.c_str(), error->message);
 
-    const protocol::ViewState home = state_.views.at("home");
-    if (camera_of(next->camera) != camera() || next->views.at("home") != home) at_home_ = false;
+    const protocol::ViewState home = state_.views->at("home");
+    if (camera_of(next->camera) != camera() || next->views->at("home") != home) at_home_ = false;
     const std::optional<Id> selected = next->selection.node;
     steer(said);  // which may bring another size, and so another home
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
-    if (next->views.at("home") == home) next->views["home"] = state_.views.at("home");
+    if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
     state_ = *std::move(next);
     scene_ = std::move(placed);
@@ -85,9 +85,11 @@ std::optional<Error> Room::use_camera(protocol::State& next, const PlacedScene& 
 }
 
 std::optional<Error> Room::use_views(protocol::State& next, const PlacedScene& placed) const {
-    for (auto& [name, view] : next.views) {
-        const auto before = state_.views.find(name);
-        if (before != state_.views.end() && before->second == view) continue;
+    if (next.views == state_.views) return std::nullopt;
+    auto views = *next.views;
+    for (auto& [name, view] : views) {
+        const auto before = state_.views->find(name);
+        if (before != state_.views->end() && before->second == view) continue;
         const Camera pose = camera_of(view);
         if (!is_valid_pose(pose, placed.bounds.radius()))
             return Error{{},
@@ -96,6 +98,7 @@ std::optional<Error> Room::use_views(protocol::State& next, const PlacedScene& p
                              "': eye and focus must be apart, and up neither zero nor along the view"};
         view = view_state_of(with_orthogonal_up(pose));
     }
+    next.views.set(std::move(views));
     return std::nullopt;
 }
 
@@ -106,7 +109,7 @@ std::optional<Error> Room::check_names(const protocol::State& next) const {
         return Error{{}, code::unknown_node, where + ": there is no node " + std::to_string(*node)};
     };
     if (auto error = unknown(next.selection.node, "'selection.node'")) return error;
-    for (const auto& [name, marker] : next.markers)
+    for (const auto& [name, marker] : *next.markers)
         if (auto error = unknown(marker.node, "'markers." + name.substr(0, 40) + ".node'")) return error;
     return std::nullopt;
 }

@@ -139,7 +139,7 @@ RecordingSink::Header Room::log_header() const {
         header.clients.push_back({name, client.role, client.wanted, client.name});
     header.view = view_size_;
     header.at_home = at_home_;
-    header.home = starting_.views.at("home");
+    header.home = starting_.views->at("home");
     for (const Frame& frame : frames_)
         header.frames.push_back({frame.number, state_of(frame.camera, scene_->bounds), frame.view_size});
     if (flight_)

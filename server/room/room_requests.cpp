@@ -143,7 +143,7 @@ void Room::apply(const Said& said, const protocol::Scenes&) {
 
 tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (header.home) {
-        starting_.views["home"] = *header.home;
+        starting_.views.set("home", *header.home);
         if (!starting_.camera.node) starting_.camera = state_of(camera_of(*header.home), scene_->bounds);
     }
     auto state = protocol::restored(starting_, *header.state);

@@ -19,15 +19,17 @@ std::optional<std::string> picture_of(const BackgroundData& data, const Scene& s
 }
 
 void add_backgrounds(const PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
+    auto items = *backgrounds.items;
     Id first = -1;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
         const Node& node = placed.scene->nodes()[i];
         const auto* data = std::get_if<BackgroundData>(&node.data);
         if (!data) continue;
         const glm::dvec4 color = glm::min(placed.scene->material(data->material).diffuse, glm::dvec4(1));
-        backgrounds.items[std::to_string(node.id)] = {node.name, color, picture_of(*data, *placed.scene)};
+        items[std::to_string(node.id)] = {node.name, color, picture_of(*data, *placed.scene)};
         if (is_shown(placed, static_cast<Index>(i)) && (first < 0 || node.id < first)) first = node.id;
     }
+    backgrounds.items.set(std::move(items));
     if (first >= 0) backgrounds.active = std::to_string(first);
 }
 
@@ -44,11 +46,12 @@ const char* name_of(LightData::Type type) {
 }
 
 void add_lights(const Scene& scene, protocol::LightsState& lights) {
-    lights.items["headlight"] = {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}};
+    auto items = *lights.items;
+    items["headlight"] = {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}};
     for (const Node& node : scene.nodes())
         if (const auto* data = std::get_if<LightData>(&node.data))
-            lights.items[std::to_string(node.id)] = {node.name, name_of(data->type), data->color,
-                                                     data->attenuation};
+            items[std::to_string(node.id)] = {node.name, name_of(data->type), data->color, data->attenuation};
+    lights.items.set(std::move(items));
 }
 
 protocol::Shared<protocol::Names> camera_names(const Scene& scene) {
@@ -140,10 +143,10 @@ protocol::State starting_state(const PlacedScene& placed, double aspect, std::ve
                              .notices = std::move(notices)});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
-    state.views["home"] = home_view(placed, aspect);
+    state.views.set("home", home_view(placed, aspect));
     const Index node = first_camera_node(placed);
     state.camera = node != kNone ? state_at_node(*camera_at(placed, node), placed, node)
-                                 : state_of(camera_of(state.views["home"]), placed.bounds);
+                                 : state_of(camera_of(state.views->at("home")), placed.bounds);
     add_lights(scene, state.lights);
     add_backgrounds(placed, state.backgrounds);
     count_classes(state, placed);
@@ -232,9 +235,10 @@ tl::expected<Camera, Error> overlaid(const Camera& base, const protocol::CameraO
 }
 
 tl::expected<std::vector<NodeState>, Error> node_states(
-    const Scene& scene, std::map<std::string, protocol::NodeOverride>& overrides) {
+    const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
     std::vector<NodeState> states = file_states(scene);
-    for (auto& [key, change] : overrides) {
+    auto changes = *overrides;
+    for (auto& [key, change] : changes) {
         const Index index = find_node(scene, key);
         if (index == kNone)
             return tl::unexpected(
@@ -243,7 +247,8 @@ tl::expected<std::vector<NodeState>, Error> node_states(
         if (auto error = apply(change, scene, scene.nodes()[place], states[place]))
             return tl::unexpected(*std::move(error));
     }
-    std::erase_if(overrides, [](const auto& entry) { return entry.second == protocol::NodeOverride{}; });
+    std::erase_if(changes, [](const auto& entry) { return entry.second == protocol::NodeOverride{}; });
+    overrides.set(std::move(changes));
     return states;
 }
 
@@ -254,7 +259,7 @@ Background background_of(const protocol::BackgroundsState& backgrounds, const Pl
     const Index node = find_node(*placed.scene, backgrounds.active);
     if (!is_shown(placed, node)) return {glm::dvec3(backgrounds.color), kNone, {}};
     const auto& data = std::get<BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
-    return {glm::dvec3(backgrounds.items.at(backgrounds.active).color),
+    return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),
             placed.scene->material(data.material).texture, data.cube_textures};
 }
 
@@ -280,7 +285,7 @@ std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& marker
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
     View view;
     view.camera = camera_of(state.camera);
-    const protocol::LightState& light = state.lights.items.at(state.lights.active);
+    const protocol::LightState& light = state.lights.items->at(state.lights.active);
     if (const Index node = find_node(*placed->scene, state.lights.active); node != kNone)
         view.light = light_of(*placed, node);
     view.light.color = light.color;
@@ -290,7 +295,7 @@ View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> pl
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
     view.background = background_of(state.backgrounds, *placed);
-    view.marks = marks_of(state.markers, *placed);
+    view.marks = marks_of(*state.markers, *placed);
     view.scene = std::move(placed);
     return view;
 }

@@ -36,7 +36,7 @@ void count_classes(protocol::State& state, const PlacedScene& placed);
 /// The states of a scene's nodes with `overrides`, or what is wrong with those. What equals the file's
 /// disappears from `overrides`.
 tl::expected<std::vector<NodeState>, protocol::Error> node_states(
-    const Scene& scene, std::map<std::string, protocol::NodeOverride>& overrides);
+    const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
 
 /// What of the state and the scene is to be seen, but for size and samples. The background is the active one,
 /// if its subtree is active, else the plain colour.

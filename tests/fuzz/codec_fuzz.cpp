@@ -17,9 +17,9 @@ void check(bool holds) {
 const State& start() {
     static const State state = [] {
         State result;
-        result.lights.items["headlight"] = {};
-        result.backgrounds.items["1"] = {};
-        result.views["home"] = {};
+        result.lights.items.set("headlight", {});
+        result.backgrounds.items.set("1", {});
+        result.views.set("home", {});
         return result;
     }();
     return state;

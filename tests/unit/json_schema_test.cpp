@@ -136,12 +136,14 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     add(first->encode());
     state.camera.node = 4, state.camera.name = "Driver";
     state.selection = {5, "Door", {{"Car", "Door"}}};
-    state.nodes["5"] = {false, -1, glm::dmat4(1), 3};
-    state.markers["Scratch"] = {{1, 2, 3}, 5, "here"};
+    state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
+    state.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
     state.control = {"c1", "Bea", true};
     state.recording = RecordingState{"drive"};
     state.notices = {"The recording 'drive' has ended: No space left on device"};
-    state.backgrounds.items["11"].texture = "sky.png";
+    auto background = state.backgrounds.items->at("11");
+    background.texture = "sky.png";
+    state.backgrounds.items.set("11", background);
     auto names = std::make_shared<Names>();
     (*names)["4"] = {"Driver"};
     state.cameras.value = names, state.materials.value = names;

@@ -157,7 +157,7 @@ TEST_CASE("f fits what is selected, or the scene") {
 
 TEST_CASE("Home goes to the view of that name, whatever it is now") {
     Stage stage("a");
-    const auto home = [&] { return stage.room.state().views.at("home"); };
+    const auto home = [&] { return stage.room.state().views->at("home"); };
     stage.say("a", key("Home"));
     CHECK(stage.camera().eye == home().eye);
     stage.say("a", patch(R"({"views":{"home":{"eye":[0,0,3]}}})"));
@@ -252,7 +252,7 @@ TEST_CASE("home is fitted to the view until somebody moves the camera") {
     stage.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
     const double tall = std::sqrt(0.5) / std::sin(std::atan(tangent / 2));
     CHECK(distance() == doctest::Approx(tall));
-    CHECK(stage.camera().eye == stage.room.state().views.at("home").eye);
+    CHECK(stage.camera().eye == stage.room.state().views->at("home").eye);
     stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
     stage.say("a", R"({"type":"resize","width":200,"height":200,"pixelRatio":1})");
     CHECK(distance() == doctest::Approx(tall));
@@ -323,6 +323,31 @@ TEST_CASE("a pick that names no frame sees the present view, however old the new
     CHECK(node() == 2);
     stage.say("a", R"({"type":"navigate","rotate":[180,0]})");  // behind it all
     CHECK(node() == 0);
+}
+
+TEST_CASE("a move of the camera shares with the state before it what did not change") {
+    Stage stage("a");
+    stage.say("a",
+              patch(R"({"nodes":{"2":{"active":false}},"markers":{"m":{"point":[1,2,3]}},"views":{"v":{}},
+                             "lights":{"items":{"headlight":{"color":[1,0,0,1]}}}})"));
+    stage.state();
+    const protocol::State before = stage.room.state();
+    const auto check_shared = [&] {
+        stage.state();
+        const protocol::State& now = stage.room.state();
+        CHECK(now.camera != before.camera);
+        CHECK(now.nodes.operator->() == before.nodes.operator->());
+        CHECK(now.markers.operator->() == before.markers.operator->());
+        CHECK(now.views.operator->() == before.views.operator->());
+        CHECK(now.lights.items.operator->() == before.lights.items.operator->());
+        CHECK(now.backgrounds.items.operator->() == before.backgrounds.items.operator->());
+    };
+    stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
+    check_shared();
+    stage.say("a", patch(R"({"camera":{"fov":50}})"));
+    check_shared();
+    stage.say("a", patch(R"({"camera":{"fov":51},"nodes":{"2":{"active":false}},"views":{}})"));
+    check_shared();  // what is set to what it was, too
 }
 
 TEST_CASE("a snapshot overlays the shared view and leaves it alone") {

@@ -365,7 +365,7 @@ TEST_CASE("a new holder's flight begins at the home of his size, live and replay
     stage.at(2s);
     stage.say("a", R"({"type":"fly","id":1,"keyframes":[{"at":1000,"camera":{"fov":41}}]})");
     const glm::dvec3 home = stage.camera().eye;
-    CHECK(home == stage.room.state().views.at("home").eye);
+    CHECK(home == stage.room.state().views->at("home").eye);
     stage.at(4s);
     CHECK(stage.camera().fov == 41);
     CHECK(stage.camera().eye == home);

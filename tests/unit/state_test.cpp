@@ -106,7 +106,7 @@ TEST_CASE("every writable member can be patched and given back") {
             reset[at] = nullptr;
             INFO(reset.dump());
             State given_back = after(changed, reset.dump().c_str());
-            if (given_back.nodes == std::map<std::string, NodeOverride>{{"5", {}}}) given_back.nodes.clear();
+            if (*given_back.nodes == std::map<std::string, NodeOverride>{{"5", {}}}) given_back.nodes = {};
             CHECK(given_back == start());
         }
     }
@@ -132,17 +132,16 @@ TEST_CASE("what is patched has the value that was given") {
     expected.navigation = {NavigationState::Style::cinema4d, false, 0.01, 100, 2};
     expected.renderer = {DrawMode::stylized, true, false, 0, 0, 0};
     expected.lights.active = "7";
-    expected.lights.items["7"].color = {0, 0.25, 0.5, 1};
-    expected.lights.items["7"].attenuation = {0, 1, 2};
+    expected.lights.items.set("7", {"Sun", "directional", {0, 0.25, 0.5, 1}, {0, 1, 2}});
     expected.backgrounds.active = "11";
     expected.backgrounds.color = {0, 0, 0, 1};
-    expected.backgrounds.items["11"].color = {1, 1, 1, 0.5};
+    expected.backgrounds.items.set("11", {"Studio", {1, 1, 1, 0.5}, {}});
     expected.selection.node = 5;
     // Row by row: the second number is in the first row's second column.
     const glm::dmat4 matrix{{1, 5, 9, 13}, {2, 6, 10, 14}, {3, 7, 11, 15}, {4, 8, 12, 16}};
-    expected.nodes["5"] = {false, -1, matrix, 3};
-    expected.markers["Scratch"] = {{1, 2, 3}, 5, "here"};
-    expected.views["side"] = {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60};
+    expected.nodes.set("5", {false, -1, matrix, 3});
+    expected.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
+    expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60});
     expected.quality = {0.25, 20};
     CHECK(state == expected);
 }
@@ -333,8 +332,8 @@ TEST_CASE("the scene's own items neither come nor go") {
     State changed =
         after(start(), R"({"lights":{"items":{"7":{"color":[0,0,0,1]},"headlight":{"color":[0,0,0,1]}}}})");
     changed = after(changed, R"({"lights":{"items":{"7":null}}})");
-    CHECK(changed.lights.items["7"] == start().lights.items.at("7"));
-    CHECK(changed.lights.items["headlight"].color == glm::dvec4(0, 0, 0, 1));
+    CHECK(changed.lights.items->at("7") == start().lights.items->at("7"));
+    CHECK(changed.lights.items->at("headlight").color == glm::dvec4(0, 0, 0, 1));
     CHECK(after(changed, R"({"lights":{"items":null}})") == start());
     CHECK(after(changed, R"({"lights":{"items":{"7":{}}}})") == changed);
 }
@@ -342,14 +341,14 @@ TEST_CASE("the scene's own items neither come nor go") {
 TEST_CASE("markers are added, changed and removed") {
     State state =
         after(start(), R"({"markers":{"a":{"point":[1,2,3]},"b":{"point":[4,5,6],"node":5,"text":"x"}}})");
-    CHECK(state.markers["a"] == Marker{{1, 2, 3}, {}, ""});
-    CHECK(state.markers["b"] == Marker{{4, 5, 6}, 5, "x"});
+    CHECK(state.markers->at("a") == Marker{{1, 2, 3}, {}, ""});
+    CHECK(state.markers->at("b") == Marker{{4, 5, 6}, 5, "x"});
     state = after(state, R"({"markers":{"a":{"text":"y"},"b":{"node":null}}})");
-    CHECK(state.markers["a"] == Marker{{1, 2, 3}, {}, "y"});
-    CHECK(state.markers["b"] == Marker{{4, 5, 6}, {}, "x"});
+    CHECK(state.markers->at("a") == Marker{{1, 2, 3}, {}, "y"});
+    CHECK(state.markers->at("b") == Marker{{4, 5, 6}, {}, "x"});
     state = after(state, R"({"markers":{"a":null,"never":null}})");
-    CHECK(state.markers.size() == 1);
-    CHECK(after(state, R"({"markers":null})").markers.empty());
+    CHECK(state.markers->size() == 1);
+    CHECK(after(state, R"({"markers":null})").markers->empty());
     check_refused(json::parse(R"({"markers":{"new":{}}})"), "bad-message", "'markers.new.point'");
     check_refused(json::parse(R"({"markers":{"new":{"text":"x"}}})"), "bad-message", "'markers.new.point'");
     // One that is gone is new again.
@@ -359,21 +358,21 @@ TEST_CASE("markers are added, changed and removed") {
 TEST_CASE("views are added, changed and removed; those of the start come back") {
     State state = after(start(), R"({"camera":{"eye":[7,8,9],"up":[0,0,1],"fov":55}})");
     state = after(state, R"({"views":{"here":{},"low":{"eye":[1,1,1]}}})");
-    CHECK(state.views["here"] == ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
-    CHECK(state.views["low"] == ViewState{{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
-    CHECK(after(state, R"({"views":{"b":{"eye":null,"fov":5}}})").views["b"] ==
+    CHECK(state.views->at("here") == ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
+    CHECK(state.views->at("low") == ViewState{{1, 1, 1}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 55});
+    CHECK(after(state, R"({"views":{"b":{"eye":null,"fov":5}}})").views->at("b") ==
           ViewState{{7, 8, 9}, {0, 0, 0}, {0, 0, 1}, {0, 0, 0}, 5});
-    CHECK(after(state, R"({"views":{"low":{"eye":null}}})").views["low"] == state.views["here"]);
+    CHECK(after(state, R"({"views":{"low":{"eye":null}}})").views->at("low") == state.views->at("here"));
     // It was saved: where the camera goes does not move it, nor does a patch of nothing.
     state = after(state, R"({"camera":{"eye":[0,0,1]},"views":{"here":{}}})");
-    CHECK(state.views["here"].eye == glm::dvec3(7, 8, 9));
+    CHECK(state.views->at("here").eye == glm::dvec3(7, 8, 9));
     // With the camera in the same patch it is that one that is saved.
     state = after(state, R"({"camera":{"eye":[0,0,2]},"views":{"both":{}}})");
-    CHECK(state.views["both"].eye == glm::dvec3(0, 0, 2));
+    CHECK(state.views->at("both").eye == glm::dvec3(0, 0, 2));
     state = after(state, R"({"views":{"home":{"fov":20},"low":null}})");
-    CHECK(state.views["home"].fov == 20);
-    CHECK_FALSE(state.views.contains("low"));
-    CHECK(after(state, R"({"views":{"home":null}})").views["home"] == start().views.at("home"));
+    CHECK(state.views->at("home").fov == 20);
+    CHECK_FALSE(state.views->contains("low"));
+    CHECK(after(state, R"({"views":{"home":null}})").views->at("home") == start().views->at("home"));
     CHECK(after(state, R"({"views":null})").views == start().views);
 }
 
@@ -386,7 +385,7 @@ TEST_CASE("names and numbers of entries are bounded") {
     };
     CHECK(kMaxEntries == 256);
     const State full = after(start(), markers(0, 256).dump().c_str());
-    CHECK(full.markers.size() == 256);
+    CHECK(full.markers->size() == 256);
     check_refused(markers(0, 257), "too-many", "'markers'");
     const auto more = patched(full, start(), markers(256, 1));
     REQUIRE_FALSE(more.has_value());
@@ -399,7 +398,7 @@ TEST_CASE("names and numbers of entries are bounded") {
 
     json views = {{"views", json::object()}};
     for (int i = 0; i < 255; ++i) views["views"]["v" + std::to_string(i)] = json::object();
-    CHECK(after(start(), views.dump().c_str()).views.size() == 256);  // with home
+    CHECK(after(start(), views.dump().c_str()).views->size() == 256);  // with home
     views["views"]["v255"] = json::object();
     check_refused(views, "too-many", "'views'");
 
@@ -694,7 +693,7 @@ TEST_CASE("names that come and go by the thousand are forgotten, on the safe sid
     for (int i = 0; i < 5000; ++i) {
         const std::string name = "m" + std::to_string(i);
         State with = state;
-        with.markers[name] = {{1, 2, 3}, {}, ""};
+        with.markers.set(name, {{1, 2, 3}, {}, ""});
         document = StateDocument::next(*StateDocument::next(*document, with), state);
     }
     CHECK(document->revision() == 10'001);
