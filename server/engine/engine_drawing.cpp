@@ -160,7 +160,7 @@ void Engine::begin_frame(int still_samples) {
     picture.header.revision = room_->document()->revision();
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
-    picture.rests_since = last_change_;
+    if (still) picture.rests_since = last_change_;
     picture.applied = applied();
     if (!still) {
         picture.header.frame = next_frame_;

@@ -209,11 +209,17 @@ void Connection::on_text(std::string_view text) {
             {message->id, protocol::error_code::bad_message, "'hello' came a second time"},
             close_code::policy_error);
     if (hello) return on_hello(*hello, message->id);
-    if (const auto* grant = message ? std::get_if<protocol::FrameGrant>(&message->payload) : nullptr) {
-        on_grant(*grant, message->id);
-        if (!message->id) return;  // those of the others rise with it
-    }
-    engine::MessageReceived said{client_, std::move(message), base::Clock::now(), text.size(),
+    std::optional<protocol::FrameGrant> grant;
+    if (const auto* granted = message ? std::get_if<protocol::FrameGrant>(&message->payload) : nullptr)
+        grant = *granted;
+    const std::optional<std::int64_t> id = message ? message->id : std::nullopt;
+    if (!grant || id)
+        forward(std::move(message), text.size());  // a grant's id rises with those of the others
+    if (grant) on_grant(*grant, id);
+}
+
+void Connection::forward(tl::expected<protocol::ClientMessage, protocol::Error> message, std::size_t bytes) {
+    engine::MessageReceived said{client_, std::move(message), base::Clock::now(), bytes,
                                  role_ == protocol::Role::control};
     said.sequence = ++sequence_;
     unhandled_bytes_ += said.bytes;

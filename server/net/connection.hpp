@@ -60,6 +60,8 @@ private:
     void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
     void reject_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
+    /// To the engine.
+    void forward(tl::expected<protocol::ClientMessage, protocol::Error> message, std::size_t bytes);
     void on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id);
     void ask_for_frames(base::Clock::time_point now);
     bool has_newer_frame() const;

@@ -28,7 +28,7 @@ constexpr double kSlowerWeight = 0.5, kFasterWeight = 0.25;
 constexpr Seconds kShortest = 1ms;  // of a measurement: clocks and threads are not more exact
 constexpr std::size_t kMostTracked = 64;
 /// A frame that takes longer may be in somebody's way.
-constexpr Seconds kLongFrame = 2s;
+constexpr Seconds kLongFrame = 2s, kLongestWait = 60s;
 
 }  // namespace
 
@@ -61,6 +61,10 @@ bool FlowControl::grant(std::int64_t frame, Clock::time_point now) {
 void FlowControl::sent(std::size_t bytes, Clock::time_point now) {
     sent_ += bytes;
     sent_at_ = now;
+    const auto measured = link(now);
+    const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
+    passed_at_ = std::max(passed_at_, now) +
+                 std::chrono::duration_cast<Clock::duration>(std::min<Seconds>(takes, kLongestWait));
 }
 
 void FlowControl::sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_point now) {
@@ -111,6 +115,7 @@ void FlowControl::pong(std::uint64_t number, Clock::time_point now) {
 void FlowControl::arrive(std::size_t end, Clock::time_point now) {
     if (end <= arrived_) return;
     arrived_ = end;
+    if (in_flight() == 0) passed_at_ = now;
     heard_at_ = now;
     for (Frame& frame : frames_)
         if (frame.end <= end && !frame.arrived_at) frame.arrived_at = now;
@@ -140,8 +145,16 @@ FlowControl::Clock::duration FlowControl::queueing(Clock::time_point now) const 
     return std::chrono::duration_cast<Clock::duration>(all) - measured->round_trip;
 }
 
+/// Whether a second frame would wait behind one like the newest.
+bool FlowControl::is_slow(Clock::time_point now) const {
+    const auto measured = link(now);
+    if (!measured || frames_.empty()) return !counts_grants_;
+    return Seconds(static_cast<double>(frames_.back().bytes) / measured->bytes_per_second) > kQueue;
+}
+
 int FlowControl::frames_allowed(Clock::time_point now) const {
-    if (credits_ == 0 || in_flight() == 0 || counts_grants_) return credits_;
+    if (credits_ == 0 || counts_grants_) return credits_;
+    if (in_flight() == 0) return is_slow(now) ? 1 : credits_;
     if (link(now)) return queueing(now) <= kQueue ? credits_ : 0;
     // Nothing was heard of a frame yet: the next one waits for that.
     const bool frame_in_flight = !frames_.empty() && !frames_.back().arrived_at;
@@ -151,14 +164,20 @@ int FlowControl::frames_allowed(Clock::time_point now) const {
 bool FlowControl::may_send_update(Clock::time_point now) const {
     if (now < update_from_) return false;
     if (in_flight() == 0 || now - std::max(heard_at_, sent_at_) >= kUpdateTimeout) return true;
-    return link(now) && !counts_grants_ ? queueing(now) <= kQueue
+    // On a long link it is not heard for long what of it has passed.
+    return link(now) && !counts_grants_ ? std::max(queueing(now), passed_at_ - now) <= kQueue
                                         : in_flight() <= (counts_grants_ ? kFewBytes : kFewestBytes);
 }
 
 std::optional<FlowControl::Clock::time_point> FlowControl::ask_again(Clock::time_point now) const {
-    if (credits_ > 0 && !may_send_frame(now) && !link(now)) return sent_at_ + kFrameTimeout;
+    const bool frame_waits = credits_ > 0 && !may_send_frame(now);
+    const bool update_waits = !may_send_update(now);
+    if (!frame_waits && !update_waits) return std::nullopt;
+    const Clock::time_point passed = passed_at_ - std::chrono::duration_cast<Clock::duration>(kQueue);
+    if (update_waits && link(now) && passed > now) return passed;
+    if (frame_waits && !link(now)) return sent_at_ + kFrameTimeout;
     if (now < update_from_) return update_from_;
-    if (!may_send_update(now)) return std::max(heard_at_, sent_at_) + kUpdateTimeout;
+    if (update_waits) return std::max(heard_at_, sent_at_) + kUpdateTimeout;
     return std::nullopt;
 }
 
@@ -182,7 +201,7 @@ FlowControl::Clock::time_point FlowControl::may_send_from(std::size_t bytes, Clo
     const auto measured = link(now);
     const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
     if (takes <= kLongFrame) return now;
-    return rests_since + std::chrono::duration_cast<Clock::duration>(std::min<Seconds>(takes, 60s));
+    return rests_since + std::chrono::duration_cast<Clock::duration>(std::min(takes, kLongestWait));
 }
 
 }  // namespace vrut::server::net

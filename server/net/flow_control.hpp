@@ -78,6 +78,7 @@ private:
     void arrive(std::size_t end, Clock::time_point now);
     void measure(const Frame& frame, Clock::time_point shown_at);
     Clock::duration round_trip() const { return round_trip_.value_or(Clock::duration{}); }
+    bool is_slow(Clock::time_point now) const;
     Clock::duration queueing(Clock::time_point now) const;
 
     int credits_ = 0;
@@ -86,6 +87,7 @@ private:
     std::int64_t newest_ = 0;             ///< frame that was sent
     std::int64_t forgotten_ = 0;          ///< the newest frame that is not in frames_ any more
     Clock::time_point sent_at_{};         ///< the newest message
+    Clock::time_point passed_at_{};       ///< when what was sent has passed the link, by its rate
     Clock::time_point update_from_{};     ///< the earliest next update
     Clock::time_point heard_at_{};        ///< the newest arrival
     std::size_t pinged_ = 0;              ///< bytes sent before the newest ping

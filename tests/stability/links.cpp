@@ -5,16 +5,8 @@
 #include <cmath>
 #include <functional>
 #include <future>
-#include <map>
-#include <memory>
-#include <thread>
 
-#include "engine/frame_quality.hpp"
-#include "net/server.hpp"
-#include "page_client.hpp"
-#include "rendering.hpp"
-#include "shapes.hpp"
-#include "slow_link.hpp"
+#include "journey.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
@@ -22,149 +14,9 @@ namespace vrut::stability {
 namespace {
 
 using namespace std::chrono_literals;
-using test_support::LinkQuality;
-using test_support::SlowLink;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 using Seconds = std::chrono::duration<double>;
 
-/// A picture with about as much to encode as one of the car: shaded balls with edges and highlights before a
-/// gradient, the same for all sizes.
-Image balls(int width, int height) {
-    constexpr int kBalls = 36;
-    Image image;
-    image.resize(width, height);
-    const auto put = [&](int x, int y, const glm::dvec3& color) {
-        std::uint8_t* pixel = &image.rgba[static_cast<std::size_t>(y * width + x) * 4];
-        for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::clamp(color[i], 0.0, 255.0));
-        pixel[3] = 255;
-    };
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) put(x, y, glm::dvec3(60, 70, 90) + 120.0 * y / height);
-    for (int ball = 0; ball < kBalls; ++ball) {
-        const double radius = height * (0.02 + 0.1 * std::fmod(ball * 0.618, 1));
-        const glm::dvec2 center(width * std::fmod(0.1 + ball * 0.7549, 1),
-                                height * std::fmod(0.2 + ball * 0.5698, 1));
-        const glm::dvec3 paint(40 + ball * 83 % 200, 40 + ball * 47 % 200, 40 + ball * 29 % 200);
-        const auto last = [](double end, int most) { return std::min(static_cast<int>(end), most - 1); };
-        for (int y = std::max(0, static_cast<int>(center.y - radius)); y <= last(center.y + radius, height);
-             ++y)
-            for (int x = std::max(0, static_cast<int>(center.x - radius));
-                 x <= last(center.x + radius, width); ++x) {
-                const glm::dvec2 across = (glm::dvec2(x, y) - center) / radius;
-                const double inside = 1 - glm::dot(across, across);
-                if (inside < 0) continue;
-                const double lit =
-                    0.3 + 0.7 * std::max(0.0, 0.6 * std::sqrt(inside) + 0.5 * across.y - 0.4 * across.x);
-                put(x, y, paint * lit + 150 * std::pow(std::max(0.0, lit - 0.2), 12.0));
-            }
-    }
-    return image;
-}
-
-/// Draws the balls, turned with the camera.
-server::engine::Painter painter_of_balls() {
-    server::engine::Painter painter;
-    painter.description = "balls";
-    auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
-    painter.step = [drawn](Rendering& rendering) {
-        rendering.samples = rendering.view.samples;
-        const View& view = rendering.view;
-        Image& image = rendering.image;
-        Image& whole = (*drawn)[{view.width, view.height}];
-        if (whole.rgba.empty()) whole = balls(view.width, view.height);
-        image.resize(view.width, view.height);
-        const glm::dvec3 direction = view.camera.focus - view.camera.eye;
-        const double turn = std::atan2(direction.x, direction.z) / 6.2832 + 1;
-        const std::size_t row = static_cast<std::size_t>(view.width) * 4;
-        const std::size_t cut =
-            static_cast<std::size_t>(turn * view.width) % static_cast<std::size_t>(view.width) * 4;
-        for (std::size_t at = 0; at < whole.rgba.size(); at += row) {
-            std::copy_n(&whole.rgba[at] + cut, row - cut, &image.rgba[at]);
-            std::copy_n(&whole.rgba[at], cut, &image.rgba[at] + (row - cut));
-        }
-        rendering.stats.render_ms = 1;
-        return true;
-    };
-    return painter;
-}
-
-/// A server, a slow link, and the page at its other end, with a finger that turns the view on and on.
-class Journey {
-public:
-    Journey(const LinkQuality& quality, const server::net::Deadlines& deadlines = {})
-        : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, painter_of_balls),
-          thread_([this] { server_.run(); }),
-          link_(std::make_unique<SlowLink>(context_, server_.port(), quality)),
-          page_(std::make_unique<PageClient>(context_, link_->port())) {}
-    ~Journey() {
-        page_.reset();
-        link_.reset();  // or the server would wait for a goodbye
-        server_.stop();
-        thread_.join();
-    }
-    Journey(const Journey&) = delete;
-    Journey& operator=(const Journey&) = delete;
-
-    const PageClient& page() const { return *page_; }
-    SlowLink& link() { return *link_; }
-    void go_on(double seconds) {
-        context_.run_for(std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds)));
-    }
-    /// Until so many pictures have come over this connection, or for so long.
-    void go_on_until(std::size_t pictures, double seconds) {
-        const server::base::Clock::time_point end =
-            server::base::Clock::now() +
-            std::chrono::duration_cast<server::base::Clock::duration>(Seconds(seconds));
-        while (page_->shown().size() < pictures && server::base::Clock::now() < end) context_.run_for(10ms);
-    }
-
-    /// The longest that a move of a drag of so many seconds waits for its picture, in ms; kNothing where
-    /// there is no move, one has no picture after `patience` more seconds, or the connection was lost.
-    double longest_lag(double seconds, double patience) {
-        const int connections = page_->connections();
-        const server::base::Clock::time_point begin = server::base::Clock::now();
-        go_on(seconds);
-        const server::base::Clock::time_point end = server::base::Clock::now();
-        const std::vector<PageClient::Move> all = page_->moves();
-        std::vector<PageClient::Move> moves;
-        for (const PageClient::Move& move : all)
-            if (move.sent >= begin && move.sent <= end) moves.push_back(move);
-        if (moves.empty()) return kNothing;
-        while (handled() < moves.back().id && server::base::Clock::now() < end + Seconds(patience))
-            context_.run_for(10ms);
-        const bool arrived = handled() >= moves.back().id && page_->connections() == connections;
-        return arrived ? longest_lag(moves) : kNothing;
-    }
-
-private:
-    static server::net::ServerOptions options(const server::net::Deadlines& deadlines) {
-        server::net::ServerOptions options;
-        options.listen = {"127.0.0.1", 0};
-        options.deadlines = deadlines;
-        return options;
-    }
-
-    std::int64_t handled() const { return page_->shown().empty() ? 0 : page_->shown().back().handled; }
-
-    /// Of moves that pictures show.
-    double longest_lag(const std::vector<PageClient::Move>& moves) const {
-        double longest = 0;
-        auto picture = page_->shown().begin();
-        for (const PageClient::Move& move : moves) {
-            while (picture->handled < move.id) ++picture;
-            longest = std::max(longest, Milliseconds(picture->at - move.sent).count());
-        }
-        return longest;
-    }
-
-    server::net::Server server_;
-    std::thread thread_;
-    boost::asio::io_context context_{1};
-    std::unique_ptr<SlowLink> link_;
-    std::unique_ptr<PageClient> page_;
-};
-
-constexpr double kSmallest = 8400;              // bytes of a picture of the balls, with its header
 constexpr double kLink = 1e7, kFastLink = 1e8;  // bit/s, of links that are not slow
 constexpr double kPatience = 10;                // s
 

@@ -47,8 +47,8 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         bool open = false;
     };
 
-    Impl(asio::io_context& the_context, std::uint16_t the_port)
-        : context(the_context), port(the_port), retry(the_context), beat(the_context) {}
+    Impl(asio::io_context& the_context, std::uint16_t the_port, protocol::Role the_role)
+        : context(the_context), port(the_port), role(the_role), retry(the_context), beat(the_context) {}
 
     void connect() {
         auto made = std::make_shared<Connection>(context);
@@ -66,7 +66,7 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
                 made->socket.async_handshake("127.0.0.1:" + std::to_string(self->port), "/ws",
                                              [self, made](beast::error_code refused) {
                                                  if (refused) return self->lost(made);
-                                                 self->say(protocol::Hello{protocol::Role::control, {}, {}});
+                                                 self->say(protocol::Hello{self->role, {}, {}});
                                                  self->read(made);
                                              });
             });
@@ -97,7 +97,10 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         const auto data = from.buffer.data();
         const std::string_view all(static_cast<const char*>(data.data()), data.size());
         if (from.socket.got_binary()) return receive_picture(all);
-        if (!from.open && all.find(R"("type":"state")") != std::string_view::npos) begin(from);
+        if (!from.open && all.find(R"("type":"state")") != std::string_view::npos) return begin(from);
+        if (all.find(R"("type":"patch")") != std::string_view::npos)
+            patches.push_back(
+                {server::base::Clock::now(), static_cast<std::int64_t>(number(all, "revision"))});
     }
 
     void receive_picture(std::string_view file) {
@@ -114,7 +117,9 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         ++connections;
         moves.clear();
         shown.clear();
+        patches.clear();
         id = 0;
+        if (role == protocol::Role::view) return;
         say_numbered(protocol::Resize{kWidth, kHeight, 1});
         say_numbered(protocol::Control{});
         point(protocol::Pointer::Event::down);
@@ -178,17 +183,19 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
 
     asio::io_context& context;
     std::uint16_t port;
+    protocol::Role role;
     asio::steady_timer retry, beat;
     std::shared_ptr<Connection> connection;
     std::vector<Move> moves;
     std::vector<Shown> shown;
+    std::vector<Patch> patches;
     std::int64_t id = 0;
     int connections = 0, retries = 0;
     bool closed = false;
 };
 
-PageClient::PageClient(asio::io_context& context, std::uint16_t port)
-    : impl_(std::make_shared<Impl>(context, port)) {
+PageClient::PageClient(asio::io_context& context, std::uint16_t port, protocol::Role role)
+    : impl_(std::make_shared<Impl>(context, port, role)) {
     impl_->connect();
 }
 
@@ -200,6 +207,7 @@ PageClient::~PageClient() {
 
 const std::vector<PageClient::Move>& PageClient::moves() const { return impl_->moves; }
 const std::vector<PageClient::Shown>& PageClient::shown() const { return impl_->shown; }
+const std::vector<PageClient::Patch>& PageClient::patches() const { return impl_->patches; }
 int PageClient::connections() const { return impl_->connections; }
 
 }  // namespace vrut::stability

@@ -5,13 +5,14 @@
 #include <memory>
 #include <vector>
 
-#include "engine/frame_quality.hpp"
+#include "base/clock.hpp"
+#include "messages.hpp"
 
 namespace vrut::stability {
 
 /// A client as the page is (web-client/connection.js): it takes control, turns the view with one finger that
 /// moves on and on, grants two pictures, gives each grant back when its picture has come, and connects anew
-/// after a loss. On its context's thread.
+/// after a loss. With the role `view` it only listens, and takes no pictures. On its context's thread.
 class PageClient {
 public:
     struct Move {
@@ -26,14 +27,20 @@ public:
         bool moving = false;
     };
 
-    PageClient(boost::asio::io_context& context, std::uint16_t port);
+    struct Patch {
+        server::base::Clock::time_point at;
+        std::int64_t revision = 0;
+    };
+
+    PageClient(boost::asio::io_context& context, std::uint16_t port, protocol::Role role);
     ~PageClient();
     PageClient(const PageClient&) = delete;
     PageClient& operator=(const PageClient&) = delete;
 
-    const std::vector<Move>& moves() const;   ///< of this connection
-    const std::vector<Shown>& shown() const;  ///< of this connection
-    int connections() const;                  ///< that came as far as a state
+    const std::vector<Move>& moves() const;     ///< of this connection
+    const std::vector<Shown>& shown() const;    ///< of this connection
+    const std::vector<Patch>& patches() const;  ///< of this connection
+    int connections() const;                    ///< that came as far as a state
 
 private:
     struct Impl;
