@@ -49,7 +49,11 @@ void SceneLookup::find_next() {
     });
     if (finds_) return;
     for (const Finding& finding : std::exchange(findings_, {}))
-        cannot_find(finding, "a scene cannot be looked for now: no thread can be had");
+        post_->send([=, this] {
+            const auto why =
+                tl::unexpected(std::string("a scene cannot be loaded now: no thread can be had"));
+            on_found_(finding.request, {finding.name, why, false, false});
+        });
 }
 
 void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& path) {

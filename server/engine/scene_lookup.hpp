@@ -30,6 +30,7 @@ public:
         std::string name;
         tl::expected<std::filesystem::path, std::string> path;
         bool answers = true;
+        bool has_thread = true;  ///< else it was not even looked for
     };
     using OnFound = std::function<void(std::int64_t request, const Found& found)>;
 
