@@ -19,7 +19,10 @@ std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, b
     const int sampling = subsampled ? TJSAMP_420 : TJSAMP_444;
     // What the worst picture needs is many times what most take: it is kept for the next, and the file
     // copied.
-    const std::size_t worst = tjBufSize(image.width, image.height, sampling);
+    const unsigned long worst = tjBufSize(image.width, image.height, sampling);
+    if (worst == static_cast<unsigned long>(-1))
+        throw std::runtime_error("a picture of " + std::to_string(image.width) + " x " +
+                                 std::to_string(image.height) + " pixels cannot be encoded as JPEG");
     if (scratch_size_ < worst) {
         scratch_ = std::make_unique_for_overwrite<std::uint8_t[]>(worst);
         scratch_size_ = worst;

@@ -16,11 +16,8 @@ using Counter = std::atomic<std::uint64_t>;
 template <const auto& kWords>
 class Counters {
 public:
-    Counter& operator[](std::string_view word) {
-        std::size_t i = 0;
-        while (i + 1 < kWords.size() && word != kWords[i]) ++i;
-        return counts_[i];
-    }
+    Counter& operator[](std::string_view word) { return counts_[place_of(word)]; }
+    const Counter& operator[](std::string_view word) const { return counts_[place_of(word)]; }
     const Counter& at(std::size_t word) const { return counts_[word]; }
     std::uint64_t sum() const {
         std::uint64_t sum = 0;
@@ -29,6 +26,12 @@ public:
     }
 
 private:
+    static std::size_t place_of(std::string_view word) {
+        std::size_t i = 0;
+        while (i + 1 < kWords.size() && word != kWords[i]) ++i;
+        return i;
+    }
+
     std::array<Counter, kWords.size()> counts_{};
 };
 

@@ -76,6 +76,11 @@ TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in 
     }
 }
 
+TEST_CASE("a picture without pixels is no JPEG, and that is said") {
+    CHECK_THROWS_WITH(JpegEncoder().encode(Image{}, 90, false),
+                      "a picture of 0 x 0 pixels cannot be encoded as JPEG");
+}
+
 TEST_CASE("one pixel, and a line of them, can be encoded") {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 8192}, {8192, 1}}) {
         const Image image = two_halves(width, height);
