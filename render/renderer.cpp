@@ -182,27 +182,12 @@ bool Renderer::step(Rendering& rendering) {
     return impl_->step(rendering);
 }
 
-void Renderer::render(const View& view, Image& image, FrameStats& stats) { render(view, image, stats, {}); }
-
-bool Renderer::render(const View& view, Image& image, FrameStats& stats,
-                      const std::function<bool()>& interrupted, Accumulation* kept) {
+void Renderer::render(const View& view, Image& image, FrameStats& stats) {
     Rendering rendering(view, std::move(image));
-    if (kept && kept->samples > 0 && kept->samples < view.samples &&
-        kept->sums.size() == rendering.sums.size()) {
-        rendering.sums = std::move(kept->sums);
-        rendering.samples = kept->samples;
-    }
-    bool whole = false, given_up = false;
-    while (!whole && !given_up) {
-        const int before = rendering.samples;
-        whole = step(rendering);
-        given_up = !whole && rendering.samples > before && interrupted && interrupted();
+    while (!step(rendering)) {
     }
     image = std::move(rendering.image);
     stats = rendering.stats;
-    if (kept) *kept = {};
-    if (kept && given_up) *kept = {std::move(rendering.sums), rendering.samples};
-    return whole;
 }
 
 void Renderer::take(const View& view) {

@@ -47,12 +47,6 @@ public:
     /// nothing else to do meanwhile.
     void render(const View& view, Image& image, FrameStats& stats);
 
-    /// To be removed once the server calls step(): as render(), but between two samples asks `interrupted`;
-    /// if that says yes the picture is given up and false comes back. With `kept` its samples are left there,
-    /// and the same view given again goes on from them; `kept` is empty after a whole picture.
-    bool render(const View& view, Image& image, FrameStats& stats, const std::function<bool()>& interrupted,
-                Accumulation* kept = nullptr);
-
     /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
     /// is in front of what is seen through it. Rows from the bottom up.
     std::vector<Index> node_ids(const View& view);

@@ -73,12 +73,6 @@ struct View {
     bool operator==(const View&) const = default;
 };
 
-/// Samples of a picture that were drawn before it had to give way: for each byte of the picture their sum.
-struct Accumulation {
-    std::vector<std::uint32_t> sums;
-    int samples = 0;
-};
-
 /// What a picture took.
 struct FrameStats {
     int passes = 0;
