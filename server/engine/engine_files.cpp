@@ -41,12 +41,7 @@ void Engine::handle(const FileWorkDone& done) {
 
 /// Begins to load a scene that was looked for, or says why not.
 std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
-    if (!found.path)
-        return protocol::Error{{},
-                               found.answers      ? code::refused_scene
-                               : found.has_thread ? code::busy
-                                                  : code::failed,
-                               found.path.error()};
+    if (!found.path) return found.path.error();
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     try {
         loader_.start(*found.path, found.name, description_, library_.limits());

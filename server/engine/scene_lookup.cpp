@@ -2,6 +2,8 @@
 
 namespace vrut::server::engine {
 
+namespace code = protocol::error_code;
+
 namespace {
 
 constexpr std::chrono::seconds kBetweenListings{1};
@@ -36,7 +38,7 @@ void SceneLookup::tell_list() {
 
 void SceneLookup::find(std::int64_t request, const std::string& name, base::Clock::time_point now) {
     if (findings_.size() == kMostFindings)
-        return cannot_find({request, name, now}, "too many scenes are being looked for");
+        return cannot_find({request, name, now}, code::busy, "too many scenes are being looked for");
     findings_.push_back({request, name, now + kWaitsForFile});
     if (!finds_) find_next();
 }
@@ -49,11 +51,7 @@ void SceneLookup::find_next() {
     });
     if (finds_) return;
     for (const Finding& finding : std::exchange(findings_, {}))
-        post_->send([=, this] {
-            const auto why =
-                tl::unexpected(std::string("a scene cannot be loaded now: no thread can be had"));
-            on_found_(finding.request, {finding.name, why, false, false});
-        });
+        cannot_find(finding, code::failed, "a scene cannot be loaded now: no thread can be had");
 }
 
 void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& path) {
@@ -61,13 +59,17 @@ void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& 
     if (!findings_.empty() && findings_.front().request == finding_) {
         const Finding found = findings_.front();
         findings_.pop_front();
-        on_found_(found.request, {found.name, path});
+        on_found_(found.request, {found.name, path.map_error([](const std::string& why) {
+                                      return protocol::Error{{}, code::refused_scene, why};
+                                  })});
     }
     find_next();
 }
 
-void SceneLookup::cannot_find(const Finding& finding, const std::string& why) {
-    post_->send([=, this] { on_found_(finding.request, {finding.name, tl::unexpected(why), false}); });
+void SceneLookup::cannot_find(const Finding& finding, const char* code, const std::string& why) {
+    post_->send([=, this] {
+        on_found_(finding.request, {finding.name, tl::unexpected(protocol::Error{{}, code, why})});
+    });
 }
 
 std::optional<base::Clock::time_point> SceneLookup::due() const {
@@ -80,7 +82,7 @@ std::optional<base::Clock::time_point> SceneLookup::due() const {
 void SceneLookup::check(base::Clock::time_point now) {
     if (!list_requests_.empty() && now >= list_until_) tell_list();
     for (; !findings_.empty() && now >= findings_.front().until; findings_.pop_front())
-        cannot_find(findings_.front(), "the folder of scenes does not answer");
+        cannot_find(findings_.front(), code::busy, "the folder of scenes does not answer");
 }
 
 }  // namespace vrut::server::engine

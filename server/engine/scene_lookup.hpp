@@ -25,12 +25,11 @@ public:
         std::function<tl::expected<std::filesystem::path, std::string>(const std::string& name)> find;
     };
     using OnListed = std::function<void(std::int64_t request, const std::vector<std::string>& names)>;
-    /// The file, or why there is none; `answers` is false where it cannot be known.
+    /// The file, or why there is none: `refused-scene`; `busy` where the folder does not answer; `failed`
+    /// where nobody can look.
     struct Found {
         std::string name;
-        tl::expected<std::filesystem::path, std::string> path;
-        bool answers = true;
-        bool has_thread = true;  ///< else it was not even looked for
+        tl::expected<std::filesystem::path, protocol::Error> path;
     };
     using OnFound = std::function<void(std::int64_t request, const Found& found)>;
 
@@ -56,7 +55,7 @@ private:
         std::string name;
         base::Clock::time_point until;
     };
-    void cannot_find(const Finding& finding, const std::string& why);
+    void cannot_find(const Finding& finding, const char* code, const std::string& why);
     void listed(std::vector<std::string> names);
     void find_next();
     void found(const tl::expected<std::filesystem::path, std::string>& path);

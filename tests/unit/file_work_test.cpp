@@ -334,8 +334,8 @@ struct Asked {
               },
               [this](auto request, const auto& answer) {
                   found = request;
-                  path = answer.path ? answer.path->string() : answer.path.error();
-                  answers = answer.answers;
+                  path = answer.path ? answer.path->string() : answer.path.error().message;
+                  code = answer.path ? "" : answer.path.error().code;
               }) {}
     ~Asked() { disk->block(false); }
 
@@ -345,7 +345,7 @@ struct Asked {
     std::pair<std::int64_t, std::size_t> listed;
     std::int64_t found = 0;
     std::string path;
-    bool answers = false;
+    std::string code;
     SceneLookup lookup;
 };
 
@@ -390,7 +390,7 @@ TEST_CASE("a folder that never answers tells an empty list, and finds nothing") 
         asked.results.use_next();
         CHECK(asked.found == request);
         CHECK(asked.path == "the folder of scenes does not answer");
-        CHECK_FALSE(asked.answers);
+        CHECK(asked.code == "busy");
     }
     asked.lookup.find(4, "car.vrut", asked.now + 10s);  // behind the first, which still hangs
     asked.disk->block(false);
@@ -408,11 +408,11 @@ TEST_CASE("scenes are found one after the other, each for its request") {
     asked.results.use_next();
     CHECK(asked.found == 2);
     CHECK(asked.path == "there is no such scene");
-    CHECK(asked.answers);
+    CHECK(asked.code == "refused-scene");
     asked.disk->block(true);
     for (int request = 3; request < 3 + 64; ++request) asked.lookup.find(request, "car.vrut", asked.now);
     asked.lookup.find(99, "car.vrut", asked.now);
     asked.results.use_next();
     CHECK(asked.found == 99);
-    CHECK_FALSE(asked.answers);
+    CHECK(asked.code == "busy");
 }
