@@ -143,7 +143,8 @@ void Engine::begin(const scene::LoadedScene& scene) {
     description_ = painter_.description;
     limits_.max_side = std::min(painter_.max_size, limits_.max_side);
     pixel_budget_ = limits_;
-    use(scene::levels_of(scene.sha256, description_));
+    use(scene::built_in_levels());
+    read_levels(scene);
     room::RoomOptions options;
     connect_files(options);
     room_.emplace(with_notices(scene), std::move(options));

@@ -157,6 +157,7 @@ private:
     void handle_message(const MessageReceived& said, const protocol::ClientMessage& message, Client& client);
     void connect_files(room::RoomOptions& options);
     std::optional<protocol::Error> load(const SceneLookup::Found& found);
+    void read_levels(const scene::LoadedScene& scene);
     std::optional<base::Clock::time_point> files_due() const;
     void check_files();
     room::Time time_of(base::Clock::time_point when) const {

@@ -1,5 +1,6 @@
 // Scenes and recordings: what takes a disk is done elsewhere, and comes back as an event.
 #include "engine/engine.hpp"
+#include "scene/level_store.hpp"
 
 namespace vrut::server::engine {
 
@@ -19,6 +20,16 @@ void Engine::connect_files(room::RoomOptions& options) {
         recordings_.write(recording, std::move(line), base::Clock::now());
     };
     sink.end = [this](std::int64_t recording) { recordings_.end(recording, base::Clock::now()); };
+}
+
+/// The levels of `scene`, which is shown first, as they were measured on this machine.
+void Engine::read_levels(const scene::LoadedScene& scene) {
+    run_file_work(
+        [this, post = file_results_, shown = scene.placed, sha256 = scene.sha256, renderer = description_] {
+            post->send([this, shown, table = scene::levels_of(sha256, renderer)] {
+                if (room_->scene().scene == shown->scene) use(table);
+            });
+        });
 }
 
 std::optional<base::Clock::time_point> Engine::files_due() const {
