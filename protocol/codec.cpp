@@ -2,7 +2,7 @@
 
 #include "client_codec.hpp"
 #include "descriptions.hpp"
-#include "message_types.hpp"
+#include "message_table.hpp"
 
 namespace vrut::protocol {
 
@@ -44,8 +44,8 @@ decltype(ClientMessage::payload) read_payload(const Json& json) {
     const std::string type = read_string(json["type"], "type", kMaxMessageBytes);
     const std::string at_top;
     bool found = false;
-    for_each_client_type([&](const char* name, auto prototype) {
-        if (found || type != name) return;
+    for_each_client_type([&](const MessageTraits& traits, auto prototype) {
+        if (found || type != traits.type) return;
         found = true;
         using Message = decltype(prototype);
         Reader<Message> reader(json, prototype, at_top);
@@ -58,7 +58,7 @@ decltype(ClientMessage::payload) read_payload(const Json& json) {
 
 Json to_json(const ClientMessage& message) {
     Json json = std::visit([](const auto& payload) { return write_struct(payload); }, message.payload);
-    json["type"] = type_of(message.payload);
+    json["type"] = traits_of(message).type;
     if (message.id) json["id"] = *message.id;
     return json;
 }

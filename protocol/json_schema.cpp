@@ -3,7 +3,7 @@
 #include "codec.hpp"
 #include "descriptions.hpp"
 #include "event_log.hpp"
-#include "message_types.hpp"
+#include "message_table.hpp"
 
 namespace vrut::protocol {
 
@@ -29,10 +29,10 @@ void add(Json& defs, const char* group, const std::string& name, Json schema) {
 }
 
 void add_client_messages(Json& defs) {
-    for_each_client_type([&](const char* type, const auto& prototype) {
-        Json schema = with_type(schema_of_struct<std::decay_t<decltype(prototype)>>(), type);
+    for_each_client_type([&](const MessageTraits& traits, const auto& prototype) {
+        Json schema = with_type(schema_of_struct<std::decay_t<decltype(prototype)>>(), traits.type);
         schema["properties"]["id"] = Integer{1, kMaxInteger}.schema();
-        add(defs, "clientMessage", "client" + capitalized(type), std::move(schema));
+        add(defs, "clientMessage", "client" + capitalized(traits.type), std::move(schema));
     });
     defs["clientRecord"]["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]*$";
 }

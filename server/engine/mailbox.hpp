@@ -11,7 +11,7 @@
 
 #include "engine/link.hpp"
 #include "engine/picture.hpp"
-#include "messages.hpp"
+#include "message_table.hpp"
 #include "scene/loader.hpp"
 
 namespace vrut::server::engine {
@@ -35,12 +35,8 @@ struct MessageReceived {
     bool may_steer = true;       ///< else its moves are not merged: each is answered as wrong
     std::uint64_t sequence = 0;  ///< of this client's messages, from 1
 
-    /// Anything but input and grants, of which there may be thousands a second.
     bool is_request() const {
-        return !message || !(std::holds_alternative<protocol::Pointer>(message->payload) ||
-                             std::holds_alternative<protocol::Wheel>(message->payload) ||
-                             std::holds_alternative<protocol::Key>(message->payload) ||
-                             std::holds_alternative<protocol::FrameGrant>(message->payload));
+        return !message || protocol::traits_of(*message).weight == protocol::Weight::request;
     }
 };
 

@@ -8,7 +8,19 @@
 namespace vrut::server::room {
 
 using protocol::Role;
+using protocol::Senders;
+using protocol::Steers;
 namespace code = protocol::error_code;
+
+namespace {
+
+bool includes(Senders senders, Role role) {
+    if (role == Role::control) return senders != Senders::host;
+    if (role == Role::host) return senders != Senders::control;
+    return senders == Senders::all;
+}
+
+}  // namespace
 
 Room::Room(scene::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
@@ -42,8 +54,10 @@ void Room::leave(const std::string& client, Time at) {
 bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, Time at) {
     if (!clients_.contains(client)) return false;  // it has left
     const Said said{client, message};
-    return handle(said, at,
-                  [&] { std::visit([&](const auto& payload) { apply(said, payload); }, message.payload); });
+    return handle(said, at, [&] {
+        if (may_send(said, said.traits.senders) && (said.traits.steers != Steers::yes || may_steer(said)))
+            std::visit([&](const auto& payload) { apply(said, payload); }, message.payload);
+    });
 }
 
 template <class Apply>
@@ -56,7 +70,7 @@ bool Room::handle(const Said& said, Time at, Apply apply) {
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     visible_ = view_of(state_, scene_);
-    if (accepted_ && recorded) record(said.client, said.message);
+    if (accepted_ && recorded && said.traits.recorded) record(said.client, said.message);
     return accepted_;
 }
 
@@ -167,8 +181,6 @@ void Room::apply(const Said& said, const protocol::Resize& resize) {
 }
 
 void Room::apply(const Said& said, const protocol::Control& control) {
-    if (clients_[said.client].role != Role::control)
-        return reject(said, code::not_allowed, "only the role 'control' takes and releases control");
     if (control.action == protocol::Control::Action::take) {
         steering_.take(said.client, time_);
         hold(said.client);
@@ -179,8 +191,6 @@ void Room::apply(const Said& said, const protocol::Control& control) {
 }
 
 void Room::apply(const Said& said, const protocol::Shown& shown) {
-    if (clients_[said.client].role != Role::host)
-        return reject(said, code::not_allowed, "only the role 'host' reports what its walls show");
     if (!options_.replaying && shown.revision > document()->revision())
         return reject(said, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
@@ -205,22 +215,18 @@ void Room::reject(const std::string& client, const protocol::Error& error) {
 
 // --- who steers
 
-bool Room::may_steer(const Said& said) {
+bool Room::may_send(const Said& said, Senders senders) {
     Client& client = clients_[said.client];
-    const Role role = client.role;
-    const auto& payload = said.message.payload;
-    // A watcher's fingers are no error worth a line each.
-    const bool input = std::holds_alternative<protocol::Pointer>(payload) ||
-                       std::holds_alternative<protocol::Wheel>(payload) ||
-                       std::holds_alternative<protocol::Key>(payload);
-    const bool quiet = input && !said.message.id;
-    if (role == Role::view || (role == Role::host && !std::holds_alternative<protocol::Patch>(payload))) {
-        if (!quiet || !std::exchange(client.knows_not_allowed, true))
-            reject(said, code::not_allowed, std::string("the role '") + name_of(role) + "' may not do this");
-        return false;
-    }
+    if (includes(senders, client.role)) return true;
+    if (!said.is_input() || !std::exchange(client.knows_not_allowed, true))
+        reject(said, code::not_allowed,
+               std::string("the role '") + name_of(client.role) + "' may not do this");
+    return false;
+}
+
+bool Room::may_steer(const Said& said) {
     if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
-    if (!quiet) reject(said, code::not_in_control, "another client is in control");
+    if (!said.is_input()) reject(said, code::not_in_control, "another client is in control");
     return false;
 }
 

@@ -13,7 +13,7 @@
 #include "flight.hpp"
 #include "frame_header.hpp"
 #include "gestures.hpp"
-#include "messages.hpp"
+#include "message_table.hpp"
 #include "picking.hpp"
 #include "room/recording.hpp"
 #include "room/scene_state.hpp"
@@ -124,6 +124,9 @@ private:
     struct Said {
         const std::string& client;
         const protocol::ClientMessage& message;
+        protocol::MessageTraits traits = protocol::traits_of(message);
+        /// Of a finger or a key: it is no error worth an answer each.
+        bool is_input() const { return traits.weight == protocol::Weight::stream && !message.id; }
     };
     struct InFlight {
         Flight path;
@@ -170,6 +173,8 @@ private:
     void reject(const Said& said, const char* code, const std::string& sentence);
 
     // --- who steers
+    /// Whether its client's role is one of these; else it is refused.
+    bool may_send(const Said& said, protocol::Senders senders);
     /// Whether this message may steer; else it is refused.
     bool may_steer(const Said& said);
     /// The message steers: its client holds control.

@@ -8,7 +8,6 @@
 
 namespace vrut::server::room {
 
-using protocol::Role;
 namespace code = protocol::error_code;
 
 namespace {
@@ -39,7 +38,7 @@ void Room::apply(const Said& said, const protocol::Pointer& pointer) {
     // A third finger drags nothing, but its release counts.
     const bool known = press || gestures_.is_pressed(said.client, pointer.pointer_id) ||
                        clicks_.is_pressed(said.client, pointer.pointer_id);
-    if ((!known && clients_[said.client].role == Role::control) || !may_steer(said)) return;
+    if (!known || !may_steer(said)) return;
     steer(said);
     const PointerInput input = input_of(said.client, pointer);
     const NavigationContext context = navigation_context();
@@ -53,7 +52,6 @@ void Room::apply(const Said& said, const protocol::Pointer& pointer) {
 }
 
 void Room::apply(const Said& said, const protocol::Wheel& wheel) {
-    if (!may_steer(said)) return;
     steer(said);
     const WheelInput input{wheel.delta_y, static_cast<WheelInput::Unit>(wheel.delta_mode)};
     move_camera(vrut::wheel(input, camera(), navigation_context()));
@@ -66,7 +64,6 @@ void Room::apply(const Said& said, const protocol::Key& key) {
         accepted_ = steering_.holder() == said.client;
         return gestures_.key_up(said.client, input);
     }
-    if (!may_steer(said)) return;
     const bool flew = flies();
     steer(said);
     gestures_.key_down(said.client, input);
@@ -88,7 +85,7 @@ void Room::apply(const Said& said, const protocol::Key& key) {
 
 void Room::apply(const Said& said, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
-    if (pick.then && !may_steer(said)) return;
+    if (pick.then && !(may_send(said, protocol::Senders::control) && may_steer(said))) return;
     const Frame* named = pick.frame ? find_frame(*pick.frame) : nullptr;
     if (pick.frame && !named)
         return reject(said, code::unknown_frame,

@@ -22,7 +22,6 @@ template void Room::answer_with(const Said&, const protocol::Picked&);
 template void Room::answer_with(const Said&, const protocol::SceneList&);
 
 void Room::apply(const Said& said, const protocol::Navigate& navigate) {
-    if (!may_steer(said)) return;
     steer(said);
     Camera moved = rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
     moved = panned(moved, navigate.pan.x, navigate.pan.y);
@@ -31,7 +30,6 @@ void Room::apply(const Said& said, const protocol::Navigate& navigate) {
 }
 
 void Room::apply(const Said& said, const protocol::Fit& fit) {
-    if (!may_steer(said)) return;
     Bounds bounds = scene_->bounds;
     if (fit.node) {
         const Index node = scene_->scene->find_node(*fit.node);
@@ -67,7 +65,6 @@ tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly
 }  // namespace
 
 void Room::apply(const Said& said, const protocol::Fly& fly) {
-    if (!may_steer(said)) return;
     auto keyframes = keyframes_of(fly, camera(), *scene_);
     if (!keyframes) return reject(said, keyframes.error().code.c_str(), keyframes.error().message);
     const Camera before = camera();
@@ -127,7 +124,6 @@ void Room::apply(const Said& said, const protocol::Tree& tree) {
 // --- scenes
 
 void Room::apply(const Said& said, const protocol::Open& open) {
-    if (!may_steer(said)) return;
     if (options_.load) return options_.load(answer_later(said), open.scene);
     steer(said);
     answer(said);
