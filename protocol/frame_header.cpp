@@ -22,6 +22,30 @@ std::string encode(const FrameHeader& header) {
     return text;
 }
 
+EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header) : header_(header) {
+    header_.handled = 0;
+    header_.timing.since_input_ms = 0;
+    // Quotes within a name are escaped, so that neither of the two stands elsewhere.
+    const std::string text = dump(write_struct(header_)),
+                      handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
+    const std::size_t first = text.find(handled + "0,") + handled.size(),
+                      second = text.find(since_input, first);
+    before_handled_ = text.substr(0, first);
+    before_since_input_ = text.substr(first + 1, second - first - 1);
+    rest_ = text.substr(second + since_input.size());
+}
+
+std::string EncodedFrameHeader::with(std::int64_t handled, std::optional<double> since_input_ms) const {
+    std::string text = before_handled_ + std::to_string(handled) + before_since_input_;
+    if (since_input_ms) text += ",\"sinceInputMs\":" + dump(Json(*since_input_ms));
+    text += rest_;
+    if (text.size() <= kLongestComment) return text;
+    FrameHeader shorter = header_;
+    shorter.handled = handled;
+    shorter.timing.since_input_ms = since_input_ms;
+    return encode(shorter);
+}
+
 std::size_t comment_offset(std::span<const std::uint8_t> jpeg) {
     constexpr std::size_t kStart = 2;  // SOI
     if (jpeg.size() < kStart + 4 || jpeg[2] != 0xFF || jpeg[3] != 0xE0) return kStart;

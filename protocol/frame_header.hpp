@@ -40,6 +40,19 @@ struct FrameHeader {
 /// At most 65,533 bytes: where it would be longer, `markers` are left out, and then a camera's name.
 std::string encode(const FrameHeader& header);
 
+/// A header that is encoded once for all clients but for what differs among them.
+class EncodedFrameHeader {
+public:
+    EncodedFrameHeader() = default;
+    explicit EncodedFrameHeader(const FrameHeader& header);
+    /// As encode() of the header with these two of a client.
+    std::string with(std::int64_t handled, std::optional<double> since_input_ms) const;
+
+private:
+    FrameHeader header_;
+    std::string before_handled_, before_since_input_, rest_;
+};
+
 /// Where in a JPEG file a COM segment goes: behind SOI and the JFIF APP0.
 std::size_t comment_offset(std::span<const std::uint8_t> jpeg);
 /// The COM segment that holds `text` (at most 65,533 bytes).

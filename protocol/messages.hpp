@@ -18,6 +18,7 @@ namespace vrut::protocol {
 inline constexpr int kVersion = 1;
 inline constexpr const char* kSubprotocol = "vrut-preview.v1";
 inline constexpr std::size_t kMaxMessageBytes = 65'536;
+inline constexpr std::size_t kMaxServerMessageBytes = std::size_t{64} << 20;
 inline constexpr int kMaxDepth = 32;
 inline constexpr int kMaxGrants = 2;
 inline constexpr std::size_t kMaxSceneName = 1000;  ///< bytes
@@ -188,7 +189,7 @@ struct Limits {
     int max_grants = kMaxGrants;
     std::int64_t max_pixels = 0;
     int messages_per_second = 0;
-    std::size_t max_server_message = 0;
+    std::size_t max_server_message = kMaxServerMessageBytes;
 };
 
 struct Welcome {

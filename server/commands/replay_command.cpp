@@ -77,20 +77,18 @@ public:
         Image image;
         FrameStats stats;
         renderer_.render(view, image, stats);
-        engine::EncodedPicture encoded;
-        encoded.header = room::header_of(room.state(), view, room.view_size());
-        encoded.header.frame = frame;
-        encoded.header.quality = quality;
-        encoded.header.quality.samples = view.samples;
-        encoded.header.timing.render_ms = stats.render_ms;
-        encoded.file = jpeg_.encode(image, quality.jpeg_quality, false);
-        const std::vector<std::uint8_t> header = engine::header_of_file(encoded, encoded.header);
-        encoded.file.insert(
-            encoded.file.begin() + static_cast<std::ptrdiff_t>(protocol::comment_offset(encoded.file)),
-            header.begin(), header.end());
+        protocol::FrameHeader header = room::header_of(room.state(), view, room.view_size());
+        header.frame = frame;
+        header.quality = quality;
+        header.quality.samples = view.samples;
+        header.timing.render_ms = stats.render_ms;
+        std::vector<std::uint8_t> file = jpeg_.encode(image, quality.jpeg_quality, false);
+        const std::vector<std::uint8_t> comment = protocol::comment_segment(protocol::encode(header));
+        file.insert(file.begin() + static_cast<std::ptrdiff_t>(protocol::comment_offset(file)),
+                    comment.begin(), comment.end());
         char name[40];
         std::snprintf(name, sizeof name, "frame-%06lld.jpg", static_cast<long long>(frame));
-        base::write_file(folder_ / name, encoded.file);
+        base::write_file(folder_ / name, file);
     }
 
 private:

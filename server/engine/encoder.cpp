@@ -8,6 +8,9 @@ namespace vrut::server::engine {
 
 namespace {
 
+// With its header it is no longer than a message may be.
+constexpr std::size_t kLargestPicture = protocol::kMaxServerMessageBytes - 65'600;
+
 /// A picture that is counted as long as anybody holds it.
 std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
     const std::uint64_t held = ++metrics.pictures_held;
@@ -23,10 +26,10 @@ std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
 
 }  // namespace
 
-std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header) {
-    const std::string text = protocol::encode(header);
-    return picture.format == protocol::ImageFormat::png ? png_text_chunk(text)
-                                                        : protocol::comment_segment(text);
+std::vector<std::uint8_t> EncodedPicture::header_of_file(std::int64_t handled,
+                                                         std::optional<double> since_input_ms) const {
+    const std::string text = encoded_header.with(handled, since_input_ms);
+    return format == protocol::ImageFormat::png ? png_text_chunk(text) : protocol::comment_segment(text);
 }
 
 Encoder::Encoder(observe::Metrics& metrics,
@@ -85,10 +88,14 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& i
         encoded->header_offset = protocol::comment_offset(encoded->file);
     }
     metrics_.bytes_held += encoded->file.capacity();
+    if (encoded->file.size() > kLargestPicture)
+        throw std::runtime_error("it takes " + std::to_string(encoded->file.size()) +
+                                 " bytes, more than a message of this server may (maxServerMessage)");
+    double& encode_ms = picture.header.timing.encode_ms;
+    encode_ms = std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();
+    metrics_.encode.observe(encode_ms / 1000);
+    encoded->encoded_header = protocol::EncodedFrameHeader(picture.header);
     static_cast<Picture&>(*encoded) = std::move(picture);
-    encoded->header.timing.encode_ms =
-        std::chrono::duration<double, std::milli>(base::Clock::now() - start).count();
-    metrics_.encode.observe(encoded->header.timing.encode_ms / 1000);
     ++metrics_.frames_encoded;
     metrics_.bytes_encoded += encoded->file.size();
     return encoded;

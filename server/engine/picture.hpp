@@ -31,9 +31,11 @@ struct Picture {
 struct EncodedPicture : Picture {
     std::vector<std::uint8_t> file;
     std::size_t header_offset = 0;  ///< where the header of each client goes
-};
+    protocol::EncodedFrameHeader encoded_header = {};
 
-/// `header` as it stands in the picture's file, at header_offset.
-std::vector<std::uint8_t> header_of_file(const EncodedPicture& picture, const protocol::FrameHeader& header);
+    /// The header as it stands in the file, at header_offset, with these two of a client.
+    std::vector<std::uint8_t> header_of_file(std::int64_t handled,
+                                             std::optional<double> since_input_ms) const;
+};
 
 }  // namespace vrut::server::engine

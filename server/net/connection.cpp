@@ -60,7 +60,7 @@ const char* reason_of(beast::error_code error) {
 const char* reason_of(const protocol::Error& error, close_code code) {
     if (error.code == protocol::error_code::not_allowed) return "token";
     if (code == close_code::try_again_later) return "too-many";
-    if (code == close_code::too_big) return "too-large";
+    if (code == close_code::too_big || code == close_code::internal_error) return "too-large";
     if (code == close_code::bad_payload) return "protocol";
     return code == close_code::unknown_data ? "binary" : "hello";
 }
@@ -257,7 +257,6 @@ void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64
     welcome.role = *role;
     welcome.limits.max_pixels = registry_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = kMessagesPerSecond;
-    welcome.limits.max_server_message = std::size_t{64} << 20;
     answer({client_, protocol::encode(welcome), 0});
 }
 
@@ -397,7 +396,8 @@ void Connection::on_close_frame(std::uint16_t code) {
 }
 
 bool Connection::has_updates() const {
-    return !client_.empty() && registry_.document && (document_ != registry_.document || has_broadcasts());
+    return !client_.empty() && registry_.document.newest() &&
+           (document_ != registry_.document.newest() || has_broadcasts());
 }
 
 bool Connection::has_broadcasts() const { return loading_ != registry_.loading || stats_ != registry_.stats; }
@@ -406,7 +406,7 @@ bool Connection::has_broadcasts() const { return loading_ != registry_.loading |
 /// unless the others have waited for long.
 void Connection::send_update(base::Clock::time_point now) {
     const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
-    if (document_ != registry_.document && !waits) return send_document();
+    if (document_ != registry_.document.newest() && !waits) return send_document();
     had_broadcasts_ = now;
     for (const auto& [newest, sent] :
          {std::pair(&registry_.loading, &loading_), std::pair(&registry_.stats, &stats_)})
@@ -427,13 +427,18 @@ void Connection::send_answer() {
 }
 
 void Connection::send_document() {
-    const auto before = std::exchange(document_, registry_.document);
-    const bool one_author = before && before->revision() + 1 >= registry_.document_by_since;
-    std::string text = before && document_->has_scene_of(*before)
-                           ? document_->encode_patch_from(*before, one_author ? registry_.document_by : "")
-                           : document_->encode();
-    flow_.sent_update(text.size(), base::Clock::now());
-    send_text(held_text(std::move(text), *registry_.metrics));
+    Text update = registry_.document.update_from(document_.get(), *registry_.metrics);
+    if (update->size() > protocol::kMaxServerMessageBytes)
+        return reject_and_close(
+            {{},
+             protocol::error_code::failed,
+             "the scene's state takes " + std::to_string(update->size()) + " bytes, more than the " +
+                 std::to_string(protocol::kMaxServerMessageBytes) +
+                 " of a message (maxServerMessage): a scene with fewer or shorter names is needed"},
+            close_code::internal_error);
+    document_ = registry_.document.newest();
+    flow_.sent_update(update->size(), base::Clock::now());
+    send_text(std::move(update));
 }
 
 void Connection::send_ping(base::Clock::time_point now) {
@@ -448,28 +453,27 @@ void Connection::send_ping(base::Clock::time_point now) {
 void Connection::send_frame() {
     picture_ = registry_.newest;
     last_frame_ = picture_->header.frame;
-    protocol::FrameHeader header = picture_->header;
     const auto applied = picture_->applied.find(client_);
     // A snapshot may have told of more.
     if (applied != picture_->applied.end()) handled_ = std::max(handled_, applied->second.id);
-    header.handled = handled_;
+    std::optional<double> since_input_ms;
     if (picture_->newest_input)
-        header.timing.since_input_ms =
+        since_input_ms =
             std::chrono::duration<double, std::milli>(base::Clock::now() - *picture_->newest_input).count();
     if (picture_->newest_input > shown_input_) {
         inputs_[last_frame_] = *picture_->newest_input;
         if (inputs_.size() > kInputsRemembered) inputs_.erase(inputs_.begin());
         shown_input_ = *picture_->newest_input;
-        registry_.metrics->input_to_frame.observe(*header.timing.since_input_ms / 1000);
+        registry_.metrics->input_to_frame.observe(*since_input_ms / 1000);
     }
     ++registry_.metrics->frames_sent;
     observe::log_debug("frame_sent", {{"client", client_},
                                       {"frame", last_frame_},
                                       {"bytes", picture_->file.size()},
-                                      {"ms", header.timing.since_input_ms.value_or(0)}});
+                                      {"ms", since_input_ms.value_or(0)}});
     const base::Clock::time_point now = base::Clock::now();
     flow_.sent_frame(last_frame_, picture_->file.size(), now);
-    send_picture(header);
+    send_picture(since_input_ms);
     ask_for_frames(now);
 }
 
@@ -479,14 +483,13 @@ void Connection::send_snapshot() {
     snapshots_.pop_front();
     ++registry_.metrics->snapshots_sent;
     registry_.engine->mailbox().push(engine::SnapshotSent{client_});
-    protocol::FrameHeader header = picture_->header;
-    header.handled = handled_ = std::max(handled_, header.handled);
+    handled_ = std::max(handled_, picture_->header.handled);
     flow_.sent(picture_->file.size(), base::Clock::now());
-    send_picture(header);
+    send_picture(picture_->header.timing.since_input_ms);
 }
 
-void Connection::send_picture(const protocol::FrameHeader& header) {
-    header_ = engine::header_of_file(*picture_, header);
+void Connection::send_picture(std::optional<double> since_input_ms) {
+    header_ = picture_->header_of_file(handled_, since_input_ms);
     const auto& file = picture_->file;
     const std::size_t cut = picture_->header_offset;
     socket_.binary(true);
@@ -515,6 +518,8 @@ void Connection::on_written(beast::error_code error) {
     writing_ = sends_queued_ = false;
     picture_.reset();
     text_.reset();
+    // Beast is closing for what it has read; the read ends when the peer knows why.
+    if (error == boost::asio::error::operation_aborted && reading_) return;
     if (error) return drop(error == boost::asio::error::timed_out ? "stuck" : "gone");
     pump();
     read();

@@ -37,7 +37,7 @@ public:
     // What the engine says.
     void answer(room::Answer answer);
     void handled(const engine::EngineOutput::Handled& handled);
-    /// The hub has a newer picture than `before`.
+    /// The newest frame is another than `before`, its number.
     void newest_changed(std::int64_t before);
     /// A picture that this client asked for.
     void take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture);
@@ -71,7 +71,7 @@ private:
     void ask_again(base::Clock::time_point now);
     void send_frame();
     void send_snapshot();
-    void send_picture(const protocol::FrameHeader& header);
+    void send_picture(std::optional<double> since_input_ms);
     void send_update(base::Clock::time_point now);
     void send_document();
     void send_answer();

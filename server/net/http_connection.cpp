@@ -188,16 +188,16 @@ private:
                 refusal(http::status::bad_request,
                         "'width' and 'height' must be given together, as numbers from 1, of at most " +
                             std::to_string(limits.max_pixels) + " pixels"));
-        ViewPictureKey key{registry_.document ? registry_.document->revision() : 0, registry_.size,
-                           registry_.size};
+        ViewPictureKey key{registry_.document.newest() ? registry_.document.newest()->revision() : 0,
+                           registry_.size, registry_.size};
         if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
         const std::string tag = registry_.pictures.tag(key);
-        if (registry_.document && names_tag(view(request[http::field::if_none_match]), tag))
+        if (registry_.document.newest() && names_tag(view(request[http::field::if_none_match]), tag))
             return send({http::status::not_modified, "image/jpeg", nullptr, "ETag: " + tag + "\r\n"});
         if (const ViewPicture* kept = registry_.pictures.find(key)) return send_file(*kept);
         if (head_only_)
             return send({http::status::ok, "image/jpeg", nullptr,
-                         registry_.document ? "ETag: " + tag + "\r\n" : std::string{}});
+                         registry_.document.newest() ? "ETag: " + tag + "\r\n" : std::string{}});
         deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
         const bool asked = registry_.pictures.ask(
             key,

@@ -15,7 +15,7 @@ std::optional<std::string> why_unhealthy(const ConnectionRegistry& registry) {
 std::optional<std::string> why_unready(const ConnectionRegistry& registry) {
     if (registry.stopping) return "the server is shutting down";
     // The engine hands over its first document when a first picture has been drawn.
-    if (!registry.document) return "no scene is drawn yet";
+    if (!registry.document.newest()) return "no scene is drawn yet";
     if (!registry.engine->draws()) return "the graphics driver is being started again";
     return std::nullopt;
 }

@@ -12,15 +12,6 @@ constexpr std::size_t kMostHeld = std::size_t{256} << 20;  // bytes
 
 }  // namespace
 
-Text held_text(std::string text, observe::Metrics& metrics) {
-    Text counted(new std::string(std::move(text)), [&metrics](const std::string* held) {
-        metrics.bytes_held -= held->capacity();
-        delete held;
-    });
-    metrics.bytes_held += counted->capacity();
-    return counted;
-}
-
 void bound_backlog(ConnectionRegistry& registry) {
     std::size_t held = registry.metrics->bytes_held;
     if (held <= kMostHeld) return;

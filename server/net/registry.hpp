@@ -11,18 +11,13 @@
 #include "net/access.hpp"
 #include "net/connection_limit.hpp"
 #include "net/deadlines.hpp"
+#include "net/document_updates.hpp"
 #include "net/view_pictures.hpp"
 #include "observe/metrics.hpp"
-#include "state.hpp"
 
 namespace vrut::server::net {
 
 class Connection;
-
-/// A message on its way to clients.
-using Text = std::shared_ptr<const std::string>;
-/// Counts as held (Metrics::bytes_held) as long as anybody has it.
-Text held_text(std::string text, observe::Metrics& metrics);
 
 /// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
 struct ConnectionRegistry {
@@ -33,9 +28,7 @@ struct ConnectionRegistry {
     std::optional<ConnectionLimit> limit;  ///< of connections of any kind
     observe::Metrics* metrics = nullptr;
     engine::Engine* engine = nullptr;
-    std::shared_ptr<const protocol::StateDocument> document;
-    std::string document_by;  ///< who made it and the revisions before it, down to document_by_since
-    std::int64_t document_by_since = 0;
+    DocumentUpdates document;
     std::shared_ptr<const engine::EncodedPicture> newest;
     std::int64_t present_frame = 0;  ///< the frame that shows what is to be seen now; 0: none
     std::shared_ptr<const std::string> stats, loading;  ///< the newest messages for all

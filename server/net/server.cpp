@@ -116,10 +116,8 @@ struct Server::Impl {
 
     void take(engine::EngineOutput output) {
         if (output.document) {
-            registry.document = std::move(output.document);
-            registry.document_by = std::move(output.by);
-            registry.document_by_since = output.by_since;
-            registry.pictures.forget_before(registry.document->revision());
+            registry.document.set(std::move(output.document), std::move(output.by), output.by_since);
+            registry.pictures.forget_before(registry.document.newest()->revision());
         }
         if (output.stats) registry.stats = std::move(output.stats);
         if (output.loading) {

@@ -7,7 +7,8 @@ namespace vrut::server::net {
 namespace {
 
 std::string whole_file(const engine::EncodedPicture& picture) {
-    const std::vector<std::uint8_t> header = engine::header_of_file(picture, picture.header);
+    const std::vector<std::uint8_t> header =
+        picture.header_of_file(picture.header.handled, picture.header.timing.since_input_ms);
     const auto cut = picture.file.begin() + static_cast<std::ptrdiff_t>(picture.header_offset);
     std::string file;
     file.reserve(picture.file.size() + header.size());

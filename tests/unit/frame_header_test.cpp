@@ -6,6 +6,26 @@
 
 using namespace vrut::protocol;
 
+TEST_CASE("a header that is encoded once says the same as one that is encoded for its client") {
+    FrameHeader header;
+    header.markers["\"handled\":0,"] = {1, 2, 3};
+    header.camera.pose.name = ",\"sinceInputMs\":0.0";
+    const auto both = [&](std::int64_t handled, std::optional<double> since_input_ms) {
+        const EncodedFrameHeader encoded(header);
+        header.handled = handled;
+        header.timing.since_input_ms = since_input_ms;
+        CHECK(encoded.with(handled, since_input_ms) == encode(header));
+    };
+    both(0, {});
+    both(17, 2.5);
+    both(kMaxInteger, 0);
+    header.camera.pose.name =
+        std::string(65'000, 'x');  // the longest with a small number, without the markers
+    both(9, {});
+    header.camera.pose.name = std::string(70'000, 'x');
+    both(3, 1e-9);
+}
+
 TEST_CASE("the header says what the contract asks for") {
     FrameHeader header;
     header.frame = 3;
