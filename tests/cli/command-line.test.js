@@ -220,6 +220,21 @@ test('beyond this machine a token is made, and printed with a code to scan', asy
   server.kill('SIGKILL');
 });
 
+test('a start where too few threads can be had is told in a sentence', (t) => {
+  // The limit holds for who is not root, and who is not may not reach the program by its path.
+  if (process.getuid() !== 0) return t.skip('only root can become another user');
+  const program = fs.openSync(PROGRAM, 'r');
+  const nobody = '65534';
+  const result = spawnSync(
+    'prlimit',
+    ['--nproc=5', 'setpriv', '--reuid', nobody, '--regid', nobody, '--clear-groups', '/proc/self/fd/3', 'serve'],
+    { stdio: ['ignore', 'pipe', 'pipe', program], encoding: 'utf8', timeout: 20_000 },
+  );
+  fs.closeSync(program);
+  assert.equal(result.status, 1, result.stderr);
+  assert.match(result.stderr, /^vrut-preview: only \d+ threads can be had, and \d+ are needed: raise the limit \(ulimit -u\)\n$/);
+});
+
 test('a port that is taken is told in a sentence', async () => {
   const { server, ready } = serve('--listen', '127.0.0.1:0');
   const [, port] = /:(\d+)\//.exec(await ready);
