@@ -197,3 +197,24 @@ TEST_CASE("what waits for clients that read nothing is bounded for all of them t
     CHECK(cut < kClients);
     if (kMemoryTells) CHECK(most - memory < 512);
 }
+
+TEST_CASE("clients who join a large state and do not read it hold it once") {
+    constexpr unsigned kClients = 12;
+    const std::string name(60'000, 'x');
+    std::string scene = "vrut-text 1\n";
+    for (int i = 1; i <= 700; ++i)
+        scene += "node " + std::to_string(i) + " \"" + name + "\" camera eye 0 0 5 end\n";
+    TestServer server(scene_of(scene), FakePainter{}.factory(), roomy());
+    std::vector<RawSocket> stalled;
+    for (unsigned i = 0; i < kClients; ++i) stalled.push_back(standing_client(server.port(), 500 + i));
+    const Metrics& metrics = server.metrics();
+    std::uint64_t most = 0;
+    // Each has its welcome, and is being sent the state.
+    CHECK(eventually([&] {
+        most = std::max<std::uint64_t>(most, metrics.bytes_held);
+        return metrics.bytes_sent >= kClients * 700 * name.size();
+    }));
+    MESSAGE("held: " << most << " bytes");
+    CHECK(most < 2 * 700 * name.size());
+    CHECK(metrics.clients_left == 0);
+}
