@@ -23,8 +23,8 @@ struct Shared {
     bool operator==(const Shared&) const = default;
 };
 
-/// Entries by name. Copies share them until they are set anew, so that a copy, and a comparison with it, cost
-/// the same for any number.
+/// Entries by name. A copy shares them until one of the two changes: copying, and comparing with a copy, take
+/// the same time for any number of entries.
 template <class T>
 class SharedMap {
 public:
