@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../unit/environment_variable.hpp"
-#include "../unit/temporary_folder.hpp"
+#include "environment_variable.hpp"
 #include "scene/import_process.hpp"
 #include "scene/library.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

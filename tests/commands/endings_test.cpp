@@ -7,8 +7,8 @@
 #include <csignal>
 #include <fstream>
 
-#include "../unit/temporary_folder.hpp"
 #include "program.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut::test;
