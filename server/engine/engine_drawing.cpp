@@ -239,8 +239,8 @@ void Engine::draw_snapshot() {
     if (drawn == Drawn::lost && ++snapshot.losses == kMostLosses)
         return reject(snapshot, "the graphics driver is lost whenever this picture is drawn");
     // Behind those of others, before further ones of its own client.
-    const auto own = std::find_if(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& other) {
-        return other.order.client == snapshot.order.client;
+    const auto own = std::stable_partition(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& other) {
+        return other.order.client != snapshot.order.client;
     });
     snapshots_.insert(own, std::move(snapshot));
 }

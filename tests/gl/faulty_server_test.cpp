@@ -2,10 +2,10 @@
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
-#include "../unit/temporary_folder.hpp"
 #include "gl_faults.hpp"
 #include "handles.hpp"
 #include "scene/import_process.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -22,7 +22,7 @@ export const ROWS = [
   {
     what: 'position and depth of a scene',
     studies: ['positions', 'depth'],
-    tests: [['tests/unit/state_test.cpp', 'each member of the state: types and ranges']],
+    tests: [['tests/protocol/state_test.cpp', 'each member of the state: types and ranges']],
     holds: (positions, depth) =>
       `${power(positions.to)} times its size from the origin ${off(positions)}; with far / near up to ${power(depth.to)}, surfaces ${power(depth.bound)} of their distance apart keep their order`,
     beyond: 'positions beyond ±10³⁰ are rejected',
@@ -125,7 +125,7 @@ export const ROWS = [
   {
     what: 'graphics driver and its memory',
     tests: [
-      ['tests/net/recovery_test.cpp', 'a driver that resets itself in the midst of a drag costs a picture, and nobody anything else'],
+      ['tests/engine/recovery_test.cpp', 'a driver that resets itself in the midst of a drag costs a picture, and nobody anything else'],
       ['tests/gl/short_memory_test.cpp', 'whatever does not fit, a picture is whole or told not to be, and the next one is whole'],
     ],
     holds: () => 'the server creates a lost context again within seconds',

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "near.hpp"
+
 using namespace vrut;
 
 namespace {
@@ -12,10 +14,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double degrees(double value) { return value * std::numbers::pi / 180; }
-
-bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
-    return glm::distance(a, b) <= tolerance;
-}
 
 /// Where the camera sees a point: right and up in halves of the view's height, and how far along the view.
 glm::dvec3 seen(const Camera& camera, const glm::dvec3& point) {

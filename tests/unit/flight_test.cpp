@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "near.hpp"
+
 using namespace vrut;
 
 namespace {
@@ -29,10 +31,6 @@ double azimuth_of(const Camera& camera) {
     return degrees(std::atan2(out.x, out.z));
 }
 double elevation_of(const Camera& camera) { return degrees(std::asin(-view_direction(camera).y)); }
-
-bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
-    return glm::distance(a, b) <= tolerance;
-}
 
 class Random {
 public:

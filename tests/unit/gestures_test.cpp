@@ -8,6 +8,7 @@
 
 #include "clicks.hpp"
 #include "keys.hpp"
+#include "near.hpp"
 
 using namespace vrut;
 
@@ -22,15 +23,12 @@ using Operation = DragOperation;
 constexpr unsigned kLeft = 1, kRight = 2, kMiddle = 4;
 constexpr ModifierKeys kAlt{true, false, false, false};
 
-bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
-    return glm::distance(a, b) <= tolerance;
-}
 bool near(const glm::dvec2& a, const glm::dvec2& b, double tolerance = 1e-9) {
     return glm::distance(a, b) <= tolerance;
 }
 bool near(const Camera& a, const Camera& b) {
-    return near(a.eye, b.eye) && near(a.focus, b.focus) && near(a.up, b.up) && near(a.center, b.center) &&
-           a.fov == b.fov;
+    return ::near(a.eye, b.eye) && ::near(a.focus, b.focus) && ::near(a.up, b.up) &&
+           ::near(a.center, b.center) && a.fov == b.fov;
 }
 
 /// A view of 1280x720 with the eye at (0, 0, 5), the focus at the origin, and hands on it.

@@ -5,6 +5,7 @@
 
 #include "osb_builder.hpp"
 #include "osb_scene.hpp"
+#include "scene_queries.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut;
@@ -26,19 +27,6 @@ Scene read_well(const B& file) {
 std::string error_of(const std::string& bytes) {
     const auto parts = read_osb_parts(bytes, "x.osb");
     return parts ? "" : parts.error();
-}
-
-const Node& node_of(const Scene& scene, const std::string& name) {
-    for (const Node& node : scene.nodes())
-        if (node.name == name) return node;
-    FAIL("no node " << name);
-    return scene.nodes()[0];
-}
-
-bool has_notice(const Scene& scene, const std::string& part) {
-    for (const std::string& notice : scene.notices())
-        if (notice.find(part) != std::string::npos) return true;
-    return false;
 }
 
 /// A node with one geometry of the primitives, over six points of two rows.

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <string>
 
+#include "contains.hpp"
 #include "environment_variable.hpp"
 #include "picture_bytes.hpp"
 #include "temporary_folder.hpp"
@@ -23,10 +24,6 @@ using Pixel = std::array<int, 4>;
 Pixel pixel(const Image& image, int x, int y) {
     const auto at = static_cast<std::size_t>((image.height - 1 - y) * image.width + x) * 4;
     return {image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
 }
 
 Image decode_well(const std::string& bytes) {

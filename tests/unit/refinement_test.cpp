@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "near.hpp"
 #include "sheet.hpp"
 #include "subdivision_shapes.hpp"
 
@@ -19,10 +20,6 @@ AdaptiveMesh refined(const Cage& cage, double count) {
 
 Geometry refined_geometry(const Cage& cage, double count) {
     return geometry_of(refined(cage, count), !cage.texcoords.empty());
-}
-
-bool near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
-    return glm::distance(a, b) <= tolerance;
 }
 
 /// Of the triangles' longest edges to their shortest, the median.

@@ -7,6 +7,8 @@
 #include <random>
 #include <unordered_map>
 
+#include "contains.hpp"
+
 using namespace vrut;
 
 namespace {
@@ -43,10 +45,6 @@ glm::dmat4 rows(const glm::dvec4& x, const glm::dvec4& y, const glm::dvec4& z) {
 }
 
 glm::dmat4 moved_by(double x, double y, double z) { return rows({1, 0, 0, x}, {0, 1, 0, y}, {0, 0, 1, z}); }
-
-bool contains(const std::string& text, const std::string& what) {
-    return text.find(what) != std::string::npos;
-}
 
 std::vector<Id> shown_ids(const PlacedScene& placed, const std::optional<glm::dvec3>& eye = std::nullopt) {
     const std::vector<bool> shown = shown_nodes(placed, eye);

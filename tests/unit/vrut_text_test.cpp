@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "contains.hpp"
 #include "utf8.hpp"
 
 using namespace vrut;
@@ -60,10 +61,6 @@ const Data& data_of(const Scene& scene, Id id) {
     const auto* data = std::get_if<Data>(&node_of(scene, id).data);
     REQUIRE(data);
     return *data;
-}
-
-bool contains(const std::string& text, const std::string& what) {
-    return text.find(what) != std::string::npos;
 }
 
 std::string repeated(const std::string& text, int count) {

@@ -16,6 +16,7 @@ function closed(document) {
 export class Schema {
   checked = Object.fromEntries(ROOTS.map((root) => [root, 0]));
   #validators = {};
+  #keepWritable;
 
   static async fetch(server) {
     const answer = await server.get('protocol.schema.json');
@@ -29,6 +30,15 @@ export class Schema {
     const name = document.$id ?? 'protocol';
     ajv.addSchema(closed(document), name);
     for (const root of ROOTS) this.#validators[root] = ajv.compile({ $ref: `${name}#/$defs/${root}` });
+    const remover = new Ajv({ strict: false, validateFormats: false, removeAdditional: true }).addSchema(document, name);
+    this.#keepWritable = remover.compile({ $ref: `${name}#/$defs/statePatch` });
+  }
+
+  /** @returns {object} a patch that says of a state document what clients may write, as it is there */
+  patchOf(state) {
+    const patch = structuredClone(state);
+    assert.ok(this.#keepWritable(patch), `not a statePatch of the schema: ${JSON.stringify(this.#keepWritable.errors)}`);
+    return patch;
   }
 
   /** @returns {string | null} what is wrong with `value` as a `root`; null where all is well or there is no schema */

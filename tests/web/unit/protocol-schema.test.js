@@ -7,8 +7,8 @@ import { mergePatch } from '../../../web-client/merge-patch.js';
 const read = (path) => JSON.parse(readFileSync(new URL(path, import.meta.url), 'utf8'));
 const schema = read('../../../protocol/protocol.schema.json');
 // The same examples on which the C++ side's decode() is tried; codec_test.cpp tells what the members mean.
-const examples = read('../../unit/data/messages.json');
-const fromServer = read('../../unit/data/server_messages.json');
+const examples = read('../../protocol/data/messages.json');
+const fromServer = read('../../protocol/data/server_messages.json');
 
 const ajv = new Ajv({ strict: true, strictRequired: false, allErrors: false });
 ajv.addSchema(schema);

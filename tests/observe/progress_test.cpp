@@ -8,6 +8,8 @@
 #include <string>
 #include <thread>
 
+#include "contains.hpp"
+
 using namespace vrut;
 using namespace vrut::server::observe;
 using namespace std::chrono_literals;
@@ -46,10 +48,6 @@ public:
 private:
     int before_, out_ = -1;
 };
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
 
 }  // namespace
 

@@ -2,14 +2,12 @@
 
 #include <list>
 
-#include "base/rate_limit.hpp"
 #include "net/connection_limit.hpp"
 #include "net/descriptors.hpp"
 #include "net/http_request.hpp"
 #include "net/view_pictures.hpp"
 
 using namespace vrut;
-using namespace vrut::server::base;
 using namespace vrut::server::net;
 using namespace std::chrono_literals;
 
@@ -34,23 +32,6 @@ TEST_CASE("connections are limited in all and for each address; in IPv6 a networ
     CHECK(enters("2001:db8:0:1::1"));
     places.clear();
     CHECK(limit.count() == 0);
-}
-
-TEST_CASE("a rate lets a second's messages come at once, then as many a second") {
-    RateLimit rate(1000);
-    Clock::time_point now = Clock::now();
-    for (int i = 0; i < 1000; ++i) {
-        CHECK(rate.wait(now) <= 0s);
-        rate.spend(now);
-    }
-    rate.spend(now);
-    CHECK(rate.wait(now) == 1ms);
-    now += 500ms;
-    for (int i = 0; i < 499; ++i) rate.spend(now);
-    CHECK(rate.wait(now) == 0s);
-    now += 1h;
-    for (int i = 0; i < 1001; ++i) rate.spend(now);
-    CHECK(rate.wait(now) == 1ms);
 }
 
 TEST_CASE("more descriptors than the system has are refused with a sentence") {

@@ -19,10 +19,10 @@
 #include <csignal>
 #include <cstring>
 
-#include "../unit/environment_variable.hpp"
-#include "../unit/temporary_folder.hpp"
+#include "environment_variable.hpp"
 #include "observe/log.hpp"
 #include "scene/import_process.hpp"
+#include "temporary_folder.hpp"
 
 using namespace vrut;
 using namespace vrut::server::scene;

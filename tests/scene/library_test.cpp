@@ -1,7 +1,8 @@
+#include "scene/library.hpp"
+
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
-#include "scene/library.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut;

@@ -6,10 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "../unit/environment_variable.hpp"
-#include "../unit/temporary_folder.hpp"
+#include "environment_variable.hpp"
+#include "heap.hpp"
 #include "scene/import_process.hpp"
 #include "scene/library.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -28,18 +29,6 @@ namespace {
 
 constexpr ImportLimits kAmple{std::uint64_t{4} << 30, 60s};
 constexpr std::size_t kTriangles = 1'000'000;
-
-/// Triangles without extent: 12 bytes a vertex, which take a while to be read.
-fs::path write_heap(const TemporaryFolder& folder, std::size_t triangles) {
-    const std::string count = std::to_string(3 * triangles), size = std::to_string(36 * triangles);
-    fs::resize_file(folder.write("heap.bin", ""), 36 * triangles);
-    return folder.write("heap.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-"nodes": [{"name": "Heap", "mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
-                                         count + R"(}], "bufferViews": [{"buffer": 0, "byteLength": )" +
-                                         size + R"(}], "buffers": [{"uri": "heap.bin", "byteLength": )" +
-                                         size + "}]}");
-}
 
 /// A Collada scene of `nodes`, to which a triangle is known, and further libraries.
 std::string collada(const std::string& nodes, const std::string& libraries = "") {

@@ -7,8 +7,9 @@
 #include <csignal>
 #include <fstream>
 
-#include "../unit/temporary_folder.hpp"
+#include "heap.hpp"
 #include "program.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut::test;
@@ -37,17 +38,6 @@ void write_grid(const fs::path& path, int side) {
             out << '\n' << a << ' ' << a + 1 << ' ' << b << ' ' << a + 1 << ' ' << b + 1 << ' ' << b;
         }
     out << "\nend\nnode 1 \"Grid\" geometry geometry 1 end\n";
-}
-
-/// Triangles without extent, which take a reader of another format a while.
-void write_heap(const TemporaryFolder& folder, std::size_t triangles) {
-    const std::string count = std::to_string(3 * triangles), size = std::to_string(36 * triangles);
-    fs::resize_file(folder.write("heap.bin", ""), 36 * triangles);
-    folder.write("heap.gltf", R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
-"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-"accessors": [{"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": )" +
-                                  count + R"(}], "bufferViews": [{"buffer": 0, "byteLength": )" + size +
-                                  R"(}], "buffers": [{"uri": "heap.bin", "byteLength": )" + size + "}]}");
 }
 
 /// Where there is a client who says goodbye, without the time that is left to those who do not.
@@ -85,11 +75,18 @@ bool is_gone(pid_t process) {
     return stat.empty() || stat.find(") Z") != std::string::npos;
 }
 
-void open(TestClient& client, const std::string& name) {
-    client.join();
-    client.send({{"type", "open"}, {"id", 1}, {"scene", name}});
-    client.wait_for("ok");
-}
+/// A program that a client has asked to open a scene of `folder`.
+struct Opening {
+    Opening(const TemporaryFolder& folder, const std::string& scene)
+        : program(serve({"--scenes", folder.path().string()})), client(program.port()) {
+        client.join();
+        client.send({{"type", "open"}, {"id", 1}, {"scene", scene}});
+        client.wait_for("ok");
+    }
+
+    Program program;
+    TestClient client;
+};
 
 }  // namespace
 
@@ -118,11 +115,9 @@ TEST_CASE("SIGTERM while a large scene is loaded, at any moment of it") {
     const TemporaryFolder folder;
     write_grid(folder.path() / "grid.vrut", 700);
     for (const auto after : {0ms, 100ms, 300ms}) {
-        Program program(serve({"--scenes", folder.path().string()}));
-        TestClient client(program.port());
-        open(client, "grid.vrut");
+        Opening opening(folder, "grid.vrut");
         std::this_thread::sleep_for(after);
-        expect_end(program, SIGTERM, &client);
+        expect_end(opening.program, SIGTERM, &opening.client);
     }
 }
 
@@ -130,12 +125,10 @@ TEST_CASE("SIGTERM while another format's file is read, and while its reader han
     const TemporaryFolder folder;
     write_heap(folder, 2'000'000);
     for (const bool hangs : {false, true}) {
-        Program program(serve({"--scenes", folder.path().string()}));
-        TestClient client(program.port());
-        open(client, "heap.gltf");
-        const pid_t reader = reader_of(program);
+        Opening opening(folder, "heap.gltf");
+        const pid_t reader = reader_of(opening.program);
         if (hangs) kill(reader, SIGSTOP);
-        expect_end(program, SIGTERM, &client);
+        expect_end(opening.program, SIGTERM, &opening.client);
         CHECK(is_gone(reader));
     }
 }
@@ -144,21 +137,17 @@ TEST_CASE("SIGTERM while a scene of ten million triangles is read, at any moment
     const TemporaryFolder folder;
     write_heap(folder, 10'000'000);
     for (const auto after : {0ms, 500ms, 1000ms, 1500ms, 2000ms, 2500ms}) {
-        Program program(serve({"--scenes", folder.path().string()}));
-        TestClient client(program.port());
-        open(client, "heap.gltf");
+        Opening opening(folder, "heap.gltf");
         std::this_thread::sleep_for(after);
-        expect_end(program, SIGTERM, &client);
+        expect_end(opening.program, SIGTERM, &opening.client);
     }
 }
 
 TEST_CASE("SIGTERM while the digest of forty gigabytes is computed") {
     const TemporaryFolder folder;
     fs::resize_file(folder.write("zeros.vrut", ""), std::uintmax_t{40} << 30);
-    Program program(serve({"--scenes", folder.path().string()}));
-    TestClient client(program.port());
-    open(client, "zeros.vrut");
-    expect_end(program, SIGTERM, &client);
+    Opening opening(folder, "zeros.vrut");
+    expect_end(opening.program, SIGTERM, &opening.client);
 }
 
 TEST_CASE("SIGTERM while a file does not open, as on a disk that hangs") {
@@ -168,22 +157,18 @@ TEST_CASE("SIGTERM while a file does not open, as on a disk that hangs") {
     fs::copy_file(kScene, scene);
     const int leased = ::open(scene.c_str(), O_RDWR | O_CLOEXEC);
     REQUIRE(fcntl(leased, F_SETLEASE, F_WRLCK) == 0);  // whoever opens it now waits: 45 s, by Linux's default
-    Program program(serve({"--scenes", folder.path().string()}));
-    TestClient client(program.port());
-    open(client, "triangle.vrut");
-    expect_end(program, SIGTERM, &client);
+    Opening opening(folder, "triangle.vrut");
+    expect_end(opening.program, SIGTERM, &opening.client);
     close(leased);
 }
 
 TEST_CASE("SIGTERM while a reader does not end, as on a disk that hangs") {
     const TemporaryFolder folder;
     write_heap(folder, 2'000'000);
-    Program program(serve({"--scenes", folder.path().string()}));
-    TestClient client(program.port());
-    open(client, "heap.gltf");
-    const pid_t reader = reader_of(program);
+    Opening opening(folder, "heap.gltf");
+    const pid_t reader = reader_of(opening.program);
     REQUIRE(ptrace(PTRACE_SEIZE, reader, nullptr, nullptr) == 0);  // only this process sees it end
-    expect_end(program, SIGTERM, &client);
+    expect_end(opening.program, SIGTERM, &opening.client);
     CHECK(waitpid(reader, nullptr, __WALL) == reader);
 }
 

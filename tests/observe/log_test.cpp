@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "../unit/temporary_folder.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -1,5 +1,6 @@
 // Who steers, and what flies: to the microsecond.
 #include "room/room.hpp"
+
 #include "stage.hpp"
 
 using namespace stage;

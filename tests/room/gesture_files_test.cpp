@@ -57,7 +57,7 @@ void write(const std::filesystem::path& path, const ordered_json& gesture) {
 
 TEST_CASE("each gesture moves the camera as its file says") {
     std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(VRUT_TEST_DATA "/../../data/gestures")) {
+    for (const auto& entry : std::filesystem::directory_iterator(VRUT_DATA "/gestures")) {
         ++files;
         CAPTURE(entry.path());
         std::ifstream file(entry.path());

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <atomic>
 
-#include "../unit/full_disk.hpp"
-#include "../unit/temporary_folder.hpp"
 #include "drawing_errors.hpp"
+#include "full_disk.hpp"
 #include "rendering.hpp"
 #include "room/replay.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -14,6 +14,20 @@ using Clock = vrut::server::base::Clock;
 
 namespace {
 
+/// Waits for what must come, and fails where it does not.
+template <class Condition>
+void await(std::condition_variable& changed, std::unique_lock<std::mutex>& lock, const Condition& condition) {
+    REQUIRE(changed.wait_for(lock, 10s, condition));
+}
+
+/// The same of what nobody notifies.
+template <class Condition>
+void await(const Condition& condition) {
+    const Clock::time_point end = Clock::now() + 10s;
+    while (!condition())
+        if (Clock::now() > end) FAIL("it does not come");
+}
+
 /// What a render thread would do with results.
 class Results {
 public:
@@ -29,7 +43,7 @@ public:
     /// Waits for a result, and uses it.
     void use_next() {
         std::unique_lock lock(inbox_->mutex);
-        inbox_->changed.wait(lock, [&] { return !inbox_->done.empty(); });
+        await(inbox_->changed, lock, [&] { return !inbox_->done.empty(); });
         const FileWorkDone done = std::move(inbox_->done.front());
         inbox_->done.pop_front();
         lock.unlock();
@@ -49,7 +63,7 @@ private:
 struct Disk {
     std::mutex mutex;
     std::condition_variable changed;
-    bool blocks = false;
+    bool blocks = false, blocks_closing = false;
     int waiting = 0;  ///< calls in it
     std::string text, error;
     bool closed = false, removed = false;
@@ -70,15 +84,15 @@ struct Disk {
     /// Until a call stands in it.
     void await_call() {
         std::unique_lock lock(mutex);
-        changed.wait(lock, [&] { return waiting > 0; });
+        await(changed, lock, [&] { return waiting > 0; });
     }
     void await_no_call() {
         std::unique_lock lock(mutex);
-        changed.wait(lock, [&] { return waiting == 0; });
+        await(changed, lock, [&] { return waiting == 0; });
     }
     void await_closed() {
         std::unique_lock lock(mutex);
-        changed.wait(lock, [&] { return closed; });
+        await(changed, lock, [&] { return closed; });
     }
     std::string written() {
         const std::lock_guard lock(mutex);
@@ -90,6 +104,7 @@ class FileOnDisk final : public LogFile {
 public:
     explicit FileOnDisk(std::shared_ptr<Disk> disk) : disk_(std::move(disk)) {}
     ~FileOnDisk() override {
+        if (disk_->blocks_closing) disk_->pass();
         const std::lock_guard lock(disk_->mutex);
         disk_->closed = true;
         disk_->changed.notify_all();
@@ -227,6 +242,20 @@ TEST_CASE("a disk that takes its time is waited for, while its oldest line is yo
     CHECK(log.disk->written().size() == 6 + 40 * 5);
 }
 
+TEST_CASE("a recording in which nothing happens for long goes on") {
+    Written log;
+    log.begin_and_open();
+    for (const char* line : {"one", "two"}) {
+        await([&] { return !log.writer.due(); });
+        log.now += 1h;
+        log.writer.check(log.now);
+        log.write(line);
+    }
+    log.end();
+    CHECK(log.ended == "all is written");
+    CHECK(log.disk->written() == "first\none\ntwo\n");
+}
+
 TEST_CASE("a disk that never answers ends the recording when its oldest line is too old") {
     Written log;
     log.begin_and_open();
@@ -283,12 +312,23 @@ TEST_CASE("a file that never opens, or never closes, is given up, too") {
         log.results.use_next();
         CHECK(log.ended == "its disk is too slow");
     }
+    SUBCASE("closing") {
+        Written log;
+        log.begin_and_open();
+        log.disk->blocks_closing = true;
+        log.disk->block(true);
+        log.writer.end(1, log.now);
+        log.disk->await_call();
+        log.writer.check(log.now + 5s);
+        log.results.use_next();
+        CHECK(log.ended == "its disk is too slow");
+    }
 }
 
-TEST_CASE("threads that are left behind do not pile up") {
+TEST_CASE("threads that are left behind do not pile up, and those that come back count no more") {
     Written log({.threads = 2}, true);
     log.disk->block(true);
-    for (const bool starts : {true, true, false}) {
+    for (const bool starts : {true, true, false, false}) {
         log.opened.clear();
         log.begin();
         if (starts) log.writer.check(log.now + 5s);
@@ -296,6 +336,12 @@ TEST_CASE("threads that are left behind do not pile up") {
         CHECK(log.opened == (starts ? "not: the recording cannot be begun: its disk is too slow"
                                     : "not: the disk has not taken earlier recordings yet"));
     }
+    log.disk->block(false);
+    await([&] {
+        log.begin();
+        log.results.use_next();
+        return log.opened == "log";
+    });
 }
 
 TEST_CASE("what waits at the end is written; who never comes back is left behind") {
@@ -392,10 +438,10 @@ TEST_CASE("a folder that never answers tells an empty list, and finds nothing") 
         CHECK(asked.path == "the folder of scenes does not answer");
         CHECK(asked.code == "busy");
     }
-    asked.lookup.find(4, "car.vrut", asked.now + 10s);  // behind the first, which still hangs
+    asked.lookup.find(4, "van.vrut", asked.now + 10s);  // behind the first, which still hangs
     asked.disk->block(false);
     while (asked.found != 4) asked.results.use_next();
-    CHECK(asked.path == "/scenes/car.vrut");
+    CHECK(asked.path == "/scenes/van.vrut");
 }
 
 TEST_CASE("scenes are found one after the other, each for its request") {

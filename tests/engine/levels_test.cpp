@@ -6,11 +6,11 @@
 #include <random>
 #include <set>
 
-#include "../unit/environment_variable.hpp"
-#include "../unit/temporary_folder.hpp"
 #include "engine/frame_quality.hpp"
+#include "environment_variable.hpp"
 #include "rendering.hpp"
 #include "scene/level_store.hpp"
+#include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
