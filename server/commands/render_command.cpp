@@ -29,7 +29,7 @@ std::string read_text(const std::filesystem::path& path) {
 
 /// What one client of a server would do to change the state. Throws std::runtime_error.
 void say(room::Room& room, const std::string& option, decltype(protocol::ClientMessage::payload) payload) {
-    room.handle_message("render", {1, std::move(payload)}, room::Time(0));
+    room.handle_message("render", {1, std::move(payload)}, room::SessionTime(0));
     for (const room::Answer& answer : room.take_answers())
         if (!answer.refusal.empty()) throw std::runtime_error(option + ": " + answer.refusal);
 }
@@ -65,7 +65,7 @@ View view_of(const RenderArguments& arguments) {
     if (!scene) throw std::runtime_error(scene.error());
     for (const std::string& notice : scene->notices) observe::log_warning("notice", {{"text", notice}});
     room::Room room(*std::move(scene));
-    room.join("render", protocol::Role::control, room::Time(0));
+    room.join("render", protocol::Role::control, room::SessionTime(0));
     const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),
                                 1};
     say(room, "--size", size);

@@ -357,46 +357,46 @@ void Engine::handle(const scene::SceneLoaded& loaded) {
     arrival_losses_ = 0;
 }
 
-void Engine::handle(const MessageReceived& said) {
-    const auto found = clients_.find(said.client);
+void Engine::handle(const MessageReceived& received) {
+    const auto found = clients_.find(received.client);
     if (found == clients_.end()) return;  // it has left
     Client& client = found->second;
-    output_.handled[said.client].bytes += said.bytes;
-    output_.handled[said.client].requests += said.is_request();
-    output_.handled[said.client].sequence = client.sequence = said.sequence;
-    const auto id = said.message ? said.message->id : said.message.error().id;
+    output_.handled[received.client].bytes += received.bytes;
+    output_.handled[received.client].requests += received.is_request();
+    output_.handled[received.client].sequence = client.sequence = received.sequence;
+    const auto id = received.message ? received.message->id : received.message.error().id;
     if (id && *id <= client.handled)
-        room_->reject(said.client, {id, code::out_of_range,
-                                    "'id' must rise: " + std::to_string(client.handled) + " came before " +
-                                        std::to_string(*id)});
-    else if (!said.message)
-        room_->reject(said.client, said.message.error());
-    else if (!std::holds_alternative<protocol::FrameGrant>(said.message->payload))  // the connection's
-        handle_message(said, *said.message, client);
+        room_->reject(received.client, {id, code::out_of_range,
+                                        "'id' must rise: " + std::to_string(client.handled) +
+                                            " came before " + std::to_string(*id)});
+    else if (!received.message)
+        room_->reject(received.client, received.message.error());
+    else if (!std::holds_alternative<protocol::FrameGrant>(received.message->payload))  // the connection's
+        handle_message(received, *received.message, client);
     if (id) client.handled = std::max(client.handled, *id);
 }
 
-void Engine::handle_message(const MessageReceived& said, const protocol::ClientMessage& message,
+void Engine::handle_message(const MessageReceived& received, const protocol::ClientMessage& message,
                             Client& client) {
     if (std::holds_alternative<protocol::Snapshot>(message.payload) && client.snapshots >= kMostSnapshots)
-        return room_->reject(
-            said.client, {message.id, code::busy,
-                          std::to_string(kMostSnapshots) + " snapshots of this client are waiting already"});
+        return room_->reject(received.client, {message.id, code::busy,
+                                               std::to_string(kMostSnapshots) +
+                                                   " snapshots of this client are waiting already"});
     if (const auto* snapshot = std::get_if<protocol::Snapshot>(&message.payload))
         if (!fits(snapshot->width, snapshot->height, limits_))
-            return room_->reject(said.client,
+            return room_->reject(received.client,
                                  {message.id, code::out_of_range,
                                   "'width' x 'height' must be at most " + std::to_string(limits_.max_pixels) +
                                       " pixels, each side at most " + std::to_string(limits_.max_side)});
     const View before = room_->visible();
     const protocol::Resize size_before = room_->view_size();
-    const bool accepted = room_->handle_message(said.client, message, time_of(said.arrival));
+    const bool accepted = room_->handle_message(received.client, message, time_of(received.arrival));
     if (room_->visible() != before || room_->view_size() != size_before) {
         last_change_ = base::Clock::now();
-        newest_input_ = said.arrival;
+        newest_input_ = received.arrival;
     }
     if (const auto* shown = std::get_if<protocol::Shown>(&message.payload); shown && accepted)
-        stats_.shown(said.client, shown->revision, said.arrival);
+        stats_.shown(received.client, shown->revision, received.arrival);
     for (room::PictureOrder& order : room_->take_orders()) {
         ++client.snapshots;
         snapshots_.push_back({std::move(order)});

@@ -143,7 +143,7 @@ private:
 
     void handle(const ClientJoined& joined);
     void handle(const ClientLeft& left);
-    void handle(const MessageReceived& said);
+    void handle(const MessageReceived& received);
     void handle(const FramesWanted& wanted);
     void handle(const FrameEncoded& encoded);
     void handle(const PictureFailed& failed);
@@ -154,14 +154,15 @@ private:
     void handle(const FileWorkDone& done);
     /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
-    void handle_message(const MessageReceived& said, const protocol::ClientMessage& message, Client& client);
+    void handle_message(const MessageReceived& received, const protocol::ClientMessage& message,
+                        Client& client);
     void connect_files(room::RoomOptions& options);
     std::optional<protocol::Error> load(const SceneLookup::Found& found);
     void read_levels(const scene::LoadedScene& scene);
     std::optional<base::Clock::time_point> files_due() const;
     void check_files();
-    room::Time time_of(base::Clock::time_point when) const {
-        return std::chrono::duration_cast<room::Time>(when - start_);
+    room::SessionTime time_of(base::Clock::time_point when) const {
+        return std::chrono::duration_cast<room::SessionTime>(when - start_);
     }
 
     // --- pictures

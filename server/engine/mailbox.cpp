@@ -7,9 +7,9 @@ namespace {
 using protocol::Pointer;
 
 /// A move that only says where the pointer is now: no button went down or up with it.
-const Pointer* plain_move(const MessageReceived& said) {
-    if (!said.message || !said.may_steer) return nullptr;
-    const auto* pointer = std::get_if<Pointer>(&said.message->payload);
+const Pointer* plain_move(const MessageReceived& received) {
+    if (!received.message || !received.may_steer) return nullptr;
+    const auto* pointer = std::get_if<Pointer>(&received.message->payload);
     return pointer && pointer->event == Pointer::Event::move && pointer->button == -1 ? pointer : nullptr;
 }
 
@@ -47,10 +47,10 @@ void Mailbox::push(EngineEvent event) {
         const std::lock_guard lock(mutex_);
         if (const auto* left = std::get_if<ClientLeft>(&event))
             std::erase_if(events_, [&](const EngineEvent& waiting) {
-                const auto* said = std::get_if<MessageReceived>(&waiting);
-                return said && said->client == left->client;
+                const auto* received = std::get_if<MessageReceived>(&waiting);
+                return received && received->client == left->client;
             });
-        if (auto* said = std::get_if<MessageReceived>(&event)) merge_into(events_, *said);
+        if (auto* received = std::get_if<MessageReceived>(&event)) merge_into(events_, *received);
         if (const auto* wanted = std::get_if<FramesWanted>(&event))
             std::erase_if(events_, [&](const EngineEvent& waiting) {
                 const auto* before = std::get_if<FramesWanted>(&waiting);

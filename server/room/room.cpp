@@ -32,14 +32,14 @@ Room::Room(scene::LoadedScene scene, RoomOptions options)
       at_home_(!state_.camera.node),
       visible_(view_of(state_, scene_)) {}
 
-void Room::join(const std::string& client, Role role, Time at, const std::string& name) {
+void Room::join(const std::string& client, Role role, SessionTime at, const std::string& name) {
     advance(at);
     clients_[client].role = role;
     clients_[client].name = name;
     record(client, protocol::LogLine::Connected{role, name});
 }
 
-void Room::leave(const std::string& client, Time at) {
+void Room::leave(const std::string& client, SessionTime at) {
     advance(at);
     document();  // what was before is others' doing, or the client's own
     changing_.clear();
@@ -51,31 +51,32 @@ void Room::leave(const std::string& client, Time at) {
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
 }
 
-bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, Time at) {
+bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at) {
     if (!clients_.contains(client)) return false;  // it has left
-    const Said said{client, message};
-    return handle(said, at, [&] {
-        if (may_send(said, said.traits.senders) && (said.traits.steers != Steers::yes || may_steer(said)))
-            std::visit([&](const auto& payload) { apply(said, payload); }, message.payload);
+    const Received received{client, message};
+    return handle(received, at, [&] {
+        if (may_send(received, received.traits.senders) &&
+            (received.traits.steers != Steers::yes || may_steer(received)))
+            std::visit([&](const auto& payload) { apply(received, payload); }, message.payload);
     });
 }
 
 template <class Apply>
-bool Room::handle(const Said& said, Time at, Apply apply) {
+bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     advance(at);
-    if (changing_ != said.client) document();  // a revision is one client's doing
-    changing_ = said.client;
+    if (changing_ != received.client) document();  // a revision is one client's doing
+    changing_ = received.client;
     accepted_ = false;
     const bool recorded = active_recording() != nullptr;
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     visible_ = view_of(state_, scene_);
-    if (accepted_ && recorded && said.traits.recorded) record(said.client, said.message);
+    if (accepted_ && recorded && received.traits.recorded) record(received.client, received.message);
     return accepted_;
 }
 
-std::int64_t Room::answer_later(const Said& said) {
-    requests_[++newest_request_] = {said.client, said.message};
+std::int64_t Room::answer_later(const Received& received) {
+    requests_[++newest_request_] = {received.client, received.message};
     return newest_request_;
 }
 
@@ -85,16 +86,17 @@ std::optional<AnsweredLater> Room::take_request(std::int64_t request) {
     return std::move(found.mapped());
 }
 
-void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, Time at) {
+void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal,
+                         SessionTime at) {
     const auto asked = take_request(request);
     if (!asked) return;
-    const Said said{asked->client, asked->message};
-    handle(said, at, [&] {
-        if (refusal) return reject(said, refusal->code.c_str(), refusal->message);
+    const Received received{asked->client, asked->message};
+    handle(received, at, [&] {
+        if (refusal) return reject(received, refusal->code.c_str(), refusal->message);
         // Whether it may be opened was judged when it was asked for; by now another may hold control.
-        const bool steers = steering_.may_steer(said.client, time_, gestures_.any_pressed());
-        if (steers) steer(said);
-        answer(said);
+        const bool steers = steering_.may_steer(received.client, time_, gestures_.any_pressed());
+        if (steers) steer(received);
+        answer(received);
         accepted_ = steers;  // what stands in a log steers
     });
 }
@@ -104,7 +106,7 @@ void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
         answer_with({asked->client, asked->message}, protocol::SceneList{0, std::move(names)});
 }
 
-void Room::advance(Time at) {
+void Room::advance(SessionTime at) {
     time_ = std::max(time_, at);
     if (!flight_) return;
     if (!changing_.empty()) document();
@@ -122,7 +124,7 @@ void Room::advance(Time at) {
     end_flight(true);
 }
 
-void Room::show(scene::LoadedScene scene, Time at) {
+void Room::show(scene::LoadedScene scene, SessionTime at) {
     advance(at);
     document();
     changing_.clear();
@@ -171,42 +173,43 @@ const std::shared_ptr<const protocol::StateDocument>& Room::document() {
 
 // --- messages
 
-void Room::apply(const Said&, const protocol::Hello&) {}       // the session's
-void Room::apply(const Said&, const protocol::FrameGrant&) {}  // the engine's
+void Room::apply(const Received&, const protocol::Hello&) {}       // the session's
+void Room::apply(const Received&, const protocol::FrameGrant&) {}  // the engine's
 
-void Room::apply(const Said& said, const protocol::Resize& resize) {
-    clients_[said.client].wanted = resize;
-    if (steering_.holder() == said.client) use_holders_size();
-    answer(said);
+void Room::apply(const Received& received, const protocol::Resize& resize) {
+    clients_[received.client].wanted = resize;
+    if (steering_.holder() == received.client) use_holders_size();
+    answer(received);
 }
 
-void Room::apply(const Said& said, const protocol::Control& control) {
+void Room::apply(const Received& received, const protocol::Control& control) {
     if (control.action == protocol::Control::Action::take) {
-        steering_.take(said.client, time_);
-        hold(said.client);
+        steering_.take(received.client, time_);
+        hold(received.client);
     } else {
-        release(said.client);
+        release(received.client);
     }
-    answer(said);
+    answer(received);
 }
 
-void Room::apply(const Said& said, const protocol::Shown& shown) {
+void Room::apply(const Received& received, const protocol::Shown& shown) {
     if (!options_.replaying && shown.revision > document()->revision())
-        return reject(said, code::out_of_range,
+        return reject(received, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
-    answer(said);
+    answer(received);
 }
 
-void Room::answer(const Said& said, std::optional<std::string> name) {
+void Room::answer(const Received& received, std::optional<std::string> name) {
     accepted_ = true;
-    if (!said.message.id) return;
+    if (!received.message.id) return;
     const std::int64_t revision = document()->revision();
-    answers_.push_back(
-        {said.client, protocol::encode(protocol::Ok{*said.message.id, revision, std::move(name)}), revision});
+    answers_.push_back({received.client,
+                        protocol::encode(protocol::Ok{*received.message.id, revision, std::move(name)}),
+                        revision});
 }
 
-void Room::reject(const Said& said, const char* code, const std::string& sentence) {
-    reject(said.client, {said.message.id, code, sentence});
+void Room::reject(const Received& received, const char* code, const std::string& sentence) {
+    reject(received.client, {received.message.id, code, sentence});
 }
 
 void Room::reject(const std::string& client, const protocol::Error& error) {
@@ -215,29 +218,29 @@ void Room::reject(const std::string& client, const protocol::Error& error) {
 
 // --- who steers
 
-bool Room::may_send(const Said& said, Senders senders) {
-    Client& client = clients_[said.client];
+bool Room::may_send(const Received& received, Senders senders) {
+    Client& client = clients_[received.client];
     if (includes(senders, client.role)) return true;
-    if (!said.is_input() || !std::exchange(client.knows_not_allowed, true))
-        reject(said, code::not_allowed,
+    if (!received.is_input() || !std::exchange(client.knows_not_allowed, true))
+        reject(received, code::not_allowed,
                std::string("the role '") + name_of(client.role) + "' may not do this");
     return false;
 }
 
-bool Room::may_steer(const Said& said) {
-    if (steering_.may_steer(said.client, time_, gestures_.any_pressed())) return true;
-    if (!said.is_input()) reject(said, code::not_in_control, "another client is in control");
+bool Room::may_steer(const Received& received) {
+    if (steering_.may_steer(received.client, time_, gestures_.any_pressed())) return true;
+    if (!received.is_input()) reject(received, code::not_in_control, "another client is in control");
     return false;
 }
 
-void Room::steer(const Said& said) {
+void Room::steer(const Received& received) {
     accepted_ = true;
-    const auto& payload = said.message.payload;
+    const auto& payload = received.message.payload;
     if (!std::holds_alternative<protocol::Record>(payload)) end_flight(false);
-    steering_.steer(said.client, time_);
-    if (std::holds_alternative<protocol::Pointer>(payload) && state_.control.holder != said.client)
+    steering_.steer(received.client, time_);
+    if (std::holds_alternative<protocol::Pointer>(payload) && state_.control.holder != received.client)
         size_waits_ = true;
-    hold(said.client);
+    hold(received.client);
 }
 
 /// Whoever holds control and lets go of it stops what moves; nobody inherits.

@@ -63,27 +63,27 @@ public:
 
     // What happens. Times never fall: an earlier one counts as the latest before.
     /// `name`: as the client calls itself; empty: it does not.
-    void join(const std::string& client, protocol::Role role, Time at, const std::string& name = {});
-    void leave(const std::string& client, Time at);
+    void join(const std::string& client, protocol::Role role, SessionTime at, const std::string& name = {});
+    void leave(const std::string& client, SessionTime at);
     /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
     /// refused changes nothing, and not who steers either; then false comes back.
-    bool handle_message(const std::string& client, const protocol::ClientMessage& message, Time at);
+    bool handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at);
     /// A flight goes on to where it is then.
-    void advance(Time at);
+    void advance(SessionTime at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
-    void show(scene::LoadedScene scene, Time at);
+    void show(scene::LoadedScene scene, SessionTime at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
     void notice(const std::string& sentence);
     /// Loading has begun, or why not; once for each call of RoomOptions::load.
-    void load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, Time at);
+    void load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, SessionTime at);
     /// Once for each call of RoomOptions::scenes.
     void scenes_listed(std::int64_t request, std::vector<std::string> names);
     /// Its file is open under this name, or cannot be opened, a sentence; once for each that began.
     void recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
-                          Time at);
+                          SessionTime at);
     /// Its last line is written, or it has ended before that: why, in words that end a sentence. Once for
     /// each that was opened.
-    void recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at);
+    void recording_ended(std::int64_t recording, const std::optional<std::string>& why, SessionTime at);
     /// A frame has been drawn of visible() at view_size(): picks name it.
     void remember(std::int64_t frame);
     /// To be called first, if at all: as things stood when a recording began.
@@ -121,7 +121,7 @@ private:
         bool knows_not_allowed = false;  ///< of input without an id
     };
     /// The message in hand.
-    struct Said {
+    struct Received {
         const std::string& client;
         const protocol::ClientMessage& message;
         protocol::MessageTraits traits = protocol::traits_of(message);
@@ -132,53 +132,53 @@ private:
         Flight path;
         std::string client;
         std::int64_t id = 0;  ///< 0: none
-        Time start{0};
+        SessionTime start{0};
         protocol::CameraState from;
         protocol::Fly asked;
     };
 
-    void apply(const Said& said, const protocol::Hello& hello);
-    void apply(const Said& said, const protocol::FrameGrant& grant);
-    void apply(const Said& said, const protocol::Resize& resize);
-    void apply(const Said& said, const protocol::Pointer& pointer);
-    void apply(const Said& said, const protocol::Wheel& wheel);
-    void apply(const Said& said, const protocol::Key& key);
-    void apply(const Said& said, const protocol::Navigate& navigate);
-    void apply(const Said& said, const protocol::Fit& fit);
-    void apply(const Said& said, const protocol::Patch& patch);
-    void apply(const Said& said, const protocol::Pick& pick);
-    void apply(const Said& said, const protocol::Snapshot& snapshot);
-    void apply(const Said& said, const protocol::Fly& fly);
-    void apply(const Said& said, const protocol::Tree& tree);
-    void apply(const Said& said, const protocol::Open& open);
-    void apply(const Said& said, const protocol::Scenes& scenes);
-    void apply(const Said& said, const protocol::Record& record);
-    void apply(const Said& said, const protocol::Control& control);
-    void apply(const Said& said, const protocol::Shown& shown);
+    void apply(const Received& received, const protocol::Hello& hello);
+    void apply(const Received& received, const protocol::FrameGrant& grant);
+    void apply(const Received& received, const protocol::Resize& resize);
+    void apply(const Received& received, const protocol::Pointer& pointer);
+    void apply(const Received& received, const protocol::Wheel& wheel);
+    void apply(const Received& received, const protocol::Key& key);
+    void apply(const Received& received, const protocol::Navigate& navigate);
+    void apply(const Received& received, const protocol::Fit& fit);
+    void apply(const Received& received, const protocol::Patch& patch);
+    void apply(const Received& received, const protocol::Pick& pick);
+    void apply(const Received& received, const protocol::Snapshot& snapshot);
+    void apply(const Received& received, const protocol::Fly& fly);
+    void apply(const Received& received, const protocol::Tree& tree);
+    void apply(const Received& received, const protocol::Open& open);
+    void apply(const Received& received, const protocol::Scenes& scenes);
+    void apply(const Received& received, const protocol::Record& record);
+    void apply(const Received& received, const protocol::Control& control);
+    void apply(const Received& received, const protocol::Shown& shown);
 
     /// Does what a message does; whether it was accepted.
     template <class Apply>
-    bool handle(const Said& said, Time at, Apply apply);
+    bool handle(const Received& received, SessionTime at, Apply apply);
     /// Remembers a message that is answered later: the number by which.
-    std::int64_t answer_later(const Said& said);
+    std::int64_t answer_later(const Received& received);
     /// That message; none where its client has left.
     std::optional<AnsweredLater> take_request(std::int64_t request);
     bool is_here(const AnsweredLater& asked) const { return clients_.contains(asked.client); }
 
     /// Done; `ok` where the message has an id.
-    void answer(const Said& said, std::optional<std::string> name = {});
+    void answer(const Received& received, std::optional<std::string> name = {});
     /// Done, with an answer of its own.
     template <class Message>
-    void answer_with(const Said& said, const Message& message);
-    void reject(const Said& said, const char* code, const std::string& sentence);
+    void answer_with(const Received& received, const Message& message);
+    void reject(const Received& received, const char* code, const std::string& sentence);
 
     // --- who steers
     /// Whether its client's role is one of these; else it is refused.
-    bool may_send(const Said& said, protocol::Senders senders);
+    bool may_send(const Received& received, protocol::Senders senders);
     /// Whether this message may steer; else it is refused.
-    bool may_steer(const Said& said);
+    bool may_steer(const Received& received);
     /// The message steers: its client holds control.
-    void steer(const Said& said);
+    void steer(const Received& received);
     void release(const std::string& client);
     void hold(const std::optional<std::string>& holder);
     void use_holders_size();
@@ -208,8 +208,8 @@ private:
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
 
     // --- recordings
-    void start_recording(const Said& said, const std::string& name);
-    void stop_recording(const Said& said);
+    void start_recording(const Received& received, const std::string& name);
+    void stop_recording(const Received& received);
     /// The one that takes lines.
     Recording* active_recording();
     RecordingSink::Header log_header() const;
@@ -241,7 +241,7 @@ private:
     Gestures gestures_;
     Clicks clicks_;
     std::optional<InFlight> flight_;
-    Time time_{0};           ///< of what happens now
+    SessionTime time_{0};    ///< of what happens now
     bool accepted_ = false;  ///< the message in hand
     bool size_waits_ =
         false;  ///< for the press that took control to end: it is measured in the view that it began in

@@ -32,15 +32,15 @@ PointerInput input_of(const std::string& client, const protocol::Pointer& pointe
 
 }  // namespace
 
-void Room::apply(const Said& said, const protocol::Pointer& pointer) {
+void Room::apply(const Received& received, const protocol::Pointer& pointer) {
     // Only a press asks for control; what follows belongs to it, and hovering does nothing.
     const bool press = pointer.event == protocol::Pointer::Event::down;
     // A third finger drags nothing, but its release counts.
-    const bool known = press || gestures_.is_pressed(said.client, pointer.pointer_id) ||
-                       clicks_.is_pressed(said.client, pointer.pointer_id);
-    if (!known || !may_steer(said)) return;
-    steer(said);
-    const PointerInput input = input_of(said.client, pointer);
+    const bool known = press || gestures_.is_pressed(received.client, pointer.pointer_id) ||
+                       clicks_.is_pressed(received.client, pointer.pointer_id);
+    if (!known || !may_steer(received)) return;
+    steer(received);
+    const PointerInput input = input_of(received.client, pointer);
     const NavigationContext context = navigation_context();
     drag_camera(gestures_.pointer(input, camera(), context));
     if (const std::optional<Click> click =
@@ -51,22 +51,22 @@ void Room::apply(const Said& said, const protocol::Pointer& pointer) {
     }
 }
 
-void Room::apply(const Said& said, const protocol::Wheel& wheel) {
-    steer(said);
+void Room::apply(const Received& received, const protocol::Wheel& wheel) {
+    steer(received);
     const WheelInput input{wheel.delta_y, static_cast<WheelInput::Unit>(wheel.delta_mode)};
     move_camera(vrut::wheel(input, camera(), navigation_context()));
 }
 
-void Room::apply(const Said& said, const protocol::Key& key) {
+void Room::apply(const Received& received, const protocol::Key& key) {
     using Kind = KeyOperation::Kind;
     const KeyInput input{key.key, key.modifiers.shift, key.code};
     if (!key.down) {
-        accepted_ = steering_.holder() == said.client;
-        return gestures_.key_up(said.client, input);
+        accepted_ = steering_.holder() == received.client;
+        return gestures_.key_up(received.client, input);
     }
     const bool flew = flies();
-    steer(said);
-    gestures_.key_down(said.client, input);
+    steer(received);
+    gestures_.key_down(received.client, input);
     const std::optional<KeyOperation> operation = key_operation(input);
     if (!operation) return;
     protocol::RendererState& renderer = state_.renderer;
@@ -83,17 +83,17 @@ void Room::apply(const Said& said, const protocol::Key& key) {
     move_camera(operated(*operation, camera(), camera_of(state_.views->at("home")), context));
 }
 
-void Room::apply(const Said& said, const protocol::Pick& pick) {
+void Room::apply(const Received& received, const protocol::Pick& pick) {
     using Then = protocol::Pick::Then;
-    if (pick.then && !(may_send(said, protocol::Senders::control) && may_steer(said))) return;
+    if (pick.then && !(may_send(received, protocol::Senders::control) && may_steer(received))) return;
     const Frame* named = pick.frame ? find_frame(*pick.frame) : nullptr;
     if (pick.frame && !named)
-        return reject(said, code::unknown_frame,
+        return reject(received, code::unknown_frame,
                       "frame " + std::to_string(*pick.frame) + " is not among the last " +
                           std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
     const std::optional<Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
     if (pick.then) {
-        steer(said);
+        steer(received);
         apply(*pick.then == Then::select   ? Click::Operation::select
               : *pick.then == Then::center ? Click::Operation::set_center
                                            : Click::Operation::look_at,
@@ -109,7 +109,7 @@ void Room::apply(const Said& said, const protocol::Pick& pick) {
             if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
         }
     }
-    answer_with(said, picked);
+    answer_with(received, picked);
 }
 
 const Room::Frame* Room::find_frame(std::int64_t number) const {

@@ -9,30 +9,30 @@ using protocol::Error;
 using protocol::Role;
 namespace code = protocol::error_code;
 
-void Room::apply(const Said& said, const protocol::Patch& patch) {
-    if (clients_[said.client].role == Role::host &&
+void Room::apply(const Received& received, const protocol::Patch& patch) {
+    if (clients_[received.client].role == Role::host &&
         !protocol::names_only(*patch.patch, {"camera", "nodes", "selection"}))
-        return reject(said, code::not_allowed,
+        return reject(received, code::not_allowed,
                       "a host may patch nothing but 'camera', 'nodes' and 'selection'");
-    if (!may_steer(said)) return;
+    if (!may_steer(received)) return;
     if (patch.if_revision && !options_.replaying &&
         document()->last_change(*patch.patch) > *patch.if_revision)
         return reject(
-            said, code::stale_revision,
+            received, code::stale_revision,
             "what the patch touches has changed since revision " + std::to_string(*patch.if_revision));
     auto next = protocol::patched(state_, starting_, *patch.patch);
-    if (!next) return reject(said, next.error().code.c_str(), next.error().message);
+    if (!next) return reject(received, next.error().code.c_str(), next.error().message);
     std::shared_ptr<const PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
     if (!error) error = use_camera(*next, *placed, *patch.patch);
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
-    if (error) return reject(said, error->code.c_str(), error->message);
+    if (error) return reject(received, error->code.c_str(), error->message);
 
     const protocol::ViewState home = state_.views->at("home");
     if (camera_of(next->camera) != camera() || next->views->at("home") != home) at_home_ = false;
     const std::optional<Id> selected = next->selection.node;
-    steer(said);  // which may bring another size, and so another home
+    steer(received);  // which may bring another size, and so another home
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
@@ -40,7 +40,7 @@ void Room::apply(const Said& said, const protocol::Patch& patch) {
     scene_ = std::move(placed);
     select(selected ? scene_->scene->find_node(*selected) : kNone);
     gestures_.restart(camera());
-    answer(said);
+    answer(received);
 }
 
 std::optional<Error> Room::use_nodes(protocol::State& next, std::shared_ptr<const PlacedScene>& placed) {

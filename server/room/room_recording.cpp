@@ -11,48 +11,48 @@ Recording* Room::active_recording() {
     return newest.stop ? nullptr : &newest;
 }
 
-void Room::apply(const Said& said, const protocol::Record& record) {
+void Room::apply(const Received& received, const protocol::Record& record) {
     if (options_.replaying) {
-        steer(said);
-        return answer(said);
+        steer(received);
+        return answer(received);
     }
     if (!options_.recordings)
-        return reject(said, code::not_allowed, "this server has no folder for recordings");
+        return reject(received, code::not_allowed, "this server has no folder for recordings");
     if (record.action == protocol::Record::Action::start)
-        start_recording(said, record.name);
+        start_recording(received, record.name);
     else
-        stop_recording(said);
+        stop_recording(received);
 }
 
 /// From here on there are lines, whenever its file is open.
-void Room::start_recording(const Said& said, const std::string& name) {
+void Room::start_recording(const Received& received, const std::string& name) {
     if (const Recording* active = active_recording())
-        return reject(said, code::busy,
+        return reject(received, code::busy,
                       active->name.empty() ? "a recording is being begun already"
                                            : "a recording is going on: '" + active->name + "'");
-    const bool takes_control = steering_.holder() != said.client;
-    steer(said);
+    const bool takes_control = steering_.holder() != received.client;
+    steer(received);
     if (size_waits_) use_holders_size();
     options_.recordings->begin(++newest_recording_, name, log_header());
-    Recording& recording = recordings_[newest_recording_] = {time_, {}, {said.client, said.message}};
-    press_anew(said.client);
+    Recording& recording = recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
+    press_anew(received.client);
     if (takes_control) recording.took_control = steering_;
 }
 
 void Room::recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
-                            Time at) {
+                            SessionTime at) {
     const auto found = recordings_.find(recording);
     if (found == recordings_.end()) return;
     advance(at);
     const auto [client, message] = found->second.start;
     const auto stop = found->second.stop;
-    const Said said{client, message};
+    const Received received{client, message};
     if (!name) {
         // Who took control by it, and did nothing since, gives it back.
         const bool gives_back = found->second.took_control == steering_;
         recordings_.erase(found);
         if (gives_back && steering_.release(client)) hold(std::nullopt);
-        if (clients_.contains(client)) reject(said, code::failed, name.error());
+        if (clients_.contains(client)) reject(received, code::failed, name.error());
         if (stop && is_here(*stop))
             reject({stop->client, stop->message}, code::failed, "nothing has been recorded");
         return;
@@ -61,20 +61,20 @@ void Room::recording_opened(std::int64_t recording, const tl::expected<std::stri
     changing_ = client;
     found->second.name = *name;
     if (!stop) state_.recording = protocol::RecordingState{*name};
-    if (clients_.contains(client)) answer(said, *name);
+    if (clients_.contains(client)) answer(received, *name);
 }
 
-void Room::stop_recording(const Said& said) {
+void Room::stop_recording(const Received& received) {
     Recording* active = active_recording();
-    if (!active) return reject(said, code::failed, "nothing is being recorded");
-    steer(said);
-    record(said.client, said.message);
-    active->stop = {said.client, said.message};
+    if (!active) return reject(received, code::failed, "nothing is being recorded");
+    steer(received);
+    record(received.client, received.message);
+    active->stop = {received.client, received.message};
     options_.recordings->end(recordings_.rbegin()->first);
     state_.recording.reset();
 }
 
-void Room::recording_ended(std::int64_t recording, const std::optional<std::string>& why, Time at) {
+void Room::recording_ended(std::int64_t recording, const std::optional<std::string>& why, SessionTime at) {
     const auto found = recordings_.extract(recording);
     if (found.empty()) return;
     advance(at);
@@ -85,11 +85,11 @@ void Room::recording_ended(std::int64_t recording, const std::optional<std::stri
         if (!stop) state_.recording.reset();
     }
     if (!stop || !is_here(*stop)) return;
-    const Said said{stop->client, stop->message};
+    const Received received{stop->client, stop->message};
     if (why)
-        reject(said, code::failed, "the end of '" + name + "' is missing: " + *why);
+        reject(received, code::failed, "the end of '" + name + "' is missing: " + *why);
     else
-        answer(said, name);
+        answer(received, name);
 }
 
 /// What is held begins anew, here and in the log, which knows nothing of how it began. All of it is the

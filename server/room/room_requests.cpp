@@ -11,36 +11,36 @@ using protocol::Error;
 namespace code = protocol::error_code;
 
 template <class Message>
-void Room::answer_with(const Said& said, const Message& message) {
+void Room::answer_with(const Received& received, const Message& message) {
     accepted_ = true;
-    if (!said.message.id) return;
+    if (!received.message.id) return;
     Message answer = message;
-    answer.id = *said.message.id;
-    answers_.push_back({said.client, protocol::encode(answer), document()->revision()});
+    answer.id = *received.message.id;
+    answers_.push_back({received.client, protocol::encode(answer), document()->revision()});
 }
-template void Room::answer_with(const Said&, const protocol::Picked&);
-template void Room::answer_with(const Said&, const protocol::SceneList&);
+template void Room::answer_with(const Received&, const protocol::Picked&);
+template void Room::answer_with(const Received&, const protocol::SceneList&);
 
-void Room::apply(const Said& said, const protocol::Navigate& navigate) {
-    steer(said);
+void Room::apply(const Received& received, const protocol::Navigate& navigate) {
+    steer(received);
     Camera moved = rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
     moved = panned(moved, navigate.pan.x, navigate.pan.y);
     move_camera(zoomed(moved, navigate.zoom, scene_->bounds.radius()));
-    answer(said);
+    answer(received);
 }
 
-void Room::apply(const Said& said, const protocol::Fit& fit) {
+void Room::apply(const Received& received, const protocol::Fit& fit) {
     Bounds bounds = scene_->bounds;
     if (fit.node) {
         const Index node = scene_->scene->find_node(*fit.node);
         const std::string name = "node " + std::to_string(*fit.node);
-        if (node == kNone) return reject(said, code::unknown_node, "there is no " + name);
+        if (node == kNone) return reject(received, code::unknown_node, "there is no " + name);
         bounds = subtree_bounds(*scene_, node);
-        if (bounds.empty()) return reject(said, code::failed, "nothing of " + name + " is to be seen");
+        if (bounds.empty()) return reject(received, code::failed, "nothing of " + name + " is to be seen");
     }
-    steer(said);
+    steer(received);
     move_camera(fitted(camera(), bounds, aspect()));
-    answer(said);
+    answer(received);
 }
 
 // --- flights
@@ -64,29 +64,29 @@ tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly
 
 }  // namespace
 
-void Room::apply(const Said& said, const protocol::Fly& fly) {
+void Room::apply(const Received& received, const protocol::Fly& fly) {
     auto keyframes = keyframes_of(fly, camera(), *scene_);
-    if (!keyframes) return reject(said, keyframes.error().code.c_str(), keyframes.error().message);
+    if (!keyframes) return reject(received, keyframes.error().code.c_str(), keyframes.error().message);
     const Camera before = camera();
-    steer(said);  // which may bring another size, and so another home
+    steer(received);  // which may bring another size, and so another home
     if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
-    if (!keyframes) return answer(said);  // whose poses do not fit to that: it stays there
+    if (!keyframes) return answer(received);  // whose poses do not fit to that: it stays there
     flight_.emplace(InFlight{{camera(), *keyframes, static_cast<Easing>(fly.easing)},
-                             said.client,
-                             said.message.id.value_or(0),
+                             received.client,
+                             received.message.id.value_or(0),
                              time_,
                              state_.camera,
                              fly});
-    answer(said);
+    answer(received);
     document();  // the message is its client's doing, what follows nobody's
     advance(time_);
 }
 
 // --- pictures and the tree
 
-void Room::apply(const Said& said, const protocol::Snapshot& snapshot) {
+void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     auto laid = overlaid(camera(), snapshot.camera, *scene_, "camera");
-    if (!laid) return reject(said, laid.error().code.c_str(), laid.error().message);
+    if (!laid) return reject(received, laid.error().code.c_str(), laid.error().message);
     protocol::State state = state_;
     if (*laid != camera()) state.camera = state_of(*laid, scene_->bounds);
     protocol::RendererState& renderer = state.renderer;
@@ -94,15 +94,15 @@ void Room::apply(const Said& said, const protocol::Snapshot& snapshot) {
     renderer.wireframe = snapshot.renderer.wireframe.value_or(renderer.wireframe);
     renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
     accepted_ = true;
-    if (!said.message.id) return;  // nobody could tell the picture from a frame
+    if (!received.message.id) return;  // nobody could tell the picture from a frame
     View view = view_of(state, scene_);
     view.width = snapshot.width;
     view.height = snapshot.height;
-    PictureOrder order{said.client, view, header_of(state, view, view_size_), snapshot.format,
+    PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,
                        snapshot.jpeg_quality};
     order.header.revision = document()->revision();
-    order.header.snapshot = said.message.id;
-    order.header.handled = *said.message.id;
+    order.header.snapshot = received.message.id;
+    order.header.handled = *received.message.id;
     orders_.push_back(std::move(order));
 }
 
@@ -115,24 +115,24 @@ PictureOrder Room::order(int width, int height) {
     return order;
 }
 
-void Room::apply(const Said& said, const protocol::Tree& tree) {
+void Room::apply(const Received& received, const protocol::Tree& tree) {
     const auto page = tree_page(*scene_, tree);
-    if (!page) return reject(said, page.error().code.c_str(), page.error().message);
-    answer_with(said, *page);
+    if (!page) return reject(received, page.error().code.c_str(), page.error().message);
+    answer_with(received, *page);
 }
 
 // --- scenes
 
-void Room::apply(const Said& said, const protocol::Open& open) {
-    if (options_.load) return options_.load(answer_later(said), open.scene);
-    steer(said);
-    answer(said);
+void Room::apply(const Received& received, const protocol::Open& open) {
+    if (options_.load) return options_.load(answer_later(received), open.scene);
+    steer(received);
+    answer(received);
 }
 
-void Room::apply(const Said& said, const protocol::Scenes&) {
-    if (!options_.scenes) return answer_with(said, protocol::SceneList{});
+void Room::apply(const Received& received, const protocol::Scenes&) {
+    if (!options_.scenes) return answer_with(received, protocol::SceneList{});
     accepted_ = true;
-    options_.scenes(answer_later(said));
+    options_.scenes(answer_later(received));
 }
 
 // --- as things stood when a recording began
@@ -163,7 +163,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (const auto& flight = header.flight) {
         const auto keyframes = keyframes_of(flight->fly, camera_of(flight->from), *scene_);
         if (!keyframes) return tl::unexpected(keyframes.error());
-        const Time since(std::llround(flight->since * 1000));
+        const SessionTime since(std::llround(flight->since * 1000));
         flight_.emplace(
             InFlight{{camera_of(flight->from), *keyframes, static_cast<Easing>(flight->fly.easing)},
                      flight->client,

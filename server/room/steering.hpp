@@ -6,8 +6,8 @@
 
 namespace vrut::server::room {
 
-/// Since the server's start, or a recording's.
-using Time = std::chrono::microseconds;
+/// Time since the server started, or since a recording began.
+using SessionTime = std::chrono::microseconds;
 
 /// Who steers. A holder who has been quiet for a second, with no pointer pressed, gives way to the next who
 /// steers.
@@ -17,15 +17,15 @@ public:
 
     Steering() = default;
     /// As it stood at `now`, when `holder` steered last.
-    Steering(std::optional<std::string> holder, bool kept, Time now)
+    Steering(std::optional<std::string> holder, bool kept, SessionTime now)
         : holder_(std::move(holder)), kept_(kept), last_(now) {}
 
     /// Whether `client` may steer at `now`: it holds control, or nobody does, or the holder gives way.
-    bool may_steer(const std::string& client, Time now, bool holder_presses) const;
+    bool may_steer(const std::string& client, SessionTime now, bool holder_presses) const;
     /// `client`, who may, steers: it holds control from now on.
-    void steer(const std::string& client, Time now);
+    void steer(const std::string& client, SessionTime now);
     /// `client` takes control and keeps it, however quiet it is, until it gives it back or another takes it.
-    void take(const std::string& client, Time now);
+    void take(const std::string& client, SessionTime now);
     /// `client` gives control back, or is gone. True where it held control; nobody inherits.
     bool release(const std::string& client);
     const std::optional<std::string>& holder() const { return holder_; }
@@ -36,7 +36,7 @@ public:
 private:
     std::optional<std::string> holder_;
     bool kept_ = false;
-    Time last_{0};
+    SessionTime last_{0};
 };
 
 }  // namespace vrut::server::room

@@ -90,9 +90,9 @@ EventLog merged(const EventLog& log) {
     Mailbox mailbox;
     const auto take = [&] {
         for (const EngineEvent& event : mailbox.wait(Clock::now())) {
-            const auto& said = std::get<MessageReceived>(event);
-            const auto at = std::chrono::duration_cast<Time>(said.arrival.time_since_epoch());
-            result.lines.push_back({at, said.client, *said.message});
+            const auto& received = std::get<MessageReceived>(event);
+            const auto at = std::chrono::duration_cast<SessionTime>(received.arrival.time_since_epoch());
+            result.lines.push_back({at, received.client, *received.message});
         }
     };
     for (const LogLine& line : log.lines) {
@@ -142,10 +142,10 @@ protocol::CameraState played_restlessly(const EventLog& log, std::mt19937& dice)
     options.replaying = true;
     Room room(*find_scene(log.header.scene, log.header.scene_sha256), options);
     REQUIRE(room.restore(log.header));
-    Time now{0};
+    SessionTime now{0};
     for (const LogLine& line : log.lines) {
         for (int looks = static_cast<int>(dice() % 4); looks > 0 && now < line.at; --looks) {
-            now += Time(static_cast<std::int64_t>(dice()) % ((line.at - now).count() + 1));
+            now += SessionTime(static_cast<std::int64_t>(dice()) % ((line.at - now).count() + 1));
             room.advance(now);
             if (dice() % 2 == 0) room.document();
         }

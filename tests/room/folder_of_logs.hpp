@@ -20,19 +20,19 @@ public:
             [this](std::int64_t recording, const std::string& name, const RecordingSink::Header& header) {
                 auto log = server::engine::open_log(folder_, name);
                 if (!log)
-                    return tell([=, why = log.error()](Room& to, Time at) {
+                    return tell([=, why = log.error()](Room& to, SessionTime at) {
                         to.recording_opened(recording, tl::unexpected(why), at);
                     });
                 files_[recording] = std::move(log->file);
                 write(recording, header(log->name, server::engine::iso_time_now()));
-                tell([=, opened = log->name](Room& to, Time at) {
+                tell([=, opened = log->name](Room& to, SessionTime at) {
                     to.recording_opened(recording, opened, at);
                 });
             },
             [this](std::int64_t recording, const std::string& line) { write(recording, line); },
             [this](std::int64_t recording) {
                 files_.erase(recording);
-                tell([=](Room& to, Time at) { to.recording_ended(recording, std::nullopt, at); });
+                tell([=](Room& to, SessionTime at) { to.recording_ended(recording, std::nullopt, at); });
             }};
         return options;
     }
@@ -42,14 +42,15 @@ public:
     }
 
 private:
-    using Result = std::function<void(Room&, Time)>;
+    using Result = std::function<void(Room&, SessionTime)>;
     void tell(Result result) { results_.push_back(std::move(result)); }
     void write(std::int64_t recording, const std::string& line) {
         if (!files_.contains(recording)) return;
         const auto written = files_[recording]->append(line + '\n');
         if (written) return;
         files_.erase(recording);
-        tell([=, why = written.error()](Room& to, Time at) { to.recording_ended(recording, why, at); });
+        tell(
+            [=, why = written.error()](Room& to, SessionTime at) { to.recording_ended(recording, why, at); });
     }
 
     std::filesystem::path folder_;

@@ -69,9 +69,9 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
         return 77;
     RecordedStage stage("ab", folder);
     if (stage.refusal("a", kStart) != "") return 1;
-    int said = 0;
-    while (stage.state().contains("recording") && said < 100'000) {
-        ++said;
+    int received = 0;
+    while (stage.state().contains("recording") && received < 100'000) {
+        ++received;
         if (!stage.say("a", kTurn)) return 2;  // nobody is refused for it
     }
     if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
@@ -79,7 +79,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
     const auto log = server::room::read_event_log(folder / "take-1.jsonl");
     if (!log) return 4;
     // All but what did not fit.
-    if (log->lines.size() + 1 != static_cast<std::size_t>(said)) return 5;
+    if (log->lines.size() + 1 != static_cast<std::size_t>(received)) return 5;
     return stage.say("a", kTurn) ? 0 : 6;
 }
 

@@ -84,7 +84,7 @@ public:
     void play() {
         for (int step = 0; step < 80; ++step) {
             recorded.stage.at(recorded.stage.now +
-                              server::room::Time(number(0, 9) > 0 ? number(0, 40'000) : 1'200'000));
+                              server::room::SessionTime(number(0, 9) > 0 ? number(0, 40'000) : 1'200'000));
             if (step == begins_) {
                 recorded.stage.say("a", R"({"type":"control","action":"take"})");
                 recorded.start();

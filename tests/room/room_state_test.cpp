@@ -535,8 +535,8 @@ TEST_CASE("every section of every scene's state can be patched back as it came, 
         stage.say("a", R"({"type":"patch","patch":{}})");
         const json state = stage.state();
         const std::int64_t revision = stage.revision();
-        const json said = sayable(state, schema);
-        for (const auto& [name, section] : said.items()) {
+        const json received = sayable(state, schema);
+        for (const auto& [name, section] : received.items()) {
             CAPTURE(name);
             CHECK(stage.refusal("a", json{{"type", "patch"}, {"patch", {{name, section}}}}.dump()) == "");
         }

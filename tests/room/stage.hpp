@@ -82,7 +82,7 @@ public:
         if (after_message) after_message(*this);
         return accepted;
     }
-    void at(Time time) { room.advance(now = time); }
+    void at(SessionTime time) { room.advance(now = time); }
     /// What clients were told since the last call, each with `to`.
     std::vector<json> told() {
         std::vector<json> result;
@@ -110,7 +110,7 @@ public:
     std::string holder() const { return room.holder().value_or(""); }
 
     Room room;
-    Time now{0};
+    SessionTime now{0};
     std::function<void(Stage&)> after_message = {};  ///< brings what answers later
 };
 

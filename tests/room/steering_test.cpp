@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 namespace {
 
 /// Steers where that is allowed.
-bool steer(Steering& steering, const char* client, Time now, bool holder_presses) {
+bool steer(Steering& steering, const char* client, SessionTime now, bool holder_presses) {
     const bool may = steering.may_steer(client, now, holder_presses);
     if (may) steering.steer(client, now);
     return may;
@@ -19,7 +19,7 @@ bool steer(Steering& steering, const char* client, Time now, bool holder_presses
 
 TEST_CASE("who steers first holds control until he has been quiet for a second") {
     Steering steering;
-    const Time start = 1h;
+    const SessionTime start = 1h;
     CHECK(steer(steering, "a", start, false));
     CHECK(steering.holder() == "a");
     CHECK_FALSE(steer(steering, "b", start + 999ms, false));
@@ -32,7 +32,7 @@ TEST_CASE("who steers first holds control until he has been quiet for a second")
 
 TEST_CASE("a pressed pointer is not quiet") {
     Steering steering;
-    const Time start = 1h;
+    const SessionTime start = 1h;
     CHECK(steer(steering, "a", start, true));
     CHECK_FALSE(steer(steering, "b", start + 1h, true));
     CHECK(steer(steering, "b", start + 1h, false));
@@ -40,7 +40,7 @@ TEST_CASE("a pressed pointer is not quiet") {
 
 TEST_CASE("who takes control keeps it, however quiet he is, until he gives it back or another takes it") {
     Steering steering;
-    const Time start = 1h;
+    const SessionTime start = 1h;
     CHECK(steer(steering, "a", start, true));
     steering.take("b", start);
     CHECK(steering.holder() == "b");
@@ -55,7 +55,7 @@ TEST_CASE("who takes control keeps it, however quiet he is, until he gives it ba
 
 TEST_CASE("a holder who leaves leaves control free, and nobody inherits") {
     Steering steering;
-    const Time start = 1h;
+    const SessionTime start = 1h;
     CHECK(steer(steering, "a", start, false));
     CHECK_FALSE(steering.release("b"));
     CHECK(steering.release("a"));
