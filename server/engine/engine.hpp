@@ -205,6 +205,7 @@ private:
     void notice(const std::string& sentence);
     void use(const protocol::LevelTable& table);
     void make_detail_levels();
+    bool is_small_at_rest(int samples) const;
     protocol::Quality quality_at_rest(int samples) const;
     std::size_t choose_level();
 

@@ -85,11 +85,15 @@ bool Engine::thin_lines() const {
            (state.renderer.show_selection && state.selection.node);
 }
 
-/// With the error that the table has for such a picture. Over a slow link the first one is as small as those
-/// of the moving view.
+/// Over a slow link the first picture at rest is as small as those of the moving view.
+bool Engine::is_small_at_rest(int samples) const {
+    return samples < kStillSamples.back() && delivery_at_rest(holders_link()) > base::Clock::duration{};
+}
+
+/// With the error that the table has for such a picture.
 protocol::Quality Engine::quality_at_rest(int samples) const {
     const protocol::Resize view_size = room_->view_size();
-    if (samples < kStillSamples.back() && delivery_at_rest(holders_link()) > base::Clock::duration{}) {
+    if (is_small_at_rest(samples)) {
         protocol::Quality quality =
             quality_of(choice_->levels()[0].quality, view_size, pixel_budget_, thin_lines());
         quality.level = protocol::Quality::Level::still;
@@ -160,7 +164,8 @@ void Engine::begin_frame(int still_samples) {
     picture.header.revision = room_->document()->revision();
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
-    if (still) picture.rests_since = last_change_;
+    // A small one that shows something new is in nobody's way longer than one of the moving view.
+    if (still && (shows_present() || !is_small_at_rest(still_samples))) picture.rests_since = last_change_;
     picture.applied = applied();
     if (!still) {
         picture.header.frame = next_frame_;

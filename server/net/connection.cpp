@@ -300,7 +300,8 @@ void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::
 
 /// Tells the engine what may be sent, where that has changed.
 void Connection::ask_for_frames(base::Clock::time_point now) {
-    const engine::FramesWanted wanted{client_, last_frame_, flow_.frames_allowed(now), granted_at_,
+    const std::int64_t known = holds_in_vain(now) ? registry_.newest->header.frame : last_frame_;
+    const engine::FramesWanted wanted{client_, known, flow_.frames_allowed(now), granted_at_,
                                       flow_.link(now)};
     if (wanted == wanted_) return;
     const bool matters = wanted.count > 0 || wanted_.count > 0;
@@ -335,17 +336,27 @@ bool Connection::has_newer_frame() const {
     return handled_sequence_ >= granted_at_ && registry_.present_frame == newest->header.frame;
 }
 
+/// When the newest frame may be sent, as far as the view's rest decides.
+base::Clock::time_point Connection::newest_from(base::Clock::time_point now) const {
+    return flow_.may_send_from(registry_.newest->file.size(), registry_.newest->rests_since, now);
+}
+
 bool Connection::frame_is_due(base::Clock::time_point now) const {
-    return has_newer_frame() && flow_.may_send_frame(now) &&
-           flow_.may_send_from(registry_.newest->file.size(), registry_.newest->rests_since, now) <= now;
+    return has_newer_frame() && flow_.may_send_frame(now) && newest_from(now) <= now;
+}
+
+/// The newest frame waits for the view to have rested, and the view has moved on.
+bool Connection::holds_in_vain(base::Clock::time_point now) const {
+    return has_newer_frame() && registry_.newest->header.frame != registry_.present_frame &&
+           newest_from(now) > now;
 }
 
 /// What was not sent because of what is under way is looked at again when that may have changed.
 void Connection::ask_again(base::Clock::time_point now) {
+    ask_for_frames(now);
     auto at = flow_.ask_again(now);
     if (has_newer_frame() && flow_.may_send_frame(now)) {
-        const auto from =
-            flow_.may_send_from(registry_.newest->file.size(), registry_.newest->rests_since, now);
+        const auto from = newest_from(now);
         if (from > now) at = std::min(at.value_or(from), from);
     }
     if (!at) return flow_timer_.cancel(), void();

@@ -65,7 +65,9 @@ private:
     void on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id);
     void ask_for_frames(base::Clock::time_point now);
     bool has_newer_frame() const;
+    base::Clock::time_point newest_from(base::Clock::time_point now) const;
     bool frame_is_due(base::Clock::time_point now) const;
+    bool holds_in_vain(base::Clock::time_point now) const;
     bool has_updates() const;
     bool has_broadcasts() const;
     void ask_again(base::Clock::time_point now);

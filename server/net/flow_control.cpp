@@ -16,7 +16,7 @@ namespace {
 /// So much may wait in queues of the link, beyond what fills its round trip.
 constexpr Seconds kQueue = 100ms;
 /// Updates leave so many times the time that they take to other messages.
-constexpr double kUpdatePause = 4;
+constexpr int kUpdatePause = 4;
 /// Bytes that may be under way behind which an update is sent, on a link that is not measured.
 constexpr std::size_t kFewBytes = 8192, kFewestBytes = 1024;
 /// Who has a frame and does not acknowledge it for longer does something else: the frame's arrival counts.
@@ -36,8 +36,9 @@ void FlowControl::credit() { credits_ = std::min(credits_ + 1, protocol::kMaxGra
 
 void FlowControl::grant() {
     credit();
-    // The first grants come before there is anything to acknowledge.
-    if (newest_ > 0) {
+    // The first grants have nothing to acknowledge, even where a frame was sent between them.
+    ++plain_grants_;
+    if (newest_ > 0 && (acknowledges_ || plain_grants_ > protocol::kMaxGrants)) {
         counts_grants_ = true;
         acknowledges_ = false;
     }
@@ -61,10 +62,7 @@ bool FlowControl::grant(std::int64_t frame, Clock::time_point now) {
 void FlowControl::sent(std::size_t bytes, Clock::time_point now) {
     sent_ += bytes;
     sent_at_ = now;
-    const auto measured = link(now);
-    const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
-    passed_at_ = std::max(passed_at_, now) +
-                 std::chrono::duration_cast<Clock::duration>(std::min<Seconds>(takes, kLongestWait));
+    passed_at_ = std::max(passed_at_, now) + passing(bytes, now);
 }
 
 void FlowControl::sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_point now) {
@@ -79,10 +77,7 @@ void FlowControl::sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_
 
 void FlowControl::sent_update(std::size_t bytes, Clock::time_point now) {
     sent(bytes, now);
-    const auto measured = link(now);
-    const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
-    update_from_ = now + std::chrono::duration_cast<Clock::duration>(
-                             std::min<Seconds>((1 + kUpdatePause) * takes, kUpdateTimeout));
+    update_from_ = now + std::min<Clock::duration>((1 + kUpdatePause) * passing(bytes, now), kUpdateTimeout);
 }
 
 bool FlowControl::wants_ping() const {
@@ -138,27 +133,38 @@ void FlowControl::measure(const Frame& frame, Clock::time_point shown_at) {
     rate_ = *rate_ * std::pow(rate / *rate_, weight);
 }
 
-/// How long what is in flight will wait in queues of the link, by its measured rate.
-FlowControl::Clock::duration FlowControl::queueing(Clock::time_point now) const {
+/// How long so many bytes take to pass the link, by its measured rate; 0 where it is not measured.
+FlowControl::Clock::duration FlowControl::passing(std::size_t bytes, Clock::time_point now) const {
     const auto measured = link(now);
-    const Seconds all(static_cast<double>(in_flight()) / measured->bytes_per_second);
-    return std::chrono::duration_cast<Clock::duration>(all) - measured->round_trip;
+    const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
+    return std::chrono::duration_cast<Clock::duration>(std::min<Seconds>(takes, kLongestWait));
+}
+
+/// How long what is in flight will wait in queues of the link.
+FlowControl::Clock::duration FlowControl::queueing(Clock::time_point now) const {
+    return passing(in_flight(), now) - round_trip();
+}
+
+/// When the newest frame has passed the link, by its rate: on a long link it is not heard for long.
+FlowControl::Clock::time_point FlowControl::frame_passed_at(Clock::time_point now) const {
+    if (frames_.empty() || frames_.back().arrived_at) return {};
+    return frames_.back().sent_at + passing(frames_.back().bytes, now);
 }
 
 /// Whether a second frame would wait behind one like the newest.
 bool FlowControl::is_slow(Clock::time_point now) const {
-    const auto measured = link(now);
-    if (!measured || frames_.empty()) return !counts_grants_;
-    return Seconds(static_cast<double>(frames_.back().bytes) / measured->bytes_per_second) > kQueue;
+    if (!link(now) || frames_.empty()) return !counts_grants_;
+    return passing(frames_.back().bytes, now) > kQueue;
 }
 
 int FlowControl::frames_allowed(Clock::time_point now) const {
     if (credits_ == 0 || counts_grants_) return credits_;
-    if (in_flight() == 0) return is_slow(now) ? 1 : credits_;
-    if (link(now)) return queueing(now) <= kQueue ? credits_ : 0;
+    const int at_once = is_slow(now) ? 1 : credits_;
+    if (in_flight() == 0) return at_once;
+    if (link(now)) return std::max(queueing(now), frame_passed_at(now) - now) <= kQueue ? at_once : 0;
     // Nothing was heard of a frame yet: the next one waits for that.
     const bool frame_in_flight = !frames_.empty() && !frames_.back().arrived_at;
-    return !frame_in_flight || now - sent_at_ >= kFrameTimeout ? credits_ : 0;
+    return !frame_in_flight || now - sent_at_ >= kFrameTimeout ? at_once : 0;
 }
 
 bool FlowControl::may_send_update(Clock::time_point now) const {
@@ -170,15 +176,18 @@ bool FlowControl::may_send_update(Clock::time_point now) const {
 }
 
 std::optional<FlowControl::Clock::time_point> FlowControl::ask_again(Clock::time_point now) const {
-    const bool frame_waits = credits_ > 0 && !may_send_frame(now);
-    const bool update_waits = !may_send_update(now);
-    if (!frame_waits && !update_waits) return std::nullopt;
-    const Clock::time_point passed = passed_at_ - std::chrono::duration_cast<Clock::duration>(kQueue);
-    if (update_waits && link(now) && passed > now) return passed;
-    if (frame_waits && !link(now)) return sent_at_ + kFrameTimeout;
-    if (now < update_from_) return update_from_;
-    if (update_waits) return std::max(heard_at_, sent_at_) + kUpdateTimeout;
-    return std::nullopt;
+    constexpr auto queue = std::chrono::duration_cast<Clock::duration>(kQueue);
+    std::optional<Clock::time_point> first;
+    const auto may_at = [&](Clock::time_point at) {
+        if (at > now) first = std::min(first.value_or(at), at);
+    };
+    if (credits_ > 0 && !may_send_frame(now))
+        may_at(link(now) ? frame_passed_at(now) - queue : sent_at_ + kFrameTimeout);
+    if (!may_send_update(now)) {
+        may_at(link(now) ? std::max(passed_at_ - queue, update_from_) : update_from_);
+        may_at(std::max(heard_at_, sent_at_) + kUpdateTimeout);
+    }
+    return first;
 }
 
 std::optional<engine::Link> FlowControl::link(Clock::time_point now) const {
@@ -198,10 +207,8 @@ std::optional<engine::Link> FlowControl::link(Clock::time_point now) const {
 
 FlowControl::Clock::time_point FlowControl::may_send_from(std::size_t bytes, Clock::time_point rests_since,
                                                           Clock::time_point now) const {
-    const auto measured = link(now);
-    const Seconds takes(measured ? static_cast<double>(bytes) / measured->bytes_per_second : 0);
-    if (takes <= kLongFrame) return now;
-    return rests_since + std::chrono::duration_cast<Clock::duration>(std::min(takes, kLongestWait));
+    const Clock::duration takes = passing(bytes, now);
+    return takes <= kLongFrame ? now : rests_since + takes;
 }
 
 }  // namespace vrut::server::net

@@ -18,8 +18,9 @@ class FlowControl {
 public:
     using Clock = base::Clock;
 
-    /// The client grants one more frame and acknowledges none. Where it was sent one before, its grants are
-    /// counted from then on and its link is taken as unlimited, until it acknowledges one.
+    /// The client grants one more frame and acknowledges none. Where it was sent one before, and this is none
+    /// of its first grants (protocol::kMaxGrants), its grants are counted from then on and its link is taken
+    /// as unlimited, until it acknowledges one.
     void grant();
     /// The client grants one more frame and has shown `frame`. False: it was never sent, and nothing changes.
     bool grant(std::int64_t frame, Clock::time_point now);
@@ -79,9 +80,12 @@ private:
     void measure(const Frame& frame, Clock::time_point shown_at);
     Clock::duration round_trip() const { return round_trip_.value_or(Clock::duration{}); }
     bool is_slow(Clock::time_point now) const;
+    Clock::duration passing(std::size_t bytes, Clock::time_point now) const;
     Clock::duration queueing(Clock::time_point now) const;
+    Clock::time_point frame_passed_at(Clock::time_point now) const;
 
     int credits_ = 0;
+    std::uint64_t plain_grants_ = 0;  ///< that acknowledged none
     bool acknowledges_ = false, counts_grants_ = false;
     std::size_t sent_ = 0, arrived_ = 0;  ///< bytes
     std::int64_t newest_ = 0;             ///< frame that was sent

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/frame_quality.hpp"
+#include "engine/scheduler.hpp"
 #include "environment_variable.hpp"
 #include "rendering.hpp"
 #include "scene/level_store.hpp"
@@ -205,6 +206,36 @@ TEST_CASE("who steers over a slow link sees where it ended at once, though other
     drag.client.send({{"type", "frame"}});
     drag.client.wait_for("frame");
     CHECK(std::chrono::steady_clock::now() - asked < 1s);
+}
+
+TEST_CASE("a whole picture that is held back on a slow link makes way for the view that moves again") {
+    Drag drag{ends_of_table()};
+    drag.move(1);
+    for (const bool still : {false, true}) {  // both are small, and tell of the link
+        std::this_thread::sleep_for(200ms);
+        CHECK((drag.client.wait_for("frame")["quality"]["level"] == "still") == still);
+        drag.client.grant();
+    }
+    const Metrics& metrics = drag.server.metrics();
+    CHECK(eventually([&] { return metrics.frames_encoded == 3; }, 60s));
+    CHECK(metrics.frames_sent == 2);  // the third takes longer than was thought
+    drag.move(0);
+    CHECK(drag.client.wait_for("frame", 60s)["quality"]["level"] == "moving");
+}
+
+TEST_CASE("on a very slow link the first picture of a view that rests waits no longer than a moving one") {
+    Drag drag{ends_of_table()};
+    drag.move(1);
+    std::this_thread::sleep_for(2500ms);
+    drag.client.wait_for("frame");
+    drag.move(0);
+    while (drag.client.receive(2 * kQuiet)) {
+    }
+    drag.client.grant();
+    const Metrics& metrics = drag.server.metrics();
+    CHECK(eventually([&] { return metrics.frames_encoded == 2; }));
+    drag.move(0);
+    CHECK(drag.client.wait_for("frame")["quality"]["level"] == "still");
 }
 
 TEST_CASE("where who steers takes no pictures, the others' are not small for that") {

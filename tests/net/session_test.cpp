@@ -64,8 +64,7 @@ TEST_CASE("ends of a connection have the contract's codes, and an error goes bef
 TEST_CASE("a state that is longer than a message may be ends the connection, with the reason") {
     std::string scene = "vrut-text 1\n";
     for (int i = 1; i <= 1200; ++i)
-        scene +=
-            "node " + std::to_string(i) + " \"" + std::string(60'000, 'x') + "\" camera eye 0 0 5 end\n";
+        scene += "node " + std::to_string(i) + " \"" + std::string(60'000, 'x') + "\" camera eye 0 0 5 end\n";
     TestServer server(scene_of(scene), FakePainter{}.factory());
     TestClient client(server.port());
     client.send({{"type", "hello"}, {"version", 1}, {"role", "view"}});

@@ -118,8 +118,9 @@ export const ROWS = [
   {
     what: 'slow links',
     studies: ['slow-links', 'long-links', 'stalls'],
+    tests: [['tests/stability/links_test.cpp', 'frames and patches arrive as young through HAProxy as directly']],
     holds: (slow, long, stalls) =>
-      `from ${short(1000 / slow.to)} kbit/s on, without a proxy between, a frame shows a move of a drag within ${seconds(slow.bound)} and the time of two of the smallest frames; with a delay up to ${seconds(long.to)} each way, within ${seconds(long.bound)} and two round trips; after a stall of up to ${seconds(1000 * stalls.to)} the newest frame comes within ${seconds(stalls.bound)}`,
+      `from ${short(1000 / slow.to)} kbit/s on, directly and through HAProxy, a frame shows a move of a drag within ${seconds(slow.bound)} and the time of two of the smallest frames; with a delay up to ${seconds(long.to)} each way, within ${seconds(long.bound)} and two round trips; after a stall of up to ${seconds(1000 * stalls.to)} the newest frame comes within ${seconds(stalls.bound)}`,
     beyond: 'the server closes a connection that has taken nothing for 10 s, and the page connects again; after a long rest a refined frame may be in transit before a drag',
   },
   {

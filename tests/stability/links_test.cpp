@@ -120,7 +120,7 @@ TEST_CASE("frames and patches arrive as young through HAProxy as directly") {
     if (!HaProxy::is_installed()) std::printf("There is no HAProxy: the links through it are left out.\n");
     std::vector<std::pair<Link, std::future<Ages>>> running;
     for (const bool proxied : {false, true})
-        for (const double rate : {100.0, 1000.0})
+        for (const double rate : {20.0, 100.0, 1000.0})
             for (const auto delay : {0ms, 200ms, 2000ms}) {
                 if (proxied && !HaProxy::is_installed()) continue;
                 const Link link{rate, delay, proxied};

@@ -27,11 +27,12 @@ struct Link {
     LinkSchedule up, down;
 };
 
-/// Little waits in the kernel's buffers, as on a link, where nothing does. Small segments go with it: what
-/// fills the buffer in one piece would have to wait for the kernel's timers.
+/// Little waits in the kernel's buffers, as on a link, where nothing does. Yet the window must hold several
+/// segments, and segments are small: while a window is smaller than the next segment, the kernel sends by its
+/// timers alone, and after TCP_USER_TIMEOUT of that ends the connection.
 template <class Socket>
 void shrink_buffers(Socket& socket) {
-    constexpr int kBuffer = 4096, kSegment = 1448;  // bytes; the kernel doubles the buffer
+    constexpr int kBuffer = 16384, kSegment = 1448;  // bytes; the kernel doubles the buffer
     error_code ignored;
     socket.set_option(asio::socket_base::receive_buffer_size(kBuffer), ignored);
     socket.set_option(asio::socket_base::send_buffer_size(kBuffer), ignored);
