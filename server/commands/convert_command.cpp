@@ -53,9 +53,9 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
         write_scene(*scene, arguments.out, shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),
                     files_beside(arguments.in, *scene));
     if (!lost) throw std::runtime_error(lost.error());
-    std::vector<std::string> told = scene->notices();
-    told.insert(told.end(), lost->begin(), lost->end());
-    return told;
+    std::vector<std::string> notices = scene->notices();
+    notices.insert(notices.end(), lost->begin(), lost->end());
+    return notices;
 }
 
 }  // namespace

@@ -68,12 +68,13 @@ public:
     void write(std::int64_t frame, const room::Room& room) {
         engine::PictureLimits limits;
         limits.max_side = std::min(limits.max_side, renderer_.max_size());
-        const protocol::Quality quality = engine::quality_of(engine::kStill, room.view_size(), limits, true);
+        const protocol::Quality quality =
+            engine::quality_of(engine::kRefined, room.view_size(), limits, true);
         const engine::PictureSize size = engine::picture_size(room.view_size(), quality.scale);
         View view = room.visible();
         view.width = size.width;
         view.height = size.height;
-        view.samples = engine::kStillSamples.front();
+        view.samples = engine::kRefinedSamples.front();
         Image image;
         FrameStats stats;
         renderer_.render(view, image, stats);

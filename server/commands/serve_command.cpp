@@ -114,7 +114,7 @@ void serve_command(const ServeArguments& arguments) {
     options.library = scene::SceneLibrary(existing_folder("--scenes", arguments.scenes));
     options.record_folder = existing_folder("--record", arguments.record);
 
-    net::Server server(options, *std::move(scene), engine::gl_painter(arguments.device));
+    net::Server server(options, *std::move(scene), engine::gl_renderer(arguments.device));
     server.stop_on_signals();  // before the address is told: from then on somebody may stop it
     announce(options.listen, server.port(), options.access);
     observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});

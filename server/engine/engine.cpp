@@ -39,22 +39,22 @@ std::optional<base::Clock::time_point> earlier(std::optional<base::Clock::time_p
 
 }  // namespace
 
-PainterFactory gl_painter(std::optional<int> device) {
+FrameRendererFactory gl_renderer(std::optional<int> device) {
     return [device] {
         auto renderer = std::make_shared<Renderer>(device);
         for (const std::string& sentence : renderer->rejected())
             observe::log_warning("device_passed_over", {{"reason", sentence}});
         observe::log_info("drawing", {{"renderer", renderer->description()}});
-        return Painter{renderer->description(),
-                       renderer->software(),
-                       renderer->max_size(),
-                       [renderer](const View& view) { renderer->take(view); },
-                       [renderer](Rendering& rendering) { return renderer->step(rendering); },
-                       [renderer] { return renderer->gl_objects(); }};
+        return FrameRenderer{renderer->description(),
+                             renderer->software(),
+                             renderer->max_size(),
+                             [renderer](const View& view) { renderer->take(view); },
+                             [renderer](Rendering& rendering) { return renderer->step(rendering); },
+                             [renderer] { return renderer->gl_objects(); }};
     };
 }
 
-Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& metrics,
+Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Metrics& metrics,
                EngineCallbacks callbacks)
     : library_(std::move(options.library)),
       record_folder_(std::move(options.record_folder)),
@@ -114,7 +114,7 @@ Engine::Engine(EngineOptions options, PainterFactory factory, observe::Metrics& 
             else
                 started.set_exception(std::current_exception());
         }
-        painter_ = {};  // what belongs to GL ends on the thread that it began on
+        renderer_ = {};  // what belongs to GL ends on the thread that it began on
         room_.reset();
     });
     try {
@@ -132,16 +132,16 @@ Engine::~Engine() {
 }
 
 scene::LoadedScene Engine::with_notices(scene::LoadedScene scene) const {
-    if (painter_.software)
+    if (renderer_.software)
         scene.notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
     return scene;
 }
 
 void Engine::begin(const scene::LoadedScene& scene) {
     watchdog_.busy();
-    painter_ = factory_();
-    description_ = painter_.description;
-    limits_.max_side = std::min(painter_.max_size, limits_.max_side);
+    renderer_ = factory_();
+    description_ = renderer_.description;
+    limits_.max_side = std::min(renderer_.max_size, limits_.max_side);
     pixel_budget_ = limits_;
     use(scene::built_in_levels());
     read_levels(scene);
@@ -149,7 +149,7 @@ void Engine::begin(const scene::LoadedScene& scene) {
     connect_files(options);
     room_.emplace(with_notices(scene), std::move(options));
     try {
-        if (painter_.take) painter_.take(room_->visible());
+        if (renderer_.take) renderer_.take(room_->visible());
     } catch (const OutOfMemory& error) {
         throw std::runtime_error(scene.name + ": " + error.what());
     }
@@ -158,7 +158,7 @@ void Engine::begin(const scene::LoadedScene& scene) {
     View small = room_->visible();
     small.width = small.height = 64;
     Rendering first(std::move(small));
-    while (!painter_.step(first)) {
+    while (!renderer_.step(first)) {
     }
     draws_ = true;
 }
@@ -207,13 +207,13 @@ ScheduleInput Engine::situation(base::Clock::time_point now) const {
     input.last_change = last_change_;
     if (renewal_) return input;  // there is nothing to draw with
     input.changed = !shows_present();
-    input.newest_samples = newest_.still_samples;
+    input.newest_samples = newest_.refined_samples;
     input.encoder_free = encoder_.is_free();
     input.frame_under_way = frame_.has_value();
     input.snapshot_waits = !snapshots_.empty() && snapshot_encoder_.is_free();
     for (const auto& [name, client] : clients_) {
         if (!wants_newer(client) || has_failed()) continue;
-        const base::Clock::time_point from = last_change_ + delivery_at_rest(client.wanted.link);
+        const base::Clock::time_point from = last_change_ + refined_delivery(client.wanted.link);
         input.last_refinement_from = input.frame_wanted ? std::min(input.last_refinement_from, from) : from;
         input.frame_wanted = true;
     }
@@ -223,12 +223,12 @@ ScheduleInput Engine::situation(base::Clock::time_point now) const {
 std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& step) {
     using Action = ScheduledStep::Action;
     if (renewal_) {
-        if (base::Clock::now() >= renewal_->at) renew_painter();
+        if (base::Clock::now() >= renewal_->at) renew_renderer();
         return renewal_ ? renewal_->at : base::Clock::now();
     }
     if (step.action == Action::wait) return step.until;
     const base::Clock::time_point begin = base::Clock::now();
-    if (step.action == Action::begin_frame) begin_frame(step.still_samples);
+    if (step.action == Action::begin_frame) begin_frame(step.refined_samples);
     if (step.action != Action::draw_snapshot) {
         draw_frame();
     } else {
@@ -285,14 +285,14 @@ void Engine::handle(const FramesWanted& wanted) {
     client.wanted = wanted;
 }
 
-/// What a moving frame cost decides on the levels of those that follow.
+/// The cost of an interactive frame decides on the levels of those that follow.
 void Engine::handle(const FrameEncoded& encoded) {
-    const auto begun = std::find_if(begun_.begin(), begun_.end(),
-                                    [&](const Begun& frame) { return frame.frame == encoded.frame; });
-    if (begun != begun_.end()) {
-        choice_->took(begun->level, {begun->drawn_ms + encoded.encode_ms, static_cast<double>(encoded.bytes)},
-                      begun->pixels, base::Clock::now());
-        begun_.erase(begun_.begin(), begun + 1);
+    const auto frame = std::find_if(in_flight_.begin(), in_flight_.end(),
+                                    [&](const FrameInFlight& each) { return each.frame == encoded.frame; });
+    if (frame != in_flight_.end()) {
+        choice_->took(frame->level, {frame->drawn_ms + encoded.encode_ms, static_cast<double>(encoded.bytes)},
+                      frame->pixels, base::Clock::now());
+        in_flight_.erase(in_flight_.begin(), frame + 1);
     }
     if (encoded.frame >= scene_since_ && !detail_) make_detail_levels();
 }
@@ -325,10 +325,10 @@ void Engine::make_detail_levels() {
 /// For the scene that is shown from now on.
 void Engine::use(const protocol::LevelTable& table) {
     choice_.emplace(table);
-    at_rest_.clear();
+    refined_levels_.clear();
     for (const protocol::Level& level : table.levels)
-        if (level.quality.level == protocol::Quality::Level::still) at_rest_.push_back(level);
-    begun_.clear();
+        if (level.quality.level == protocol::Quality::Level::still) refined_levels_.push_back(level);
+    in_flight_.clear();
     detail_.reset();
     scene_since_ = next_frame_;
 }
@@ -345,9 +345,11 @@ void Engine::handle(const PictureAsked& asked) {
     snapshots_.push_back({std::move(order)});
 }
 
-void Engine::handle(const scene::SceneLoading& loading) { tell({loading.name, loading.fraction, {}, {}}); }
+void Engine::handle(const scene::SceneLoading& loading) {
+    broadcast({loading.name, loading.fraction, {}, {}});
+}
 
-void Engine::tell(const protocol::Loading& loading) {
+void Engine::broadcast(const protocol::Loading& loading) {
     output_.loading = std::make_shared<const std::string>(protocol::encode(loading));
     output_.loads = !loading.done && !loading.refused;
 }
@@ -405,10 +407,10 @@ void Engine::handle_message(const MessageReceived& received, const protocol::Cli
 
 PictureSize Engine::present_size() const {
     const protocol::Resize& view = room_->view_size();
-    return picture_size(view, quality_of(kStill, view, pixel_budget_, false).scale);
+    return picture_size(view, quality_of(kRefined, view, pixel_budget_, false).scale);
 }
 
-/// Hands over what there is to tell.
+/// Hands over what there is to send.
 void Engine::publish() {
     const base::Clock::time_point now = base::Clock::now();
     if (const auto& document = room_->document(); document != reported_) {

@@ -15,9 +15,9 @@
 #include "detail_levels.hpp"
 #include "engine/encoder.hpp"
 #include "engine/frame_quality.hpp"
+#include "engine/frame_renderer.hpp"
 #include "engine/level_choice.hpp"
 #include "engine/mailbox.hpp"
-#include "engine/painter.hpp"
 #include "engine/recording_writer.hpp"
 #include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
@@ -38,7 +38,7 @@ struct EngineOutput {
     std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
     std::int64_t by_since = 0;
     std::vector<room::Answer> answers;
-    std::vector<std::string> undrawn;  ///< whose picture cannot be drawn (PictureAsked::name)
+    std::vector<std::string> failed_pictures;  ///< whose picture cannot be drawn (PictureAsked::name)
     struct Handled {
         std::size_t bytes = 0, requests = 0;
         std::uint64_t sequence = 0;  ///< of the last
@@ -51,7 +51,7 @@ struct EngineOutput {
     bool loads = false;                                 ///< with `loading`: it goes on
 
     bool empty() const {
-        return !document && answers.empty() && undrawn.empty() && handled.empty() && !size &&
+        return !document && answers.empty() && failed_pictures.empty() && handled.empty() && !size &&
                !present_frame && !stats && !loading;
     }
 };
@@ -75,7 +75,7 @@ class Engine {
 public:
     /// Starts the thread; throws what `factory` throws, and where the scene does not fit. The first output
     /// holds the first document.
-    Engine(EngineOptions options, PainterFactory factory, observe::Metrics& metrics,
+    Engine(EngineOptions options, FrameRendererFactory factory, observe::Metrics& metrics,
            EngineCallbacks callbacks);
     ~Engine();
     Engine(const Engine&) = delete;
@@ -104,8 +104,8 @@ private:
         FramesWanted wanted;
         std::int64_t from_frame = 1;  ///< the first begun after its last grant
     };
-    /// A moving frame that was begun, until its cost is known.
-    struct Begun {
+    /// An interactive frame that was begun, until its cost is known.
+    struct FrameInFlight {
         std::int64_t frame = 0;
         std::size_t level = 0;
         double pixels = 0, drawn_ms = 0;
@@ -115,7 +115,7 @@ private:
         Picture picture;
         View visible;
         protocol::Resize view_size;
-        int still_samples = 0;  ///< 0: a moving one
+        int refined_samples = 0;  ///< 0: an interactive one
         std::size_t level = 0;
         Rendering rendering;
     };
@@ -169,16 +169,16 @@ private:
     /// The newest picture drawn shows what is to be seen now.
     bool shows_present() const;
     bool wants_newer(const Client& client) const;
-    double bytes_at_rest() const;
-    base::Clock::duration delivery_at_rest(const std::optional<Link>& link) const;
+    double refined_bytes() const;
+    base::Clock::duration refined_delivery(const std::optional<Link>& link) const;
     std::optional<Link> holders_link() const;
     bool thin_lines() const;
     bool is_outdated(const FrameUnderWay& frame) const;
     void fly();
     PictureSize present_size() const;
-    void tell(const protocol::Loading& loading);
+    void broadcast(const protocol::Loading& loading);
     std::map<std::string, Applied> applied() const;
-    void begin_frame(int still_samples);
+    void begin_frame(int refined_samples);
     void draw_frame();
     void finish_frame();
     void give_up_frame();
@@ -189,8 +189,8 @@ private:
     // --- what draws, and what fails in it
     enum class Drawn { part, whole, lost };
     Drawn draw(Rendering& rendering);
-    void lose_painter(const std::string& why);
-    void renew_painter();
+    void lose_renderer(const std::string& why);
+    void renew_renderer();
     void show_arrived();
     void show(const scene::SceneLoaded& loaded, std::optional<std::string> refused);
     struct Failed {
@@ -205,8 +205,8 @@ private:
     void notice(const std::string& sentence);
     void use(const protocol::LevelTable& table);
     void make_detail_levels();
-    bool is_small_at_rest(int samples) const;
-    protocol::Quality quality_at_rest(int samples) const;
+    bool is_small_refinement(int samples) const;
+    protocol::Quality refined_quality(int samples) const;
     std::size_t choose_level();
 
     void begin(const scene::LoadedScene& scene);
@@ -230,10 +230,10 @@ private:
     std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
     scene::SceneLoader loader_;
-    PainterFactory factory_;
-    Painter painter_;
-    std::optional<Renewal> renewal_;             ///< while there is no painter
-    std::size_t tries_ = 0;                      ///< painters made since the last whole picture
+    FrameRendererFactory factory_;
+    FrameRenderer renderer_;
+    std::optional<Renewal> renewal_;             ///< while there is no renderer
+    std::size_t tries_ = 0;                      ///< renderers made since the last whole picture
     std::optional<scene::SceneLoaded> arrived_;  ///< to be shown
     int arrival_losses_ = 0;                     ///< of the context, by what has arrived
     PictureLimits pixel_budget_;                 ///< of the live picture, as far as is known
@@ -257,15 +257,15 @@ private:
         std::int64_t frame = 0;
         View visible;
         protocol::Resize view_size;
-        int still_samples = 0;  ///< 0: a moving one
+        int refined_samples = 0;  ///< 0: an interactive one
     } newest_;
     std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
-    std::deque<Begun> begun_;  ///< the last moving frames
+    std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones
     std::optional<LevelChoice> choice_;
-    std::vector<protocol::Level> at_rest_;        ///< of the table
-    std::shared_ptr<const DetailLevels> detail_;  ///< null until the scene's first frame was encoded
-    std::int64_t scene_since_ = 1;                ///< first frame of the scene shown
+    std::vector<protocol::Level> refined_levels_;  ///< of the table
+    std::shared_ptr<const DetailLevels> detail_;   ///< null until the scene's first frame was encoded
+    std::int64_t scene_since_ = 1;                 ///< first frame of the scene shown
 
     std::thread thread_;  // last: it uses all of the above
 };

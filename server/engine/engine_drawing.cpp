@@ -11,10 +11,6 @@ namespace vrut::server::engine {
 namespace {
 
 constexpr std::size_t kFramesRemembered = 64;
-/// A picture at rest that takes longer is held back for as long as it takes: whoever moves again would wait
-/// for it.
-constexpr std::chrono::seconds kLongDelivery{2};
-
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
 
@@ -54,8 +50,8 @@ bool Engine::wants_newer(const Client& client) const {
     return client.wanted.count > std::count_if(drawn_.begin(), drawn_.end(), will_do);
 }
 
-/// Expected of a whole picture: about as many as of the most accurate moving one.
-double Engine::bytes_at_rest() const {
+/// Expected of a frame at full accuracy: about as many as of the most accurate interactive one.
+double Engine::refined_bytes() const {
     const std::size_t level = choice_->levels().size() - 1;
     const protocol::Resize view_size = room_->view_size();
     const double scale =
@@ -63,10 +59,11 @@ double Engine::bytes_at_rest() const {
     return choice_->expected(level, pixels_of(picture_size(view_size, scale)), base::Clock::now()).bytes;
 }
 
-/// How long a whole picture is expected to be on its way over a slow link; 0 over others.
-base::Clock::duration Engine::delivery_at_rest(const std::optional<Link>& link) const {
+/// How long a frame at full accuracy is expected to be on its way over a slow link, at most a minute; 0 over
+/// others. It is held back for as long: a client that moves the view again would wait for it.
+base::Clock::duration Engine::refined_delivery(const std::optional<Link>& link) const {
     if (!link) return {};
-    const std::chrono::duration<double> takes(bytes_at_rest() / link->bytes_per_second);
+    const std::chrono::duration<double> takes(refined_bytes() / link->bytes_per_second);
     return takes > kLongDelivery
                ? std::chrono::duration_cast<base::Clock::duration>(
                      std::min<std::chrono::duration<double>>(takes, std::chrono::minutes(1)))
@@ -85,15 +82,15 @@ bool Engine::thin_lines() const {
            (state.renderer.show_selection && state.selection.node);
 }
 
-/// Over a slow link the first picture at rest is as small as those of the moving view.
-bool Engine::is_small_at_rest(int samples) const {
-    return samples < kStillSamples.back() && delivery_at_rest(holders_link()) > base::Clock::duration{};
+/// Over a slow link the first refinement is as small as the interactive frames.
+bool Engine::is_small_refinement(int samples) const {
+    return samples < kRefinedSamples.back() && refined_delivery(holders_link()) > base::Clock::duration{};
 }
 
 /// With the error that the table has for such a picture.
-protocol::Quality Engine::quality_at_rest(int samples) const {
+protocol::Quality Engine::refined_quality(int samples) const {
     const protocol::Resize view_size = room_->view_size();
-    if (is_small_at_rest(samples)) {
+    if (is_small_refinement(samples)) {
         protocol::Quality quality =
             quality_of(choice_->levels()[0].quality, view_size, pixel_budget_, thin_lines());
         quality.level = protocol::Quality::Level::still;
@@ -102,10 +99,10 @@ protocol::Quality Engine::quality_at_rest(int samples) const {
         quality.error.reset();
         return quality;
     }
-    protocol::Quality quality = quality_of(kStill, view_size, pixel_budget_, thin_lines());
+    protocol::Quality quality = quality_of(kRefined, view_size, pixel_budget_, thin_lines());
     quality.samples = samples;
     if (thin_lines()) return quality;
-    for (const protocol::Level& level : at_rest_) {
+    for (const protocol::Level& level : refined_levels_) {
         quality.error = level.quality.error;
         if (level.quality == quality) return quality;
     }
@@ -123,11 +120,12 @@ std::size_t Engine::choose_level() {
     return choice_->choose({room_->view_size(), pixel_budget_, target, holders_link()}, base::Clock::now());
 }
 
-/// A moving frame is finished though the camera has moved on: while it moves on and on, none would be.
+/// An interactive frame is finished though the camera has moved on: else a camera that never stops would show
+/// none.
 bool Engine::is_outdated(const FrameUnderWay& frame) const {
     const View& now = room_->visible();
     if (scene_of(now) != scene_of(frame.visible)) return true;
-    return frame.still_samples > 0 && (now != frame.visible || room_->view_size() != frame.view_size);
+    return frame.refined_samples > 0 && (now != frame.visible || room_->view_size() != frame.view_size);
 }
 
 void Engine::give_up_frame() {
@@ -143,12 +141,12 @@ std::map<std::string, Applied> Engine::applied() const {
 }
 
 /// What is drawn is what stands here now, whatever comes in between two steps.
-void Engine::begin_frame(int still_samples) {
+void Engine::begin_frame(int refined_samples) {
     const protocol::Resize view_size = room_->view_size();
-    const bool still = still_samples > 0;
+    const bool still = refined_samples > 0;
     const std::size_t level = still ? 0 : choose_level();
     const protocol::Quality quality =
-        still ? quality_at_rest(still_samples)
+        still ? refined_quality(refined_samples)
               : quality_of(choice_->levels()[level].quality, view_size, pixel_budget_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
     const View visible = room_->visible();
@@ -164,14 +162,15 @@ void Engine::begin_frame(int still_samples) {
     picture.header.revision = room_->document()->revision();
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
-    // A small one that shows something new is in nobody's way longer than one of the moving view.
-    if (still && (shows_present() || !is_small_at_rest(still_samples))) picture.rests_since = last_change_;
+    // A small one that shows something new delays nobody longer than an interactive frame.
+    if (still && (shows_present() || !is_small_refinement(refined_samples)))
+        picture.idle_since = last_change_;
     picture.applied = applied();
     if (!still) {
         picture.header.frame = next_frame_;
         room_->remember(next_frame_++);  // with the camera as it is now
     }
-    frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, still_samples, level,
+    frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
                                  Rendering(std::move(view), encoder_.take_spare())});
 }
 
@@ -192,23 +191,23 @@ void Engine::draw_frame() {
 void Engine::finish_frame() {
     FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
     protocol::FrameHeader& header = frame.picture.header;
-    if (frame.still_samples > 0) {
+    if (frame.refined_samples > 0) {
         header.frame = next_frame_;
         room_->remember(next_frame_++);
         // It shows what came meanwhile, too: that changed nothing.
         frame.picture.applied = applied();
     }
-    newest_ = {header.frame, frame.visible, frame.view_size, frame.still_samples};
+    newest_ = {header.frame, frame.visible, frame.view_size, frame.refined_samples};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
     const FrameStats& stats = frame.rendering.stats;
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
     count_frame(header, metrics_, stats_);
-    if (frame.still_samples == 0) {
-        begun_.push_back({header.frame, frame.level, pixels_of({header.width, header.height}),
-                          stats.render_ms + stats.readback_ms});
-        if (begun_.size() > kFramesRemembered) begun_.pop_front();
+    if (frame.refined_samples == 0) {
+        in_flight_.push_back({header.frame, frame.level, pixels_of({header.width, header.height}),
+                              stats.render_ms + stats.readback_ms});
+        if (in_flight_.size() > kFramesRemembered) in_flight_.pop_front();
     }
     encoder_.offer(std::move(frame.picture), std::move(frame.rendering.image));
 }
@@ -229,7 +228,7 @@ void Engine::draw_snapshot() {
     snapshots_.erase(next);
     if (!snapshot.rendering) {
         View& view = snapshot.order.view;
-        view.samples = kStill.samples;
+        view.samples = kRefined.samples;
         snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
     }
     Drawn drawn = Drawn::part;
@@ -254,7 +253,7 @@ void Engine::finish_snapshot(Snapshot snapshot) {
     ++metrics_.snapshots_rendered;
     Picture picture;
     picture.header = std::move(snapshot.order.header);
-    picture.header.quality = kStill;
+    picture.header.quality = kRefined;
     picture.header.quality.jpeg_quality = snapshot.order.jpeg_quality;
     picture.header.timing.render_ms = snapshot.rendering->stats.render_ms;
     picture.header.timing.readback_ms = snapshot.rendering->stats.readback_ms;

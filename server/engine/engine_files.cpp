@@ -59,7 +59,7 @@ std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
     } catch (const std::system_error& error) {
         return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
     }
-    tell({found.name, 0, {}, {}});
+    broadcast({found.name, 0, {}, {}});
     return std::nullopt;
 }
 

@@ -25,11 +25,11 @@ inline bool fits(std::int64_t width, std::int64_t height, const PictureLimits& l
     return width <= limits.max_side && height <= limits.max_side && width * height <= limits.max_pixels;
 }
 
-/// At rest. While things move, pictures are of levels: see level_choice.hpp.
-inline constexpr protocol::Quality kStill{protocol::Quality::Level::still,        1, 16, 0, 90,
-                                          protocol::Quality::Subsampling::yuv444, {}};
-/// At rest the picture is refined in steps of so many samples.
-inline constexpr std::array kStillSamples{4, kStill.samples};
+/// Of an idle view. While it moves, its frames are of levels: see level_choice.hpp.
+inline constexpr protocol::Quality kRefined{protocol::Quality::Level::still,        1, 16, 0, 90,
+                                            protocol::Quality::Subsampling::yuv444, {}};
+/// Samples of the frames that refine an idle view, in their order.
+inline constexpr std::array kRefinedSamples{4, kRefined.samples};
 
 /// What a picture of `level` is drawn and encoded with: as large as the view and the limits allow.
 /// `thin_lines`: never subsampled, since thin red lines would vanish. Of those, and of pictures that the

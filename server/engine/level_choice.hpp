@@ -20,7 +20,7 @@ struct PictureCost {
     }
 };
 
-/// What a picture of the moving view is to hold.
+/// What an interactive frame must hold.
 struct LevelDemand {
     protocol::Resize view;
     PictureLimits limits;
@@ -32,12 +32,12 @@ struct LevelDemand {
 /// accurate, by the odds p / (1 - p).
 double preferred_target(double target_ms, double preference);
 
-/// Chooses the level of each picture while things move: the most accurate of a table that holds the target,
+/// Chooses the level of each interactive frame: the most accurate of a table that holds the target,
 /// by running means of what pictures took. A more accurate one is tried when it is expected to be well within
 /// the target; one that then was too slow is not tried again for a while, each time for longer.
 class LevelChoice {
 public:
-    /// Of the table's levels those for pictures that move.
+    /// The table's levels for interactive frames.
     explicit LevelChoice(const protocol::LevelTable& table);
 
     const std::vector<protocol::Level>& levels() const { return levels_; }

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <chrono>
+
 #include "base/clock.hpp"
 
 namespace vrut::server::engine {
+
+/// A frame that is on its way for longer waits until the view has rested for as long.
+inline constexpr std::chrono::seconds kLongDelivery{2};
 
 /// The way from the server to a client's glass, as it was measured.
 struct Link {

@@ -23,7 +23,7 @@ struct Picture {
     protocol::FrameHeader header;
     std::map<std::string, Applied> applied;                    ///< of each client
     std::optional<base::Clock::time_point> newest_input = {};  ///< arrival of the newest input that it shows
-    base::Clock::time_point rests_since{};  ///< of one that may wait: the newest change of what it shows
+    base::Clock::time_point idle_since{};  ///< of one that may wait: the newest change of what it shows
     protocol::ImageFormat format = protocol::ImageFormat::jpeg;
     std::string client = {};  ///< of a snapshot: who asked for it
 };

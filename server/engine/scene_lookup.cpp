@@ -22,16 +22,16 @@ void SceneLookup::list(std::int64_t request, base::Clock::time_point now) {
             post->send([this, listed = names()] { this->listed(listed); });
         });
     }
-    if (!lists_ || now >= list_until_) tell_list();
+    if (!lists_ || now >= list_until_) send_list();
 }
 
 void SceneLookup::listed(std::vector<std::string> names) {
     lists_ = false;
     names_ = std::move(names);
-    tell_list();
+    send_list();
 }
 
-void SceneLookup::tell_list() {
+void SceneLookup::send_list() {
     for (const std::int64_t request : std::exchange(list_requests_, {}))
         post_->send([=, this] { on_listed_(request, names_); });
 }
@@ -80,7 +80,7 @@ std::optional<base::Clock::time_point> SceneLookup::due() const {
 }
 
 void SceneLookup::check(base::Clock::time_point now) {
-    if (!list_requests_.empty() && now >= list_until_) tell_list();
+    if (!list_requests_.empty() && now >= list_until_) send_list();
     for (; !findings_.empty() && now >= findings_.front().until; findings_.pop_front())
         cannot_find(findings_.front(), code::busy, "the folder of scenes does not answer");
 }

@@ -59,7 +59,7 @@ private:
     void listed(std::vector<std::string> names);
     void find_next();
     void found(const tl::expected<std::filesystem::path, std::string>& path);
-    void tell_list();
+    void send_list();
 
     Folder folder_;
     std::shared_ptr<ResultPost> post_;

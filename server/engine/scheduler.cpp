@@ -16,7 +16,7 @@ constexpr int kSnapshotPause = 4;  // times as long as a step of one
 
 ScheduledStep Scheduler::frame_step(const ScheduleInput& input) const {
     if (input.frame_under_way) return {Action::draw_frame};
-    const bool final_one = input.newest_samples == kStillSamples.back();
+    const bool final_one = input.newest_samples == kRefinedSamples.back();
     if (!input.frame_wanted || (!input.changed && final_one)) return {};
     if (!input.encoder_free) return {};  // taking its next picture, the encoder wakes us
     const base::Clock::time_point quiet_at = input.last_change + kQuiet;
@@ -26,8 +26,8 @@ ScheduledStep Scheduler::frame_step(const ScheduleInput& input) const {
     }
     const int drawn = input.changed ? 0 : input.newest_samples;
     const int samples =
-        *std::find_if(kStillSamples.begin(), kStillSamples.end(), [&](int step) { return step > drawn; });
-    if (samples == kStillSamples.back() && input.now < input.last_refinement_from)
+        *std::find_if(kRefinedSamples.begin(), kRefinedSamples.end(), [&](int step) { return step > drawn; });
+    if (samples == kRefinedSamples.back() && input.now < input.last_refinement_from)
         return {Action::wait, 0, input.last_refinement_from};
     return {Action::begin_frame, samples};
 }

@@ -17,7 +17,7 @@ struct ScheduleInput {
     /// From when on one may be sent the last refinement, which takes long on a slow link.
     base::Clock::time_point last_refinement_from{};
     bool changed = false;      ///< the newest frame does not show what is to be seen now
-    int newest_samples = 0;    ///< of the newest frame where it is a still one; else 0
+    int newest_samples = 0;    ///< of the newest frame if it is a refined one; else 0
     bool encoder_free = true;  ///< a frame drawn now would not wait behind another
     bool frame_under_way = false;
     bool snapshot_waits = false;  ///< and its encoder is free
@@ -26,13 +26,13 @@ struct ScheduleInput {
 struct ScheduledStep {
     enum class Action { wait, begin_frame, draw_frame, draw_snapshot };
     Action action = Action::wait;
-    int still_samples = 0;  ///< of the frame to begin; 0: a moving one
+    int refined_samples = 0;  ///< of the frame to begin; 0: an interactive one
     /// When waiting: ask again then even if nothing happens; none: only when something does.
     std::optional<base::Clock::time_point> until = {};
 };
 
-/// The one place that decides what the render loop does next. While things move, snapshots get a fifth of the
-/// time; at rest frames go before them.
+/// Decides what the render loop does next. While the view moves, snapshots get a fifth of the time; while it
+/// is idle, frames go first.
 class Scheduler {
 public:
     ScheduledStep next(const ScheduleInput& input) const;
@@ -42,7 +42,7 @@ public:
 private:
     ScheduledStep frame_step(const ScheduleInput& input) const;
 
-    base::Clock::time_point snapshot_turn_{};  ///< while things move: not before
+    base::Clock::time_point snapshot_turn_{};  ///< while the view moves: not before
 };
 
 }  // namespace vrut::server::engine

@@ -103,11 +103,11 @@ std::vector<Setting> affordable(Studio& studio, const View& home, std::vector<Se
 /// The picture at rest, judged by one of kMostJudgeSamples samples; none where it takes too long, by the
 /// seconds of a sample.
 std::optional<protocol::Level> still_level(Studio& studio, const View& home, double sample_seconds) {
-    const Setting still = setting_of(engine::kStill);
+    const Setting still = setting_of(engine::kRefined);
     if (sample_seconds * still.samples > kMostStillSeconds) return std::nullopt;
     const std::vector<Image> judge{studio.exact_picture(home, kMostJudgeSamples)};
     protocol::Level level;
-    level.quality = engine::kStill;
+    level.quality = engine::kRefined;
     level.quality.error = studio.errors({&home, 1}, {&still, 1}, judge).front().flip.mean;
     const Cost cost = studio.costs(home, {&still, 1}, kStillFrames).front();
     level.ms = cost.ms.median;

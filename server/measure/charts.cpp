@@ -199,7 +199,7 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
                                    : "what `chart --calibrate` would choose here for the picture while "
                                      "things move";
     std::vector<Setting> sent = levels;
-    sent.push_back(setting_of(engine::kStill));
+    sent.push_back(setting_of(engine::kRefined));
     return {
         {"transparency", "transparency",
          "Ringed: glass that is right at each pixel. Sorted by parts it is wrong wherever panes cross.",
@@ -229,16 +229,16 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
                                 [&](const Setting& setting) { return setting.detail == row.setting.detail; });
          }},
         {"antialiasing", "samples a pixel",
-         "Ringed: one sample while things move; " + std::to_string(engine::kStillSamples.front()) +
-             " and then " + std::to_string(engine::kStillSamples.back()) + " once they rest.",
+         "Ringed: one sample while things move; " + std::to_string(engine::kRefinedSamples.front()) +
+             " and then " + std::to_string(engine::kRefinedSamples.back()) + " once they rest.",
          kTime, [](const Row& row) { return std::to_string(row.setting.samples); },
          [](const Row& row) {
              return row.setting.samples == 1 ||
-                    std::find(engine::kStillSamples.begin(), engine::kStillSamples.end(),
-                              row.setting.samples) != engine::kStillSamples.end();
+                    std::find(engine::kRefinedSamples.begin(), engine::kRefinedSamples.end(),
+                              row.setting.samples) != engine::kRefinedSamples.end();
          }},
         {"jpeg", "JPEG",
-         "Ringed: " + moving + ", and JPEG " + encoding_text(setting_of(engine::kStill)) +
+         "Ringed: " + moving + ", and JPEG " + encoding_text(setting_of(engine::kRefined)) +
              " for the picture at rest.",
          kBytes, [](const Row& row) { return encoding_text(row.setting); },
          [sent](const Row& row) {

@@ -83,10 +83,10 @@ private:
     void on_written(boost::beast::error_code error);
     Traffic& traffic() { return boost::beast::get_lowest_layer(socket_).rate_policy(); }
     /// When the first bytes of a message came that is not all there.
-    const std::optional<base::Clock::time_point>& begun() { return traffic().unfinished; }
+    const std::optional<base::Clock::time_point>& unfinished_since() { return traffic().unfinished; }
     void say_goodbye();
     void on_close_frame(std::uint16_t code);
-    void watch();
+    void poll_deadlines();
     void check_deadlines(base::Clock::time_point now);
     void on_pong(std::string_view number, base::Clock::time_point now);
     std::size_t queued() const;
@@ -96,7 +96,7 @@ private:
     boost::beast::websocket::stream<Stream, false> socket_;
     ConnectionRegistry& registry_;
     boost::beast::flat_buffer incoming_;
-    boost::asio::steady_timer hello_deadline_, watch_, rate_timer_, flow_timer_;
+    boost::asio::steady_timer hello_deadline_, deadline_timer_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;
     std::string client_;  // empty before hello
     protocol::Role role_ = protocol::Role::view;
@@ -106,7 +106,7 @@ private:
     base::Clock::time_point shown_input_ =
         base::Clock::now();  // the newest that a frame showed it, of those since then
 
-    // --- what the client knows and is owed
+    // --- what the client knows, and what waits for it
     std::shared_ptr<const protocol::StateDocument> document_;  // that it last got
     struct Answer {
         Text text;
@@ -115,7 +115,7 @@ private:
     std::deque<Answer> answers_;
     std::size_t answer_bytes_ = 0;  // of answers_
     std::int64_t last_frame_ = 0;
-    std::int64_t handled_ = 0;  // the highest message id that it was told a picture shows
+    std::int64_t handled_ = 0;  // the highest message id that a picture showed it
     std::deque<std::shared_ptr<const engine::EncodedPicture>> snapshots_;
     Text stats_, loading_;  // that it last got
 

@@ -14,8 +14,8 @@ struct Deadlines {
     std::chrono::milliseconds stuck{10'000};    ///< with something to take, and nothing taken
     std::chrono::milliseconds least_rate{
         20'000};  ///< with answers or snapshots that wait, and less than 4 kB a second taken
-    std::chrono::milliseconds ping{20'000};     ///< silence, after which a ping asks for an answer
-    std::chrono::milliseconds silence{60'000};  ///< silence in all, when everything sent has arrived
+    std::chrono::milliseconds ping{20'000};  ///< without a byte: then a ping asks for an answer
+    std::chrono::milliseconds idle{60'000};  ///< without a byte, though everything sent has arrived: closed
 };
 
 }  // namespace vrut::server::net

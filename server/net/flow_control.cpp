@@ -28,7 +28,7 @@ constexpr double kSlowerWeight = 0.5, kFasterWeight = 0.25;
 constexpr Seconds kShortest = 1ms;  // of a measurement: clocks and threads are not more exact
 constexpr std::size_t kMostTracked = 64;
 /// A frame that takes longer may be in somebody's way.
-constexpr Seconds kLongFrame = 2s, kLongestWait = 60s;
+constexpr Seconds kLongestWait = 60s;
 
 }  // namespace
 
@@ -205,10 +205,10 @@ std::optional<engine::Link> FlowControl::link(Clock::time_point now) const {
     return measured;
 }
 
-FlowControl::Clock::time_point FlowControl::may_send_from(std::size_t bytes, Clock::time_point rests_since,
+FlowControl::Clock::time_point FlowControl::may_send_from(std::size_t bytes, Clock::time_point idle_since,
                                                           Clock::time_point now) const {
     const Clock::duration takes = passing(bytes, now);
-    return takes <= kLongFrame ? now : rests_since + takes;
+    return takes <= engine::kLongDelivery ? now : idle_since + takes;
 }
 
 }  // namespace vrut::server::net

@@ -53,10 +53,10 @@ public:
 
     /// None before the first measurement; unlimited for a client that does not acknowledge.
     std::optional<engine::Link> link(Clock::time_point now) const;
-    /// From when on a frame of so many bytes, of a view that rests since `rests_since`, may be sent: one that
-    /// takes long on this link goes once the view has rested for as long, since whoever moves again would
-    /// wait for it.
-    Clock::time_point may_send_from(std::size_t bytes, Clock::time_point rests_since,
+    /// From when on a frame of so many bytes, of a view that is idle since `idle_since`, may be sent: one
+    /// that takes long on this link goes once the view has rested for as long, since whoever moves again
+    /// would wait for it.
+    Clock::time_point may_send_from(std::size_t bytes, Clock::time_point idle_since,
                                     Clock::time_point now) const;
     /// Bytes that were sent and are not known to have arrived.
     std::size_t in_flight() const { return sent_ - arrived_; }

@@ -5,10 +5,10 @@
 namespace vrut::server::net {
 
 std::optional<std::string> why_unhealthy(const ConnectionRegistry& registry) {
-    for (const auto& [loop, silence] : registry.engine->busy_times())
-        if (silence > registry.longest_silence)
+    for (const auto& [loop, busy] : registry.engine->busy_times())
+        if (busy > registry.longest_busy)
             return "the " + std::string(loop) + " loop has not come round for " +
-                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(silence).count()) + " s";
+                   std::to_string(std::chrono::duration_cast<std::chrono::seconds>(busy).count()) + " s";
     return std::nullopt;
 }
 

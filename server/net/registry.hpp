@@ -23,7 +23,7 @@ class Connection;
 struct ConnectionRegistry {
     Access access;
     std::size_t max_clients = 64;
-    std::chrono::milliseconds longest_silence{30'000};  ///< of a loop that has something to do
+    std::chrono::milliseconds longest_busy{30'000};  ///< of a loop that has something to do
     Deadlines deadlines;
     std::optional<ConnectionLimit> limit;  ///< of connections of any kind
     observe::Metrics* metrics = nullptr;

@@ -20,7 +20,7 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 struct Server::Impl {
-    Impl(ServerOptions server_options, scene::LoadedScene scene, const engine::PainterFactory& painter)
+    Impl(ServerOptions server_options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer)
         : options(std::move(server_options)),
           acceptor(context),
           accept_pause(context),
@@ -30,7 +30,7 @@ struct Server::Impl {
         limit_connections();
         registry.access = options.access;
         registry.max_clients = options.max_clients;
-        registry.longest_silence = options.longest_silence;
+        registry.longest_busy = options.longest_busy;
         registry.deadlines = options.deadlines;
         registry.metrics = &metrics;
         engine::EngineCallbacks callbacks;
@@ -47,7 +47,7 @@ struct Server::Impl {
             });
         };
         engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder};
-        engine = std::make_unique<engine::Engine>(std::move(engine_options), painter, metrics,
+        engine = std::make_unique<engine::Engine>(std::move(engine_options), renderer, metrics,
                                                   std::move(callbacks));
         registry.engine = engine.get();
     }
@@ -128,7 +128,7 @@ struct Server::Impl {
         if (output.present_frame) registry.present_frame = *output.present_frame;
         for (auto& answer : output.answers)
             if (Connection* connection = find(answer.client)) connection->answer(std::move(answer));
-        for (const std::string& name : output.undrawn) registry.pictures.give_up(name);
+        for (const std::string& name : output.failed_pictures) registry.pictures.give_up(name);
         for (const auto& [client, handled] : output.handled)
             if (Connection* connection = find(client)) connection->handled(handled);
         for_each_client([](Connection& connection) { connection.pump(); });
@@ -186,8 +186,8 @@ struct Server::Impl {
     std::unique_ptr<engine::Engine> engine;
 };
 
-Server::Server(ServerOptions options, scene::LoadedScene scene, const engine::PainterFactory& painter)
-    : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), painter)) {}
+Server::Server(ServerOptions options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), renderer)) {}
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().port(); }

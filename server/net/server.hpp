@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "engine/painter.hpp"
+#include "engine/frame_renderer.hpp"
 #include "net/access.hpp"
 #include "net/addresses.hpp"
 #include "net/deadlines.hpp"
@@ -25,7 +25,7 @@ struct ServerOptions {
     scene::SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
     /// A thread that has something to do and does not come round for longer is not alive.
-    std::chrono::milliseconds longest_silence{30'000};
+    std::chrono::milliseconds longest_busy{30'000};
 };
 
 /// The preview server: an engine, and clients that reach it over HTTP and WebSocket.
@@ -33,7 +33,7 @@ class Server {
 public:
     /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port
     /// is taken or nothing can draw.
-    Server(ServerOptions options, scene::LoadedScene scene, const engine::PainterFactory& painter);
+    Server(ServerOptions options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

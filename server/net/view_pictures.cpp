@@ -32,15 +32,15 @@ const ViewPicture* ViewPictures::find(const ViewPictureKey& key) const {
     return found == kept_.end() ? nullptr : &*found;
 }
 
-bool ViewPictures::ask(const ViewPictureKey& key, Tell tell, engine::Mailbox& mailbox) {
+bool ViewPictures::ask(const ViewPictureKey& key, Done done, engine::Mailbox& mailbox) {
     for (auto& [name, drawing] : waiting_)
         if (drawing.key == key) {
-            drawing.waiting.push_back(std::move(tell));
+            drawing.waiting.push_back(std::move(done));
             return true;
         }
     if (waiting_.size() >= kMostWaiting) return false;
     const std::string name = "picture " + std::to_string(next_++);
-    waiting_[name] = {key, {std::move(tell)}};
+    waiting_[name] = {key, {std::move(done)}};
     mailbox.push(engine::PictureAsked{name, key.size.width, key.size.height});
     return true;
 }
@@ -52,14 +52,14 @@ bool ViewPictures::take(const engine::EncodedPicture& picture) {
     key.revision = picture.header.revision;
     const ViewPicture taken{key, std::make_shared<const std::string>(whole_file(picture))};
     keep(taken);
-    for (const Tell& tell : drawing.mapped().waiting) tell(&taken);
+    for (const Done& done : drawing.mapped().waiting) done(&taken);
     return true;
 }
 
 void ViewPictures::give_up(const std::string& name) {
     const auto drawing = waiting_.extract(name);
     if (!drawing) return;
-    for (const Tell& tell : drawing.mapped().waiting) tell(nullptr);
+    for (const Done& done : drawing.mapped().waiting) done(nullptr);
 }
 
 void ViewPictures::forget_before(std::int64_t revision) {

@@ -32,7 +32,7 @@ struct ViewPicture {
 /// one drawing, and what was drawn is kept while nothing changes.
 class ViewPictures {
 public:
-    using Tell = std::function<void(const ViewPicture*)>;  ///< null: it cannot be drawn
+    using Done = std::function<void(const ViewPicture*)>;  ///< null: it cannot be drawn
     static constexpr std::size_t kMostWaiting = 8;         ///< drawings
     static constexpr std::size_t kMostKept = 4, kMostKeptBytes = std::size_t{16} << 20;
 
@@ -41,7 +41,7 @@ public:
     /// Null if it is not kept.
     const ViewPicture* find(const ViewPictureKey& key) const;
     /// Has one drawn, of this revision or a newer one, and told. False where too many are being drawn.
-    bool ask(const ViewPictureKey& key, Tell tell, engine::Mailbox& mailbox);
+    bool ask(const ViewPictureKey& key, Done done, engine::Mailbox& mailbox);
     /// False where `picture` is none that was asked for here.
     bool take(const engine::EncodedPicture& picture);
     /// The picture that was asked for by this name cannot be drawn.
@@ -53,7 +53,7 @@ public:
 private:
     struct Drawing {
         ViewPictureKey key;  ///< when it was asked for
-        std::vector<Tell> waiting;
+        std::vector<Done> waiting;
     };
     void keep(const ViewPicture& picture);
 

@@ -49,7 +49,7 @@ void LiveStats::shown(const std::string& client, std::int64_t revision, base::Cl
                          [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
     host->second.shown = revision;
     host->second.lag_ms.reset();
-    // Between two that were told, the later one.
+    // A revision between two that were made counts as the later one.
     if (made != made_.end() && made_.front().first <= revision)
         host->second.lag_ms = std::max(0.0, milliseconds(now - made->second));
     happened(now);
@@ -61,7 +61,7 @@ void LiveStats::happened(base::Clock::time_point now) {
 
 std::optional<base::Clock::time_point> LiveStats::due() const {
     if (!happened_) return std::nullopt;
-    return told_ ? std::max(*told_ + kBetween, *happened_) : *happened_;
+    return taken_at_ ? std::max(*taken_at_ + kBetween, *happened_) : *happened_;
 }
 
 std::optional<protocol::Stats::Renderer> LiveStats::renderer() const {
@@ -86,15 +86,15 @@ std::optional<protocol::Stats> LiveStats::take(base::Clock::time_point now) {
         if (client.role == protocol::Role::host && client.shown)
             stats.hosts[id] = {client.name, *client.shown, client.lag_ms};
     }
-    // Rates since it was told last, or since things began to happen again after a rest.
-    const base::Clock::time_point since = std::max(told_.value_or(*happened_), *happened_ - kBetween);
+    // Rates since the last take, or since things began to happen again after a rest.
+    const base::Clock::time_point since = std::max(taken_at_.value_or(*happened_), *happened_ - kBetween);
     const double seconds = std::max(milliseconds(now - since), milliseconds(kBetween)) / 1000;
     const std::uint64_t frames = metrics_.frames_sent, bytes = metrics_.bytes_sent;
     stats.frames_per_second = static_cast<double>(frames - frames_) / seconds;
     stats.bytes_per_second = static_cast<double>(bytes - bytes_) / seconds;
     frames_ = frames;
     bytes_ = bytes;
-    told_ = now;
+    taken_at_ = now;
     happened_.reset();
     return stats;
 }

@@ -11,7 +11,7 @@
 
 namespace vrut::server::observe {
 
-/// What the `stats` message tells: made at most twice a second, and only after something happened.
+/// Makes the `stats` message, at most twice a second, and only after something happened.
 class LiveStats {
 public:
     explicit LiveStats(const Metrics& metrics) : metrics_(metrics) {}
@@ -24,9 +24,9 @@ public:
     /// A host's walls show `revision`.
     void shown(const std::string& client, std::int64_t revision, base::Clock::time_point now);
 
-    /// When there will be something to tell; none: not before something happens.
+    /// When the next message is due; none: not before something happens.
     std::optional<base::Clock::time_point> due() const;
-    /// What there is to tell, where it is due.
+    /// The message, if it is due.
     std::optional<protocol::Stats> take(base::Clock::time_point now);
 
 private:
@@ -44,8 +44,8 @@ private:
     std::deque<double> render_ms_;  // of the last pictures
     std::optional<protocol::Quality> quality_;
     std::deque<std::pair<std::int64_t, base::Clock::time_point>> made_;  // the last revisions
-    std::optional<base::Clock::time_point> told_, happened_;             // what came since it was told last
-    std::uint64_t frames_ = 0, bytes_ = 0;                               // sent when it was told last
+    std::optional<base::Clock::time_point> taken_at_, happened_;         // last take, last event after it
+    std::uint64_t frames_ = 0, bytes_ = 0;                               // sent until the last take
 };
 
 }  // namespace vrut::server::observe

@@ -55,7 +55,7 @@ void write_all(std::string_view bytes) {
     }
 }
 
-void tell(double fraction) { write_all({reinterpret_cast<const char*>(&fraction), sizeof fraction}); }
+void report(double fraction) { write_all({reinterpret_cast<const char*>(&fraction), sizeof fraction}); }
 
 }  // namespace
 
@@ -64,12 +64,12 @@ bool is_import_process(int argc, char** argv) { return argc == 5 && std::strcmp(
 /// Ends without freeing what it has read: the system does that at once.
 void run_import_process(char** argv) try {
     limit_itself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
-    tell(0);  // the first: whether the parent lives, whose end before limit_itself() was not noticed
+    report(0);  // the first: whether the parent lives, whose end before limit_itself() was not noticed
     const SandboxGaps gaps = enter_sandbox(argv[2]);
-    if (gaps.files) tell(kFilesOpen);
-    if (gaps.system_calls) tell(kCallsOpen);
-    PartsResult parts = read_scene_parts(argv[2], tell);
-    tell(kReady);
+    if (gaps.files) report(kFilesOpen);
+    if (gaps.system_calls) report(kCallsOpen);
+    PartsResult parts = read_scene_parts(argv[2], report);
+    report(kReady);
     write_parts(std::move(parts), write_all);
     _exit(0);
 } catch (const std::bad_alloc&) {

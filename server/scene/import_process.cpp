@@ -176,7 +176,7 @@ public:
 
     PartsResult read() try {
         const ByteSource source = [this](void* to, std::size_t size) { fill(static_cast<char*>(to), size); };
-        for (double told = 0; told != kReady; source(&told, sizeof told)) heed(told);
+        for (double report = 0; report != kReady; source(&report, sizeof report)) handle(report);
         return read_parts(source, limits_.bytes, path_.string());
     } catch (const Fault& fault) {
         return tl::unexpected(path_.string() + ": " + fault.what());
@@ -188,14 +188,14 @@ private:
         using std::runtime_error::runtime_error;
     };
 
-    void heed(double told) {
-        if (told == kFilesOpen || told == kCallsOpen)
-            warn_of_open_reader(told == kFilesOpen);
-        else if (told > fraction_)
-            fraction_ = std::min(told, 1.0);
+    void handle(double report) {
+        if (report == kFilesOpen || report == kCallsOpen)
+            warn_of_open_reader(report == kFilesOpen);
+        else if (report > fraction_)
+            fraction_ = std::min(report, 1.0);
     }
     void fill(char* to, std::size_t size) {
-        attend();
+        check_deadline();
         while (size > 0) {
             const ssize_t got = ::read(pipe_.out.number(), to, size);
             if (got == 0) fail();
@@ -209,7 +209,7 @@ private:
             }
         }
     }
-    void attend() const {
+    void check_deadline() const {
         if (base::Clock::now() > end_)
             throw Fault("it is not read within " + std::to_string(limits_.time.count()) + " s");
         if (progress_) progress_(fraction_);
@@ -218,7 +218,7 @@ private:
         constexpr int kMilliseconds = 20;
         pollfd waited{pipe_.out.number(), POLLIN, 0};  // a closed one just passes the time
         poll(&waited, 1, kMilliseconds);
-        attend();
+        check_deadline();
     }
     /// The child has closed its end of the channel: it has ended, or does soon.
     [[noreturn]] void fail() {

@@ -20,11 +20,11 @@ struct SceneLoader::Listener {
     std::function<void(SceneLoading)> on_progress;
     std::function<void(SceneLoaded)> on_loaded;
 
-    void tell(SceneLoading loading) {
+    void report(SceneLoading loading) {
         const std::lock_guard lock(mutex);
         if (on_progress) on_progress(std::move(loading));
     }
-    void tell(SceneLoaded loaded) {
+    void report(SceneLoaded loaded) {
         const std::lock_guard lock(mutex);
         if (on_loaded) on_loaded(std::move(loaded));
     }
@@ -37,15 +37,15 @@ struct SceneLoader::Listener {
 
 namespace {
 
-/// Tells how far the reading is, until it is given up.
-ReadProgress progress_of(const std::string& name, std::function<void(SceneLoading)> tell,
+/// Reports how far the reading is, until it is given up.
+ReadProgress progress_of(const std::string& name, std::function<void(SceneLoading)> report,
                          const std::stop_token& stop) {
-    return [name, tell = std::move(tell), stop, last = base::Clock::now()](double fraction) mutable {
+    return [name, report = std::move(report), stop, last = base::Clock::now()](double fraction) mutable {
         constexpr std::chrono::milliseconds kBetweenReports{100};
         if (stop.stop_requested()) throw Closing();
         if (base::Clock::now() - last < kBetweenReports) return;
         last = base::Clock::now();
-        tell({name, fraction});
+        report({name, fraction});
     };
 }
 
@@ -74,8 +74,8 @@ SceneLoader::~SceneLoader() { listener_->close(); }
 void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
                         const std::string& renderer, const std::optional<ImportLimits>& limits) {
     task_.emplace([path, name, renderer, limits, listener = listener_](const std::stop_token& stop) {
-        const auto tell = [listener](SceneLoading loading) { listener->tell(std::move(loading)); };
-        listener->tell(load(path, name, renderer, progress_of(name, tell, stop), limits));
+        const auto report = [listener](SceneLoading loading) { listener->report(std::move(loading)); };
+        listener->report(load(path, name, renderer, progress_of(name, report, stop), limits));
     });
 }
 

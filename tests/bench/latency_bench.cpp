@@ -33,7 +33,7 @@ TEST_CASE("latency of isolated inputs") {
     constexpr int kInputs = 100;
     auto scene = load_scene(VRUT_CARS "/car.vrut", "car.vrut");
     REQUIRE(scene.has_value());
-    TestServer server(*std::move(scene), gl_painter({}));
+    TestServer server(*std::move(scene), gl_renderer({}));
     TestClient client(server.port());
     client.join();
     client.send({{"type", "resize"}, {"id", 1}, {"width", 1280}, {"height", 720}, {"pixelRatio", 1}});

@@ -86,7 +86,7 @@ public:
             scene_of("vrut-text 1\ngeometry 1 vertices 3 -1 -1 0  1 -1 0  0 1 1 triangles 1 0 1 2 end\n"
                      "node 1 \"Triangle\" geometry geometry 1 end\n",
                      "again.vrut"),
-            FakePainter{}.factory());
+            FakeRenderer{}.factory());
         thread_ = std::thread([this] { server_->run(); });
     }
     ~ServerAt() {

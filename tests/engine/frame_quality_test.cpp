@@ -22,7 +22,7 @@ TEST_CASE("a picture of a level: thin lines are never subsampled, and their erro
 }
 
 TEST_CASE("a picture smaller than its level, which the limits ask for, has no error that is known") {
-    protocol::Quality level = kStill;
+    protocol::Quality level = kRefined;
     level.error = 0.001;
     const PictureLimits limits{1000, 16384};
     CHECK(quality_of(level, {25, 40, 1}, limits, false).error == 0.001);
@@ -33,11 +33,11 @@ TEST_CASE("a picture smaller than its level, which the limits ask for, has no er
 
 TEST_CASE("sizes: up to the level's scale, the limit's pixels and the device's sides") {
     const PictureLimits limits;
-    CHECK(quality_of(kStill, {1180, 820, 2}, limits, false).scale == 1);
+    CHECK(quality_of(kRefined, {1180, 820, 2}, limits, false).scale == 1);
     for (const protocol::Resize& view :
          {protocol::Resize{1180, 820, 2}, {8192, 8192, 4}, {8192, 1, 4}, {1, 8192, 4}, {1, 1, 0.25}}) {
         for (const double scale : {0.25, 0.71, 1.0}) {
-            protocol::Quality level = kStill;
+            protocol::Quality level = kRefined;
             level.scale = scale;
             const protocol::Quality quality = quality_of(level, view, limits, false);
             const PictureSize size = picture_size(view, quality.scale);

@@ -251,13 +251,13 @@ TEST_CASE("the whole scene stays in view while nobody has moved the camera, and 
 
 TEST_CASE("a picture that cannot be drawn is told, and ends nothing") {
     std::atomic<bool> broken{false};
-    const PainterFactory factory = [&] {
-        Painter painter = FakePainter{}.factory()();
-        painter.step = [&, step = painter.step](Rendering& rendering) {
+    const FrameRendererFactory factory = [&] {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.step = [&, step = renderer.step](Rendering& rendering) {
             if (broken) throw std::runtime_error("the table of colours is gone");
             return step(rendering);
         };
-        return painter;
+        return renderer;
     };
     TestServer server(scene_of("vrut-text 1"), factory);
     TestClient client(server.port());
@@ -276,14 +276,14 @@ TEST_CASE("a picture that cannot be drawn is told, and ends nothing") {
 
 TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
     std::atomic<bool> broken{false};
-    const PainterFactory factory = [&] {
-        Painter painter = FakePainter{}.factory()();
-        painter.step = [&, step = painter.step](Rendering& rendering) {
+    const FrameRendererFactory factory = [&] {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.step = [&, step = renderer.step](Rendering& rendering) {
             const bool whole = step(rendering);
             if (whole && broken) rendering.image.resize(0, 0);  // no encoder takes that
             return whole;
         };
-        return painter;
+        return renderer;
     };
     TestServer server(scene_of("vrut-text 1"), factory);
     TestClient client(server.port());
@@ -300,14 +300,16 @@ TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
 }
 
 TEST_CASE("what cannot draw, and a port that is taken, are told at once") {
-    const PainterFactory none = []() -> Painter { throw std::runtime_error("nothing here draws"); };
+    const FrameRendererFactory none = []() -> FrameRenderer {
+        throw std::runtime_error("nothing here draws");
+    };
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
     const LoadedScene scene = scene_of("vrut-text 1");
     CHECK_THROWS_WITH(Server(options, scene, none), "nothing here draws");
     TestServer other;
     options.listen.port = other.port();
-    CHECK_THROWS_WITH(Server(options, scene, FakePainter{}.factory()),
+    CHECK_THROWS_WITH(Server(options, scene, FakeRenderer{}.factory()),
                       doctest::Contains("cannot listen at 127.0.0.1:"));
 }
 

@@ -25,7 +25,7 @@ protocol::LevelTable table() {
     for (const double scale : {0.25, 0.5, 0.7, 1.0})
         made.levels.push_back(
             {{Quality::Level::moving, scale}, 2 + 40 * scale * scale, kPixels * scale * scale / 5, ""});
-    made.levels.push_back({kStill, 900, 3e5, ""});
+    made.levels.push_back({kRefined, 900, 3e5, ""});
     return made;
 }
 

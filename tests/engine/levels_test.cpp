@@ -24,13 +24,13 @@ using protocol::Quality;
 namespace {
 
 constexpr int kSide = 100;  // of the view in pixels
-constexpr const char *kScene = "ab12", *kRenderer = "a painter that waits";
+constexpr const char *kScene = "ab12", *kRenderer = "a renderer that waits";
 
 /// Draws noise, and takes `whole_ms` for a picture of the whole size, and less in proportion to its pixels.
-PainterFactory painter_that_waits(const std::atomic<double>& whole_ms) {
+FrameRendererFactory renderer_that_waits(const std::atomic<double>& whole_ms) {
     return [&whole_ms] {
-        Painter painter{kRenderer, false, 16384, {}};
-        painter.step = [&whole_ms](Rendering& rendering) {
+        FrameRenderer renderer{kRenderer, false, 16384, {}};
+        renderer.step = [&whole_ms](Rendering& rendering) {
             const View& view = rendering.view;
             rendering.stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
             std::this_thread::sleep_for(
@@ -43,7 +43,7 @@ PainterFactory painter_that_waits(const std::atomic<double>& whole_ms) {
             for (std::uint8_t& byte : rendering.image.rgba) byte = static_cast<std::uint8_t>(random());
             return true;
         };
-        return painter;
+        return renderer;
     };
 }
 
@@ -55,7 +55,7 @@ protocol::LevelTable table() {
              200 * scale * scale,
              20'000 * scale * scale,
              ""});
-    made.levels.push_back({kStill, 3000, 30'000, ""});
+    made.levels.push_back({kRefined, 3000, 30'000, ""});
     made.levels.back().quality.error = 0.001;
     return made;
 }
@@ -81,7 +81,7 @@ struct Drag {
         explicit Kept(const protocol::LevelTable& levels) { store_levels(levels); }
     } kept;
     std::atomic<double> whole_ms{1};
-    TestServer server{measured_scene(), painter_that_waits(whole_ms)};
+    TestServer server{measured_scene(), renderer_that_waits(whole_ms)};
     TestClient client;
     int id = 0;
 

@@ -26,19 +26,19 @@ public:
     std::atomic<bool> resets{false};
     /// So are all of this height.
     std::atomic<int> resets_at_height{0};
-    /// So many painters cannot be made.
+    /// So many renderers cannot be made.
     std::atomic<int> refuses{0};
     std::atomic<int> made{0};
 
-    PainterFactory factory() {
+    FrameRendererFactory factory() {
         return [this] {
             if (refuses > 0) {
                 --refuses;
                 throw std::runtime_error("nothing here draws");
             }
             ++made;
-            Painter painter = FakePainter{.takes = 2ms}.factory()();
-            painter.step = [this, step = painter.step](Rendering& rendering) {
+            FrameRenderer renderer = FakeRenderer{.takes = 2ms}.factory()();
+            renderer.step = [this, step = renderer.step](Rendering& rendering) {
                 const bool whole = step(rendering);
                 const bool second = whole || rendering.samples > 1;
                 if (rendering.view.height == resets_at_height || (second && resets.exchange(false))) {
@@ -47,7 +47,7 @@ public:
                 }
                 return whole;
             };
-            return painter;
+            return renderer;
         };
     }
 };

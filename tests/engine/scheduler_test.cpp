@@ -40,7 +40,7 @@ TEST_CASE("a change is drawn at once, at rest again in full, in steps") {
     ScheduleInput input = at(0ms);
     input.changed = true;
     CHECK(next(input).action == Action::begin_frame);
-    CHECK(next(input).still_samples == 0);
+    CHECK(next(input).refined_samples == 0);
 
     input.changed = false;  // the moving frame is drawn
     CHECK(next(input).action == Action::wait);
@@ -49,23 +49,23 @@ TEST_CASE("a change is drawn at once, at rest again in full, in steps") {
     CHECK(next(input).action == Action::wait);
     input.now = kStart + 150ms;
     CHECK(next(input).action == Action::begin_frame);
-    CHECK(next(input).still_samples == 4);
+    CHECK(next(input).refined_samples == 4);
     input.newest_samples = 4;
-    CHECK(next(input).still_samples == 16);
+    CHECK(next(input).refined_samples == 16);
     input.newest_samples = 16;
     CHECK(next(input).action == Action::wait);
 
     // What was still is no more.
     input.changed = true;
     input.last_change = input.now;
-    CHECK(next(input).still_samples == 0);
+    CHECK(next(input).refined_samples == 0);
 }
 
 TEST_CASE("a change that nobody wanted to see is drawn in full when somebody comes later") {
     ScheduleInput input = at(151ms);
     input.changed = true;
     input.newest_samples = 16;
-    CHECK(next(input).still_samples == 4);
+    CHECK(next(input).refined_samples == 4);
 }
 
 TEST_CASE("while a frame waits for the encoder none is drawn behind it") {
@@ -90,13 +90,13 @@ TEST_CASE("the last refinement waits until it may be sent, the first does not") 
     ScheduleInput input = at(1000ms);
     input.last_refinement_from = kStart + 5s;
     input.changed = true;
-    CHECK(next(input).still_samples == 4);
+    CHECK(next(input).refined_samples == 4);
     input.changed = false;
     input.newest_samples = 4;
     CHECK(next(input).action == Action::wait);
     CHECK(next(input).until == kStart + 5s);
     input.now = kStart + 5s;
-    CHECK(next(input).still_samples == 16);
+    CHECK(next(input).refined_samples == 16);
 }
 
 TEST_CASE("at rest snapshots are drawn while no frame is") {

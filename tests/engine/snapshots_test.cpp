@@ -12,10 +12,10 @@ namespace {
 constexpr int kLarge = 640, kSmall = 80, kNext = 48;  // pixels of width
 
 /// Draws on the large one until the small one is drawn: one after the other, they would never end.
-PainterFactory painter_of_turns(std::atomic<bool>& large_is_begun, std::atomic<bool>& small_is_drawn) {
+FrameRendererFactory renderer_of_turns(std::atomic<bool>& large_is_begun, std::atomic<bool>& small_is_drawn) {
     return [&] {
-        Painter painter = FakePainter{}.factory()();
-        painter.step = [&, step = painter.step](Rendering& rendering) {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.step = [&, step = renderer.step](Rendering& rendering) {
             if (rendering.view.width == kLarge) {
                 large_is_begun = true;
                 if (!small_is_drawn) return false;
@@ -24,7 +24,7 @@ PainterFactory painter_of_turns(std::atomic<bool>& large_is_begun, std::atomic<b
             if (rendering.view.width == kSmall && whole) small_is_drawn = true;
             return whole;
         };
-        return painter;
+        return renderer;
     };
 }
 
@@ -38,7 +38,7 @@ TEST_CASE("snapshots of several clients are drawn in turns, those of one in thei
     for (const bool another_waits : {false, true}) {
         CAPTURE(another_waits);
         std::atomic<bool> large_is_begun{false}, small_is_drawn{false};
-        TestServer server(scene_of("vrut-text 1"), painter_of_turns(large_is_begun, small_is_drawn));
+        TestServer server(scene_of("vrut-text 1"), renderer_of_turns(large_is_begun, small_is_drawn));
         TestClient first(server.port()), second(server.port());
         first.join();
         second.join("view");

@@ -43,7 +43,7 @@ struct Faulty {
         folder.write("large.vrut", square_text(100));
         ServerOptions options;
         options.library = SceneLibrary(folder.path());
-        server.emplace(scene_of(square_text(10), "small.vrut"), gl_painter(std::nullopt), options);
+        server.emplace(scene_of(square_text(10), "small.vrut"), gl_renderer(std::nullopt), options);
         client.emplace(server->port());
         client->join();
         client->send({{"type", "control"}, {"id", 1}, {"action", "take"}});
@@ -205,7 +205,7 @@ TEST_CASE("a first scene for which there is no memory is told at once") {
     gl_faults::limit_memory(300'000);
     ServerOptions options;
     options.listen = {"127.0.0.1", 0};
-    CHECK_THROWS_WITH(Server(options, scene_of(square_text(100), "large.vrut"), gl_painter(std::nullopt)),
+    CHECK_THROWS_WITH(Server(options, scene_of(square_text(100), "large.vrut"), gl_renderer(std::nullopt)),
                       doctest::Contains("large.vrut: the graphics driver has no memory for"));
     gl_faults::heal();
     CHECK(live_gl_objects() == 0);

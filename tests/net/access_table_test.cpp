@@ -43,10 +43,10 @@ struct Servers {
         options.access.allowed_origins = {kAllowed};
         options.library = SceneLibrary(folder);
         options.record_folder = folder;
-        open = std::make_unique<TestServer>(FakePainter{}, options);
+        open = std::make_unique<TestServer>(FakeRenderer{}, options);
         options.access.control_token = kControl;
         options.access.view_token = kView;
-        guarded = std::make_unique<TestServer>(FakePainter{}, options);
+        guarded = std::make_unique<TestServer>(FakeRenderer{}, options);
         const std::string bearer = "Host: 127.0.0.1\r\nAuthorization: Bearer " + kView + "\r\n";
         for (const auto* server : {&open, &guarded})
             REQUIRE(

@@ -90,7 +90,7 @@ TEST_CASE(
 }
 
 TEST_CASE("who is silent is pinged, and cut when no answer comes; who answers is not") {
-    TestServer server({}, with({.ping = 1s, .silence = 3s}));
+    TestServer server({}, with({.ping = 1s, .idle = 3s}));
     RawWebSocket silent(server.port()), answering(server.port());
     silent.join();
     answering.join("host");

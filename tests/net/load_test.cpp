@@ -167,7 +167,7 @@ TEST_CASE("clients that read nothing, whatever they send, delay nobody, take no 
 
 TEST_CASE("what waits for clients that read nothing is bounded for all of them together") {
     constexpr unsigned kClients = 32, kRequests = 256;
-    TestServer server(long_names(), FakePainter{}.factory(), roomy());
+    TestServer server(long_names(), FakeRenderer{}.factory(), roomy());
     TestClient good(server.port());
     good.join("view");
     const double memory = use_of(getpid()).resident_mb;
@@ -204,7 +204,7 @@ TEST_CASE("clients who join a large state and do not read it hold it once") {
     std::string scene = "vrut-text 1\n";
     for (int i = 1; i <= 700; ++i)
         scene += "node " + std::to_string(i) + " \"" + name + "\" camera eye 0 0 5 end\n";
-    TestServer server(scene_of(scene), FakePainter{}.factory(), roomy());
+    TestServer server(scene_of(scene), FakeRenderer{}.factory(), roomy());
     std::vector<RawSocket> stalled;
     for (unsigned i = 0; i < kClients; ++i) stalled.push_back(standing_client(server.port(), 500 + i));
     const Metrics& metrics = server.metrics();

@@ -54,27 +54,27 @@ void find_expressions(const Json& board, std::string& all) {
         if (below.is_structured()) find_expressions(below, all);
 }
 
-/// A painter that a test can stop in the middle of a picture.
+/// A renderer that a test can stop in the middle of a picture.
 struct Stoppable {
     std::shared_ptr<std::atomic<bool>> stopped = std::make_shared<std::atomic<bool>>(false);
 
-    PainterFactory factory(const FakePainter& of = {}) const {
+    FrameRendererFactory factory(const FakeRenderer& of = {}) const {
         return [stop = stopped, inner = of.factory()] {
-            Painter painter = inner();
-            painter.step = [stop, step = painter.step](Rendering& rendering) {
+            FrameRenderer renderer = inner();
+            renderer.step = [stop, step = renderer.step](Rendering& rendering) {
                 while (*stop) std::this_thread::sleep_for(1ms);
                 return step(rendering);
             };
-            return painter;
+            return renderer;
         };
     }
 };
 
 LoadedScene small_scene() { return scene_of("vrut-text 1\nnode 1 \"A\" assembly end\n"); }
 
-ServerOptions impatient(std::chrono::milliseconds silence) {
+ServerOptions impatient(std::chrono::milliseconds busy) {
     ServerOptions options;
-    options.longest_silence = silence;
+    options.longest_busy = busy;
     return options;
 }
 
@@ -206,10 +206,10 @@ TEST_CASE("each end of a connection is counted with its reason") {
 
 TEST_CASE("a renderer's name cannot forge a metric") {
     const std::string name = "GL \"7\" \\ of\nvrut_preview_clients 99";
-    const PainterFactory factory = [&] {
-        Painter painter = FakePainter{}.factory()();
-        painter.description = name;
-        return painter;
+    const FrameRendererFactory factory = [&] {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.description = name;
+        return renderer;
     };
     TestServer server(small_scene(), factory);
     const Exposition metrics = metrics_of(server);
@@ -228,15 +228,15 @@ TEST_CASE("a time falls into the bucket that ends at it, and none is lost") {
 }
 
 TEST_CASE("a render loop that hangs is told, and one that comes back, too") {
-    const Stoppable painter;
-    TestServer server(small_scene(), painter.factory(), impatient(300ms));
+    const Stoppable renderer;
+    TestServer server(small_scene(), renderer.factory(), impatient(300ms));
     CHECK(eventually([&] { return status(server, "/readyz") == 200; }));
     CHECK(http(server.port(), "HEAD", "/readyz").status == 200);
     CHECK(metrics_of(server).value("vrut_preview_ready") == 1);
 
     TestClient client(server.port());
     client.join();
-    *painter.stopped = true;
+    *renderer.stopped = true;
     client.send({{"type", "frame"}});
     CHECK(eventually([&] { return status(server, "/healthz") == 503; }));
     const HttpAnswer answer = http(server.port(), "GET", "/healthz");
@@ -245,7 +245,7 @@ TEST_CASE("a render loop that hangs is told, and one that comes back, too") {
     const HttpAnswer head = http(server.port(), "HEAD", "/healthz");
     CHECK(head.status == 503);
     CHECK(head.body.empty());
-    *painter.stopped = false;
+    *renderer.stopped = false;
     CHECK(eventually([&] { return status(server, "/healthz") == 200; }));
     CHECK(metrics_of(server).value("vrut_preview_healthy") == 1);
 }
@@ -254,12 +254,12 @@ TEST_CASE("while a driver that was lost is started again nothing is ready") {
     std::atomic<bool> lost{false};
     const auto factory = [&] {
         if (lost) throw std::runtime_error("the driver is not there yet");
-        Painter painter = FakePainter{}.factory()();
-        painter.step = [&, step = painter.step](Rendering& rendering) {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.step = [&, step = renderer.step](Rendering& rendering) {
             if (lost) throw ContextLost("the driver was reset");
             return step(rendering);
         };
-        return painter;
+        return renderer;
     };
     TestServer server(small_scene(), factory);
     CHECK(eventually([&] { return status(server, "/readyz") == 200; }));
@@ -276,7 +276,7 @@ TEST_CASE("while a driver that was lost is started again nothing is ready") {
 }
 
 TEST_CASE("a picture that takes long is alive, and so is a server with nothing to do") {
-    const FakePainter slow{20ms};  // for each sample of 64
+    const FakeRenderer slow{20ms};  // for each sample of 64
     TestServer server(small_scene(), slow.factory(), impatient(900ms));
     TestClient client(server.port());
     client.join();

@@ -65,7 +65,7 @@ TEST_CASE("a state that is longer than a message may be ends the connection, wit
     std::string scene = "vrut-text 1\n";
     for (int i = 1; i <= 1200; ++i)
         scene += "node " + std::to_string(i) + " \"" + std::string(60'000, 'x') + "\" camera eye 0 0 5 end\n";
-    TestServer server(scene_of(scene), FakePainter{}.factory());
+    TestServer server(scene_of(scene), FakeRenderer{}.factory());
     TestClient client(server.port());
     client.send({{"type", "hello"}, {"version", 1}, {"role", "view"}});
     const Json welcome = client.wait_for("welcome");
@@ -323,7 +323,7 @@ TEST_CASE("the end is told to clients and comes soon, even to one that does not 
 TEST_CASE("nobody waits behind another's thousand requests") {
     std::string text = "vrut-text 1\n";
     for (int id = 1; id <= 20'000; ++id) text += "node " + std::to_string(id) + " \"Part\" assembly end\n";
-    TestServer server(scene_of(text), FakePainter{}.factory());
+    TestServer server(scene_of(text), FakeRenderer{}.factory());
     TestClient flood(server.port()), presenter(server.port());
     flood.join("view");
     presenter.join();
@@ -337,7 +337,7 @@ TEST_CASE("nobody waits behind another's thousand requests") {
 TEST_CASE("who comes later hears nothing of a scene that was loaded before") {
     ServerOptions options;
     options.library = SceneLibrary(VRUT_CARS);
-    TestServer server(FakePainter{}, options);
+    TestServer server(FakeRenderer{}, options);
     TestClient first(server.port());
     first.join();
     first.send({{"type", "open"}, {"id", 1}, {"scene", "car-20k.vrut"}});

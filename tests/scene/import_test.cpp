@@ -106,7 +106,7 @@ std::size_t open_descriptors() {
 /// A server of one triangle and a folder of scenes, and two who look at it.
 struct Room {
     explicit Room(const fs::path& scenes, const ImportLimits& limits)
-        : server(FakePainter{}, with(SceneLibrary(scenes, limits))),
+        : server(FakeRenderer{}, with(SceneLibrary(scenes, limits))),
           presenter(server.port()),
           watcher(server.port()) {
         was = presenter.join()["scene"];

@@ -40,7 +40,7 @@ void one_round(TestServer& server, TestClient& presenter, int round) {
 TEST_CASE("a minute of work leaves no more behind than a few seconds") {
     auto scene = load_scene(VRUT_CARS "/car-20k.vrut", "car-20k.vrut");
     REQUIRE(scene.has_value());
-    TestServer server(*std::move(scene), gl_painter({}));
+    TestServer server(*std::move(scene), gl_renderer({}));
     TestClient presenter(server.port());
     presenter.join();
     int round = 0;
@@ -66,7 +66,7 @@ TEST_CASE("four thousand clients that die in the midst of something leave nothin
     REQUIRE(scene.has_value());
     ServerOptions options;
     options.max_clients = 300;
-    TestServer server(*std::move(scene), gl_painter({}), options);
+    TestServer server(*std::move(scene), gl_renderer({}), options);
     TestClient watcher(server.port());
     watcher.join("view");
     let_die(server, 8, 200);  // coarser surfaces are drawn for the first time meanwhile

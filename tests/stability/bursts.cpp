@@ -18,16 +18,16 @@ constexpr std::chrono::milliseconds kPicture{15};  ///< what one takes to draw
 constexpr std::chrono::milliseconds kPatience{5000};
 
 /// Draws nothing, in the time that a picture takes.
-server::engine::Painter slow_painter() {
-    server::engine::Painter painter;
-    painter.step = [](Rendering& rendering) {
+server::engine::FrameRenderer slow_renderer() {
+    server::engine::FrameRenderer renderer;
+    renderer.step = [](Rendering& rendering) {
         std::this_thread::sleep_for(kPicture / rendering.view.samples);
         if (++rendering.samples < rendering.view.samples) return false;
         rendering.image.resize(rendering.view.width, rendering.view.height);
         rendering.stats.render_ms = static_cast<double>(kPicture.count());
         return true;
     };
-    return painter;
+    return renderer;
 }
 
 using Asked = std::function<bool(const protocol::FrameHeader&)>;
@@ -36,7 +36,7 @@ using Asked = std::function<bool(const protocol::FrameHeader&)>;
 class OneClient {
 public:
     OneClient()
-        : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_painter, metrics_,
+        : engine_({{"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, {}, {}}, slow_renderer, metrics_,
                   {[this](const server::engine::EngineOutput& output) { count_refusals(output); },
                    [this](const std::shared_ptr<const server::engine::EncodedPicture>& picture) {
                        take(*picture);

@@ -60,11 +60,11 @@ server::net::ServerOptions options(const server::net::Deadlines& deadlines) {
 
 }  // namespace
 
-server::engine::Painter painter_of_balls() {
-    server::engine::Painter painter;
-    painter.description = "balls";
+server::engine::FrameRenderer renderer_of_balls() {
+    server::engine::FrameRenderer renderer;
+    renderer.description = "balls";
     auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
-    painter.step = [drawn](Rendering& rendering) {
+    renderer.step = [drawn](Rendering& rendering) {
         rendering.samples = rendering.view.samples;
         const View& view = rendering.view;
         Image& image = rendering.image;
@@ -83,12 +83,12 @@ server::engine::Painter painter_of_balls() {
         rendering.stats.render_ms = 1;
         return true;
     };
-    return painter;
+    return renderer;
 }
 
 Journey::Journey(const test_support::LinkQuality& quality, const server::net::Deadlines& deadlines,
                  const Between& between)
-    : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, painter_of_balls),
+    : server_(options(deadlines), {"room", "", scene_of({{1, sphere(1, 8), {}}}), {}}, renderer_of_balls),
       thread_([this] { server_.run(); }),
       link_(std::make_unique<test_support::SlowLink>(
           context_, between ? between(server_.port()) : server_.port(), quality)),

@@ -6,7 +6,7 @@
 #include <memory>
 #include <thread>
 
-#include "engine/painter.hpp"
+#include "engine/frame_renderer.hpp"
 #include "net/server.hpp"
 #include "page_client.hpp"
 #include "slow_link.hpp"
@@ -14,7 +14,7 @@
 namespace vrut::stability {
 
 /// Draws shaded balls, turned with the camera: as much to encode as in a picture of the car.
-server::engine::Painter painter_of_balls();
+server::engine::FrameRenderer renderer_of_balls();
 inline constexpr double kSmallest = 8400;  ///< bytes of its smallest picture for the page, with the header
 
 /// A server, a slow link, and the page at its other end, with a finger that turns the view on and on; and

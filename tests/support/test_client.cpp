@@ -66,10 +66,10 @@ static void fill_with_noise(std::vector<std::uint8_t>& bytes, std::size_t seed) 
                     bytes.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-server::engine::PainterFactory FakePainter::factory() const {
+server::engine::FrameRendererFactory FakeRenderer::factory() const {
     return [*this] {
-        server::engine::Painter painter{"fake", false, 16384, {}};
-        painter.step = [*this](Rendering& rendering) {
+        server::engine::FrameRenderer renderer{"fake", false, 16384, {}};
+        renderer.step = [*this](Rendering& rendering) {
             if (takes.count() > 0) std::this_thread::sleep_for(takes);
             if (++rendering.samples < rendering.view.samples) return false;
             Image& image = rendering.image;
@@ -79,18 +79,18 @@ server::engine::PainterFactory FakePainter::factory() const {
             if (noise) fill_with_noise(image.rgba, static_cast<std::size_t>(x * 1000));
             return true;
         };
-        return painter;
+        return renderer;
     };
 }
 
-TestServer::TestServer(const FakePainter& painter, const server::net::ServerOptions& options)
-    : TestServer(scene_of(kScene, "triangle.vrut"), painter.factory(), options) {}
+TestServer::TestServer(const FakeRenderer& renderer, const server::net::ServerOptions& options)
+    : TestServer(scene_of(kScene, "triangle.vrut"), renderer.factory(), options) {}
 
-TestServer::TestServer(server::scene::LoadedScene scene, const server::engine::PainterFactory& painter,
+TestServer::TestServer(server::scene::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
                        server::net::ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
     options.listen.port = 0;
-    server_ = std::make_unique<server::net::Server>(std::move(options), std::move(scene), painter);
+    server_ = std::make_unique<server::net::Server>(std::move(options), std::move(scene), renderer);
     thread_ = std::thread([this] { server_->run(); });
 }
 
@@ -252,7 +252,7 @@ Json TestClient::wait_for_still(std::chrono::milliseconds for_each) {
     for (;;) {
         grant();
         Json header = wait_for("frame", for_each);
-        if (header["quality"]["samples"] == server::engine::kStillSamples.back()) return header;
+        if (header["quality"]["samples"] == server::engine::kRefinedSamples.back()) return header;
     }
 }
 

@@ -17,10 +17,10 @@ using Json = nlohmann::json;
 using namespace std::chrono_literals;
 
 /// Draws without GL: a colour that depends on the camera, with noise where a large file is wanted.
-struct FakePainter {
+struct FakeRenderer {
     std::chrono::milliseconds takes{0};  ///< for each sample
     bool noise = false;
-    server::engine::PainterFactory factory() const;
+    server::engine::FrameRendererFactory factory() const;
 };
 
 /// A scene as read from its text.
@@ -29,8 +29,8 @@ server::scene::LoadedScene scene_of(const std::string& text, const std::string& 
 /// A server in this process, on a port of its own. It serves one triangle if nothing else is said.
 class TestServer {
 public:
-    explicit TestServer(const FakePainter& painter = {}, const server::net::ServerOptions& options = {});
-    TestServer(server::scene::LoadedScene scene, const server::engine::PainterFactory& painter,
+    explicit TestServer(const FakeRenderer& renderer = {}, const server::net::ServerOptions& options = {});
+    TestServer(server::scene::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
                server::net::ServerOptions options = {});
     ~TestServer();
     std::uint16_t port() const { return server_->port(); }

@@ -13,7 +13,7 @@ namespace vrut::server::engine {
 
 /// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
 /// thread; made anew when it throws ContextLost.
-struct Painter {
+struct FrameRenderer {
     std::string description;
     bool software = false;
     int max_size = 16384;
@@ -23,9 +23,9 @@ struct Painter {
     std::function<bool(Rendering&)> step = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
-using PainterFactory = std::function<Painter()>;
+using FrameRendererFactory = std::function<FrameRenderer()>;
 
-/// The renderer as a painter, on EGL device `device` or the first that works.
-PainterFactory gl_painter(std::optional<int> device);
+/// The OpenGL renderer, on EGL device `device` or the first that works.
+FrameRendererFactory gl_renderer(std::optional<int> device);
 
 }  // namespace vrut::server::engine

@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-constexpr auto kLook = 1s;  // between two looks at how the peer is doing
+constexpr auto kPollInterval = 1s;  // between two looks at how the peer is doing
 // Of answers and snapshots somebody who asks for more than these must take so much: they are kept for him
 // alone, while frames and updates replace each other.
 constexpr std::size_t kMayWait = 64 * 1024;  // bytes
@@ -18,14 +18,16 @@ constexpr int kLeastRateOfQueued = 4000;     // bytes per second
 
 }  // namespace
 
-void Connection::watch() {
-    const auto look = base::Clock::now() + kLook;
-    watch_.expires_at(begun() && !closing_ ? std::min(look, *begun() + registry_.deadlines.message) : look);
-    watch_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
+void Connection::poll_deadlines() {
+    const auto next = base::Clock::now() + kPollInterval;
+    deadline_timer_.expires_at(unfinished_since() && !closing_
+                                   ? std::min(next, *unfinished_since() + registry_.deadlines.message)
+                                   : next);
+    deadline_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
         const auto self = weak.lock();
         if (stopped || !self || self->dropped_) return;
         self->check_deadlines(base::Clock::now());
-        if (!self->dropped_) self->watch();
+        if (!self->dropped_) self->poll_deadlines();
     });
 }
 
@@ -36,7 +38,7 @@ void Connection::check_deadlines(base::Clock::time_point now) {
     if (!writing_ || std::exchange(taken_seen_, traffic().taken) != traffic().taken) progress_at_ = now;
     if (now >= write_by_ ? writing_ : now - progress_at_ >= deadlines.stuck) return drop("stuck");
     if (takes_too_little(now)) return drop("stuck");
-    if (begun() && !closing_ && now - *begun() >= deadlines.message) {
+    if (unfinished_since() && !closing_ && now - *unfinished_since() >= deadlines.message) {
         reject_and_close(
             {{}, protocol::error_code::bad_message, "a message took too long to come to its end"},
             beast::websocket::close_code::policy_error);
@@ -44,7 +46,7 @@ void Connection::check_deadlines(base::Clock::time_point now) {
         return;
     }
     const auto waits = std::chrono::seconds(flow_.in_flight() / kLeastRate);
-    if (!writing_ && reading_ && now - heard_at_ >= deadlines.silence + waits) return drop("silent");
+    if (!writing_ && reading_ && now - heard_at_ >= deadlines.idle + waits) return drop("silent");
     if (!closing_ && !client_.empty() && !writing_ && now - std::max(heard_at_, pinged_at_) >= deadlines.ping)
         send_ping(now);
 }

@@ -13,7 +13,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Before each try to make a painter anew, since a driver may need a moment: 3.1 s in all.
+/// Before each try to make a renderer anew, since a driver may need a moment: 3.1 s in all.
 constexpr std::array kPauses{0ms, 100ms, 200ms, 400ms, 800ms, 1600ms};
 
 constexpr std::int64_t kFewestPixels = 4096;  // of a live picture
@@ -25,39 +25,39 @@ Engine::Drawn Engine::draw(Rendering& rendering) {
     const int samples = rendering.stats.samples;
     const int readbacks = rendering.stats.readbacks;
     try {
-        const bool whole = painter_.step(rendering);
+        const bool whole = renderer_.step(rendering);
         metrics_.samples_drawn += static_cast<std::uint64_t>(rendering.stats.samples - samples);
         metrics_.readbacks += static_cast<std::uint64_t>(rendering.stats.readbacks - readbacks);
-        if (painter_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(painter_.gl_objects());
+        if (renderer_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(renderer_.gl_objects());
         if (!whole) return Drawn::part;
         draws_ = true;
         tries_ = 0;
         return Drawn::whole;
     } catch (const ContextLost& lost) {
-        lose_painter(lost.what());
+        lose_renderer(lost.what());
         return Drawn::lost;
     }
 }
 
 /// Scene, state and clients know nothing of it.
-void Engine::lose_painter(const std::string& why) {
+void Engine::lose_renderer(const std::string& why) {
     draws_ = false;
-    painter_ = {};
+    renderer_ = {};
     observe::log_warning("drawing_begins_anew", {{"reason", why}});
     const auto pause = tries_ < kPauses.size() ? kPauses[tries_] : 0ms;
     renewal_ = Renewal{base::Clock::now() + pause, why};
 }
 
 /// Throws where none can be had, or each is lost at once.
-void Engine::renew_painter() {
+void Engine::renew_renderer() {
     if (tries_++ == kPauses.size()) throw std::runtime_error(renewal_->why);
     try {
-        painter_ = factory_();
+        renderer_ = factory_();
     } catch (const std::exception& error) {
-        return lose_painter(error.what());
+        return lose_renderer(error.what());
     }
     renewal_.reset();
-    notice("The graphics driver had to be started again; drawing goes on with " + painter_.description);
+    notice("The graphics driver had to be started again; drawing goes on with " + renderer_.description);
 }
 
 /// Brings what has arrived to the graphics card first; where that fails, the scene that is shown goes on.
@@ -66,14 +66,14 @@ void Engine::show_arrived() {
     std::optional<std::string> refused;
     if (!arrived_->scene) {
         refused = arrived_->scene.error();
-    } else if (painter_.take) {
+    } else if (renderer_.take) {
         const scene::LoadedScene& next = *arrived_->scene;
         try {
-            painter_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
+            renderer_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
         } catch (const OutOfMemory& error) {
             refused = next.name + ": " + error.what();
         } catch (const ContextLost& lost) {
-            lose_painter(lost.what());
+            lose_renderer(lost.what());
             if (++arrival_losses_ < kMostLosses) return;
             refused = next.name + ": the graphics driver is lost whenever it gets this scene";
         }
@@ -83,19 +83,19 @@ void Engine::show_arrived() {
 
 void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> refused) {
     loader_.finish();
-    protocol::Loading told{loaded.name, 1, {}, std::move(refused)};
-    if (told.refused) {
-        observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *told.refused}});
+    protocol::Loading loading{loaded.name, 1, {}, std::move(refused)};
+    if (loading.refused) {
+        observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *loading.refused}});
     } else {
         room_->show(with_notices(*loaded.scene), time_of(base::Clock::now()));
         use(loaded.levels);
         pixel_budget_ = limits_;
         last_change_ = base::Clock::now();
-        told.done = true;
+        loading.done = true;
         observe::log_info("scene_shown", {{"scene", loaded.name},
                                           {"triangles", loaded.scene->placed->scene->triangle_count()}});
     }
-    tell(told);
+    broadcast(loading);
 }
 
 /// A live picture of this size does not fit: one of a quarter of its pixels may.
@@ -125,7 +125,7 @@ void Engine::reject(const std::string& client, std::optional<std::int64_t> id, c
         --clients_[client].snapshots;
         room_->reject(client, {*id, code::failed, sentence});
     } else if (!id) {
-        output_.undrawn.push_back(client);
+        output_.failed_pictures.push_back(client);
     }
 }
 
