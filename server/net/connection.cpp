@@ -58,7 +58,7 @@ const char* reason_of(beast::error_code error) {
 const char* reason_of(const protocol::Error& error, close_code code) {
     if (error.code == protocol::error_code::not_allowed) return "token";
     if (code == close_code::try_again_later) return "too-many";
-    if (code == close_code::too_big || code == close_code::internal_error) return "too-large";
+    if (code == close_code::too_big) return "too-large";
     if (code == close_code::bad_payload) return "protocol";
     return code == close_code::unknown_data ? "binary" : "hello";
 }

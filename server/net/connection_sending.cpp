@@ -167,14 +167,6 @@ void Connection::send_answer() {
 
 void Connection::send_document() {
     Text update = registry_.document.update_from(document_.get(), *registry_.metrics);
-    if (update->size() > protocol::kMaxServerMessageBytes)
-        return reject_and_close(
-            {{},
-             protocol::error_code::failed,
-             "the scene's state takes " + std::to_string(update->size()) + " bytes, more than the " +
-                 std::to_string(protocol::kMaxServerMessageBytes) +
-                 " of a message (maxServerMessage): a scene with fewer or shorter names is needed"},
-            websocket::close_code::internal_error);
     document_ = registry_.document.newest();
     flow_.sent_update(update->size(), base::Clock::now());
     send_text(std::move(update));

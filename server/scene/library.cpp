@@ -34,6 +34,10 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     if (progress) progress(1);
     loaded.notices = all_notices(*scene);
     loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    if (const std::size_t bytes = most_state_bytes(loaded); bytes > kMaxStateBytes)
+        return tl::unexpected(path.string() + ": its cameras, lights, materials and backgrounds take " +
+                              std::to_string(bytes) + " bytes in the state that clients get, and at most " +
+                              std::to_string(kMaxStateBytes) + " are possible: give them shorter names");
     return loaded;
 } catch (const std::bad_alloc&) {
     return tl::unexpected(out_of_memory(path));

@@ -1,5 +1,7 @@
 #include "scene/loaded_scene.hpp"
 
+#include <string_view>
+
 #include "frame_plan.hpp"
 
 namespace vrut::server::scene {
@@ -8,6 +10,39 @@ std::vector<std::string> all_notices(const Scene& scene) {
     std::vector<std::string> notices = scene.notices();
     for (std::string& notice : undrawn_features(scene)) notices.push_back(std::move(notice));
     return notices;
+}
+
+namespace {
+
+// The state names these by their ids, a number has at most 24 characters, a colour has four.
+constexpr std::size_t kNameBytes = 40, kLightBytes = 300, kBackgroundBytes = 180;
+
+std::size_t json_bytes(std::string_view text) {
+    std::size_t bytes = 2;  // quotation marks
+    for (const char c : text)
+        bytes += static_cast<unsigned char>(c) < 0x20 ? 6 : c == '"' || c == '\\' ? 2 : 1;
+    return bytes;
+}
+
+std::size_t bytes_of(const Node& node, const Scene& scene) {
+    if (node.type == NodeType::camera) return kNameBytes + json_bytes(node.name);
+    if (std::holds_alternative<LightData>(node.data)) return kLightBytes + json_bytes(node.name);
+    const auto* background = std::get_if<BackgroundData>(&node.data);
+    if (!background) return 0;
+    const std::string& image =
+        background->cube_map ? background->cube_map->front() : scene.material(background->material).image;
+    return kBackgroundBytes + json_bytes(node.name) + json_bytes(image);
+}
+
+}  // namespace
+
+std::size_t most_state_bytes(const LoadedScene& loaded) {
+    const Scene& scene = *loaded.placed->scene;
+    std::size_t bytes = 0;
+    for (const Node& node : scene.nodes()) bytes += bytes_of(node, scene);
+    for (const Material& material : scene.materials()) bytes += kNameBytes + json_bytes(material.name);
+    for (const std::string& notice : loaded.notices) bytes += json_bytes(notice) + 1;
+    return bytes;
 }
 
 }  // namespace vrut::server::scene

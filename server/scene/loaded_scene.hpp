@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "messages.hpp"
 #include "scene.hpp"
 
 namespace vrut::server::scene {
@@ -18,5 +20,10 @@ struct LoadedScene {
 
 /// What the reader reported about a scene, and which of its features are not drawn.
 std::vector<std::string> all_notices(const Scene& scene);
+
+/// Bytes that cameras, lights, materials, backgrounds and notices take in the `state` message, at most.
+std::size_t most_state_bytes(const LoadedScene& scene);
+/// At most so many, since clients get the state in one message. The rest is for what clients change.
+inline constexpr std::size_t kMaxStateBytes = protocol::kMaxServerMessageBytes - (std::size_t{8} << 20);
 
 }  // namespace vrut::server::scene

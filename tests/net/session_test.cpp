@@ -61,23 +61,6 @@ TEST_CASE("ends of a connection have the contract's codes, and an error goes bef
           }) == 1003);
 }
 
-TEST_CASE("a state that is longer than a message may be ends the connection, with the reason") {
-    std::string scene = "vrut-text 1\n";
-    for (int i = 1; i <= 1200; ++i)
-        scene += "node " + std::to_string(i) + " \"" + std::string(60'000, 'x') + "\" camera eye 0 0 5 end\n";
-    TestServer server(scene_of(scene), FakeRenderer{}.factory());
-    TestClient client(server.port());
-    client.send({{"type", "hello"}, {"version", 1}, {"role", "view"}});
-    const Json welcome = client.wait_for("welcome");
-    const Json error = client.wait_for("error", 20s);
-    CHECK(error["code"] == "failed");
-    CHECK(error["message"].get<std::string>().find(
-              " bytes, more than the " + welcome["limits"]["maxServerMessage"].dump() + " of a message") !=
-          std::string::npos);
-    CHECK(client.wait_for_close() == 1011);
-    CHECK(eventually([&] { return server.metrics().closes["too-large"] == 1; }));
-}
-
 TEST_CASE("too large and badly encoded messages end the connection with their codes") {
     TestServer server;
     for (const std::size_t size : {65'600u, 70'000u, 1'000'000u}) {

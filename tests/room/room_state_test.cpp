@@ -53,6 +53,40 @@ TEST_CASE("a patch of another node's camera or of none is refused") {
     CHECK(stage.holder() == "");
 }
 
+TEST_CASE("the state of a scene with all that clients may change is no longer than announced") {
+    std::string text = "vrut-text 1\nnode 0 \"Room\" root end\n";
+    const std::string color = "0.12345678901234567 0.12345678901234567 0.12345678901234567 1";
+    for (int i = 1; i <= 300; ++i) {
+        const std::string id = std::to_string(i), name = "\"\x01\\\"" + id + "\"";
+        text += "material " + id + " " + name + " diffuse " + color + " end\n";
+        text += "node " + std::to_string(1000 + i) + " " + name + " camera parent 0 eye 0 0 5 end\n";
+        text += "node " + std::to_string(2000 + i) + " " + name + " light parent 0 type directional color " +
+                color + " attenuation 0.12345678901234567 0.12345678901234567 0.12345678901234567 end\n";
+        text += "node " + std::to_string(3000 + i) + " " + name + " background parent 0 material " + id +
+                " end\n";
+    }
+    const LoadedScene loaded = scene_of(text, "names.vrut");
+    protocol::State state = starting_state(*loaded.placed, 1, {});
+    const auto bytes = [&] { return protocol::StateDocument::next({}, state)->encode().size(); };
+    constexpr std::size_t kOfEveryScene = 4096;
+    CHECK(bytes() < most_state_bytes(loaded) + kOfEveryScene);
+    CHECK(bytes() > most_state_bytes(loaded) / 2);
+
+    constexpr double kLong = -1.2345678901234567e-300;
+    const glm::dvec3 longest(kLong);
+    const std::string name(60, 'n');
+    std::map<std::string, protocol::NodeOverride> nodes;
+    for (std::size_t i = 0; i < protocol::kMaxNodes; ++i)
+        nodes[std::to_string(2'000'000'000 + i)] = {false, -2, glm::dmat4(1) * kLong + glm::dmat4(kLong),
+                                                    2'000'000'000};
+    state.nodes.set(std::move(nodes));
+    std::map<std::string, protocol::ViewState> views;
+    for (std::size_t i = 0; i < protocol::kMaxEntries; ++i)
+        views[name + std::to_string(i)] = {longest, longest, longest, longest, kLong};
+    state.views.set(std::move(views));
+    CHECK(bytes() < most_state_bytes(loaded) + protocol::kMaxServerMessageBytes - kMaxStateBytes);
+}
+
 TEST_CASE("what equals the file's value disappears from nodes") {
     Stage stage("a");
     stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"2":{"active":false,"material":2}}})"));

@@ -173,6 +173,14 @@ TEST_CASE("a scene is loaded with its name, its digest and what is to be said of
     const auto wrong = load_scene(folder.write("wrong.vrut", "vrut-text 1\nnode x\n"), "wrong");
     REQUIRE_FALSE(wrong);
     CHECK(wrong.error().find("wrong.vrut:2") != std::string::npos);
+    std::string names = kScene;
+    for (int i = 1; i <= 1000; ++i)
+        names += "node " + std::to_string(i) + " \"" + std::string(60'000, 'x') + "\" camera parent 0 end\n";
+    CHECK(
+        load_scene(folder.write("names.vrut", names), "names").error() ==
+        (folder.path() / "names.vrut").string() +
+            ": its cameras, lights, materials and backgrounds take 60042000 bytes in the state that clients "
+            "get, and at most 58720256 are possible: give them shorter names");
     const fs::path pipe = folder.path() / "pipe.vrut";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
     CHECK(load_scene(pipe, "pipe").error() == pipe.string() + ": it is not a file");
