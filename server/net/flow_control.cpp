@@ -15,7 +15,9 @@ namespace {
 
 /// So much may wait in queues of the link, beyond what fills its round trip.
 constexpr Seconds kQueue = 100ms;
-/// Updates leave so many times the time that they take to other messages.
+/// The same for updates, which are small: a host is to get every change while its link takes them.
+constexpr auto kUpdateQueue = 250ms;
+/// Updates leave so many times the time that they take to other messages, in the mean over kUpdateQueue.
 constexpr int kUpdatePause = 4;
 /// Bytes that may be under way behind which an update is sent, on a link that is not measured.
 constexpr std::size_t kFewBytes = 8192, kFewestBytes = 1024;
@@ -77,7 +79,8 @@ void FlowControl::sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_
 
 void FlowControl::sent_update(std::size_t bytes, Clock::time_point now) {
     sent(bytes, now);
-    update_from_ = now + std::min<Clock::duration>((1 + kUpdatePause) * passing(bytes, now), kUpdateTimeout);
+    update_from_ = std::max(update_from_, now - kUpdateQueue) +
+                   std::min<Clock::duration>((1 + kUpdatePause) * passing(bytes, now), kUpdateTimeout);
 }
 
 bool FlowControl::wants_ping() const {
@@ -171,7 +174,7 @@ bool FlowControl::may_send_update(Clock::time_point now) const {
     if (now < update_from_) return false;
     if (in_flight() == 0 || now - std::max(heard_at_, sent_at_) >= kUpdateTimeout) return true;
     // On a long link it is not heard for long what of it has passed.
-    return link(now) && !counts_grants_ ? std::max(queueing(now), passed_at_ - now) <= kQueue
+    return link(now) && !counts_grants_ ? std::max(queueing(now), passed_at_ - now) <= kUpdateQueue
                                         : in_flight() <= (counts_grants_ ? kFewBytes : kFewestBytes);
 }
 
@@ -184,7 +187,7 @@ std::optional<FlowControl::Clock::time_point> FlowControl::ask_again(Clock::time
     if (credits_ > 0 && !may_send_frame(now))
         may_at(link(now) ? frame_passed_at(now) - queue : sent_at_ + kFrameTimeout);
     if (!may_send_update(now)) {
-        may_at(link(now) ? std::max(passed_at_ - queue, update_from_) : update_from_);
+        may_at(link(now) ? std::max(passed_at_ - kUpdateQueue, update_from_) : update_from_);
         may_at(std::max(heard_at_, sent_at_) + kUpdateTimeout);
     }
     return first;

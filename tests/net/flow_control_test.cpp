@@ -236,6 +236,25 @@ TEST_CASE("on a quick link updates are not held back") {
     CHECK(simulation.oldest_update <= 100ms);
 }
 
+TEST_CASE("on a link of which frames take a fifth of a second, every one of many updates leaves at once") {
+    FlowControl flow;
+    Clock::time_point now = kStart;
+    const auto take_frame = [&](std::int64_t number) {
+        flow.sent_frame(number, 20'000, now);
+        flow.pong(flow.sent_ping(now), now + 200ms);
+        CHECK(flow.grant(number, now + 200ms));
+    };
+    flow.grant();
+    take_frame(1);
+    now += 1s;
+    flow.sent_frame(2, 20'000, now);
+    for (int i = 0; i < 60; ++i, now += 3ms) {
+        CAPTURE(i);
+        CHECK(flow.may_send_update(now));
+        flow.sent_update(300, now);
+    }
+}
+
 TEST_CASE("a long link is not a slow one: its pipe is filled") {
     Simulation simulation;
     simulation.delay = 2s;
