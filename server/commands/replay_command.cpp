@@ -1,3 +1,4 @@
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 
@@ -101,7 +102,7 @@ private:
 }  // namespace
 
 void replay_command(const ReplayArguments& arguments) {
-    const auto log = room::read_event_log(arguments.log);
+    const auto log = room::read_event_log(std::ifstream(arguments.log), arguments.log.string());
     if (!log) throw std::runtime_error(log.error());
     if (!log->cut.empty()) observe::log_warning("log_cut_off", {{"reason", log->cut}});
     std::optional<FrameWriter> frames;

@@ -1,17 +1,16 @@
 #include "room/replay.hpp"
 
-#include <fstream>
+#include <istream>
 
 namespace vrut::server::room {
 
-tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path) {
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) return tl::unexpected(path.string() + ": cannot be opened");
+tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name) {
+    if (!stream) return tl::unexpected(name + ": cannot be opened");
     EventLog log;
     std::string text;
     for (std::size_t number = 1; std::getline(stream, text); ++number) {
         const bool unfinished = stream.eof();  // no line's end
-        const std::string place = path.string() + ":" + std::to_string(number) + ": ";
+        const std::string place = name + ":" + std::to_string(number) + ": ";
         const auto wrong = [&](const protocol::Error& error) {
             return tl::unexpected(place + error.message);
         };
@@ -27,7 +26,7 @@ tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& 
         if (!line) return wrong(line.error());
         log.lines.push_back(*std::move(line));
     }
-    if (!log.header.state) return tl::unexpected(path.string() + ": the file is empty");
+    if (!log.header.state) return tl::unexpected(name + ": the file is empty");
     return log;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -19,9 +19,9 @@ struct EventLog {
     std::string cut = {};
 };
 
-/// Or one sentence that names file and line. A last line that is not whole is left out: the session was cut
-/// off.
-tl::expected<EventLog, std::string> read_event_log(const std::filesystem::path& path);
+/// Reads the log in file `name`, or fails with one sentence that names file and line. A last line that is not
+/// whole is left out: the session was cut off.
+tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name);
 
 /// Finds a scene of a log by its name and SHA-256, or tells why it cannot be had.
 using SceneFinder = std::function<tl::expected<scene::LoadedScene, std::string>(const std::string& name,

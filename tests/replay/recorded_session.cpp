@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cstdlib>
+#include <fstream>
 
 #include "scene/library.hpp"
 
@@ -21,7 +22,7 @@ fs::path session_file(const std::string& ending) {
 }
 
 server::room::EventLog read_session() {
-    auto log = server::room::read_event_log(session_file(".jsonl"));
+    auto log = server::room::read_event_log(std::ifstream(session_file(".jsonl")), session_file(".jsonl"));
     REQUIRE_MESSAGE(log, log.error());
     return *std::move(log);
 }

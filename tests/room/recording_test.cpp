@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "event_log_file.hpp"
 #include "folder_of_logs.hpp"
 #include "full_disk.hpp"
 #include "room/replay.hpp"
@@ -51,7 +52,7 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     CHECK_FALSE(stage.state().contains("recording"));
     CHECK(stage.state()["notices"] == json{"The recording 'take-1' has ended: File too large"});
     CHECK(std::filesystem::file_size(folder.path() / "take-1.jsonl") <= size + 10);
-    const auto log = server::room::read_event_log(folder.path() / "take-1.jsonl");
+    const auto log = log_in(folder.path() / "take-1.jsonl");
     REQUIRE_MESSAGE(log, log.error());
     CHECK(log->lines.empty());
     CHECK(log->cut.find("take-1.jsonl:2: ") != std::string::npos);
@@ -76,7 +77,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
     }
     if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
         return 3;
-    const auto log = server::room::read_event_log(folder / "take-1.jsonl");
+    const auto log = log_in(folder / "take-1.jsonl");
     if (!log) return 4;
     // All but what did not fit.
     if (log->lines.size() + 1 != static_cast<std::size_t>(received)) return 5;

@@ -7,6 +7,7 @@
 #include <bit>
 #include <random>
 
+#include "event_log_file.hpp"
 #include "folder_of_logs.hpp"
 #include "stage.hpp"
 #include "temporary_folder.hpp"
@@ -45,7 +46,7 @@ public:
         REQUIRE(stage.refusal(client, R"({"type":"record","action":"start","name":"log"})") == "");
     }
     server::room::EventLog log() const {
-        auto log = server::room::read_event_log(folder.path() / "log.jsonl");
+        auto log = log_in(folder.path() / "log.jsonl");
         REQUIRE_MESSAGE(log, log.error());
         return *std::move(log);
     }
@@ -207,7 +208,7 @@ std::string failure(const std::string& lines) {
     Recorded recorded("a");
     recorded.start();
     const std::string header = recorded.folder.read("log.jsonl");
-    const auto log = server::room::read_event_log(recorded.folder.write("wrong.jsonl", header + lines));
+    const auto log = log_in(recorded.folder.write("wrong.jsonl", header + lines));
     if (!log) return log.error();
     const auto replayed = server::room::replay(*log, find_scene);
     return replayed ? "" : replayed.error();
@@ -373,8 +374,7 @@ TEST_CASE("a log that is cut anywhere is played up to its last whole line, and s
     REQUIRE(text.size() == ends.back());
     for (std::size_t size = ends[0] - 1; size <= text.size(); ++size) {
         CAPTURE(size);
-        const auto log =
-            server::room::read_event_log(recorded.folder.write("cut.jsonl", text.substr(0, size)));
+        const auto log = log_in(recorded.folder.write("cut.jsonl", text.substr(0, size)));
         REQUIRE_MESSAGE(log, log.error());
         // A line is whole though its end is missing.
         const auto next =
@@ -394,7 +394,7 @@ TEST_CASE("a log that is cut anywhere is played up to its last whole line, and s
 TEST_CASE("what is no log is told with file and line") {
     const TemporaryFolder folder;
     const auto error = [&](const std::string& text) {
-        const auto log = server::room::read_event_log(folder.write("x.jsonl", text));
+        const auto log = log_in(folder.write("x.jsonl", text));
         REQUIRE_FALSE(log);
         return log.error();
     };
@@ -402,8 +402,7 @@ TEST_CASE("what is no log is told with file and line") {
     CHECK(holds(error("\n"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"vrut-prev"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"another\",\"version\":1}\n"), "'log'"));
-    CHECK(holds(server::room::read_event_log(folder.path() / "none.jsonl").error(),
-                "none.jsonl: cannot be opened"));
+    CHECK(holds(log_in(folder.path() / "none.jsonl").error(), "none.jsonl: cannot be opened"));
 }
 
 TEST_CASE("a scene that is another one now is told") {
