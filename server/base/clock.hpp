@@ -4,7 +4,7 @@
 
 namespace vrut::server::base {
 
-/// Monotonic. Whatever needs the time is given a point of this clock.
+/// The server's monotonic clock. What decides by time is given a point of it, so that tests can count time.
 using Clock = std::chrono::steady_clock;
 
 }  // namespace vrut::server::base

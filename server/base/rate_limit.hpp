@@ -7,7 +7,7 @@
 
 namespace vrut::server::base {
 
-/// So many messages a second, and as many at once after a second's silence (a "generic cell rate algorithm").
+/// Limits messages a second, with bursts of one second's messages (generic cell rate algorithm).
 class RateLimit {
 public:
     explicit RateLimit(int per_second)

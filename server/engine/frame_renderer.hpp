@@ -11,8 +11,8 @@ struct View;
 
 namespace vrut::server::engine {
 
-/// What draws: the renderer, or in a test something that needs no GL. Made, used and destroyed on the render
-/// thread; made anew when it throws ContextLost.
+/// Draws frames: the OpenGL renderer, or in a test something that needs no GL. Made, used and destroyed on
+/// the render thread; made anew when it throws ContextLost.
 struct FrameRenderer {
     std::string description;
     bool software = false;

@@ -6,7 +6,8 @@
 
 namespace vrut::server::engine {
 
-/// A frame that is on its way for longer waits until the view has rested for as long.
+/// A refined frame whose delivery takes longer is held back until the view has been idle for as long: a
+/// client that moves the view again would wait for it.
 inline constexpr std::chrono::seconds kLongDelivery{2};
 
 /// The way from the server to a client's glass, as it was measured.

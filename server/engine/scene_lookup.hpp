@@ -39,10 +39,11 @@ public:
           on_listed_(std::move(on_listed)),
           on_found_(std::move(on_found)) {}
 
-    /// The folder is looked up once a second at most; where that takes longer than 100 ms, the list before is
-    /// told.
+    /// Lists the folder, at most once a second. After 100 ms without an answer of the disk it sends the
+    /// previous list.
     void list(std::int64_t request, base::Clock::time_point now);
-    /// One after the other; it cannot be known where that takes longer than 5 s, or too many wait.
+    /// Finds one name after the other. Answers `busy` after 5 s or if too many wait, `failed` if no thread
+    /// can be started.
     void find(std::int64_t request, const std::string& name, base::Clock::time_point now);
     /// When check() is to be called next, if at all.
     std::optional<base::Clock::time_point> due() const;

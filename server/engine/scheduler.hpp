@@ -6,7 +6,7 @@
 
 namespace vrut::server::engine {
 
-/// After this long without a change the picture is drawn at full accuracy.
+/// After this long without a change the view is idle: its frames are refined.
 inline constexpr std::chrono::milliseconds kQuiet{150};
 
 /// What the next step of the render loop depends on.
@@ -14,7 +14,7 @@ struct ScheduleInput {
     base::Clock::time_point now;
     base::Clock::time_point last_change;  ///< of what is to be seen
     bool frame_wanted = false;            ///< a client may be sent a frame newer than the newest drawn
-    /// From when on one may be sent the last refinement, which takes long on a slow link.
+    /// Before this time the last refinement is not drawn: on a slow link it would delay the next move.
     base::Clock::time_point last_refinement_from{};
     bool changed = false;      ///< the newest frame does not show what is to be seen now
     int newest_samples = 0;    ///< of the newest frame if it is a refined one; else 0

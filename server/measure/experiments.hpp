@@ -28,7 +28,7 @@ inline constexpr std::array kModes{
     Mode{"stylized", DrawMode::stylized, false}, Mode{"stylized wireframe", DrawMode::stylized, true}};
 View in_mode(View view, const Mode& mode);
 
-/// Whether the server sends its pictures in full colour (4:4:4) always, as quality_of() of pacing.hpp does.
+/// True if quality_of() of engine/frame_quality.hpp always sends this mode in 4:4:4.
 bool has_thin_lines(const Mode& mode);
 
 /// Whether pictures of the same samples are judged by the reference in double precision.
@@ -58,7 +58,7 @@ inline constexpr int kTableFrames = 100;  ///< of the thesis's table 7.1
 std::vector<Experiment> experiments_of(const Subject& subject, int frames);
 /// The same scene in other sizes.
 std::vector<Experiment> sizes_of(const Subject& subject, int frames);
-/// Scenes made for it, of 20 thousand triangles up to `most`.
+/// Triangle counts of the generated scenes, from 20,000 up to `most`.
 std::vector<std::uint64_t> triangle_counts(std::uint64_t most);
 /// Rings of `triangles` triangles, all in view.
 std::shared_ptr<const PlacedScene> rings(std::uint64_t triangles);
@@ -78,7 +78,7 @@ public:
     bool is_done(const Experiment& experiment) const;
     /// Measures what is not in the rows yet.
     void run(const Experiment& experiment, const PartDone& done);
-    /// Picks at points of pictures, three ways.
+    /// Picks at points of images by each of kPickings.
     void run_picking(const Subject& subject, const PartDone& done);
 
     const std::string& renderer() const { return renderer_.description(); }

@@ -21,9 +21,9 @@ namespace vrut::server::net {
 /// Bytes per second of a message that a client must take at least.
 inline constexpr int kLeastRate = 1000;
 
-/// One WebSocket client, on the net thread. What waits for a slow one is replaced, not queued: it keeps the
-/// document that it last got and is sent the difference; of frames it is sent the newest, as many as it
-/// granted. Only answers queue, and who does not take them is not read.
+/// One WebSocket client, on the net thread. A slow client gets the newest frame, and one patch from the
+/// document that it has to the newest. Only answers and snapshots queue; while kMaxAnswers bytes of answers
+/// wait, nothing is read.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
     Connection(Stream stream, ConnectionLimit::Place place, ConnectionRegistry& registry);
@@ -37,7 +37,7 @@ public:
     // What the engine says.
     void answer(room::Answer answer);
     void handled(const engine::EngineOutput::Handled& handled);
-    /// The newest frame is another than `before`, its number.
+    /// registry.newest has changed; `before` is the number of the previous newest frame, 0 if none.
     void newest_changed(std::int64_t before);
     /// A picture that this client asked for.
     void take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture);

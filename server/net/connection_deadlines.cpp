@@ -1,4 +1,4 @@
-// How a session's peer is doing.
+// Whether a connection's peer is alive, and takes what it is sent.
 #include <charconv>
 
 #include "net/connection.hpp"

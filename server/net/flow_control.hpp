@@ -10,10 +10,10 @@
 
 namespace vrut::server::net {
 
-/// Decides when a client may be sent a frame or an update of the state, and measures its link. It is told
-/// what was sent, acknowledged and ponged, and at what time; it holds all credits. Proxies and kernels take
-/// bytes long before the client has them, so only two things tell that a message has arrived: the client's
-/// word, and the pong of a ping that was sent behind it. Messages before an arrived one have arrived, too.
+/// Decides when a client may be sent a frame or an update of the state, and measures its link. Its inputs are
+/// what was sent, acknowledged and ponged, and when; it holds all credits. Proxies and kernels take bytes
+/// long before the client has them. So a message has arrived only if the client acknowledges it, or answers a
+/// ping that was sent behind it. Messages before an arrived one have arrived, too.
 class FlowControl {
 public:
     using Clock = base::Clock;
@@ -42,20 +42,20 @@ public:
 
     /// Frames that were granted and not sent.
     int credits() const { return credits_; }
-    /// Of those, how many may be under way together with what is: 0 while one must wait.
+    /// Credits that may be used now; 0 while a frame must wait.
     int frames_allowed(Clock::time_point now) const;
     bool may_send_frame(Clock::time_point now) const { return frames_allowed(now) > 0; }
-    /// Updates are what a newer one of replaces: they wait here, not in a queue of the link.
+    /// True if an update may be sent now. Updates wait here, where a newer one replaces them, rather than in
+    /// the link's queue.
     bool may_send_update(Clock::time_point now) const;
-    /// When either answer becomes yes though nothing more is heard; none: it is yes, or is never by time
-    /// alone.
+    /// The earliest time at which may_send_frame() or may_send_update() may become true without an arrival;
+    /// none if there is no such time.
     std::optional<Clock::time_point> ask_again(Clock::time_point now) const;
 
     /// None before the first measurement; unlimited for a client that does not acknowledge.
     std::optional<engine::Link> link(Clock::time_point now) const;
-    /// From when on a frame of so many bytes, of a view that is idle since `idle_since`, may be sent: one
-    /// that takes long on this link goes once the view has rested for as long, since whoever moves again
-    /// would wait for it.
+    /// When a frame of `bytes` may be sent: now if it passes the link within kLongDelivery, else once the
+    /// view has been idle, which it is since `idle_since`, for as long as the frame takes.
     Clock::time_point may_send_from(std::size_t bytes, Clock::time_point idle_since,
                                     Clock::time_point now) const;
     /// Bytes that were sent and are not known to have arrived.

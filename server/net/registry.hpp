@@ -19,7 +19,7 @@ namespace vrut::server::net {
 
 class Connection;
 
-/// What the sessions share, on the net thread only (but for the engine's mailbox and the metrics).
+/// State shared by all connections. On the net thread only, except the engine's mailbox and the metrics.
 struct ConnectionRegistry {
     Access access;
     std::size_t max_clients = 64;

@@ -36,11 +36,12 @@ public:
     static constexpr std::size_t kMostWaiting = 8;         ///< drawings
     static constexpr std::size_t kMostKept = 4, kMostKeptBytes = std::size_t{16} << 20;
 
-    /// Its entity tag: another server, one started anew, has others.
+    /// The entity tag; it differs in every run of the server.
     std::string tag(const ViewPictureKey& key) const;
     /// Null if it is not kept.
     const ViewPicture* find(const ViewPictureKey& key) const;
-    /// Has one drawn, of this revision or a newer one, and told. False where too many are being drawn.
+    /// Asks the engine for an image of this revision or a newer one, and calls `done` with it. False if
+    /// kMostWaiting are being drawn.
     bool ask(const ViewPictureKey& key, Done done, engine::Mailbox& mailbox);
     /// False where `picture` is none that was asked for here.
     bool take(const engine::EncodedPicture& picture);

@@ -132,7 +132,7 @@ void add_times(Exposition& to, const Metrics& metrics) {
     to.buckets(metrics.input_to_frame);
     to.histogram(
         "input_to_grant_seconds",
-        "From an input's arrival until the holder of control, having got it, asks for the next frame.");
+        "From an input's arrival until a client acknowledges the first frame sent to it that shows it.");
     to.buckets(metrics.input_to_grant);
 }
 

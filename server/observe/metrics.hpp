@@ -82,7 +82,7 @@ struct Metrics {
     Counter gl_objects{0};  ///< after the last picture
     Histogram render_moving, render_still, readback, encode;
     Histogram input_to_frame;  ///< from an input's arrival until the first frame that shows it is handed over
-    Histogram input_to_grant;  ///< from there until the holder of control, having got it, asks for the next
+    Histogram input_to_grant;  ///< from the same until a client acknowledges the first frame that shows it
 
     std::uint64_t frames_rendered() const { return frames_rendered_moving + frames_rendered_still; }
     std::uint64_t messages_refused() const { return errors.sum(); }

@@ -13,8 +13,8 @@
 
 namespace vrut::server::scene {
 
-/// Reads a scene file (import_scene()); `name` is by which it was asked for. Or one sentence on what is
-/// wrong.
+/// Reads a scene file in a process of its own (import_scene()), or fails with one sentence. `name` is the
+/// name that the client asked for.
 tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& path, const std::string& name,
                                                   const ReadProgress& progress = {},
                                                   const std::optional<ImportLimits>& limits = {});

@@ -21,9 +21,10 @@ struct LoadedScene {
 /// What the reader reported about a scene, and which of its features are not drawn.
 std::vector<std::string> all_notices(const Scene& scene);
 
-/// Bytes that cameras, lights, materials, backgrounds and notices take in the `state` message, at most.
+/// An upper bound of the bytes that cameras, lights, materials, backgrounds and notices take in `state`.
 std::size_t most_state_bytes(const LoadedScene& scene);
-/// At most so many, since clients get the state in one message. The rest is for what clients change.
+/// A scene with a larger bound is rejected, since clients get the state in one message. The other 8 MiB are
+/// for what clients change.
 inline constexpr std::size_t kMaxStateBytes = protocol::kMaxServerMessageBytes - (std::size_t{8} << 20);
 
 }  // namespace vrut::server::scene

@@ -10,10 +10,10 @@ struct SandboxGaps {
     bool system_calls = false;  ///< seccomp, or a list of calls for this kind of processor
 };
 
-/// Confines the calling thread, and what it starts, for good: it opens no file but `scene_file` and those in
-/// its folder and below, and these for reading only, wherever links lead; it has no system calls but those
-/// that reading, memory and ending take: none for sockets, processes, other processes' signals or folders'
-/// lists. What is open stays open. What else there is of it holds where a part is missing.
+/// Confines the calling thread and its children for good. They may open `scene_file` and files in and below
+/// its folder, for reading only; links that lead elsewhere fail. System calls for sockets, new processes,
+/// signals to other processes and lists of folders fail. Open descriptors stay open. If the kernel lacks one
+/// part, the other still holds.
 SandboxGaps enter_sandbox(const std::filesystem::path& scene_file);
 
 }  // namespace vrut::server::scene

@@ -300,7 +300,7 @@ TEST_CASE("the end is told to clients and comes soon, even to one that does not 
     std::thread closer([&] { CHECK(reader.wait_for_close() == 1001); });
     const auto took = server.stop();
     closer.join();
-    CHECK(took < 5s);
+    CHECK(took < 3s);
 }
 
 TEST_CASE("nobody waits behind another's thousand requests") {

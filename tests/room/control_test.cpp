@@ -189,20 +189,11 @@ TEST_CASE("a press that takes control is measured in the view that it began in")
     CHECK(b.wait_for_still()["view"]["width"] == 390.0);
 }
 
-TEST_CASE("a patch says who made it, unless several did") {
-    TestServer server({.takes = 100ms});
-    TestClient a(server.port()), b(server.port()), watcher(server.port());
+TEST_CASE("a patch says who made it") {
+    TestServer server;
+    TestClient a(server.port()), watcher(server.port());
     a.join();
-    b.join();
     watcher.join("view");
     a.send(zoom_speed(1, 2));
     CHECK(watcher.wait_for("patch")["by"] == "c1");
-    // While a picture is drawn both change the state: the watcher hears of it in one patch.
-    watcher.send({{"type", "frame"}});
-    std::this_thread::sleep_for(30ms);
-    a.send({{"type", "control"}, {"action", "release"}});
-    std::this_thread::sleep_for(10ms);
-    b.send(zoom_speed(1, 4));
-    Json patch = watcher.wait_for("patch");
-    if (patch["patch"].contains("navigation")) CHECK_FALSE(patch.contains("by"));
 }

@@ -80,11 +80,11 @@ public:
     bool takes_stats = false;       ///< they are not left out
     /// Reads on until a text of this `type`, or "frame"; fails the test when none comes.
     Json wait_for(const std::string& type, std::chrono::milliseconds timeout = 5s);
-    /// Reads on until the end; its close code, 1006 where there was none.
     /// One frame; acknowledges the newest.
     void grant();
     /// Until a notice begins with this.
     void wait_for_notice(const std::string& sentence);
+    /// Reads on until the end; its close code, 1006 where there was none.
     int wait_for_close(std::chrono::milliseconds timeout = 5s);
 
     /// hello; returns the state document.
