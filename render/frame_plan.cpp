@@ -142,8 +142,9 @@ void leave_out_what_lies_outside(std::vector<DrawItem>& items, const View& view)
 /// Those before the eye whose sign reaches into the picture.
 std::vector<glm::dvec3> marks_of(const View& view, const glm::dmat4& view_matrix) {
     std::vector<glm::dvec3> marks;
+    if (!view.marks) return marks;
     const Frustum frustum = frustum_of(view, mark_radius(view.height) + 1);
-    for (const Mark& mark : view.marks) {
+    for (const Mark& mark : *view.marks) {
         const glm::dvec3 point(view_matrix * glm::dvec4(mark.point, 1));
         if (!(glm::length(point) < kFarthestDrawn && point.z < 0)) continue;
         if (!lies_outside(frustum, glm::dmat4(1), {point, point})) marks.push_back(point);

@@ -68,7 +68,7 @@ struct View {
     /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
     Index selected = kNone;
     Background background;
-    std::vector<Mark> marks;
+    std::shared_ptr<const std::vector<Mark>> marks;  ///< null: none; views are equal by its address
 
     bool operator==(const View&) const = default;
 };

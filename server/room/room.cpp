@@ -61,6 +61,20 @@ bool Room::handle_message(const std::string& client, const protocol::ClientMessa
     });
 }
 
+void Room::update_visible() {
+    auto marks = visible_.marks;
+    if (marked_ != state_.markers || visible_.scene != scene_) {
+        marked_ = state_.markers;
+        std::vector<Mark> changed = marks_of(*marked_, *scene_);
+        if (changed.empty())
+            marks.reset();
+        else if (!marks || *marks != changed)
+            marks = std::make_shared<const std::vector<Mark>>(std::move(changed));
+    }
+    visible_ = view_of(state_, scene_);
+    visible_.marks = std::move(marks);
+}
+
 template <class Apply>
 bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     advance(at);
@@ -70,7 +84,7 @@ bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     const bool recorded = active_recording() != nullptr;
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
-    visible_ = view_of(state_, scene_);
+    update_visible();
     if (accepted_ && recorded && received.traits.recorded) record(received.client, received.message);
     return accepted_;
 }
@@ -114,7 +128,7 @@ void Room::advance(SessionTime at) {
     const double ms = static_cast<double>((time_ - flight_->start).count()) / 1000;
     state_.camera = state_of(flight_->path.at(ms), scene_->bounds);
     at_home_ = false;
-    visible_ = view_of(state_, scene_);
+    update_visible();
     if (ms < flight_->path.duration()) return;
     // Where it was to end at a camera node, the camera stands there now.
     const std::optional<Id> node = flight_->asked.keyframes.back().camera.node;
@@ -145,7 +159,7 @@ void Room::show(scene::LoadedScene scene, SessionTime at) {
     state_ = std::move(next);
     at_home_ = !state_.camera.node;
     gestures_.restart(camera());
-    visible_ = view_of(state_, scene_);
+    update_visible();
 }
 
 void Room::notice(const std::string& sentence) {

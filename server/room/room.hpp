@@ -159,6 +159,8 @@ private:
     /// Does what a message does; whether it was accepted.
     template <class Apply>
     bool handle(const Received& received, SessionTime at, Apply apply);
+    /// Makes the view of the present state. Its marks stay the same while neither they nor the scene change.
+    void update_visible();
     /// Remembers a message that is answered later: the number by which.
     std::int64_t answer_later(const Received& received);
     /// That message; none where its client has left.
@@ -247,7 +249,8 @@ private:
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
     View visible_;
-    std::deque<Frame> frames_;  ///< the last kFramesRemembered
+    protocol::SharedMap<protocol::Marker> marked_;  ///< whose marks are in visible_
+    std::deque<Frame> frames_;                      ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
     std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written

@@ -96,6 +96,7 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     accepted_ = true;
     if (!received.message.id) return;  // nobody could tell the picture from a frame
     View view = view_of(state, scene_);
+    view.marks = visible_.marks;
     view.width = snapshot.width;
     view.height = snapshot.height;
     PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,
@@ -173,7 +174,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
                      flight->fly});
     }
     gestures_.restart(camera());
-    visible_ = view_of(state_, scene_);
+    update_visible();
     return {};
 }
 

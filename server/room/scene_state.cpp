@@ -263,7 +263,8 @@ Background background_of(const protocol::BackgroundsState& backgrounds, const Pl
             placed.scene->material(data.material).texture, data.cube_textures};
 }
 
-/// In world space, those whose node shows and lies within the range of double.
+}  // namespace
+
 std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers,
                            const PlacedScene& placed) {
     std::vector<Mark> marks;
@@ -280,8 +281,6 @@ std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& marker
     return marks;
 }
 
-}  // namespace
-
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
     View view;
     view.camera = camera_of(state.camera);
@@ -295,7 +294,6 @@ View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> pl
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
     view.background = background_of(state.backgrounds, *placed);
-    view.marks = marks_of(*state.markers, *placed);
     view.scene = std::move(placed);
     return view;
 }
@@ -312,7 +310,8 @@ protocol::FrameHeader header_of(const protocol::State& state, const View& view,
     header.height = view.height;
     header.view = view_size;
     header.renderer = {state.renderer.mode, state.renderer.wireframe, state.renderer.show_selection};
-    for (const Mark& mark : view.marks) header.markers[mark.name] = mark.point;
+    if (view.marks)
+        for (const Mark& mark : *view.marks) header.markers[mark.name] = mark.point;
     return header;
 }
 

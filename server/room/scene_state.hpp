@@ -38,8 +38,10 @@ void count_classes(protocol::State& state, const PlacedScene& placed);
 tl::expected<std::vector<NodeState>, protocol::Error> node_states(
     const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
 
-/// What of the state and the scene is to be seen, but for size and samples. The background is the active one,
-/// if its subtree is active, else the plain colour.
+/// The signs of `markers`, in world space; of those whose node shows and that lie within the range of double.
+std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers, const PlacedScene& placed);
+/// What of the state and the scene is to be seen, but for size, samples and marks. The background is the
+/// active one, if its subtree is active, else the plain colour.
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed);
 /// What a picture says of itself, but for its number, revision, quality and times.
 protocol::FrameHeader header_of(const protocol::State& state, const View& view,

@@ -70,7 +70,7 @@ TEST_CASE("a chain of a million nodes is read, drawn in every mode, selected and
         CHECK((middle(image) == bytes_of(kDefaultBackground)) == view.wireframe);
     });
     View view = view_from({0, 0, 5});
-    view.marks = {{{0, 0, 0}}};
+    view.marks = marks_at({{0, 0, 0}});
     CHECK(middle(studio.draw(scene, view)) == glm::ivec3(204, 10, 82));
     studio.draw(scene_of({}), view);  // another scene: the chain goes
     scene.reset();
@@ -86,13 +86,13 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
         View view = view_from({0.5, 0.4, 5});
         view.width = width;
         view.height = height;
-        view.marks = {{{0, 0, 0}}};
+        view.marks = marks_at({{0, 0, 0}});
         in_all_modes(view, 1, [&](const View& shown) {
             const Image image = studio.draw(scene, shown);
             CHECK(image.rgba.size() == std::size_t{8192} * 4);
             CHECK(studio.stats.passes >= 2);
         });
-        view.marks.clear();
+        view.marks.reset();
         view.samples = 3;
         studio.draw(scene, view);
         view.samples = 1;

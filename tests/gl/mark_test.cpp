@@ -20,7 +20,7 @@ glm::dvec3 at_pixel(double x, double y, const View& view) {
 View view_with_mark(double x, double y) {
     View view = pixel_view(80, 600);
     view.background.color = {0, 0, 0};
-    view.marks = {{at_pixel(x, y, view)}};
+    view.marks = marks_at({at_pixel(x, y, view)});
     return view;
 }
 
@@ -114,9 +114,9 @@ TEST_CASE("a sign is as large at all distances, and in proportion to the picture
     Studio studio;
     View view = view_with_mark(40.5, 300.5);
     const std::vector<std::uint8_t> first = studio.draw(nothing(), view).rgba;
-    const glm::dvec3 from_eye = view.marks[0].point - view.camera.eye;
+    const glm::dvec3 from_eye = view.marks->front().point - view.camera.eye;
     for (const double factor : {1e-9, 1e-3, 0.3, 7.0, 1e4, 1e9}) {
-        view.marks[0].point = view.camera.eye + from_eye * factor;
+        view.marks = marks_at({view.camera.eye + from_eye * factor});
         const Image image = studio.draw(nothing(), view);
         CHECK(image.rgba == first);
     }
@@ -124,7 +124,7 @@ TEST_CASE("a sign is as large at all distances, and in proportion to the picture
         CAPTURE(height);
         View other = pixel_view(200, height);
         other.background.color = {0, 0, 0};
-        other.marks = {{{0, 0, 0}}};
+        other.marks = marks_at({{0, 0, 0}});
         const double radius = std::max(3.0, height / 120.0);
         CHECK(std::sqrt(drawn_area(studio.draw(nothing(), other)) / 3.14159) ==
               doctest::Approx(radius + 0.3).epsilon(0.12));
@@ -136,7 +136,7 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
     View view = pixel_view(200, 600);
     view.background.color = {0, 0, 0};
     const Material black = material_of({0, 0, 0});
-    view.marks = {{{0, 0, -100}}};
+    view.marks = marks_at({{0, 0, -100}});
     const Part wall{2, quad(200), black, moved_by({0, 0, -100})};
     std::vector<double> seen;
     for (int quarter = -24; quarter <= 24; ++quarter) {
@@ -158,14 +158,14 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
     // Before the same thing it is whole; a little behind the surface it is not.
     const auto curtain = scene_of({{1, quad(200), black, glm::dmat4(1)}});
     for (const double depth : {50.0, 0.0, -10.0, -250.0}) {
-        view.marks = {{{0, 0, depth}}};
+        view.marks = marks_at({{0, 0, depth}});
         CHECK(opacity(studio.draw(curtain, view), 100, 300) ==
               doctest::Approx(depth < 0 ? 0.3 : 1).epsilon(0.02));
     }
     view.mode = DrawMode::stylized;
-    view.marks = {{{20, 5, 0}}};
+    view.marks = marks_at({{20, 5, 0}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) == kSign);
-    view.marks = {{{20, 5, -10}}};
+    view.marks = marks_at({{20, 5, -10}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) != kSign);
     // Nothing hides anything in a wireframe.
     for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
@@ -179,7 +179,7 @@ TEST_CASE("glass covers no marker") {
     Studio studio;
     Material glass = material_of({0, 0, 0});
     View view = pixel_view(200, 600);
-    view.marks = {{{0, 0, -10}}};
+    view.marks = marks_at({{0, 0, -10}});
     for (const double alpha : {0.99, 1.0}) {
         glass.diffuse.a = alpha;
         const Image image = studio.draw(scene_of({{1, quad(200), glass, glm::dmat4(1)}}), view);
@@ -206,7 +206,7 @@ TEST_CASE("no surface hides a marker that lies on it, from near, from far, and a
             View view = view_from(point + turn * way * distance, point);
             view.height = 300;
             view.mode = round % 2 ? DrawMode::realistic : DrawMode::stylized;
-            view.marks = {{point}};
+            view.marks = marks_at({point});
             CAPTURE(round);
             CAPTURE(distance);
             CHECK(color_at(studio.draw(scene, view), view, point) == kSign);
@@ -223,7 +223,7 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
         const glm::dvec3 point = spot_on(room, random).point;
         View view = view_from(direction(random) * half * 0.95, point);
         view.height = 300;
-        view.marks = {{point}};
+        view.marks = marks_at({point});
         CAPTURE(round);
         CHECK(color_at(studio.draw(scene_of({{1, room, kPaint, glm::dmat4(1)}}), view), view, point) ==
               kSign);
@@ -231,9 +231,9 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
     // In a corner, where all three walls come nearer.
     View view = view_from({0.5, -0.4, 0.5}, {-0.999, 0.599, -0.799});
     view.height = 300;
-    view.marks = {{-half * glm::dvec3(1, -1, 1)}};
+    view.marks = marks_at({-half * glm::dvec3(1, -1, 1)});
     CHECK(color_at(studio.draw(scene_of({{1, room, kPaint, glm::dmat4(1)}}), view), view,
-                   view.marks[0].point) == kSign);
+                   view.marks->front().point) == kSign);
 }
 
 TEST_CASE("what marks take: nothing where none shows, else one pass and a draw for 256") {
@@ -242,7 +242,7 @@ TEST_CASE("what marks take: nothing where none shows, else one pass and a draw f
     View view = pixel_view(80, 600);
     const Image plain = studio.draw(scene, view);
     const auto draw = [&](std::vector<Mark> marks) {
-        view.marks = std::move(marks);
+        view.marks = std::make_shared<const std::vector<Mark>>(std::move(marks));
         const Image image = studio.draw(scene, view);
         return image.rgba == plain.rgba;
     };
@@ -275,16 +275,16 @@ TEST_CASE("markers at the picture's border are cut off there, and nearer ones li
     CHECK(pixel_of(image, 0, 300) == kSign);
     CHECK(drawn_area(image) > 10);
     CHECK(drawn_area(image) < 30);
-    view.marks = {{at_pixel(-4.5, -3.5, view)}};
+    view.marks = marks_at({at_pixel(-4.5, -3.5, view)});
     CHECK(drawn_area(studio.draw(nothing(), view)) == 0);
     const glm::dvec3 left = at_pixel(38, 300.5, view), right = at_pixel(42, 300.5, view);
     const glm::dvec3 far_left = view.camera.eye + (left - view.camera.eye) * 2.0;
     const glm::dvec3 far_right = view.camera.eye + (right - view.camera.eye) * 2.0;
-    for (const auto& marks : {std::vector<Mark>{{left}, {far_right}}, {{far_right}, {left}}}) {
+    for (const auto& marks : {marks_at({left, far_right}), marks_at({far_right, left})}) {
         view.marks = marks;
         CHECK(pixel_of(studio.draw(nothing(), view), 42, 300) == kRim);
     }
-    view.marks = {{far_left}, {right}};
+    view.marks = marks_at({far_left, right});
     CHECK(pixel_of(studio.draw(nothing(), view), 37, 300) == kRim);
 }
 
@@ -295,7 +295,7 @@ TEST_CASE("markers in pictures a pixel wide or high, and with many samples") {
         CAPTURE(width);
         View view = pixel_view(width, height);
         view.background.color = {0, 0, 0};
-        view.marks = {{{0, 0, 0}}};
+        view.marks = marks_at({{0, 0, 0}});
         const Image image = studio.draw(nothing(), view);
         CHECK(pixel_of(image, width / 2, height / 2) == kSign);
         CHECK(drawn_area(image) ==

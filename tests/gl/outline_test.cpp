@@ -155,7 +155,7 @@ TEST_CASE("what is selected shows through what stands before it, as if that were
     // Where depth is judged after it, what is seen counts: a marker on the selection is whole, one that the
     // curtain covers is not.
     view.mode = DrawMode::realistic;
-    view.marks = {{{-20, 10, 0.01}}, {{20, -10, -40}}};
+    view.marks = marks_at({{-20, 10, 0.01}, {20, -10, -40}});
     const Image marked = studio.draw(scene, view);
     CHECK(pixel_of(marked, 20, 20) == glm::ivec3(204, 10, 82));
     CHECK(pixel_of(marked, 57, 38) != glm::ivec3(204, 10, 82));

@@ -34,7 +34,7 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene) {
     View view = view_from({0, 1, 5});
     view.scene = scene;
     view.selected = 1;
-    view.marks = {{{0, 0, 1}}};
+    view.marks = marks_at({{0, 0, 1}});
     return view;
 }
 

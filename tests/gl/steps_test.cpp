@@ -61,7 +61,7 @@ TEST_CASE("images that are drawn in turns are those that are drawn alone, and no
     const auto scene = much_glass(0.1), other = much_glass(0.8);
     View selected = view_of(scene, {2, 1, 4});
     selected.selected = 1;
-    selected.marks = {{{0, 0, 1}}};
+    selected.marks = marks_at({{0, 0, 1}});
     View lines = view_of(other, {-2, 1, 4});
     lines.mode = DrawMode::stylized;
     lines.width = 100;

@@ -17,6 +17,11 @@ std::string key(const std::string& name, bool shift = false) {
     return json{{"type", "keydown"}, {"key", name}, {"code", name}, {"shiftKey", shift}}.dump();
 }
 
+std::vector<Mark> marks_in(const Stage& stage) {
+    const auto marks = stage.room.visible().marks;
+    return marks ? *marks : std::vector<Mark>{};
+}
+
 }  // namespace
 
 TEST_CASE("a camera at its node goes along with it, until it is moved otherwise") {
@@ -245,7 +250,7 @@ TEST_CASE("a selection has its node's name and path") {
 
 TEST_CASE("markers are seen where their point is, go with their node, and hide with it") {
     Stage stage("a");
-    const auto marks = [&] { return stage.room.visible().marks; };
+    const auto marks = [&] { return marks_in(stage); };
     CHECK(marks().empty());
     stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
     CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
@@ -366,7 +371,10 @@ TEST_CASE("a move of the camera shares with the state before it what did not cha
                              "lights":{"items":{"headlight":{"color":[1,0,0,1]}}}})"));
     stage.state();
     const protocol::State before = stage.room.state();
+    const auto marks = stage.room.visible().marks;
+    REQUIRE(marks);
     const auto check_shared = [&] {
+        CHECK(stage.room.visible().marks == marks);
         stage.state();
         const protocol::State& now = stage.room.state();
         CHECK(now.camera != before.camera);
@@ -447,7 +455,7 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
     stage.say("a", patch(R"({"markers":{"free":{"point":[1,2,3],"text":"here"},
                                         "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
                                         "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
-    const auto marks = [&] { return stage.room.visible().marks; };
+    const auto marks = [&] { return marks_in(stage); };
     REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
     stage.say("a", kMoveHinge);
     CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
@@ -484,7 +492,7 @@ TEST_CASE("a marker that lies out of the range of double is nowhere") {
     Stage stage("a", scene_of(text, "large.vrut"));
     stage.say("a",
               patch(R"({"markers":{"far":{"node":20,"point":[1,1,1]},"gone":{"node":22,"point":[1,1,1]}}})"));
-    const std::vector<Mark> marks = stage.room.visible().marks;
+    const std::vector<Mark> marks = marks_in(stage);
     REQUIRE(marks.size() == 1);
     CHECK(marks[0].name == "far");
 }
