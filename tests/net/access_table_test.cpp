@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "message_table.hpp"
 #include "raw_connection.hpp"
 
 using namespace vrut;
@@ -325,6 +326,15 @@ void check_file(const std::string& path, const std::string& text) {
 }
 
 }  // namespace
+
+TEST_CASE("every type of client message stands in the table of who may send it") {
+    const std::vector<MessageType> types = message_types();
+    protocol::for_each_client_type([&](const protocol::MessageTraits& traits, const auto&) {
+        const auto is_of_type = [&](const MessageType& type) { return type.message["type"] == traits.type; };
+        CAPTURE(traits.type);
+        CHECK((std::any_of(types.begin(), types.end(), is_of_type) || traits.type == std::string("hello")));
+    });
+}
 
 TEST_CASE("who may do what: every route, token and Origin, and every message, role and token") {
     const Servers servers;
