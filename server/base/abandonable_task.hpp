@@ -2,15 +2,18 @@
 
 #include <chrono>
 #include <future>
+#include <optional>
 #include <stop_token>
 #include <thread>
 #include <utility>
 
+#include "base/clock.hpp"
+
 namespace vrut::server::base {
 
 /// Work on a thread of its own that may hang for ever in a system call, as reading from a disk that does not
-/// answer does. Nobody can join such a thread: the destructor asks it to stop, waits for kPatience, and then
-/// leaves it behind.
+/// answer does. Nobody can join such a thread: the destructor asks it to stop, waits until kPatience has
+/// passed since it was asked first, and then leaves it behind.
 template <class Result>
 class AbandonableTask {
 public:
@@ -28,12 +31,15 @@ public:
     }
     ~AbandonableTask() {
         stop();
-        if (result_.valid()) is_done_within(kPatience);
+        if (result_.valid()) result_.wait_until(*stopped_at_ + kPatience);
     }
     AbandonableTask(const AbandonableTask&) = delete;
     AbandonableTask& operator=(const AbandonableTask&) = delete;
 
-    void stop() { stop_.request_stop(); }
+    void stop() {
+        stop_.request_stop();
+        if (!stopped_at_) stopped_at_ = Clock::now();
+    }
     /// Not after get().
     bool is_done_within(std::chrono::milliseconds time) const {
         return result_.wait_for(time) == std::future_status::ready;
@@ -43,6 +49,7 @@ public:
 
 private:
     std::stop_source stop_;
+    std::optional<Clock::time_point> stopped_at_;
     std::future<Result> result_;
 };
 

@@ -42,12 +42,16 @@ Encoder::Encoder(observe::Metrics& metrics,
       thread_([this] { run(); }) {}
 
 Encoder::~Encoder() {
+    stop();
+    thread_.join();
+}
+
+void Encoder::stop() {
     {
         const std::lock_guard lock(mutex_);
         closed_ = true;
     }
     condition_.notify_one();
-    thread_.join();
 }
 
 bool Encoder::is_free() const {

@@ -28,6 +28,8 @@ public:
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
 
+    /// Nothing more is encoded, but for what is in hand; the destructor waits for that.
+    void stop();
     bool is_free() const;
     /// How long it has worked at one picture; 0 while it has none. From any thread.
     base::Clock::duration busy_for() const { return watchdog_.busy_for(); }

@@ -114,6 +114,11 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
             else
                 started.set_exception(std::current_exception());
         }
+        // What may take a while to end begins to now, and is waited for by the destructors.
+        encoder_.stop();
+        snapshot_encoder_.stop();
+        loader_.stop();
+        recordings_.end_all(base::Clock::now());
         renderer_ = {};  // what belongs to GL ends on the thread that it began on
         room_.reset();
     });
@@ -125,8 +130,10 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
     }
 }
 
+void Engine::stop() { mailbox_.close(); }
+
 Engine::~Engine() {
-    mailbox_.close();
+    stop();
     thread_.join();
     file_results_->close();
 }

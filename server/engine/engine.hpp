@@ -77,7 +77,10 @@ public:
     /// holds the first document.
     Engine(EngineOptions options, FrameRendererFactory factory, observe::Metrics& metrics,
            EngineCallbacks callbacks);
+    /// Waits for the end of what is in hand, a second at most for disks.
     ~Engine();
+    /// Ends the drawing, the recordings and the loading, without waiting for it. From any thread.
+    void stop();
     Engine(const Engine&) = delete;
     Engine& operator=(const Engine&) = delete;
 

@@ -85,11 +85,11 @@ RecordingWriter::RecordingWriter(Open open, std::shared_ptr<ResultPost> post, On
       limits_(limits) {}
 
 RecordingWriter::~RecordingWriter() {
-    const base::Clock::time_point now = base::Clock::now();
-    for (const auto& [recording, log] : logs_) end(recording, now);
+    end_all(base::Clock::now());
     for (const auto& [recording, log] : logs_) {
         std::unique_lock lock(log.queue->mutex);
-        log.queue->changed.wait_until(lock, now + std::chrono::seconds(1), [&] { return log.queue->done; });
+        log.queue->changed.wait_until(lock, log.queue->ended_at + std::chrono::seconds(1),
+                                      [&] { return log.queue->done; });
         log.queue->given_up = true;
     }
 }
@@ -153,12 +153,16 @@ void RecordingWriter::write(std::int64_t recording, std::string line, base::Cloc
     if (too_many) give_up(recording, "its disk is too slow");
 }
 
+void RecordingWriter::end_all(base::Clock::time_point now) {
+    for (const auto& [recording, log] : logs_) end(recording, now);
+}
+
 void RecordingWriter::end(std::int64_t recording, base::Clock::time_point now) {
     const auto log = logs_.find(recording);
     if (log == logs_.end()) return;
     Queue& queue = *log->second.queue;
     const std::lock_guard lock(queue.mutex);
-    queue.complete = true;
+    if (std::exchange(queue.complete, true)) return;
     queue.ended_at = now;
     queue.changed.notify_all();
 }

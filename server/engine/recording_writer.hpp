@@ -45,6 +45,7 @@ public:
                base::Clock::time_point now);
     void write(std::int64_t recording, std::string line, base::Clock::time_point now);
     void end(std::int64_t recording, base::Clock::time_point now);
+    void end_all(base::Clock::time_point now);
     /// When check() is to be called next, if at all.
     std::optional<base::Clock::time_point> due() const;
     /// Ends those whose disk is too slow.

@@ -157,6 +157,7 @@ struct Server::Impl {
 
     void stop() {
         if (std::exchange(registry.stopping, true)) return;
+        engine->stop();
         acceptor.close();
         accept_pause.cancel();
         signals.cancel();

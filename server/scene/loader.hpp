@@ -42,6 +42,10 @@ public:
                const std::optional<ImportLimits>& limits);
     /// To be called after `on_loaded`.
     void finish() { task_.reset(); }
+    /// Asks for the end of the reading; the destructor waits the less for it.
+    void stop() {
+        if (task_) task_->stop();
+    }
 
 private:
     struct Listener;

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "environment_variable.hpp"
 #include "heap.hpp"
 #include "program.hpp"
 #include "temporary_folder.hpp"
@@ -88,7 +89,112 @@ struct Opening {
     TestClient client;
 };
 
+/// A program that records on a disk that has begun to hang, with the client that asked for it.
+struct HangingRecording {
+    HangingRecording() {
+        client.join();
+        client.send({{"type", "record"}, {"id", client.next_id()}, {"action", "start"}, {"name", "hung"}});
+        client.wait_for("ok");
+        folder.write("hangs", "");
+        move();
+    }
+    /// The revision that the state has then.
+    Json move() {
+        client.send({{"type", "navigate"}, {"id", client.next_id()}, {"rotate", {5, 0}}});
+        return client.wait_for("ok")["revision"];
+    }
+
+    TemporaryFolder folder;
+    EnvironmentVariable preload{"LD_PRELOAD", VRUT_HANGING_DISK},
+        marker{"VRUT_TEST_DISK_HANGS", (folder.path() / "hangs").c_str()};
+    Program program{serve({"--record", folder.path().string()}, VRUT_CARS "/car-20k.vrut")};
+    TestClient client{program.port()};
+};
+
+/// Writes grid.gltf: one part of that many triangles, of two to a square.
+void write_grid(const TemporaryFolder& folder, std::uint32_t side) {
+    std::vector<float> points;
+    for (std::uint32_t y = 0; y <= side; ++y)
+        for (std::uint32_t x = 0; x <= side; ++x)
+            points.insert(points.end(), {static_cast<float>(x), static_cast<float>(y),
+                                         static_cast<float>((x * 7919 + y * 104729) % 13) / 13});
+    std::vector<std::uint32_t> corners;
+    for (std::uint32_t y = 0; y < side; ++y)
+        for (std::uint32_t x = 0; x < side; ++x) {
+            const std::uint32_t a = y * (side + 1) + x, b = a + side + 1;
+            corners.insert(corners.end(), {a, a + 1, b, a + 1, b + 1, b});
+        }
+    const std::size_t first = points.size() * sizeof(float), second = corners.size() * sizeof(std::uint32_t);
+    std::ofstream out(folder.path() / "grid.bin", std::ios::binary);
+    out.write(reinterpret_cast<const char*>(points.data()), static_cast<std::streamsize>(first));
+    out.write(reinterpret_cast<const char*>(corners.data()), static_cast<std::streamsize>(second));
+    const Json gltf{
+        {"asset", {{"version", "2.0"}}},
+        {"scene", 0},
+        {"scenes", {{{"nodes", {0}}}}},
+        {"nodes", {{{"name", "Grid"}, {"mesh", 0}}}},
+        {"meshes", {{{"primitives", {{{"attributes", {{"POSITION", 0}}}, {"indices", 1}}}}}}},
+        {"accessors",
+         {{{"bufferView", 0}, {"componentType", 5126}, {"type", "VEC3"}, {"count", points.size() / 3}},
+          {{"bufferView", 1}, {"componentType", 5125}, {"type", "SCALAR"}, {"count", corners.size()}}}},
+        {"bufferViews",
+         {{{"buffer", 0}, {"byteLength", first}},
+          {{"buffer", 0}, {"byteOffset", first}, {"byteLength", second}}}},
+        {"buffers", {{{"uri", "grid.bin"}, {"byteLength", first + second}}}}};
+    folder.write("grid.gltf", gltf.dump());
+}
+
 }  // namespace
+
+TEST_CASE("SIGTERM while the levels of one part of ten million triangles are made") {
+    const TemporaryFolder folder;
+    write_grid(folder, 2240);
+    Program program(serve({}, (folder.path() / "grid.gltf").string()));
+    TestClient client(program.port());
+    client.join();
+    client.grant();
+    client.wait_for("frame", 60s);  // the levels are begun behind it
+    std::this_thread::sleep_for(500ms);
+    expect_end(program, SIGTERM, &client);
+}
+
+TEST_CASE("SIGTERM while the digest of a scene of five gigabytes, which is read, is computed") {
+    const TemporaryFolder folder;
+    fs::copy_file(VRUT_TEST_GLB, folder.path() / "long.glb");
+    fs::resize_file(folder.path() / "long.glb", std::uintmax_t{5} << 30);
+    Opening opening(folder, "long.glb");
+    Json loading = Json::object();
+    while (loading.value("fraction", 0.0) != 1) loading = opening.client.wait_for("loading", 20s);
+    CHECK_FALSE(loading.contains("done"));  // the scene is read, and its digest is not there yet
+    expect_end(opening.program, SIGTERM, &opening.client);
+}
+
+TEST_CASE("SIGTERM while a recording's disk hangs, a large file is encoded, and a client is silent") {
+    HangingRecording hanging;
+    TestClient silent(hanging.program.port(), {.receive_buffer = 4096});
+    silent.join("view");
+    for (int i = 0; i < 8; ++i) silent.send({{"type", "frame"}});
+    silent.send({{"type", "snapshot"}, {"id", 1}, {"width", 4000}, {"height", 2000}, {"format", "png"}});
+    hanging.client.wait_for_still();
+    expect_end(hanging.program);
+}
+
+TEST_CASE("a disk that hangs ends the recording, with a notice, and nothing else") {
+    HangingRecording hanging;
+    TestClient& client = hanging.client;
+    const auto is_served = [&] {
+        const Json revision = hanging.move();
+        CHECK(client.wait_for_still()["revision"] >= revision);
+        client.send({{"type", "tree"}, {"id", client.next_id()}});
+        client.wait_for("tree");
+        CHECK(http(hanging.program.port(), "GET", "/readyz").status == 200);
+    };
+    is_served();
+    client.wait_for_notice("The recording 'hung' has ended: ");
+    CHECK_FALSE(client.state.contains("recording"));
+    is_served();
+    expect_end(hanging.program, SIGTERM, &client);
+}
 
 TEST_CASE("SIGTERM, SIGINT and SIGHUP while frames go to clients that do not take them") {
     for (const int signal : {SIGTERM, SIGINT, SIGHUP}) {
