@@ -21,16 +21,18 @@ def header_of(jpeg):
     return json.loads(jpeg[at + 4:at + 2 + int.from_bytes(jpeg[at + 2:at + 4], "big")])
 
 
-async def still_frame(server, message_id):
-    """The frame at rest, of full size, that shows what the message of this id did. Each `frame` asks for one."""
-    await server.send(json.dumps({"type": "frame"}))
+async def still_frame(server, message_id, shown):
+    """The frame at rest, of full size, that shows what the message of this id did, and its number. Each `frame`
+    asks for one, and acknowledges the one before (`shown`, its number; at first there is none: {})."""
+    await server.send(json.dumps({"type": "frame", **shown}))
     async for message in server:
         if isinstance(message, bytes):
             header = header_of(message)
             quality = header["quality"]
+            shown = {"shown": header["frame"]}
             if header["handled"] >= message_id and quality["level"] == "still" and quality["scale"] == 1:
-                return message
-            await server.send(json.dumps({"type": "frame", "shown": header["frame"]}))
+                return message, shown
+            await server.send(json.dumps({"type": "frame", **shown}))
         elif (answer := json.loads(message))["type"] == "error":
             raise SystemExit(f"orbit.py: {answer['message']}")
 
@@ -53,9 +55,11 @@ async def main():
     async with websockets.connect(address, subprotocols=["vrut-preview.v1"], max_size=None) as server:
         await server.send(json.dumps({"type": "hello", "role": "control", "token": token}))
         await server.send(json.dumps({"type": "resize", "width": width, "height": height, "pixelRatio": 1}))
+        shown = {}
         for step in range(options.steps):
             rotate = [360 / options.steps, 0]  # degrees, as if dragged to the right
             await server.send(json.dumps({"type": "navigate", "id": step + 1, "rotate": rotate}))
-            (options.out / f"frame-{step:03}.jpg").write_bytes(await still_frame(server, step + 1))
+            picture, shown = await still_frame(server, step + 1, shown)
+            (options.out / f"frame-{step:03}.jpg").write_bytes(picture)
 
 asyncio.run(main())

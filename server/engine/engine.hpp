@@ -132,8 +132,7 @@ private:
         base::Clock::time_point at;
         std::string why;
     };
-    static constexpr int kMostLosses = 2;        // of the context, by one snapshot or scene
-    static constexpr std::size_t kUnderWay = 2;  // snapshots: what is drawn of one takes 20 bytes a pixel
+    static constexpr int kMostLosses = 2;  // of the context, by one snapshot or scene
 
     // --- the loop: drain, apply, publish, schedule, one step
     void run();

@@ -11,6 +11,8 @@ namespace vrut::server::engine {
 namespace {
 
 constexpr std::size_t kFramesRemembered = 64;
+/// Of snapshots under way, beside the largest of them: each pixel takes 20 bytes.
+constexpr double kPixelsUnderWay = 1 << 21;
 /// Whatever its nodes' states are.
 std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
 
@@ -212,12 +214,21 @@ void Engine::finish_frame() {
     encoder_.offer(std::move(frame.picture), std::move(frame.rendering.image));
 }
 
-/// The clients in turn; of those that were begun only a few, since each takes memory.
+/// The clients in turn. A snapshot is begun where those under way, the largest left out, take few pixels: a
+/// large one waits for another large one, and a small one for neither.
 std::deque<Engine::Snapshot>::iterator Engine::next_snapshot() {
-    const auto begun = std::count_if(snapshots_.begin(), snapshots_.end(),
-                                     [](const Snapshot& snapshot) { return snapshot.rendering.has_value(); });
+    const auto pixels = [](const Snapshot& snapshot) {
+        return pixels_of({snapshot.order.header.width, snapshot.order.header.height});
+    };
+    double begun = 0, largest = 0;
+    for (const Snapshot& snapshot : snapshots_) {
+        if (!snapshot.rendering) continue;
+        begun += pixels(snapshot);
+        largest = std::max(largest, pixels(snapshot));
+    }
     return std::find_if(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& snapshot) {
-        return snapshot.rendering || static_cast<std::size_t>(begun) < kUnderWay;
+        return snapshot.rendering ||
+               begun + pixels(snapshot) - std::max(largest, pixels(snapshot)) <= kPixelsUnderWay;
     });
 }
 

@@ -228,7 +228,15 @@ void Connection::send_picture(std::optional<double> since_input_ms) {
            boost::asio::buffer(file.data() + cut, file.size() - cut)});
 }
 
+/// No client gets a message longer than `welcome` says.
 void Connection::send_text(Text text) {
+    if (text->size() > protocol::kMaxServerMessageBytes) {
+        observe::log_warning("message_too_long", {{"client", client_}, {"bytes", text->size()}});
+        answers_.clear();
+        close_reason_ = "too-large";
+        close(websocket::close_code::internal_error, "a message would be longer than maxServerMessage");
+        return pump();  // where it is closing already
+    }
     text_ = std::move(text);
     socket_.text(true);
     write({boost::asio::buffer(*text_)});

@@ -8,7 +8,7 @@ namespace vrut::server::net {
 
 namespace {
 
-constexpr std::size_t kMostHeld = std::size_t{256} << 20;  // bytes
+constexpr std::size_t kMostHeld = std::size_t{128} << 20;  // bytes
 
 }  // namespace
 

@@ -213,7 +213,7 @@ TEST_CASE("SIGTERM, SIGINT and SIGHUP while frames go to clients that do not tak
             presenter.send({{"type", "navigate"}, {"rotate", {7, 0}}});
             presenter.wait_for("frame");
         }
-        expect_end(program, signal);
+        expect_end(program, signal, &presenter);
     }
 }
 

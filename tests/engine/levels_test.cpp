@@ -119,8 +119,8 @@ struct Drag {
         const auto end = std::chrono::steady_clock::now() + 5s;
         while (std::chrono::steady_clock::now() < end) {
             move(0);
-            const auto message = client.receive(2ms);
-            if (message && message->binary) return message->json()["quality"];
+            while (const auto message = client.receive(2ms))
+                if (message->binary) return message->json()["quality"];
         }
         return {};
     }

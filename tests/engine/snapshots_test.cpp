@@ -9,27 +9,33 @@ using namespace vrut::test;
 
 namespace {
 
-constexpr int kLarge = 640, kSmall = 80, kNext = 48;  // pixels of width
+constexpr int kLarge = 4096, kOther = 4095, kSmall = 80, kNext = 48;  // pixels of width
 
-/// Draws on the large one until the small one is drawn: one after the other, they would never end.
-FrameRendererFactory renderer_of_turns(std::atomic<bool>& large_is_begun, std::atomic<bool>& small_is_drawn) {
+struct Turns {
+    std::atomic<int> begun{0};  ///< large ones, before the small one is drawn: 1 kLarge, 2 kOther, 3 both
+    std::atomic<bool> small_is_drawn{false};
+};
+
+/// Draws on the large ones until the small one is drawn: one after the other, they would never end.
+FrameRendererFactory renderer_of_turns(Turns& turns) {
     return [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
         renderer.step = [&, step = renderer.step](Rendering& rendering) {
-            if (rendering.view.width == kLarge) {
-                large_is_begun = true;
-                if (!small_is_drawn) return false;
+            const int width = rendering.view.width;
+            if (width >= kOther && !turns.small_is_drawn) {
+                turns.begun |= width == kLarge ? 1 : 2;
+                return false;
             }
             const bool whole = step(rendering);
-            if (rendering.view.width == kSmall && whole) small_is_drawn = true;
+            if (width == kSmall && whole) turns.small_is_drawn = true;
             return whole;
         };
         return renderer;
     };
 }
 
-void ask(TestClient& client, int id, int width) {
-    client.send({{"type", "snapshot"}, {"id", id}, {"width", width}, {"height", 32}});
+void ask(TestClient& client, int id, int width, int height = 32) {
+    client.send({{"type", "snapshot"}, {"id", id}, {"width", width}, {"height", height}});
 }
 
 }  // namespace
@@ -37,14 +43,14 @@ void ask(TestClient& client, int id, int width) {
 TEST_CASE("snapshots of several clients are drawn in turns, those of one in their order") {
     for (const bool another_waits : {false, true}) {
         CAPTURE(another_waits);
-        std::atomic<bool> large_is_begun{false}, small_is_drawn{false};
-        TestServer server(scene_of("vrut-text 1"), renderer_of_turns(large_is_begun, small_is_drawn));
+        Turns turns;
+        TestServer server(scene_of("vrut-text 1"), renderer_of_turns(turns));
         TestClient first(server.port()), second(server.port());
         first.join();
         second.join("view");
         ask(first, 1, kLarge);
         if (another_waits) ask(first, 2, kNext);
-        REQUIRE(eventually([&] { return large_is_begun.load(); }));
+        REQUIRE(eventually([&] { return turns.begun == 1; }));
         ask(second, 1, kSmall);
         const Json small = second.wait_for("frame");
         CHECK(small["width"] == kSmall);
@@ -53,4 +59,21 @@ TEST_CASE("snapshots of several clients are drawn in turns, those of one in thei
             CHECK(own["snapshot"] == id);
         }
     }
+}
+
+TEST_CASE("a large snapshot waits for another client's large one, and a small one for neither") {
+    Turns turns;
+    TestServer server(scene_of("vrut-text 1"), renderer_of_turns(turns));
+    TestClient first(server.port()), second(server.port()), third(server.port());
+    for (TestClient* client : {&first, &second, &third}) client->join("view");
+    ask(first, 1, kLarge, 2048);
+    REQUIRE(eventually([&] { return turns.begun == 1; }));
+    ask(second, 1, kOther, 2048);
+    second.send({{"type", "tree"}, {"id", 2}});
+    second.wait_for("tree");
+    ask(third, 1, kSmall);
+    CHECK(third.wait_for("frame")["width"] == kSmall);
+    CHECK(turns.begun == 1);
+    CHECK(first.wait_for("frame")["width"] == kLarge);
+    CHECK(second.wait_for("frame")["width"] == kOther);
 }

@@ -22,14 +22,25 @@ ServerOptions with(const Deadlines& deadlines) {
 }
 
 /// Sends byte after byte until the server has had enough; how long that took.
-steady_clock::duration trickle(RawConnection& connection, const std::string& bytes) {
+steady_clock::duration trickle(RawConnection& connection, const std::string& bytes,
+                               std::chrono::milliseconds pause = 50ms) {
     const auto start = steady_clock::now();
     for (const char byte : bytes) {
         connection.send({&byte, 1});
-        if (connection.ended(50ms)) break;
+        if (connection.ended(pause)) break;
     }
     CHECK(connection.ended(10s));
     return steady_clock::now() - start;
+}
+
+/// Of the close frame that the server sends; 0 where it sends none.
+int close_code(RawWebSocket& client) {
+    int code = 0;
+    while (const auto next = client.receive())
+        if (next->opcode == kClose && next->payload.size() >= 2)
+            code = static_cast<unsigned char>(next->payload[0]) << 8 |
+                   static_cast<unsigned char>(next->payload[1]);
+    return code;
 }
 
 const std::string kGet = "GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n";
@@ -71,21 +82,30 @@ TEST_CASE("a hello that trickles in is cut like one that does not come") {
 TEST_CASE(
     "a message that does not come to its end ends the connection, one that only takes its time does not") {
     TestServer server({}, with({.message = 2s}));
-    RawWebSocket client(server.port()), first_byte(server.port()), patient(server.port());
-    for (RawWebSocket* each : {&client, &first_byte, &patient}) each->join();
+    RawWebSocket client(server.port()), patient(server.port());
+    for (RawWebSocket* each : {&client, &patient}) each->join();
     client.connection.send(frame(kFinal | kText, std::string(100, ' ')).substr(0, 50));
-    first_byte.connection.send(frame(kFinal | kText, "{}").substr(0, 1));
     const std::string whole = frame(kFinal | kText, R"({"type":"tree","id":1})");
     patient.connection.send(whole.substr(0, 12));
     CHECK_FALSE(patient.connection.ended(500ms));
     patient.connection.send(whole.substr(12));
     while (Json::parse(patient.receive()->payload)["type"] != "tree") {
     }
-    for (RawWebSocket* each : {&client, &first_byte}) {
-        std::string code;
-        while (const auto next = each->receive())
-            if (next->opcode == kClose) code = next->payload.substr(0, 2);
-        CHECK(code == big_endian(1008, 2));
+    CHECK(close_code(client) == 1008);
+}
+
+TEST_CASE("a message that trickles in ends the connection at its deadline, be it at its head") {
+    TestServer server({}, with({.message = 2s}));
+    const std::string message = frame(kFinal | kText, std::string(65'536, ' '));  // its head takes 14 bytes
+    for (const unsigned at_once : {0U, 50U}) {
+        CAPTURE(at_once);
+        RawWebSocket client(server.port());
+        client.join();
+        client.connection.send(message.substr(0, at_once));
+        const auto took = trickle(client.connection, message.substr(at_once, 60), 300ms);
+        CHECK(took > 1500ms);
+        CHECK(took < 10s);  // with the time that is left to it for its goodbye
+        CHECK(close_code(client) == 1008);
     }
 }
 

@@ -78,6 +78,24 @@ describe('grants', () => {
     assert.equal(client.frames.length, count);
   });
 
+  test('who acknowledges a frame that it was never sent is refused, and grants nothing', async (t) => {
+    const client = await steering(t, server);
+    const other = await ContractClient.join(t, server, { role: 'view' });
+    await client.ask({ type: 'navigate', rotate: [5, 0] });
+    await other.until('the newest state', () => other.revision === client.revision);
+    const { header } = await other.frameOfNow();
+    const own = client.frames.at(-1).header.frame;
+    assert.ok(header.frame > own, 'only the other has it');
+    const count = client.frames.length;
+    for (const shown of [header.frame, Number.MAX_SAFE_INTEGER]) {
+      await client.refused({ type: 'frame', shown }, 'out-of-range', { valid: true });
+    }
+    await client.barrier();
+    assert.equal(client.frames.length, count, 'none, though there is a newer one');
+    client.send({ type: 'frame', shown: own });
+    await client.until('a frame', () => client.frames.length > count);
+  });
+
   for (const [what, patch, back] of [
     ['camera', { camera: { fov: 44 } }, {}],
     ['the plain colour', { backgrounds: { active: 'color', color: [0.2, 0.4, 0.1, 1] } }, { backgrounds: { active: null, color: null } }],
