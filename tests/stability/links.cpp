@@ -57,9 +57,9 @@ Study slow_links(const Laboratory& laboratory) {
     study.explanation =
         std::string(
             "The first pictures of a drag are of the smallest level, and from there on the level "
-            "holds the latency target if one can. Where a picture takes longer than half a second, "
-            "one is on its way at a time; the news of the state wait for it, of which the newest "
-            "counts. A drag takes 30 s.") +
+            "holds the latency target if one can. Frames that take longer than 100 ms are sent one "
+            "at a time; updates of the state wait for them, and the newest replaces the others. A "
+            "drag takes 30 s.") +
         kBalls;
     study.cost =
         "Over a slow link the picture is a quarter as wide as the view while it moves, and sharp only when "
