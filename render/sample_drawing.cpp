@@ -29,7 +29,7 @@ glm::dmat4 clip_of(const Rendering& rendering) {
 struct SampleDrawing::Step {
     const View& view;
     const FramePlan& plan;
-    GpuScene* scene;
+    GpuScene* scene = nullptr;
     Passes& passes;
     StepWork& work;
     FrameStats& stats;

@@ -13,8 +13,8 @@ void Engine::connect_files(room::RoomOptions& options) {
     options.scenes = [this](std::int64_t request) { lookup_.list(request, base::Clock::now()); };
     if (record_folder_.empty()) return;
     room::RecordingSink& sink = options.recordings.emplace();
-    sink.begin = [this](std::int64_t recording, const std::string& name, auto header) {
-        recordings_.begin(recording, name, std::move(header), base::Clock::now());
+    sink.begin = [this](std::int64_t recording, const std::string& name, const auto& header) {
+        recordings_.begin(recording, name, header, base::Clock::now());
     };
     sink.write = [this](std::int64_t recording, std::string line) {
         recordings_.write(recording, std::move(line), base::Clock::now());

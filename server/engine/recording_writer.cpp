@@ -86,16 +86,16 @@ RecordingWriter::RecordingWriter(Open open, std::shared_ptr<ResultPost> post, On
 
 RecordingWriter::~RecordingWriter() {
     end_all(base::Clock::now());
-    for (const auto& [recording, log] : logs_) {
-        std::unique_lock lock(log.queue->mutex);
-        log.queue->changed.wait_until(lock, log.queue->ended_at + std::chrono::seconds(1),
-                                      [&] { return log.queue->done; });
-        log.queue->given_up = true;
+    for (const auto& entry : logs_) {
+        Queue& queue = *entry.second.queue;
+        std::unique_lock lock(queue.mutex);
+        queue.changed.wait_until(lock, queue.ended_at + std::chrono::seconds(1), [&] { return queue.done; });
+        queue.given_up = true;
     }
 }
 
 void RecordingWriter::begin(std::int64_t recording, const std::string& name,
-                            room::RecordingSink::Header header, base::Clock::time_point now) {
+                            const room::RecordingSink::Header& header, base::Clock::time_point now) {
     auto queue = std::make_shared<Queue>();
     queue->in_hand_since = now;
     logs_[recording] = {queue, {}};

@@ -41,7 +41,7 @@ public:
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
 
-    void begin(std::int64_t recording, const std::string& name, room::RecordingSink::Header header,
+    void begin(std::int64_t recording, const std::string& name, const room::RecordingSink::Header& header,
                base::Clock::time_point now);
     void write(std::int64_t recording, std::string line, base::Clock::time_point now);
     void end(std::int64_t recording, base::Clock::time_point now);

@@ -13,8 +13,8 @@ namespace {
 constexpr auto kPollInterval = 1s;  // between two looks at how the peer is doing
 // Of answers and snapshots somebody who asks for more than these must take so much: they are kept for him
 // alone, while frames and updates replace each other.
-constexpr std::size_t kMayWait = 64 * 1024;  // bytes
-constexpr int kLeastRateOfQueued = 4000;     // bytes per second
+constexpr std::size_t kMayWait = std::size_t{64} * 1024;  // bytes
+constexpr int kLeastRateOfQueued = 4000;                  // bytes per second
 
 }  // namespace
 
