@@ -237,7 +237,7 @@ std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& st
     const base::Clock::time_point begin = base::Clock::now();
     if (step.action == Action::begin_frame) begin_frame(step.refined_samples);
     if (step.action != Action::draw_snapshot) {
-        draw_frame();
+        if (frame_) draw_frame();
     } else {
         draw_snapshot();
         scheduler_.drew_snapshot(begin, base::Clock::now());
@@ -313,6 +313,7 @@ void Engine::handle(const PictureFailed& failed) {
     std::erase(drawn_, picture.header.frame);
     if (picture.header.frame != newest_.frame) return;  // a newer one may do better
     failed_ = Failed{newest_.visible, newest_.view_size};
+    newest_ = before_newest_;
     notice("What is to be seen now cannot be encoded: " + failed.why);
 }
 
@@ -335,6 +336,7 @@ void Engine::use(const protocol::LevelTable& table) {
     refined_levels_.clear();
     for (const protocol::Level& level : table.levels)
         if (level.quality.level == protocol::Quality::Level::still) refined_levels_.push_back(level);
+    if (frame_) give_up_frame();  // its level is of the table before
     in_flight_.clear();
     detail_.reset();
     scene_since_ = next_frame_;

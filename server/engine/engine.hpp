@@ -260,7 +260,7 @@ private:
         View visible;
         protocol::Resize view_size;
         int refined_samples = 0;  ///< 0: an interactive one
-    } newest_;
+    } newest_, before_newest_;
     std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;
     std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones

@@ -172,8 +172,12 @@ void Engine::begin_frame(int refined_samples) {
         picture.header.frame = next_frame_;
         room_->remember(next_frame_++);  // with the camera as it is now
     }
-    frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
-                                 Rendering(std::move(view), encoder_.take_spare())});
+    try {
+        frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
+                                     Rendering(std::move(view), encoder_.take_spare())});
+    } catch (const std::bad_alloc&) {
+        draw_smaller({visible, view_size}, size, "there is no memory to draw it");
+    }
 }
 
 void Engine::draw_frame() {
@@ -183,6 +187,11 @@ void Engine::draw_frame() {
         const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
         draw_smaller({frame.visible, frame.view_size},
                      {frame.rendering.view.width, frame.rendering.view.height}, error.what());
+    } catch (const std::bad_alloc&) {
+        const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
+        draw_smaller({frame.visible, frame.view_size},
+                     {frame.rendering.view.width, frame.rendering.view.height},
+                     "there is no memory to draw it");
     } catch (const std::exception& error) {
         failed_ = Failed{frame_->visible, frame_->view_size};
         frame_.reset();
@@ -199,6 +208,7 @@ void Engine::finish_frame() {
         // It shows what came meanwhile, too: that changed nothing.
         frame.picture.applied = applied();
     }
+    before_newest_ = newest_;
     newest_ = {header.frame, frame.visible, frame.view_size, frame.refined_samples};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
@@ -237,16 +247,18 @@ void Engine::draw_snapshot() {
     const auto next = next_snapshot();
     Snapshot snapshot = std::move(*next);
     snapshots_.erase(next);
-    if (!snapshot.rendering) {
-        View& view = snapshot.order.view;
-        view.samples = kRefined.samples;
-        snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
-    }
     Drawn drawn = Drawn::part;
     try {
+        if (!snapshot.rendering) {
+            View view = snapshot.order.view;
+            view.samples = kRefined.samples;
+            snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
+        }
         drawn = draw(*snapshot.rendering);
     } catch (const OutOfMemory& error) {
         return reject(snapshot, error.what());
+    } catch (const std::bad_alloc&) {
+        return reject(snapshot, "there is no memory to draw it");
     } catch (const std::exception& error) {
         return reject(snapshot, std::string("the picture cannot be drawn: ") + error.what());
     }

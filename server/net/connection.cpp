@@ -116,7 +116,7 @@ void Connection::accept(const HttpRequest& request) {
         self->hello_deadline_.expires_after(self->registry_.deadlines.hello);
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
             const auto connection = weak.lock();
-            if (!stopped && connection)
+            if (!stopped && connection && connection->client_.empty())
                 connection->reject_and_close(
                     {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
                     close_code::policy_error);
@@ -273,6 +273,7 @@ void Connection::reject_and_close(const protocol::Error& error, close_code code)
 void Connection::say_goodbye() {
     if (std::exchange(said_goodbye_, true)) return;
     writing_ = true;
+    write_by_ = base::Clock::now() + kGoodbye;
     socket_.async_close(*closing_, [self = shared_from_this()](beast::error_code) { self->drop("gone"); });
 }
 
@@ -283,6 +284,7 @@ void Connection::on_close_frame(std::uint16_t code) {
     closing_.emplace(close_code::protocol_error);
     close_reason_ = "protocol";
     answers_.clear();
+    answer_bytes_ = 0;
     say_goodbye();
 }
 
@@ -306,6 +308,7 @@ void Connection::drop(const char* reason) {
     flow_timer_.cancel();
     beast::get_lowest_layer(socket_).close();
     answers_.clear();
+    answer_bytes_ = 0;
     snapshots_.clear();
     if (client_.empty()) return;
     observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});

@@ -233,6 +233,7 @@ void Connection::send_text(Text text) {
     if (text->size() > protocol::kMaxServerMessageBytes) {
         observe::log_warning("message_too_long", {{"client", client_}, {"bytes", text->size()}});
         answers_.clear();
+        answer_bytes_ = 0;
         close_reason_ = "too-large";
         close(websocket::close_code::internal_error, "a message would be longer than maxServerMessage");
         return pump();  // where it is closing already

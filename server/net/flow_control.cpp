@@ -79,8 +79,10 @@ void FlowControl::sent_frame(std::int64_t frame, std::size_t bytes, Clock::time_
 
 void FlowControl::sent_update(std::size_t bytes, Clock::time_point now) {
     sent(bytes, now);
-    update_from_ = std::max(update_from_, now - kUpdateQueue) +
-                   std::min<Clock::duration>((1 + kUpdatePause) * passing(bytes, now), kUpdateTimeout);
+    // Updates that must go before answers and frames are not asked for here, and count all the same.
+    update_from_ =
+        std::min(std::max(update_from_, now - kUpdateQueue) + (1 + kUpdatePause) * passing(bytes, now),
+                 now + kUpdateTimeout);
 }
 
 bool FlowControl::wants_ping() const {
@@ -122,6 +124,7 @@ void FlowControl::arrive(std::size_t end, Clock::time_point now) {
 /// A frame begins to pass through the link when it was sent, or when the one before it has passed; updates
 /// that were sent between the two pass with it.
 void FlowControl::measure(const Frame& frame, Clock::time_point shown_at) {
+    if (shown_at < free_at_) return;  // it arrived behind one that was shown later: nothing is known
     const Clock::time_point alone = frame.sent_at + round_trip();
     const std::size_t bytes = alone < free_at_ ? frame.end - measured_end_ : frame.bytes;
     const Seconds took = shown_at - std::max(alone, free_at_);

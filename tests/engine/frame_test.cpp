@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include "engine/frame_quality.hpp"
 #include "rendering.hpp"
 #include "test_client.hpp"
 
@@ -305,6 +306,30 @@ TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
     broken = false;
     client.send({{"type", "navigate"}, {"id", 2}, {"rotate", {5, 0}}});
     client.wait_for("frame");
+}
+
+TEST_CASE("if the last refinement cannot be encoded, who comes later sees the one before it") {
+    const FrameRendererFactory factory = [&] {
+        FrameRenderer renderer = FakeRenderer{}.factory()();
+        renderer.step = [&, step = renderer.step](Rendering& rendering) {
+            const bool whole = step(rendering);
+            if (whole && rendering.view.samples == server::engine::kRefinedSamples.back())
+                rendering.image.resize(0, 0);
+            return whole;
+        };
+        return renderer;
+    };
+    TestServer server(scene_of("vrut-text 1"), factory);
+    TestClient client(server.port());
+    client.join();
+    client.grant();
+    const Json frame = client.wait_for("frame");
+    client.grant();
+    client.wait_for_notice("What is to be seen now cannot be encoded: ");
+    TestClient late(server.port());
+    late.join();
+    late.grant();
+    CHECK(late.wait_for("frame")["frame"] >= frame["frame"]);
 }
 
 TEST_CASE("what cannot draw, and a port that is taken, are told at once") {

@@ -255,6 +255,41 @@ TEST_CASE("on a link of which frames take a fifth of a second, every one of many
     }
 }
 
+TEST_CASE("updates that must go before answers put off the next one by ten seconds at most") {
+    FlowControl flow;
+    Clock::time_point now = kStart;
+    flow.grant();
+    flow.sent_frame(1, 5000, now);
+    CHECK(flow.grant(1, now += 2s));
+    for (int i = 0; i < 100; ++i) {
+        flow.sent_update(400, now);
+        flow.pong(flow.sent_ping(now), now + 200ms);
+        now += 200ms;
+    }
+    CHECK(!flow.may_send_update(now));
+    CHECK(flow.may_send_update(now + 10s));
+}
+
+TEST_CASE("a frame that had arrived before one that was shown later tells nothing of the link") {
+    FlowControl flow;
+    flow.grant();
+    flow.sent_frame(1, 5000, kStart);
+    flow.pong(flow.sent_ping(kStart), kStart + 100ms);
+    CHECK(flow.grant(1, kStart + 100ms));
+    flow.grant(1, kStart + 100ms);
+    const Clock::time_point now = kStart + 1s;
+    flow.sent_frame(2, 5000, now);
+    const auto second = flow.sent_ping(now);
+    flow.sent_frame(3, 5000, now);
+    const auto third = flow.sent_ping(now);
+    flow.pong(second, now + 110ms);
+    flow.pong(third, now + 120ms);
+    CHECK(flow.grant(2, now + 340ms));
+    const double rate = flow.link(now + 340ms)->bytes_per_second;
+    CHECK(flow.grant(3, now + 400ms));  // it is taken as shown when it arrived, before the second was
+    CHECK(flow.link(now + 400ms)->bytes_per_second == rate);
+}
+
 TEST_CASE("a long link is not a slow one: its pipe is filled") {
     Simulation simulation;
     simulation.delay = 2s;
