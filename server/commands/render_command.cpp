@@ -31,7 +31,7 @@ std::string read_text(const std::filesystem::path& path) {
 void say(room::Room& room, const std::string& option, decltype(protocol::ClientMessage::payload) payload) {
     room.handle_message("render", {1, std::move(payload)}, room::SessionTime(0));
     for (const room::Answer& answer : room.take_answers())
-        if (!answer.refusal.empty()) throw std::runtime_error(option + ": " + answer.refusal);
+        if (!answer.rejection.empty()) throw std::runtime_error(option + ": " + answer.rejection);
 }
 
 void patch(room::Room& room, const std::string& option, const std::string& text) {

@@ -435,11 +435,11 @@ void Engine::publish() {
     if (present != reported_present_) output_.present_frame = reported_present_ = present;
     output_.answers = room_->take_answers();
     for (const room::Answer& answer : output_.answers)
-        if (!answer.refusal.empty()) {
+        if (!answer.rejection.empty()) {
             ++metrics_.errors[answer.code];
             observe::log_debug(
                 "message_refused",
-                {{"client", answer.client}, {"code", answer.code}, {"reason", answer.refusal}});
+                {{"client", answer.client}, {"code", answer.code}, {"reason", answer.rejection}});
         }
     if (const auto stats = stats_.take(now))
         output_.stats = std::make_shared<const std::string>(protocol::encode(*stats));

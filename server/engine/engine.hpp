@@ -32,7 +32,7 @@
 
 namespace vrut::server::engine {
 
-/// What the render thread tells the net thread after it has handled a batch of events.
+/// What the render thread sends to the net thread after it has handled a batch of events.
 struct EngineOutput {
     std::shared_ptr<const protocol::StateDocument> document;  ///< the newest; null if unchanged
     std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
@@ -194,7 +194,7 @@ private:
     void lose_renderer(const std::string& why);
     void renew_renderer();
     void show_arrived();
-    void show(const scene::SceneLoaded& loaded, std::optional<std::string> refused);
+    void show(const scene::SceneLoaded& loaded, std::optional<std::string> rejected);
     struct Failed {
         View visible;
         protocol::Resize view_size;
@@ -248,7 +248,7 @@ private:
     std::optional<FrameUnderWay> frame_;
     std::deque<Snapshot> snapshots_;  ///< in the order of their turns
     EngineOutput output_;
-    std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output told of
+    std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output named
     PictureSize reported_size_;
     std::int64_t reported_present_ = 0;
     observe::LiveStats stats_;

@@ -63,27 +63,27 @@ void Engine::renew_renderer() {
 /// Brings what has arrived to the graphics card first; where that fails, the scene that is shown goes on.
 void Engine::show_arrived() {
     if (renewal_) return;
-    std::optional<std::string> refused;
+    std::optional<std::string> rejected;
     if (!arrived_->scene) {
-        refused = arrived_->scene.error();
+        rejected = arrived_->scene.error();
     } else if (renderer_.take) {
         const scene::LoadedScene& next = *arrived_->scene;
         try {
             renderer_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
         } catch (const OutOfMemory& error) {
-            refused = next.name + ": " + error.what();
+            rejected = next.name + ": " + error.what();
         } catch (const ContextLost& lost) {
             lose_renderer(lost.what());
             if (++arrival_losses_ < kMostLosses) return;
-            refused = next.name + ": the graphics driver is lost whenever it gets this scene";
+            rejected = next.name + ": the graphics driver is lost whenever it gets this scene";
         }
     }
-    show(*std::exchange(arrived_, std::nullopt), std::move(refused));
+    show(*std::exchange(arrived_, std::nullopt), std::move(rejected));
 }
 
-void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> refused) {
+void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> rejected) {
     loader_.finish();
-    protocol::Loading loading{loaded.name, 1, {}, std::move(refused)};
+    protocol::Loading loading{loaded.name, 1, {}, std::move(rejected)};
     if (loading.refused) {
         observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *loading.refused}});
     } else {

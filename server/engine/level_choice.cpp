@@ -53,7 +53,7 @@ PictureCost LevelChoice::expected(std::size_t level, double pixels, base::Clock:
 }
 
 /// The mean of a level that is new begins at what was expected of it: a first picture, for which buffers of
-/// its size are made, tells too little.
+/// its size are made, says too little.
 void LevelChoice::took(std::size_t level, const PictureCost& cost, double pixels,
                        base::Clock::time_point now) {
     const PictureCost before = measured_last_ ? expected(level, pixels, now) : cost;

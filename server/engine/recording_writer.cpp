@@ -114,7 +114,7 @@ void RecordingWriter::begin(std::int64_t recording, const std::string& name,
         if (!log)
             return post->send([=, why = log.error()] { this_->opened(recording, tl::unexpected(why)); });
         const auto end = [&](const std::optional<std::string>& why) {
-            log->file.reset();  // closed, before anybody is told
+            log->file.reset();  // closed before anything is reported
             post->send([=] { this_->ended(recording, why); });
         };
         std::vector<std::string> lines{header(log->name, iso_time_now())};
@@ -126,7 +126,7 @@ void RecordingWriter::begin(std::int64_t recording, const std::string& name,
         }
         post->send([=, opened = log->name] { this_->opened(recording, opened); });
         while (written && !(lines = queue->take()).empty()) written = append_lines(*log->file, lines, left);
-        if (queue->is_given_up()) return;  // who gave it up has told
+        if (queue->is_given_up()) return;  // who gave it up has reported it
         end(written ? std::nullopt : std::optional(written.error()));
     };
     const bool may_start = ++*threads_ <= limits_.threads;

@@ -13,7 +13,7 @@
 
 namespace vrut::server::measure {
 
-/// Is told now and then what part, 0 to 1, of the work in hand is done.
+/// Called now and then with the part, 0 to 1, of the work in hand that is done.
 using PartDone = std::function<void(double)>;
 
 /// Of repeated measurements: mean, and percentiles between the nearest two.
@@ -29,7 +29,7 @@ View on_orbit(const View& home, int step, int steps);
 /// The picture in another size, each pixel from the four nearest, as a page enlarges it.
 Image resized(const Image& image, int width, int height);
 
-/// What pictures cost, drawn, read back and encoded one after the other, as frame headers tell it.
+/// What pictures cost, drawn, read back and encoded one after the other, as frame headers report it.
 struct Cost {
     Spread ms, bytes;
     double triangles = 0;  ///< mean of what was drawn

@@ -23,7 +23,7 @@ struct Setting {
 
 /// In a few words: "scale 0.5, 4 samples, detail 1, JPEG 85 4:4:4".
 std::string name_of(const Setting& setting);
-/// As frame headers tell it, for pictures while things move; without an error.
+/// As frame headers report it, for pictures while things move; without an error.
 protocol::Quality quality_of(const Setting& setting);
 Setting setting_of(const protocol::Quality& quality);
 /// `view` as `setting` has it drawn.

@@ -270,7 +270,7 @@ void Connection::reject_and_close(const protocol::Error& error, close_code code)
 // --- the end
 
 /// Nothing goes out behind the close.
-void Connection::say_goodbye() {
+void Connection::send_goodbye() {
     if (std::exchange(said_goodbye_, true)) return;
     writing_ = true;
     write_by_ = base::Clock::now() + kGoodbye;
@@ -285,7 +285,7 @@ void Connection::on_close_frame(std::uint16_t code) {
     close_reason_ = "protocol";
     answers_.clear();
     answer_bytes_ = 0;
-    say_goodbye();
+    send_goodbye();
 }
 
 void Connection::close(close_code code, const std::string& reason) {

@@ -84,7 +84,7 @@ private:
     Traffic& traffic() { return boost::beast::get_lowest_layer(socket_).rate_policy(); }
     /// When the first bytes of a message came that is not all there.
     const std::optional<base::Clock::time_point>& unfinished_since() { return traffic().unfinished; }
-    void say_goodbye();
+    void send_goodbye();
     void on_close_frame(std::uint16_t code);
     void poll_deadlines();
     void check_deadlines(base::Clock::time_point now);

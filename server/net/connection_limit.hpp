@@ -8,7 +8,7 @@
 
 namespace vrut::server::net {
 
-/// Counts the open connections, all and those of each peer's address, and refuses more than a limit. In IPv6
+/// Counts the open connections, all and those of each peer's address, and rejects more than a limit. In IPv6
 /// one peer has a whole /64.
 class ConnectionLimit {
 public:

@@ -119,7 +119,7 @@ void Connection::pump() {
     const std::int64_t known = document_ ? document_->revision() : 0;
     if (closing_) {
         if (!answers_.empty()) return send_answer();
-        return say_goodbye();
+        return send_goodbye();
     }
     const base::Clock::time_point now = base::Clock::now();
     if (!has_broadcasts()) had_broadcasts_ = now;

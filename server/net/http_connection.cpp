@@ -78,11 +78,11 @@ std::optional<std::int64_t> query_number(const HttpRequest& request, std::string
 std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access& access) {
     const std::string_view host = view(request[http::field::host]);
     if (!access.accepts_host(host))
-        return refusal(http::status::forbidden, "this server is to be reached as localhost");
+        return rejection(http::status::forbidden, "this server is to be reached as localhost");
     const auto origin = request.find(http::field::origin);
     if (origin != request.end() && !access.accepts_origin(view(origin->value()), host)) {
         observe::log_info("origin_refused", {{"origin", view(origin->value())}, {"host", host}});
-        return refusal(http::status::forbidden, "pages of this origin are not served");
+        return rejection(http::status::forbidden, "pages of this origin are not served");
     }
     return std::nullopt;
 }
@@ -91,15 +91,15 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
     const std::string_view path = path_of(request);
     if (auto file = page_response(request, path)) return *std::move(file);
     if (path == "/ws")
-        return refusal(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
+        return rejection(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
     const auto state = [](const std::optional<std::string>& fault, const char* good) {
-        return fault ? refusal(http::status::service_unavailable, *fault)
+        return fault ? rejection(http::status::service_unavailable, *fault)
                      : text_response(http::status::ok, good);
     };
     if (path == "/healthz") return state(why_unhealthy(registry), "ok\n");
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
         if (!has_token(request, registry))
-            return refusal(http::status::unauthorized, "this route asks for a token");
+            return rejection(http::status::unauthorized, "this route asks for a token");
         if (path == "/protocol.schema.json") {
             static const auto schema = std::make_shared<const std::string>(protocol::json_schema());
             return {http::status::ok, "application/schema+json", schema};
@@ -109,7 +109,7 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
                 std::make_shared<const std::string>(metrics_text(registry))};
     }
-    return refusal(http::status::not_found, "there is nothing at this address");
+    return rejection(http::status::not_found, "there is nothing at this address");
 }
 
 /// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
@@ -126,7 +126,7 @@ public:
         beast::error_code ignored;
         socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
         expire_after(registry_.deadlines.request);
-        watch();
+        poll_deadline();
         read();
     }
 
@@ -148,7 +148,7 @@ private:
         } else {
             keep_alive_ = false;
             host_.clear();
-            send(refusal(read->error().status, read->error().sentence));
+            send(rejection(read->error().status, read->error().sentence));
         }
         return true;
     }
@@ -185,9 +185,9 @@ private:
         const auto width = query_number(request, "width"), height = query_number(request, "height");
         if (!width || !height || (*width == 0) != (*height == 0) || !engine::fits(*width, *height, limits))
             return send(
-                refusal(http::status::bad_request,
-                        "'width' and 'height' must be given together, as numbers from 1, of at most " +
-                            std::to_string(limits.max_pixels) + " pixels"));
+                rejection(http::status::bad_request,
+                          "'width' and 'height' must be given together, as numbers from 1, of at most " +
+                              std::to_string(limits.max_pixels) + " pixels"));
         ViewPictureKey key{registry_.document.newest() ? registry_.document.newest()->revision() : 0,
                            registry_.size, registry_.size};
         if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
@@ -203,11 +203,11 @@ private:
             key,
             [self = shared_from_this()](const ViewPicture* picture) {
                 if (picture) return self->send_file(*picture);
-                self->send(refusal(http::status::service_unavailable,
-                                   "this picture cannot be drawn: the log says why"));
+                self->send(rejection(http::status::service_unavailable,
+                                     "this picture cannot be drawn: the log says why"));
             },
             registry_.engine->mailbox());
-        if (!asked) send(refusal(http::status::service_unavailable, "too many pictures are being drawn"));
+        if (!asked) send(rejection(http::status::service_unavailable, "too many pictures are being drawn"));
     }
 
     void send_file(const ViewPicture& picture) {
@@ -217,11 +217,11 @@ private:
 
     void open_websocket(const HttpRequest& request) {
         if (!speaks_our_subprotocol(request))
-            return send(refusal(http::status::bad_request, "the subprotocol is vrut-preview.v1"));
+            return send(rejection(http::status::bad_request, "the subprotocol is vrut-preview.v1"));
         if (incoming_.size() > 0) {
             keep_alive_ = false;
             return send(
-                refusal(http::status::bad_request, "a handshake is answered before anything follows"));
+                rejection(http::status::bad_request, "a handshake is answered before anything follows"));
         }
         if (registry_.stopping) return;
         deadline_timer_.cancel();
@@ -266,12 +266,12 @@ private:
     void expire_after(base::Clock::duration time) { deadline_ = base::Clock::now() + time; }
 
     /// Looks after the deadline when one that was set earlier would have passed: setting one costs nothing.
-    void watch() {
+    void poll_deadline() {
         deadline_timer_.expires_at(std::min(deadline_, base::Clock::now() + kForEnd));
         deadline_timer_.async_wait([weak = weak_from_this()](beast::error_code stopped) {
             const auto self = weak.lock();
             if (stopped || !self) return;
-            if (base::Clock::now() < self->deadline_) return self->watch();
+            if (base::Clock::now() < self->deadline_) return self->poll_deadline();
             beast::error_code ignored;
             self->socket_.close(ignored);
         });
@@ -296,7 +296,7 @@ void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Conn
 
 void reject_connection(asio::ip::tcp::socket socket) {
     const HttpResponse response =
-        refusal(http::status::service_unavailable, "there are too many connections");
+        rejection(http::status::service_unavailable, "there are too many connections");
     const std::string text = head_of(response, {}, false) + *response.body;
     beast::error_code ignored;  // what fits at once has to do
     socket.non_blocking(true, ignored);

@@ -6,7 +6,7 @@
 
 namespace vrut::server::net {
 
-/// Serves HTTP on a fresh connection: the page, what tells of the server's health, and the door to /ws.
+/// Serves HTTP on a fresh connection: the page, the routes of monitoring, and the door to /ws.
 void serve_http(boost::asio::ip::tcp::socket socket, ConnectionLimit::Place place,
                 ConnectionRegistry& registry);
 /// Ends a connection that has no place, with a sentence.

@@ -14,32 +14,32 @@ using http::status;
 
 namespace {
 
-using Refused = std::optional<HttpRefusal>;
+using Rejected = std::optional<HttpRejection>;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 /// Judges bytes as they come, also where the end is still to come.
-Refused refused_bytes(std::string_view head) {
+Rejected rejected_bytes(std::string_view head) {
     for (std::size_t i = 0; i < head.size(); ++i) {
         const auto byte = static_cast<unsigned char>(head[i]);
         const char before = i > 0 ? head[i - 1] : '\0';
         if ((byte == '\n') != (before == '\r'))
-            return HttpRefusal{status::bad_request, "lines of a request end by CR LF"};
+            return HttpRejection{status::bad_request, "lines of a request end by CR LF"};
         if (before == '\n' && (byte == ' ' || byte == '\t'))
-            return HttpRefusal{status::bad_request, "header fields may not be folded"};
+            return HttpRejection{status::bad_request, "header fields may not be folded"};
         if ((byte < ' ' && byte != '\r' && byte != '\n' && byte != '\t') || byte == 0x7F)
-            return HttpRefusal{status::bad_request, "control bytes have no place in a request"};
+            return HttpRejection{status::bad_request, "control bytes have no place in a request"};
     }
     if (head.substr(0, kMaxRequestLine).find('\n') == std::string_view::npos &&
         head.size() >= kMaxRequestLine)
-        return HttpRefusal{status::uri_too_long, "the first line of a request has at most " +
-                                                     std::to_string(kMaxRequestLine) + " bytes"};
+        return HttpRejection{status::uri_too_long, "the first line of a request has at most " +
+                                                       std::to_string(kMaxRequestLine) + " bytes"};
     return std::nullopt;
 }
 
 /// What Beast makes of it.
-HttpRefusal unreadable(beast::error_code error, std::string_view head) {
+HttpRejection unreadable(beast::error_code error, std::string_view head) {
     const std::string_view line = head.substr(0, head.find('\r'));
     const std::string_view version = line.substr(line.rfind(' ') + 1);
     const bool other_version = error == http::error::bad_version && version != "HTTP/1.1" &&
@@ -50,57 +50,57 @@ HttpRefusal unreadable(beast::error_code error, std::string_view head) {
 }
 
 /// No request that is served has a body, so that nothing can be hidden in one.
-Refused refused_body(const HttpRequest& request) {
+Rejected rejected_body(const HttpRequest& request) {
     const bool encoded = request.count(field::transfer_encoding) > 0;
     const bool sized = request.count(field::content_length) > 0;
     if (encoded && (sized || request.version() < 11))
-        return HttpRefusal{status::bad_request, "'Transfer-Encoding' stands beside what it excludes"};
+        return HttpRejection{status::bad_request, "'Transfer-Encoding' stands beside what it excludes"};
     if (encoded)
-        return HttpRefusal{status::not_implemented, "requests with a transfer coding are not served"};
+        return HttpRejection{status::not_implemented, "requests with a transfer coding are not served"};
     const std::string_view length = view(request[field::content_length]);
     if (sized && !std::all_of(length.begin(), length.end(), is_digit))
-        return HttpRefusal{status::bad_request, "'Content-Length' is one number"};
+        return HttpRejection{status::bad_request, "'Content-Length' is one number"};
     if (sized && length.find_first_not_of('0') != std::string_view::npos)
-        return HttpRefusal{status::payload_too_large, "requests have no body here"};
+        return HttpRejection{status::payload_too_large, "requests have no body here"};
     if (request.count(field::expect) > 0)
-        return HttpRefusal{status::expectation_failed, "'Expect' is not served"};
+        return HttpRejection{status::expectation_failed, "'Expect' is not served"};
     return std::nullopt;
 }
 
-Refused refused_repeats(const HttpRequest& request) {
+Rejected rejected_repeats(const HttpRequest& request) {
     constexpr std::array kOnce{field::host,          field::content_length,        field::transfer_encoding,
                                field::origin,        field::authorization,         field::sec_websocket_key,
                                field::if_none_match, field::sec_websocket_version, field::upgrade};
     for (const field name : kOnce)
         if (request.count(name) > 1)
-            return HttpRefusal{status::bad_request,
-                               "'" + std::string(http::to_string(name)) + "' may stand there once"};
+            return HttpRejection{status::bad_request,
+                                 "'" + std::string(http::to_string(name)) + "' may stand there once"};
     return std::nullopt;
 }
 
-Refused refused_head(const HttpRequest& request) {
+Rejected rejected_head(const HttpRequest& request) {
     const std::string_view target = view(request.target());
     if (request.method() == http::verb::unknown)
-        return HttpRefusal{status::not_implemented, "there is no such method here"};
+        return HttpRejection{status::not_implemented, "there is no such method here"};
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-        return HttpRefusal{status::method_not_allowed, "only GET and HEAD are answered"};
+        return HttpRejection{status::method_not_allowed, "only GET and HEAD are answered"};
     if (!target.starts_with('/') ||
         std::any_of(target.begin(), target.end(), [](char c) { return c < '!' || c > '~' || c == '#'; }))
-        return HttpRefusal{status::bad_request, "an address is a path in ASCII, from '/' on"};
+        return HttpRejection{status::bad_request, "an address is a path in ASCII, from '/' on"};
     if (request.version() == 11 && request.count(field::host) == 0)
-        return HttpRefusal{status::bad_request, "'Host' is missing"};
+        return HttpRejection{status::bad_request, "'Host' is missing"};
     if (request.count(field::host) > 0 && !is_host(view(request[field::host])))
-        return HttpRefusal{status::bad_request, "'Host' is a name and a port"};
+        return HttpRejection{status::bad_request, "'Host' is a name and a port"};
     return std::nullopt;
 }
 
 /// Beast looks at the rest of a handshake.
-Refused refused_handshake(const HttpRequest& request) {
+Rejected rejected_handshake(const HttpRequest& request) {
     if (request.count(field::sec_websocket_key) == 0) return std::nullopt;
     const std::string_view key = view(request[field::sec_websocket_key]);
     const auto is_base64 = [](char c) { return is_letter(c) || is_digit(c) || c == '+' || c == '/'; };
     if (key.size() != 24 || !key.ends_with("==") || !std::all_of(key.begin(), key.end() - 2, is_base64))
-        return HttpRefusal{status::bad_request, "'Sec-WebSocket-Key' is 16 bytes in base64"};
+        return HttpRejection{status::bad_request, "'Sec-WebSocket-Key' is 16 bytes in base64"};
     return std::nullopt;
 }
 
@@ -142,14 +142,15 @@ bool names_tag(std::string_view if_none_match, std::string_view tag) {
     return false;
 }
 
-std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_view bytes) {
+std::optional<tl::expected<ReadRequest, HttpRejection>> read_request(std::string_view bytes) {
     const std::size_t end = bytes.find("\r\n\r\n");
     const bool whole = end != std::string_view::npos;
     const std::string_view head = bytes.substr(0, whole ? end + 4 : bytes.size());
-    if (auto refused = refused_bytes(head)) return tl::unexpected(*std::move(refused));
+    if (auto rejected = rejected_bytes(head)) return tl::unexpected(*std::move(rejected));
     if (head.size() > kMaxRequest || (!whole && head.size() == kMaxRequest))
-        return tl::unexpected(HttpRefusal{status::request_header_fields_too_large,
-                                          "a request has at most " + std::to_string(kMaxRequest) + " bytes"});
+        return tl::unexpected(
+            HttpRejection{status::request_header_fields_too_large,
+                          "a request has at most " + std::to_string(kMaxRequest) + " bytes"});
     if (!whole) return std::nullopt;
 
     http::request_parser<http::empty_body> parser;
@@ -159,8 +160,8 @@ std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_v
     parser.put(boost::asio::buffer(head.data(), head.size()), error);
     if (error) return tl::unexpected(unreadable(error, head));
     const HttpRequest& request = parser.get();
-    for (const auto judge : {refused_repeats, refused_head, refused_body, refused_handshake})
-        if (auto refused = judge(request)) return tl::unexpected(*std::move(refused));
+    for (const auto judge : {rejected_repeats, rejected_head, rejected_body, rejected_handshake})
+        if (auto rejected = judge(request)) return tl::unexpected(*std::move(rejected));
     return ReadRequest{parser.release(), head.size()};
 }
 

@@ -19,7 +19,7 @@ using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
 inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
 
 /// Why a request is not answered. What follows it on its connection cannot be trusted.
-struct HttpRefusal {
+struct HttpRejection {
     boost::beast::http::status status;
     std::string sentence;
 };
@@ -33,10 +33,10 @@ struct ReadRequest {
 };
 
 /// Reads the request at the start of `bytes`, none where it is not all there yet. Beast parses it, and
-/// whatever two readers of RFC 9112 could understand in two ways is refused: lines that end otherwise than by
-/// CR LF or are folded, control bytes, fields that may come once and come twice, bodies of any kind, and
+/// whatever two readers of RFC 9112 could understand in two ways is rejected: lines that end otherwise than
+/// by CR LF or are folded, control bytes, fields that may come once and come twice, bodies of any kind, and
 /// addresses that are no path.
-std::optional<tl::expected<ReadRequest, HttpRefusal>> read_request(std::string_view bytes);
+std::optional<tl::expected<ReadRequest, HttpRejection>> read_request(std::string_view bytes);
 
 /// A name or number, IPv6 in brackets, and a port: what can stand in a Content-Security-Policy.
 bool is_host(std::string_view text);

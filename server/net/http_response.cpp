@@ -31,7 +31,7 @@ HttpResponse text_response(http::status status, std::string text) {
     return response;
 }
 
-HttpResponse refusal(http::status status, const std::string& sentence) {
+HttpResponse rejection(http::status status, const std::string& sentence) {
     HttpResponse response = text_response(status, sentence + "\n");
     if (status == http::status::method_not_allowed) response.fields = "Allow: GET, HEAD\r\n";
     if (status == http::status::unauthorized) response.fields = "WWW-Authenticate: Bearer\r\n";

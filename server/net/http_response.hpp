@@ -18,7 +18,7 @@ struct HttpResponse {
 
 HttpResponse text_response(boost::beast::http::status status, std::string text);
 /// A sentence that says why not.
-HttpResponse refusal(boost::beast::http::status status, const std::string& sentence);
+HttpResponse rejection(boost::beast::http::status status, const std::string& sentence);
 
 /// Status line and fields, those for a browser's security as well. `host` is that of the request, where it
 /// had one: the page may connect there and nowhere else.

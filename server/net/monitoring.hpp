@@ -7,7 +7,7 @@ namespace vrut::server::net {
 
 struct ConnectionRegistry;
 
-/// What /healthz, /readyz and /metrics tell, on the net thread, which is alive where it tells anything.
+/// The answers of /healthz, /readyz and /metrics, made on the net thread, which is alive where it answers.
 
 /// A sentence that names a thread which has something to do and does not come round; none where all do.
 std::optional<std::string> why_unhealthy(const ConnectionRegistry& registry);

@@ -45,7 +45,7 @@ public:
 
     /// From here on SIGTERM, SIGINT and SIGHUP do what stop() does.
     void stop_on_signals();
-    /// Serves until stop(); clients are told, and within 3 s it is over. Throws std::runtime_error where
+    /// Serves until stop(); clients get a goodbye, and it ends within 3 s. Throws std::runtime_error where
     /// drawing fails for good.
     void run();
     /// From any thread.

@@ -10,7 +10,7 @@
 
 namespace vrut::server::net {
 
-/// A stream's rate policy that limits nothing, and tells what goes over it.
+/// A stream's rate policy that limits nothing, and counts the bytes that go over it.
 class Traffic {
 public:
     std::uint64_t taken = 0;                            ///< bytes that the socket has taken

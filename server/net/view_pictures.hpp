@@ -18,7 +18,7 @@ namespace vrut::server::net {
 /// What a picture of the view depends on.
 struct ViewPictureKey {
     std::int64_t revision = 0;       ///< of the state
-    engine::PictureSize size, view;  ///< the view's own, of which its header tells
+    engine::PictureSize size, view;  ///< the view's own, which its header names
     bool operator==(const ViewPictureKey&) const = default;
 };
 

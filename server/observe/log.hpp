@@ -8,7 +8,7 @@
 
 namespace vrut::server::observe {
 
-/// Something that a line of the log tells. Texts may come from anywhere: a client, a file, a driver.
+/// A member of a line of the log. Texts may come from anywhere: a client, a file, a driver.
 struct LogField {
     std::string_view name;
     std::variant<std::string_view, std::int64_t, std::uint64_t, double> value;

@@ -85,7 +85,7 @@ struct Metrics {
     Histogram input_to_grant;  ///< from the same until a client acknowledges the first frame that shows it
 
     std::uint64_t frames_rendered() const { return frames_rendered_moving + frames_rendered_still; }
-    std::uint64_t messages_refused() const { return errors.sum(); }
+    std::uint64_t messages_rejected() const { return errors.sum(); }
 
     /// What is not counted, but asked for.
     struct Readings {

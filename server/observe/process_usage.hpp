@@ -4,7 +4,7 @@
 
 namespace vrut::server::observe {
 
-/// What this process uses, as Linux tells it.
+/// What this process uses, as Linux counts it.
 struct ProcessUsage {
     double started = 0;  ///< seconds since 1970
     double cpu_seconds = 0;

@@ -12,7 +12,7 @@
 namespace vrut::server::room {
 
 /// Takes the lines of recordings, of which each has a number. The room waits for none of it: how it goes is
-/// told by Room::recording_opened() and recording_ended().
+/// reported to Room::recording_opened() and recording_ended().
 struct RecordingSink {
     /// The first line of a log of this name, begun then (ISO 8601). May be called once, on any thread.
     using Header = std::function<std::string(const std::string& name, const std::string& started)>;

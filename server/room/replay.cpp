@@ -43,8 +43,8 @@ struct Player {
         if (room.handle_message(line.client, message, line.at)) return std::nullopt;
         std::string why = "client '" + line.client + "' is not there";
         for (const Answer& answer : room.take_answers())
-            if (!answer.refusal.empty()) why = answer.refusal;
-        return "a message that was accepted is refused now: " + why;
+            if (!answer.rejection.empty()) why = answer.rejection;
+        return "a message that was accepted is rejected now: " + why;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Connected& connected) const {
         room.join(line.client, connected.role, line.at, connected.name);

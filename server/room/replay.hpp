@@ -15,7 +15,7 @@ namespace vrut::server::room {
 struct EventLog {
     protocol::LogHeader header;
     std::vector<protocol::LogLine> lines;
-    /// Why its end is missing, a sentence that names file and line; empty: as far as can be told it is there.
+    /// Why its end is missing, a sentence that names file and line; empty: as far as can be seen it is there.
     std::string cut = {};
 };
 
@@ -23,11 +23,11 @@ struct EventLog {
 /// whole is left out: the session was cut off.
 tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name);
 
-/// Finds a scene of a log by its name and SHA-256, or tells why it cannot be had.
+/// Finds a scene of a log by its name and SHA-256, or why it cannot be had.
 using SceneFinder = std::function<tl::expected<scene::LoadedScene, std::string>(const std::string& name,
                                                                                 const std::string& sha256)>;
 
-/// What a replay may be told of.
+/// What a replay reports.
 struct ReplayWatcher {
     /// Behind each frame that was drawn in the session; the room shows what it showed.
     std::function<void(std::int64_t frame, const Room& room)> on_drawn = {};

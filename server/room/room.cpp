@@ -100,13 +100,13 @@ std::optional<AnsweredLater> Room::take_request(std::int64_t request) {
     return std::move(found.mapped());
 }
 
-void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal,
+void Room::load_answered(std::int64_t request, const std::optional<protocol::Error>& rejection,
                          SessionTime at) {
     const auto asked = take_request(request);
     if (!asked) return;
     const Received received{asked->client, asked->message};
     handle(received, at, [&] {
-        if (refusal) return reject(received, refusal->code.c_str(), refusal->message);
+        if (rejection) return reject(received, rejection->code.c_str(), rejection->message);
         // Whether it may be opened was judged when it was asked for; by now another may hold control.
         const bool steers = steering_.may_steer(received.client, time_, gestures_.any_pressed());
         if (steers) steer(received);

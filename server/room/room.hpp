@@ -27,12 +27,12 @@ namespace vrut::server::room {
 /// Picks may name one of so many frames.
 inline constexpr std::size_t kFramesRemembered = 64;
 
-/// What a client is to be told; it must know `revision` of the state first.
+/// What is to be sent to a client; it must know `revision` of the state first.
 struct Answer {
     std::string client, text;
     std::int64_t revision = 0;
-    std::string refusal = {};  ///< why, where the message was refused
-    std::string code = {};     ///< of that error
+    std::string rejection = {};  ///< why, where the message was rejected
+    std::string code = {};       ///< of that error
 };
 
 /// A picture that somebody asked for beside the live one, as things stood then.
@@ -46,9 +46,9 @@ struct PictureOrder {
 
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
-    /// Begins to load a scene of this name; Room::load_answered() tells whether it has begun.
+    /// Begins to load a scene of this name; Room::load_answered() reports whether it has begun.
     std::function<void(std::int64_t request, const std::string& name)> load = {};
-    /// Looks up the scenes that can be loaded; Room::scenes_listed() tells them.
+    /// Looks up the scenes that can be loaded; Room::scenes_listed() takes them.
     std::function<void(std::int64_t request)> scenes = {};
     /// What is said was accepted before: it is not judged again by revisions, nor recorded.
     bool replaying = false;
@@ -66,7 +66,7 @@ public:
     void join(const std::string& client, protocol::Role role, SessionTime at, const std::string& name = {});
     void leave(const std::string& client, SessionTime at);
     /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
-    /// refused changes nothing, and not who steers either; then false comes back.
+    /// rejected changes nothing, and not who steers either; then false comes back.
     bool handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at);
     /// A flight goes on to where it is then.
     void advance(SessionTime at);
@@ -75,7 +75,7 @@ public:
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
     void notice(const std::string& sentence);
     /// Loading has begun, or why not; once for each call of RoomOptions::load.
-    void load_answered(std::int64_t request, const std::optional<protocol::Error>& refusal, SessionTime at);
+    void load_answered(std::int64_t request, const std::optional<protocol::Error>& rejection, SessionTime at);
     /// Once for each call of RoomOptions::scenes.
     void scenes_listed(std::int64_t request, std::vector<std::string> names);
     /// Its file is open under this name, or cannot be opened, a sentence; once for each that began.
@@ -175,9 +175,9 @@ private:
     void reject(const Received& received, const char* code, const std::string& sentence);
 
     // --- who steers
-    /// Whether its client's role is one of these; else it is refused.
+    /// Whether its client's role is one of these; else it is rejected.
     bool may_send(const Received& received, protocol::Senders senders);
-    /// Whether this message may steer; else it is refused.
+    /// Whether this message may steer; else it is rejected.
     bool may_steer(const Received& received);
     /// The message steers: its client holds control.
     void steer(const Received& received);

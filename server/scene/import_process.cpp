@@ -74,7 +74,7 @@ public:
     }
 
 private:
-    /// What the program cannot start without, and what the sanitizers are told: the rest, tokens too, is not
+    /// What the program cannot start without, and the options of the sanitizers: the rest, tokens too, is not
     /// for a foreign file.
     static std::vector<std::string> passed_variables() {
         std::vector<std::string> passed;
@@ -247,7 +247,7 @@ private:
     Child child_;
 };
 
-/// Bytes; as much as can be counted where the system does not tell.
+/// Bytes; as much as can be counted where the system does not say.
 std::uint64_t free_memory() {
     std::ifstream stream("/proc/meminfo");
     std::string word;

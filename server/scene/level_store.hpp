@@ -16,7 +16,7 @@ std::filesystem::path levels_file(const std::string& scene_sha256, const std::st
 /// std::runtime_error, also for a table that could not be read again.
 std::filesystem::path store_levels(const protocol::LevelTable& table);
 
-/// None where none are kept; of a file that cannot be used the log tells why.
+/// None where none are kept; of a file that cannot be used the log says why.
 std::optional<protocol::LevelTable> stored_levels(const std::string& scene_sha256,
                                                   const std::string& renderer);
 

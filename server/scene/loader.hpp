@@ -20,7 +20,7 @@ struct SceneLoading {
 
 struct SceneLoaded {
     std::string name;
-    tl::expected<LoadedScene, std::string> scene;  ///< or why it is refused
+    tl::expected<LoadedScene, std::string> scene;  ///< or why it is rejected
     protocol::LevelTable levels = {};              ///< of the scene on this machine
 };
 

@@ -380,7 +380,7 @@ TEST_CASE("a token that is refused is told once, and not tried again and again")
     REQUIRE(host.problems.size() == 1);
     CHECK(host.problems[0].code == "not-allowed");
     CHECK(host.problems[0].message == "the token is wrong");
-    CHECK(server.metrics().messages_refused() == 1);
+    CHECK(server.metrics().messages_rejected() == 1);
     CHECK(host.connections.empty());
 
     options.token = "secret";

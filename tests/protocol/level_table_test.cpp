@@ -22,7 +22,7 @@ LevelTable example() {
 }
 
 /// What is said of the example with one value set.
-std::string refusal(const char* pointer, const json& value) {
+std::string rejection(const char* pointer, const json& value) {
     json changed = json::parse(encode(example()));
     changed[json::json_pointer(pointer)] = value;
     const auto table = parse_level_table(changed.dump());
@@ -49,28 +49,28 @@ TEST_CASE("a table reads back as it was written") {
 }
 
 TEST_CASE("what is wrong with a table is told in a sentence that names it") {
-    CHECK(refusal("/levels/0/quality/scale", 1) == "");
-    CHECK(refusal("/levels/0/quality/scale", 0).starts_with("'levels[0].quality.scale'"));
-    CHECK(refusal("/levels/0/quality/scale", 1.5).starts_with("'levels[0].quality.scale'"));
-    CHECK(refusal("/levels/1/quality/samples", 65).starts_with("'levels[1].quality.samples'"));
-    CHECK(refusal("/levels/1/quality/samples", 0).starts_with("'levels[1].quality.samples'"));
-    CHECK(refusal("/levels/1/quality/detail", -1).starts_with("'levels[1].quality.detail'"));
-    CHECK(refusal("/levels/1/quality/jpegQuality", 101).starts_with("'levels[1].quality.jpegQuality'"));
-    CHECK(refusal("/levels/1/quality/subsampling", "4:2:2").starts_with("'levels[1].quality.subsampling'"));
-    CHECK(refusal("/levels/1/quality/error", 1.1).starts_with("'levels[1].quality.error'"));
-    CHECK(refusal("/levels/1/quality/error", 0.04).starts_with("'levels[1].quality.error'"));
-    CHECK(refusal("/levels/0/ms", -1).starts_with("'levels[0].ms'"));
-    CHECK(refusal("/levels/0/bytes", "many").starts_with("'levels[0].bytes'"));
+    CHECK(rejection("/levels/0/quality/scale", 1) == "");
+    CHECK(rejection("/levels/0/quality/scale", 0).starts_with("'levels[0].quality.scale'"));
+    CHECK(rejection("/levels/0/quality/scale", 1.5).starts_with("'levels[0].quality.scale'"));
+    CHECK(rejection("/levels/1/quality/samples", 65).starts_with("'levels[1].quality.samples'"));
+    CHECK(rejection("/levels/1/quality/samples", 0).starts_with("'levels[1].quality.samples'"));
+    CHECK(rejection("/levels/1/quality/detail", -1).starts_with("'levels[1].quality.detail'"));
+    CHECK(rejection("/levels/1/quality/jpegQuality", 101).starts_with("'levels[1].quality.jpegQuality'"));
+    CHECK(rejection("/levels/1/quality/subsampling", "4:2:2").starts_with("'levels[1].quality.subsampling'"));
+    CHECK(rejection("/levels/1/quality/error", 1.1).starts_with("'levels[1].quality.error'"));
+    CHECK(rejection("/levels/1/quality/error", 0.04).starts_with("'levels[1].quality.error'"));
+    CHECK(rejection("/levels/0/ms", -1).starts_with("'levels[0].ms'"));
+    CHECK(rejection("/levels/0/bytes", "many").starts_with("'levels[0].bytes'"));
     for (const char* cost : {"/levels/0/ms", "/levels/0/bytes"}) {
-        CHECK(refusal(cost, 1e9) == "");
-        CHECK(refusal(cost, 1e308).starts_with("'levels[0]."));
+        CHECK(rejection(cost, 1e9) == "");
+        CHECK(rejection(cost, 1e308).starts_with("'levels[0]."));
     }
-    CHECK(refusal("/width", 0).starts_with("'width'"));
-    CHECK(refusal("/levels", json::array()).starts_with("'levels'"));
+    CHECK(rejection("/width", 0).starts_with("'width'"));
+    CHECK(rejection("/levels", json::array()).starts_with("'levels'"));
     const json level = json::parse(encode(example()))["levels"][0];
-    CHECK(refusal("/levels", json::array_t(32, level)) == "");
-    CHECK(refusal("/levels", json::array_t(33, level)).starts_with("'levels'"));
-    CHECK(refusal("/levels", json::array({json::parse(encode(example()))["levels"][2]})) ==
+    CHECK(rejection("/levels", json::array_t(32, level)) == "");
+    CHECK(rejection("/levels", json::array_t(33, level)).starts_with("'levels'"));
+    CHECK(rejection("/levels", json::array({json::parse(encode(example()))["levels"][2]})) ==
           "'levels' must have one for pictures while things move");
 }
 

@@ -24,7 +24,7 @@ State after(const State& state, const char* patch) {
     return *result;
 }
 
-Error refusal(const char* patch) {
+Error rejection(const char* patch) {
     auto result = patched(start(), start(), json::parse(patch));
     REQUIRE_FALSE(result.has_value());
     return result.error();
@@ -453,7 +453,7 @@ TEST_CASE("what is wrong with a patch is named, and nothing is changed") {
     };
     for (const Case& c : cases) {
         INFO(std::string(c.patch));
-        const Error error = refusal(c.patch);
+        const Error error = rejection(c.patch);
         CHECK(error.code == c.code);
         CHECK_MESSAGE(error.message.find(c.culprit) != std::string::npos, error.message);
     }

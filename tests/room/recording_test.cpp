@@ -39,7 +39,7 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     const Quiet quiet;
     const TemporaryFolder folder;
     RecordedStage stage("a", folder.path());
-    REQUIRE(stage.refusal("a", kStart) == "");
+    REQUIRE(stage.rejection("a", kStart) == "");
     CHECK(stage.state()["recording"]["name"] == "take-1");
     const auto size = std::filesystem::file_size(folder.path() / "take-1.jsonl");
     bool accepted = false;
@@ -56,9 +56,9 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     REQUIRE_MESSAGE(log, log.error());
     CHECK(log->lines.empty());
     CHECK(log->cut.find("take-1.jsonl:2: ") != std::string::npos);
-    CHECK(stage.refusal("a", kStop) == "failed");
-    CHECK(stage.refusal("a", kTurn) == "");
-    CHECK(stage.refusal("a", R"({"type":"record","action":"start","name":"take-2"})") == "");
+    CHECK(stage.rejection("a", kStop) == "failed");
+    CHECK(stage.rejection("a", kTurn) == "");
+    CHECK(stage.rejection("a", R"({"type":"record","action":"start","name":"take-2"})") == "");
     CHECK(stage.state()["recording"]["name"] == "take-2");
 }
 
@@ -69,7 +69,7 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
         mount("none", folder.c_str(), "tmpfs", 0, "size=256k") != 0)
         return 77;
     RecordedStage stage("ab", folder);
-    if (stage.refusal("a", kStart) != "") return 1;
+    if (stage.rejection("a", kStart) != "") return 1;
     int received = 0;
     while (stage.state().contains("recording") && received < 100'000) {
         ++received;
@@ -103,16 +103,16 @@ TEST_CASE("record is refused for what is wrong with it, and then nobody steers")
     const TemporaryFolder folder;
     folder.write("take-1.jsonl", "");
     Stage without("a");
-    CHECK(without.refusal("a", kStart) == "not-allowed");
+    CHECK(without.rejection("a", kStart) == "not-allowed");
     RecordedStage stage("a", folder.path());
-    CHECK(stage.refusal("a", kStart) == "failed");
-    CHECK(stage.refusal("a", kStop) == "failed");
+    CHECK(stage.rejection("a", kStart) == "failed");
+    CHECK(stage.rejection("a", kStop) == "failed");
     CHECK(stage.holder() == "");
     const std::string another = R"({"type":"record","id":4,"action":"start","name":"take-2"})";
     CHECK(stage.say("a", another));
     const json told = stage.told().back();
     CHECK(told["name"] == "take-2");
-    CHECK(stage.refusal("a", R"({"type":"record","action":"start","name":"take-3"})") == "busy");
+    CHECK(stage.rejection("a", R"({"type":"record","action":"start","name":"take-3"})") == "busy");
     CHECK_FALSE(std::filesystem::exists(folder.path() / "take-3.jsonl"));
     CHECK(stage.say("a", kStop));
     CHECK(stage.told().back()["name"] == "take-2");
@@ -164,10 +164,10 @@ TEST_CASE("a recording whose first line cannot be written is refused, and is not
     RecordedStage stage("a", folder.path());
     {
         const FullDisk full(10);
-        CHECK(stage.refusal("a", kStart) == "failed");
+        CHECK(stage.rejection("a", kStart) == "failed");
     }
     CHECK_FALSE(stage.state().contains("recording"));
-    CHECK(stage.refusal("a", R"({"type":"record","id":5,"action":"start","name":"take-2"})") == "");
+    CHECK(stage.rejection("a", R"({"type":"record","id":5,"action":"start","name":"take-2"})") == "");
     CHECK(stage.state()["recording"]["name"] == "take-2");
 }
 
@@ -202,7 +202,7 @@ TEST_CASE("a recording is in the state and answered when its file is open, and h
     CHECK(sink.lines.size() == 1);
     CHECK(stage.told().back()["id"] == 3);
     CHECK_FALSE(stage.state().contains("recording"));
-    CHECK(stage.refusal("a", R"({"type":"record","id":5,"action":"start"})") == "busy");
+    CHECK(stage.rejection("a", R"({"type":"record","id":5,"action":"start"})") == "busy");
     stage.room.recording_opened(sink.begun, "take-1", stage.now);
     CHECK(stage.told().at(0) ==
           json{{"type", "ok"}, {"id", 1}, {"name", "take-1"}, {"revision", stage.revision()}, {"to", "a"}});
@@ -222,7 +222,7 @@ TEST_CASE("a file that cannot be opened refuses the message, and nobody steers b
     CHECK(told["code"] == "failed");
     CHECK(told["message"] == "no");
     CHECK(stage.holder() == "");
-    CHECK(stage.refusal("a", kStop) == "failed");
+    CHECK(stage.rejection("a", kStop) == "failed");
     CHECK(stage.say("a", kStart));
     stage.at(1ms);
     stage.say("a", kTurn);  // who has steered since goes on

@@ -43,7 +43,7 @@ public:
         spdlog::set_level(spdlog::level::warn);
     }
     void start(const std::string& client = "a") {
-        REQUIRE(stage.refusal(client, R"({"type":"record","action":"start","name":"log"})") == "");
+        REQUIRE(stage.rejection(client, R"({"type":"record","action":"start","name":"log"})") == "");
     }
     server::room::EventLog log() const {
         auto log = log_in(folder.path() / "log.jsonl");
@@ -422,9 +422,9 @@ TEST_CASE("a message that cannot be played is told with its line and why") {
                              "\n";
     CHECK(failure(good) == "");
     CHECK(failure(good + R"({"at":2,"client":"nobody","message":{"type":"navigate","zoom":2}})" + "\n") ==
-          "line 3: a message that was accepted is refused now: client 'nobody' is not there");
+          "line 3: a message that was accepted is rejected now: client 'nobody' is not there");
     CHECK(failure(good + R"({"at":2,"client":"a","message":{"type":"fit","node":99}})" + "\n") ==
-          "line 3: a message that was accepted is refused now: there is no node 99");
+          "line 3: a message that was accepted is rejected now: there is no node 99");
     CHECK(holds(failure(R"({"at":1,"client":"v","event":"connected","role":"view"})"
                         "\n"
                         R"({"at":1,"client":"v","message":{"type":"fit"}})"

@@ -50,10 +50,10 @@ TEST_CASE("a camera at its node goes along with it, until it is moved otherwise"
 TEST_CASE("a patch of another node's camera or of none is refused") {
     Stage stage("a");
     const std::int64_t revision = stage.revision();
-    CHECK(stage.refusal("a", patch(R"({"camera":{"node":2}})")) == "unknown-node");
-    CHECK(stage.refusal("a", patch(R"({"camera":{"node":77}})")) == "unknown-node");
-    CHECK(stage.refusal("a", patch(R"({"camera":{"eye":[1,0,0]}})")) == "out-of-range");  // in the focus
-    CHECK(stage.refusal("a", patch(R"({"camera":{"up":[0,0,1]}})")) == "out-of-range");   // along the view
+    CHECK(stage.rejection("a", patch(R"({"camera":{"node":2}})")) == "unknown-node");
+    CHECK(stage.rejection("a", patch(R"({"camera":{"node":77}})")) == "unknown-node");
+    CHECK(stage.rejection("a", patch(R"({"camera":{"eye":[1,0,0]}})")) == "out-of-range");  // in the focus
+    CHECK(stage.rejection("a", patch(R"({"camera":{"up":[0,0,1]}})")) == "out-of-range");   // along the view
     CHECK(stage.revision() == revision);
     CHECK(stage.holder() == "");
 }
@@ -143,8 +143,8 @@ TEST_CASE("unknown nodes, materials and children are refused, and nothing has ch
 
 TEST_CASE("the children of a switch may be all or none") {
     Stage stage("a");
-    CHECK(stage.refusal("a", patch(R"({"nodes":{"3":{"activeChild":-1}}})")) == "");
-    CHECK(stage.refusal("a", patch(R"({"nodes":{"3":{"activeChild":-2}}})")) == "");
+    CHECK(stage.rejection("a", patch(R"({"nodes":{"3":{"activeChild":-1}}})")) == "");
+    CHECK(stage.rejection("a", patch(R"({"nodes":{"3":{"activeChild":-2}}})")) == "");
     CHECK(stage.state()["nodes"]["3"]["activeChild"] == -2);
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("null gives starting values") {
     stage.say("a", patch(R"({"navigation":{"rotateSpeed":null}})"));
     CHECK(stage.state()["navigation"]["rotateSpeed"] == 1);
     CHECK(stage.state()["navigation"]["style"] == "maya");
-    CHECK(stage.refusal("a", patch(R"({"navigation":null,"renderer":null,"quality":null,"camera":null,
+    CHECK(stage.rejection("a", patch(R"({"navigation":null,"renderer":null,"quality":null,"camera":null,
         "selection":{"node":null},"nodes":null,"markers":{"m":null},"views":{"v":null,"home":null}})")) ==
           "");
     json end = stage.state();
@@ -173,9 +173,9 @@ TEST_CASE("ifRevision refuses what has changed since, and only that") {
     const auto conditional = [&](const std::string& members) {
         return R"({"type":"patch","ifRevision":)" + before + R"(,"patch":)" + members + "}";
     };
-    CHECK(stage.refusal("a", conditional(R"({"camera":{"fov":60}})")) == "stale-revision");
+    CHECK(stage.rejection("a", conditional(R"({"camera":{"fov":60}})")) == "stale-revision");
     CHECK(stage.camera().fov == 50);
-    CHECK(stage.refusal("a", conditional(R"({"quality":{"preference":0}})")) == "");
+    CHECK(stage.rejection("a", conditional(R"({"quality":{"preference":0}})")) == "");
 }
 
 TEST_CASE("f fits what is selected, or the scene") {
@@ -328,7 +328,7 @@ TEST_CASE("another scene starts anew, but for control, navigation, the way of dr
     CHECK(told[0]["type"] == "flown");
     CHECK(told[0]["completed"] == false);
     CHECK(stage.room.scene_name() == "other.vrut");
-    CHECK(stage.refusal("a", patch(R"({"selection":{"node":2}})")) == "unknown-node");
+    CHECK(stage.rejection("a", patch(R"({"selection":{"node":2}})")) == "unknown-node");
 }
 
 TEST_CASE("a pick names one of the last 64 frames") {
@@ -406,7 +406,7 @@ TEST_CASE("a snapshot overlays the shared view and leaves it alone") {
     CHECK(orders[0].header.snapshot == 5);
     CHECK(orders[0].header.revision == stage.revision());
     CHECK(stage.room.visible().camera.eye == glm::dvec3(1, 0, 8));
-    CHECK(stage.refusal("a", R"({"type":"snapshot","id":6,"width":3,"height":2,"camera":{"node":77}})") ==
+    CHECK(stage.rejection("a", R"({"type":"snapshot","id":6,"width":3,"height":2,"camera":{"node":77}})") ==
           "unknown-node");
 }
 
@@ -445,8 +445,8 @@ TEST_CASE("no move leaves what a patch may say") {
 
 TEST_CASE("a marker without a point is refused, null or not there") {
     Stage stage("a");
-    CHECK(stage.refusal("a", R"({"type":"patch","patch":{"markers":{"A":{}}}})") == "bad-message");
-    CHECK(stage.refusal("a", R"({"type":"patch","patch":{"markers":{"A":{"point":null}}}})") ==
+    CHECK(stage.rejection("a", R"({"type":"patch","patch":{"markers":{"A":{}}}})") == "bad-message");
+    CHECK(stage.rejection("a", R"({"type":"patch","patch":{"markers":{"A":{"point":null}}}})") ==
           "bad-message");
 }
 
@@ -580,7 +580,7 @@ TEST_CASE("every section of every scene's state can be patched back as it came, 
         const json received = sayable(state, schema);
         for (const auto& [name, section] : received.items()) {
             CAPTURE(name);
-            CHECK(stage.refusal("a", json{{"type", "patch"}, {"patch", {{name, section}}}}.dump()) == "");
+            CHECK(stage.rejection("a", json{{"type", "patch"}, {"patch", {{name, section}}}}.dump()) == "");
         }
         CHECK(stage.revision() == revision);
     }

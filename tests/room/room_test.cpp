@@ -47,10 +47,10 @@ TEST_CASE("a holder who has been quiet for a second gives way, not a millisecond
     CHECK(stage.say("a", kNavigate));
     CHECK(stage.holder() == "a");
     stage.at(5999ms);
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
     CHECK(stage.holder() == "a");
     stage.at(6s);
-    CHECK(stage.refusal("b", kNavigate) == "");
+    CHECK(stage.rejection("b", kNavigate) == "");
     CHECK(stage.holder() == "b");
 }
 
@@ -62,20 +62,20 @@ TEST_CASE("a watcher's input is refused silently, but for one with an id") {
     CHECK_FALSE(stage.say("b", finger("down", 1, 1)));
     CHECK_FALSE(stage.say("b", R"({"type":"keydown","key":"f","code":"KeyF"})"));
     CHECK(stage.told().empty());
-    CHECK(stage.refusal("b", R"({"type":"keydown","id":7,"key":"f","code":"KeyF"})") == "not-in-control");
-    CHECK(stage.refusal("b", R"({"type":"navigate","zoom":2})") == "not-in-control");  // no input event
+    CHECK(stage.rejection("b", R"({"type":"keydown","id":7,"key":"f","code":"KeyF"})") == "not-in-control");
+    CHECK(stage.rejection("b", R"({"type":"navigate","zoom":2})") == "not-in-control");  // no input event
 }
 
 TEST_CASE("a pressed pointer is not quiet; the second counts from its release") {
     Stage stage("ab");
     stage.say("a", finger("down", 100, 100));
     stage.at(1h);
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
     stage.say("a", finger("up", 100, 100));
     stage.at(1h + 999ms);
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
     stage.at(1h + 1s);
-    CHECK(stage.refusal("b", kNavigate) == "");
+    CHECK(stage.rejection("b", kNavigate) == "");
 }
 
 TEST_CASE("a move of a pointer that is not pressed steers nothing") {
@@ -90,14 +90,14 @@ TEST_CASE("who takes control keeps it until he releases it or another takes it")
     stage.say("a", kTake);
     CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", true}}));
     stage.at(1h);
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
-    CHECK(stage.refusal("b", kTake) == "");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kTake) == "");
     CHECK(stage.state()["control"] == json({{"holder", "b"}, {"name", "Bea"}, {"kept", true}}));
-    CHECK(stage.refusal("a", kRelease) == "");  // which is not his to give
+    CHECK(stage.rejection("a", kRelease) == "");  // which is not his to give
     CHECK(stage.holder() == "b");
     stage.say("b", kRelease);
     CHECK(stage.state()["control"] == json({{"kept", false}}));
-    CHECK(stage.refusal("a", kNavigate) == "");
+    CHECK(stage.rejection("a", kNavigate) == "");
     CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", false}}));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("a flight does not keep its client in control; who takes over by steer
     Stage stage("ab");
     stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":5000,"camera":{"eye":[1,0,4]}}]})");
     stage.at(999ms);
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
     CHECK(stage.room.flies());
     stage.at(1s);
     CHECK(stage.say("b", kNavigate));
@@ -205,39 +205,39 @@ TEST_CASE("another client's take does not stop a flight, which belongs to contro
 
 TEST_CASE("a message that is refused does not change who steers") {
     Stage stage("ab");
-    CHECK(stage.refusal("a", R"({"type":"fit","node":99})") == "unknown-node");
-    CHECK(stage.refusal("a", R"({"type":"record","action":"start"})") == "not-allowed");
+    CHECK(stage.rejection("a", R"({"type":"fit","node":99})") == "unknown-node");
+    CHECK(stage.rejection("a", R"({"type":"record","action":"start"})") == "not-allowed");
     CHECK(stage.holder() == "");
     stage.say("a", kNavigate);
     stage.at(1s);
-    CHECK(stage.refusal("b", R"({"type":"fly","keyframes":[{"at":1,"camera":{"node":2}}]})") ==
+    CHECK(stage.rejection("b", R"({"type":"fly","keyframes":[{"at":1,"camera":{"node":2}}]})") ==
           "unknown-node");
     CHECK(stage.holder() == "a");
 }
 
 TEST_CASE("hosts patch camera, nodes and selection; nobody but control clients does the rest") {
     Stage stage("hva");
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "");
     CHECK(stage.holder() == "h");
-    CHECK(stage.refusal("h", kMoveHinge) == "");
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"selection":{"node":2}}})") == "");
+    CHECK(stage.rejection("h", kMoveHinge) == "");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"selection":{"node":2}}})") == "");
     const std::int64_t revision = stage.revision();
-    CHECK(stage.refusal("h",
-                        R"({"type":"patch","patch":{"camera":{"fov":60},"renderer":{"wireframe":true}}})") ==
+    CHECK(stage.rejection(
+              "h", R"({"type":"patch","patch":{"camera":{"fov":60},"renderer":{"wireframe":true}}})") ==
           "not-allowed");
-    CHECK(stage.refusal("h", kNavigate) == "not-allowed");
-    CHECK(stage.refusal("h", kTake) == "not-allowed");
-    CHECK(stage.refusal("v", kNavigate) == "not-allowed");
-    CHECK(stage.refusal("v", R"({"type":"patch","patch":{}})") == "not-allowed");
-    CHECK(stage.refusal("v", kTake) == "not-allowed");
-    CHECK(stage.refusal("v", R"({"type":"pick","x":1,"y":1,"then":"select"})") == "not-allowed");
+    CHECK(stage.rejection("h", kNavigate) == "not-allowed");
+    CHECK(stage.rejection("h", kTake) == "not-allowed");
+    CHECK(stage.rejection("v", kNavigate) == "not-allowed");
+    CHECK(stage.rejection("v", R"({"type":"patch","patch":{}})") == "not-allowed");
+    CHECK(stage.rejection("v", kTake) == "not-allowed");
+    CHECK(stage.rejection("v", R"({"type":"pick","x":1,"y":1,"then":"select"})") == "not-allowed");
     CHECK(stage.revision() == revision);
-    CHECK(stage.refusal("v", R"({"type":"pick","x":1,"y":1})") == "");
+    CHECK(stage.rejection("v", R"({"type":"pick","x":1,"y":1})") == "");
     // The same rule for hosts: the holder who is quiet gives way.
     stage.say("a", kTake);
     stage.say("a", kRelease);
     stage.say("a", kNavigate);
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
 }
 
 TEST_CASE("whose role never steers is told so once of all its input without ids") {
@@ -269,9 +269,9 @@ TEST_CASE("a host tells what its walls show, up to the newest revision") {
     const auto shown = [](std::int64_t number) {
         return R"({"type":"shown","revision":)" + std::to_string(number) + "}";
     };
-    CHECK(stage.refusal("h", shown(revision)) == "");
-    CHECK(stage.refusal("h", shown(revision + 1)) == "out-of-range");
-    CHECK(stage.refusal("a", shown(revision)) == "not-allowed");
+    CHECK(stage.rejection("h", shown(revision)) == "");
+    CHECK(stage.rejection("h", shown(revision + 1)) == "out-of-range");
+    CHECK(stage.rejection("a", shown(revision)) == "not-allowed");
 }
 
 TEST_CASE("who leaves in mid-drag leaves control free at once, and the camera where it is") {
@@ -285,7 +285,7 @@ TEST_CASE("who leaves in mid-drag leaves control free at once, and the camera wh
     CHECK(stage.camera().eye == eye);
     CHECK_FALSE(stage.say("a", finger("move", 300, 100)));
     CHECK(stage.told().empty());
-    CHECK(stage.refusal("b", kNavigate) == "");
+    CHECK(stage.rejection("b", kNavigate) == "");
 }
 
 TEST_CASE("whose control is taken in mid-drag moves nothing any more") {
@@ -342,7 +342,7 @@ TEST_CASE("an earlier time counts as the latest before") {
     stage.now = 3s;
     stage.say("a", kNavigate);
     stage.now = 10'999ms;
-    CHECK(stage.refusal("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
 }
 
 TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
@@ -387,7 +387,9 @@ TEST_CASE("a flight to a camera node ends at that node") {
 TEST_CASE("what a host may never do is not-allowed, whoever is in control") {
     Stage stage("ha");
     stage.say("a", kTake);
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"renderer":{"wireframe":true}}})") == "not-allowed");
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"lights":{"active":"nothing"}}})") == "not-allowed");
-    CHECK(stage.refusal("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"renderer":{"wireframe":true}}})") ==
+          "not-allowed");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"lights":{"active":"nothing"}}})") ==
+          "not-allowed");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
 }

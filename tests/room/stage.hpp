@@ -92,8 +92,8 @@ public:
         }
         return result;
     }
-    /// The code of the refusal of this message, or "" where it is accepted.
-    std::string refusal(const std::string& client, const std::string& text) {
+    /// The code of the rejection of this message, or "" where it is accepted.
+    std::string rejection(const std::string& client, const std::string& text) {
         told();
         const bool accepted = say(client, text);
         for (const json& answer : told())

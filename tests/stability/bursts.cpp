@@ -78,7 +78,7 @@ public:
 private:
     void count_refusals(const server::engine::EngineOutput& output) {
         const std::lock_guard lock(mutex_);
-        for (const server::room::Answer& answer : output.answers) refused_ += !answer.refusal.empty();
+        for (const server::room::Answer& answer : output.answers) refused_ += !answer.rejection.empty();
     }
 
     void want_newer_than(std::int64_t frame) {
