@@ -19,18 +19,6 @@ constexpr int kMostSnapshots = 2;  // of a client, waiting
 /// At most, for those who follow the camera without frames.
 constexpr std::chrono::milliseconds kFlightStep{16};
 
-/// "" where it is of none.
-std::string client_of(const EngineEvent& event) {
-    return std::visit(
-        [](const auto& what) {
-            if constexpr (requires { what.client; })
-                return what.client;
-            else
-                return std::string();
-        },
-        event);
-}
-
 /// The earlier of two times, where there are any.
 std::optional<base::Clock::time_point> earlier(std::optional<base::Clock::time_point> a,
                                                std::optional<base::Clock::time_point> b) {
@@ -188,12 +176,7 @@ void Engine::drain(std::optional<base::Clock::time_point> until) {
     watchdog_.idle();
     std::vector<EngineEvent> events = mailbox_.wait(until);
     watchdog_.busy();
-    for (EngineEvent& event : events) {
-        const std::string client = client_of(event);
-        if (std::holds_alternative<ClientLeft>(event)) taken_ -= std::exchange(waiting_[client], {}).size();
-        waiting_[client].push_back(std::move(event));
-        ++taken_;
-    }
+    for (EngineEvent& event : events) waiting_.push(std::move(event));
 }
 
 void Engine::apply() {
@@ -257,13 +240,7 @@ void Engine::handle_waiting() {
     constexpr std::chrono::milliseconds kSlice{4};  // then it is time for pictures and answers
     const base::Clock::time_point end = base::Clock::now() + kSlice;
     while (!waiting_.empty() && !mailbox_.closed() && base::Clock::now() < end) {
-        auto next = waiting_.upper_bound(last_handled_);
-        if (next == waiting_.end()) next = waiting_.begin();
-        last_handled_ = next->first;
-        const EngineEvent event = std::move(next->second.front());
-        next->second.pop_front();
-        --taken_;
-        if (next->second.empty()) waiting_.erase(next);
+        const EngineEvent event = waiting_.pop();
         std::visit([&](const auto& what) { handle(what); }, event);
     }
 }

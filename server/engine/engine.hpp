@@ -14,6 +14,7 @@
 #include "base/watchdog.hpp"
 #include "detail_levels.hpp"
 #include "engine/encoder.hpp"
+#include "engine/fair_queue.hpp"
 #include "engine/frame_quality.hpp"
 #include "engine/frame_renderer.hpp"
 #include "engine/level_choice.hpp"
@@ -88,7 +89,7 @@ public:
     const std::string& description() const { return description_; }
     const PictureLimits& limits() const { return limits_; }
     /// Events that came and are not handled yet. From any thread.
-    std::size_t events_waiting() const { return mailbox_.size() + taken_; }
+    std::size_t events_waiting() const { return mailbox_.size() + waiting_.size(); }
     /// How long each of its threads has not come round, 0 where it waits for something to do. From any
     /// thread.
     std::array<std::pair<const char*, base::Clock::duration>, 3> busy_times() const {
@@ -225,11 +226,9 @@ private:
     const std::shared_ptr<ResultPost> file_results_;
     SceneLookup lookup_;
     RecordingWriter recordings_;
-    std::map<std::string, std::deque<EngineEvent>> waiting_;  ///< by client; "": of none
-    std::atomic<std::size_t> taken_{0};                       ///< events in waiting_
+    FairQueue waiting_;
     base::Watchdog watchdog_;
     std::atomic<bool> draws_{false};
-    std::string last_handled_;
     Encoder encoder_, snapshot_encoder_;
     scene::SceneLoader loader_;
     FrameRendererFactory factory_;
