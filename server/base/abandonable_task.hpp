@@ -4,16 +4,16 @@
 #include <future>
 #include <optional>
 #include <stop_token>
-#include <thread>
 #include <utility>
 
 #include "base/clock.hpp"
+#include "base/detached_thread.hpp"
 
 namespace vrut::server::base {
 
-/// Work on a thread of its own that may hang for ever in a system call, as reading from a disk that does not
-/// answer does. Nobody can join such a thread: the destructor asks it to stop, waits until kPatience has
-/// passed since it was asked first, and then leaves it behind.
+/// Work on a thread of its own that may hang for ever in a system call. Nobody can join such a thread: the
+/// destructor asks it to stop, waits until kPatience has passed since it was asked first, and then leaves it
+/// behind.
 template <class Result>
 class AbandonableTask {
 public:
@@ -25,9 +25,9 @@ public:
     explicit AbandonableTask(Work work) {
         std::packaged_task<Result(std::stop_token)> task(std::move(work));
         result_ = task.get_future();
-        std::thread([moved = std::move(task), stop = stop_.get_token()]() mutable {
+        run_detached([moved = std::move(task), stop = stop_.get_token()]() mutable {
             moved.make_ready_at_thread_exit(std::move(stop));
-        }).detach();
+        });
     }
     ~AbandonableTask() {
         stop();

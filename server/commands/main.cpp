@@ -4,8 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cstdio>
+#include <cstdlib>
 #include <iostream>
 
+#include "base/detached_thread.hpp"
 #include "commands/commands.hpp"
 #include "observe/log.hpp"
 #include "scene/import_process.hpp"
@@ -233,9 +236,8 @@ void add_chart(CLI::App& app, commands::ChartArguments& arguments) {
     });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) try {
+/// The exit status. What goes wrong is printed.
+int run(int argc, char** argv) try {
     if (scene::is_import_process(argc, argv)) scene::run_import_process(argv);
     open_standard_descriptors();
     observe::start_log();  // results go to standard output, what is told on the way to standard error
@@ -276,4 +278,14 @@ int main(int argc, char** argv) try {
 } catch (const std::exception& error) {
     std::cerr << "vrut-preview: " << error.what() << "\n";
     return kFailed;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int status = run(argc, argv);
+    if (base::detached_threads() == 0) return status;
+    std::cout.flush();
+    std::fflush(nullptr);
+    std::_Exit(status);
 }

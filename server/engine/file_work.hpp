@@ -4,8 +4,8 @@
 #include <memory>
 #include <mutex>
 #include <system_error>
-#include <thread>
 
+#include "base/detached_thread.hpp"
 #include "engine/mailbox.hpp"
 
 namespace vrut::server::engine {
@@ -31,11 +31,11 @@ private:
     Push push_;
 };
 
-/// Runs what touches files on a thread of its own, for which nobody waits, not even the end of the program: a
-/// disk may never answer. `work` owns what it uses. False where no thread can be had.
+/// Runs what touches files on a thread of its own; see base::run_detached(). False where no thread can be
+/// had.
 inline bool run_file_work(std::function<void()> work) {
     try {
-        std::thread(std::move(work)).detach();
+        base::run_detached(std::move(work));
         return true;
     } catch (const std::system_error&) {
         return false;

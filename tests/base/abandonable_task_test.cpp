@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <memory>
+#include <thread>
 
 using namespace vrut::server::base;
 
@@ -62,6 +63,7 @@ TEST_CASE("work that hangs is left behind, with what it owns") {
             });
     }
     CHECK_FALSE(seen.expired());
+    CHECK(detached_threads() == 1);
     read_hangs.answer();
-    while (!seen.expired()) std::this_thread::yield();
+    while (detached_threads() > 0 || !seen.expired()) std::this_thread::yield();
 }

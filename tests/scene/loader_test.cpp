@@ -6,7 +6,9 @@
 
 #include <csignal>
 #include <memory>
+#include <thread>
 
+#include "base/detached_thread.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut::server::scene;
@@ -27,4 +29,5 @@ TEST_CASE("a loader that ends leaves a thread behind whose file does not open, a
     }
     CHECK(heard.expired());  // while the thread hangs
     close(leased);           // now the file opens
+    while (vrut::server::base::detached_threads() > 0) std::this_thread::yield();
 }
