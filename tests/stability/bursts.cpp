@@ -47,12 +47,15 @@ public:
         want_newer_than(0);
     }
 
-    void say(decltype(protocol::ClientMessage::payload) payload, std::optional<std::int64_t> id = {}) {
+    /// When it arrived.
+    server::base::Clock::time_point say(decltype(protocol::ClientMessage::payload) payload,
+                                        std::optional<std::int64_t> id = {}) {
         protocol::ClientMessage message;
         message.id = id;
         message.payload = std::move(payload);
-        engine_.mailbox().push(
-            server::engine::MessageReceived{kClient, std::move(message), server::base::Clock::now()});
+        const server::base::Clock::time_point now = server::base::Clock::now();
+        engine_.mailbox().push(server::engine::MessageReceived{kClient, std::move(message), now});
+        return now;
     }
 
     /// How long after `input` a picture came that shows it, and what `is_shown` asks for, in ms; kNothing
@@ -119,15 +122,12 @@ double lag_after_burst(double rate, const Input& input, const Asked& is_shown) {
         for (; sent <= due; ++sent) client.say(input(sent));
         std::this_thread::sleep_for(std::chrono::microseconds(500));
     }
-    client.say(input(-1));
-    return client.lag_of(server::base::Clock::now() - std::chrono::milliseconds(1), is_shown);
+    return client.lag_of(client.say(input(-1)), is_shown);
 }
 
 glm::dvec3 eye_at_start() {
     OneClient client;
-    const server::base::Clock::time_point now = server::base::Clock::now();
-    client.say(protocol::Resize{200, 150, 1});
-    client.lag_of(now);
+    client.lag_of(client.say(protocol::Resize{200, 150, 1}));
     return client.header().camera.pose.eye;
 }
 
@@ -149,9 +149,7 @@ Turned turned_with_repeats(int turns, double percent) {
         client.say(turn, 2 * i);
         if (comes_again(i, percent)) client.say(turn, 2 * i - i % 2);
     }
-    const server::base::Clock::time_point last = server::base::Clock::now();
-    client.say(turn, 2 * turns + 2);
-    client.lag_of(last);
+    client.lag_of(client.say(turn, 2 * turns + 2));
     return {client.header().camera.pose.eye, client.refused()};
 }
 
