@@ -1,4 +1,4 @@
-#include "difference.hpp"
+#include "compare/difference.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "image.hpp"
-#include "scene.hpp"
+#include "scene/image.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut {
 

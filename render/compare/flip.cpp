@@ -1,4 +1,4 @@
-#include "flip.hpp"
+#include "compare/flip.hpp"
 
 #include <algorithm>
 #include <array>

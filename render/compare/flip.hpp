@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "image.hpp"
+#include "scene/image.hpp"
 
 namespace vrut {
 

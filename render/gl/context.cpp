@@ -1,4 +1,4 @@
-#include "context.hpp"
+#include "gl/context.hpp"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "framebuffer.hpp"
-#include "program.hpp"
+#include "gl/framebuffer.hpp"
+#include "gl/shader_program.hpp"
 
 namespace vrut {
 

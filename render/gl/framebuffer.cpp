@@ -1,9 +1,9 @@
-#include "framebuffer.hpp"
+#include "gl/framebuffer.hpp"
 
 #include <cassert>
 #include <string>
 
-#include "drawing_errors.hpp"
+#include "base/drawing_errors.hpp"
 
 namespace vrut {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "handles.hpp"
+#include "gl/handles.hpp"
 
 namespace vrut {
 

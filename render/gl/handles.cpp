@@ -1,10 +1,10 @@
-#include "handles.hpp"
+#include "gl/handles.hpp"
 
 #include <atomic>
 #include <cstdio>
 #include <string>
 
-#include "drawing_errors.hpp"
+#include "base/drawing_errors.hpp"
 
 namespace vrut {
 

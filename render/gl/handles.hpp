@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "gl.hpp"
+#include "gl/gl.hpp"
 
 namespace vrut {
 

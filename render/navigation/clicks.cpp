@@ -1,4 +1,4 @@
-#include "clicks.hpp"
+#include "navigation/clicks.hpp"
 
 #include <algorithm>
 #include <cmath>

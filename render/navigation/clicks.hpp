@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gestures.hpp"
+#include "navigation/gestures.hpp"
 
 namespace vrut {
 

@@ -1,4 +1,4 @@
-#include "flight.hpp"
+#include "navigation/flight.hpp"
 
 #include <algorithm>
 #include <cmath>

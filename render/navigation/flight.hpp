@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "camera.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut {
 

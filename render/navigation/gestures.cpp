@@ -1,7 +1,9 @@
-#include "gestures.hpp"
+#include "navigation/gestures.hpp"
 
 #include <algorithm>
 #include <cmath>
+
+#include "navigation/camera_moves.hpp"
 
 namespace vrut {
 

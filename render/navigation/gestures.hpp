@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "camera.hpp"
-#include "navigation_style.hpp"
+#include "navigation/navigation_style.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut {
 

@@ -1,8 +1,10 @@
-#include "keys.hpp"
+#include "navigation/keys.hpp"
 
 #include <algorithm>
 #include <iterator>
 #include <string_view>
+
+#include "navigation/camera_moves.hpp"
 
 namespace vrut {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "gestures.hpp"
+#include "navigation/gestures.hpp"
 
 namespace vrut {
 

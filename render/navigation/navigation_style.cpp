@@ -1,4 +1,4 @@
-#include "navigation_style.hpp"
+#include "navigation/navigation_style.hpp"
 
 #include <algorithm>
 #include <iterator>

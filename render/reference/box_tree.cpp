@@ -1,4 +1,4 @@
-#include "box_tree.hpp"
+#include "reference/box_tree.hpp"
 
 #include <numeric>
 

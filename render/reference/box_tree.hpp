@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "bounds.hpp"
+#include "math/bounds.hpp"
 
 namespace vrut::reference {
 

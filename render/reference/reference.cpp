@@ -1,12 +1,12 @@
-#include "reference.hpp"
+#include "reference/reference.hpp"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <thread>
 
-#include "sampling.hpp"
-#include "tracer.hpp"
+#include "math/sample_sequence.hpp"
+#include "reference/tracer.hpp"
 
 namespace vrut {
 

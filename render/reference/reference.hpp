@@ -3,8 +3,8 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "scene/image.hpp"
 
 namespace vrut {
 

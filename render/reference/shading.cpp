@@ -1,9 +1,9 @@
-#include "shading.hpp"
+#include "reference/shading.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "camera.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut::reference {
 

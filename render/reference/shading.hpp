@@ -3,7 +3,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "surfaces.hpp"
+#include "reference/surfaces.hpp"
 
 namespace vrut::reference {
 

@@ -1,4 +1,4 @@
-#include "surfaces.hpp"
+#include "reference/surfaces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <map>
 #include <tuple>
 
-#include "colors.hpp"
-#include "ray_space.hpp"
+#include "math/ray_space.hpp"
+#include "scene/colors.hpp"
 
 namespace vrut::reference {
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "box_tree.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "reference/box_tree.hpp"
 
 namespace vrut::reference {
 

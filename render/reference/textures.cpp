@@ -1,4 +1,4 @@
-#include "textures.hpp"
+#include "reference/textures.hpp"
 
 #include <algorithm>
 #include <cmath>

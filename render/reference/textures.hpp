@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "image.hpp"
+#include "scene/image.hpp"
 
 namespace vrut::reference {
 

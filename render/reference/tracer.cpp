@@ -1,4 +1,4 @@
-#include "tracer.hpp"
+#include "reference/tracer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
-#include "shading.hpp"
-#include "surfaces.hpp"
-#include "textures.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "reference/shading.hpp"
+#include "reference/surfaces.hpp"
+#include "reference/textures.hpp"
 
 namespace vrut::reference {
 

@@ -1,8 +1,10 @@
-#include "scene.hpp"
+#include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+
+#include "scene/fitted_plane.hpp"
 
 namespace vrut {
 
@@ -148,7 +150,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     scene.geometries_ = std::move(parts.geometries);
     scene.notices_ = std::move(parts.notices);
     scene.planes_.reserve(scene.geometries_.size());
-    for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(plane_of(geometry));
+    for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(fitted_plane(geometry));
     std::vector<Index> new_place(in.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         new_place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);

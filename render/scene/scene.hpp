@@ -12,9 +12,9 @@
 #include <variant>
 #include <vector>
 
-#include "bounds.hpp"
-#include "image.hpp"
-#include "plane.hpp"
+#include "math/bounds.hpp"
+#include "math/plane.hpp"
+#include "scene/image.hpp"
 
 namespace vrut {
 
@@ -164,7 +164,7 @@ public:
     const std::vector<Node>& nodes() const { return nodes_; }
     const std::vector<std::string>& notices() const { return notices_; }
     const Material& material(Index index) const;
-    /// The plane in which a geometry lies, in its own space (plane_of()).
+    /// The plane in which a geometry lies, in its own space (fitted_plane()).
     const std::optional<Plane>& plane(Index geometry) const {
         return planes_[static_cast<std::size_t>(geometry)];
     }

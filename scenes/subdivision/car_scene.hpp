@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cage.hpp"
-#include "scene.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut {
 

@@ -3,9 +3,9 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/file_bytes.hpp"
 #include "car_scene.hpp"
-#include "file_bytes.hpp"
-#include "vrut_writer.hpp"
+#include "io/vrut/text_writer.hpp"
 
 namespace {
 

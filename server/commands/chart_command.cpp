@@ -8,6 +8,7 @@
 #include "measure/experiments.hpp"
 #include "measure/machine.hpp"
 #include "measure/page.hpp"
+#include "navigation/camera_moves.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
 #include "room/scene_state.hpp"

@@ -5,10 +5,10 @@
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
-#include "difference.hpp"
+#include "compare/difference.hpp"
+#include "compare/flip.hpp"
 #include "engine/images.hpp"
-#include "flip.hpp"
-#include "picture_file.hpp"
+#include "io/image_file.hpp"
 #include "report.hpp"
 
 namespace vrut::server::commands {

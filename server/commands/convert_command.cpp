@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "commands/commands.hpp"
+#include "io/write_scene.hpp"
 #include "observe/progress.hpp"
 #include "scene/import_process.hpp"
-#include "write_scene.hpp"
 
 namespace vrut::server::commands {
 

@@ -10,9 +10,9 @@
 
 #include "base/detached_thread.hpp"
 #include "commands/commands.hpp"
+#include "io/write_scene.hpp"
 #include "observe/log.hpp"
 #include "scene/import_process.hpp"
-#include "write_scene.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include "engine/images.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
 #include "report.hpp"
 #include "room/replay.hpp"
 #include "scene/library.hpp"

@@ -12,8 +12,8 @@
 #include "base/watchdog.hpp"
 #include "engine/images.hpp"
 #include "engine/picture.hpp"
-#include "image.hpp"
 #include "observe/metrics.hpp"
+#include "scene/image.hpp"
 
 namespace vrut::server::engine {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/drawing_errors.hpp"
 #include "codec.hpp"
-#include "drawing_errors.hpp"
 #include "observe/log.hpp"
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
 #include "scene/level_store.hpp"
 
 namespace vrut::server::engine {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "base/watchdog.hpp"
-#include "detail_levels.hpp"
 #include "engine/encoder.hpp"
 #include "engine/fair_queue.hpp"
 #include "engine/frame_quality.hpp"
@@ -22,14 +21,15 @@
 #include "engine/recording_writer.hpp"
 #include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
+#include "mesh/detail_levels.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
+#include "plan/view.hpp"
 #include "room/room.hpp"
 #include "scene/library.hpp"
 #include "scene/loader.hpp"
 #include "state.hpp"
-#include "view.hpp"
 
 namespace vrut::server::engine {
 

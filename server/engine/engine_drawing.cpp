@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drawing_errors.hpp"
+#include "base/drawing_errors.hpp"
 #include "engine/engine.hpp"
 #include "observe/log.hpp"
 

@@ -1,7 +1,7 @@
 #include <array>
 
+#include "base/drawing_errors.hpp"
 #include "codec.hpp"
-#include "drawing_errors.hpp"
 #include "engine/engine.hpp"
 #include "observe/log.hpp"
 

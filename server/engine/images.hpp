@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "image.hpp"
-#include "picture_writer.hpp"
+#include "io/texture_writer.hpp"
+#include "scene/image.hpp"
 
 namespace vrut::server::engine {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 
 namespace vrut::server::measure {
 

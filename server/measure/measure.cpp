@@ -7,10 +7,11 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "camera.hpp"
-#include "difference.hpp"
-#include "flip.hpp"
-#include "picture_file.hpp"
+#include "compare/difference.hpp"
+#include "compare/flip.hpp"
+#include "io/image_file.hpp"
+#include "navigation/camera_moves.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut::server::measure {
 

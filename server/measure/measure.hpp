@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "engine/images.hpp"
-#include "image.hpp"
 #include "measure/settings.hpp"
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
+#include "scene/image.hpp"
 
 namespace vrut::server::measure {
 

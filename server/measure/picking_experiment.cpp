@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "measure/experiments.hpp"
-#include "picking.hpp"
+#include "mesh/picking.hpp"
 
 namespace vrut::server::measure {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "detail_levels.hpp"
+#include "mesh/detail_levels.hpp"
 
 namespace vrut::server::measure {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "frame_header.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
 
 namespace vrut::server::measure {
 

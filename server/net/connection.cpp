@@ -4,10 +4,10 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include "base/utf8.hpp"
 #include "codec.hpp"
 #include "engine/images.hpp"
 #include "observe/log.hpp"
-#include "utf8.hpp"
 
 namespace vrut::server::net {
 

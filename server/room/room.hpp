@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "clicks.hpp"
 #include "event_log.hpp"
-#include "flight.hpp"
 #include "frame_header.hpp"
-#include "gestures.hpp"
+#include "mesh/picking.hpp"
 #include "message_table.hpp"
-#include "picking.hpp"
+#include "navigation/clicks.hpp"
+#include "navigation/flight.hpp"
+#include "navigation/gestures.hpp"
+#include "plan/view.hpp"
 #include "room/recording.hpp"
 #include "room/scene_state.hpp"
 #include "room/steering.hpp"
 #include "scene/loaded_scene.hpp"
 #include "state.hpp"
-#include "view.hpp"
 
 namespace vrut::server::room {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "codec.hpp"
-#include "keys.hpp"
+#include "navigation/keys.hpp"
 #include "room/room.hpp"
 
 namespace vrut::server::room {

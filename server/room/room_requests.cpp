@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "codec.hpp"
+#include "navigation/camera_moves.hpp"
 #include "room/room.hpp"
 #include "room/scene_tree.hpp"
 

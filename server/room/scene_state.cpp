@@ -3,7 +3,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "frame_plan.hpp"
+#include "navigation/camera_moves.hpp"
+#include "plan/frame_plan.hpp"
 
 namespace vrut::server::room {
 

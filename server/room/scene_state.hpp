@@ -3,9 +3,9 @@
 #include <tl/expected.hpp>
 
 #include "frame_header.hpp"
-#include "scene.hpp"
+#include "plan/view.hpp"
+#include "scene/scene.hpp"
 #include "state.hpp"
-#include "view.hpp"
 
 namespace vrut::server::room {
 

@@ -3,7 +3,7 @@
 #include <tl/expected.hpp>
 
 #include "messages.hpp"
-#include "scene.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut::server::room {
 

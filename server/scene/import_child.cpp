@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-#include "parts_stream.hpp"
+#include "io/scene_serialization.hpp"
 #include "scene/import_channel.hpp"
 #include "scene/import_process.hpp"
 #include "scene/sandbox.hpp"

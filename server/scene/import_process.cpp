@@ -21,8 +21,8 @@
 #include "base/abandonable_task.hpp"
 #include "base/clock.hpp"
 #include "base/descriptor.hpp"
+#include "io/scene_serialization.hpp"
 #include "observe/log.hpp"
-#include "parts_stream.hpp"
 #include "scene/import_channel.hpp"
 
 namespace vrut::server::scene {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
 
 namespace vrut::server::scene {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/abandonable_task.hpp"
-#include "utf8.hpp"
+#include "base/utf8.hpp"
 
 namespace vrut::server::scene {
 

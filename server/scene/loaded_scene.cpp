@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "frame_plan.hpp"
+#include "plan/frame_plan.hpp"
 
 namespace vrut::server::scene {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "messages.hpp"
-#include "scene.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut::server::scene {
 

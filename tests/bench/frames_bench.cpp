@@ -20,11 +20,11 @@
 #include <stdexcept>
 
 #include "base/files.hpp"
-#include "detail_levels.hpp"
-#include "difference.hpp"
+#include "compare/difference.hpp"
 #include "engine/images.hpp"
-#include "read_scene.hpp"
-#include "renderer.hpp"
+#include "io/read_scene.hpp"
+#include "mesh/detail_levels.hpp"
+#include "renderer/renderer.hpp"
 
 using namespace vrut;
 using namespace vrut::server::base;

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
+#include "io/vrut/text_reader.hpp"
 #include "scene/library.hpp"
-#include "vrut_text.hpp"
 
 using namespace vrut;
 using namespace vrut::server::scene;

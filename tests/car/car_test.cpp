@@ -9,10 +9,10 @@
 #include <map>
 #include <set>
 
-#include "camera.hpp"
 #include "car_geometry.hpp"
-#include "frame_plan.hpp"
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
+#include "plan/frame_plan.hpp"
+#include "scene/camera.hpp"
 
 using namespace vrut;
 

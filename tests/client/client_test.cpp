@@ -11,9 +11,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "io/vrut/text_reader.hpp"
 #include "preview_client.hpp"
 #include "test_client.hpp"
-#include "vrut_text.hpp"
 
 using namespace vrut;
 using namespace vrut::server::engine;

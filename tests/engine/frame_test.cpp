@@ -2,7 +2,7 @@
 #include <sys/resource.h>
 
 #include "engine/frame_quality.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -9,7 +9,7 @@
 #include "engine/frame_quality.hpp"
 #include "engine/scheduler.hpp"
 #include "environment_variable.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "scene/level_store.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <atomic>
 
-#include "drawing_errors.hpp"
+#include "base/drawing_errors.hpp"
 #include "event_log_file.hpp"
 #include "full_disk.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "room/replay.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

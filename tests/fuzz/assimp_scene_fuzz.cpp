@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "../assimp_leaks.hpp"
-#include "assimp_scene.hpp"
+#include "io/assimp/scene.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view bytes(reinterpret_cast<const char*>(data), size);

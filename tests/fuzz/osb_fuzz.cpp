@@ -1,6 +1,6 @@
 #include <cstdint>
 
-#include "osb_scene.hpp"
+#include "io/osb/scene.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     auto parts = vrut::read_osb_parts({reinterpret_cast<const char*>(data), size}, "fuzz.osb");

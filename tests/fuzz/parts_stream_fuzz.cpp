@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "parts_stream.hpp"
+#include "io/scene_serialization.hpp"
 
 namespace {
 

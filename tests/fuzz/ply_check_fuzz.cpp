@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "ply_check.hpp"
+#include "io/assimp/ply_check.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto path =

@@ -2,9 +2,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "tokenizer.hpp"
-#include "vrut_text.hpp"
-#include "vrut_writer.hpp"
+#include "io/vrut/text_reader.hpp"
+#include "io/vrut/text_writer.hpp"
+#include "io/vrut/tokenizer.hpp"
 
 using namespace vrut;
 

@@ -8,8 +8,8 @@
 #include <limits>
 #include <thread>
 
-#include "shading.hpp"
-#include "tracer.hpp"
+#include "reference/shading.hpp"
+#include "reference/tracer.hpp"
 
 namespace vrut {
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "image.hpp"
-#include "reference.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "reference/reference.hpp"
+#include "scene/image.hpp"
 
 namespace vrut {
 

@@ -6,7 +6,8 @@
 #include <filesystem>
 #include <set>
 
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
+#include "navigation/camera_moves.hpp"
 #include "scene_variants.hpp"
 #include "studio.hpp"
 

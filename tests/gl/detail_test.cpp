@@ -4,12 +4,12 @@
 #include <cmath>
 #include <random>
 
-#include "detail_levels.hpp"
-#include "detail_plan.hpp"
-#include "difference.hpp"
-#include "projection.hpp"
-#include "read_scene.hpp"
-#include "renderer.hpp"
+#include "compare/difference.hpp"
+#include "io/read_scene.hpp"
+#include "mesh/detail_levels.hpp"
+#include "plan/detail_plan.hpp"
+#include "plan/projection.hpp"
+#include "renderer/renderer.hpp"
 #include "shapes.hpp"
 
 using namespace vrut;

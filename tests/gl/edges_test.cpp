@@ -2,8 +2,8 @@
 #include <cmath>
 #include <set>
 
-#include "frame_plan.hpp"
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
+#include "plan/frame_plan.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -1,5 +1,5 @@
 #include "expected_texture.hpp"
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "image.hpp"
-#include "scene.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "scene/image.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut {
 

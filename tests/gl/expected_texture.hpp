@@ -4,9 +4,9 @@
 #include <functional>
 #include <string>
 
-#include "image.hpp"
-#include "scene.hpp"
-#include "view.hpp"
+#include "plan/view.hpp"
+#include "scene/image.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut {
 

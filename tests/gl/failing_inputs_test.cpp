@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "io/vrut/text_reader.hpp"
 #include "studio.hpp"
-#include "vrut_text.hpp"
 
 using namespace vrut;
 

@@ -2,8 +2,8 @@
 #define DOCTEST_CONFIG_IMPLEMENT
 #include <doctest/doctest.h>
 
+#include "gl/handles.hpp"
 #include "gl_faults.hpp"
-#include "handles.hpp"
 #include "scene/import_process.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"

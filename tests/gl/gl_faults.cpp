@@ -12,7 +12,7 @@
 #include <mutex>
 #include <utility>
 
-#include "gl.hpp"
+#include "gl/gl.hpp"
 
 namespace {
 

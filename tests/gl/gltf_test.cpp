@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <random>
 
-#include "frame_plan.hpp"
+#include "plan/frame_plan.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

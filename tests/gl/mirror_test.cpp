@@ -1,7 +1,7 @@
 #include <cmath>
 
-#include "frame_plan.hpp"
-#include "mirror_plan.hpp"
+#include "plan/frame_plan.hpp"
+#include "plan/mirror_plan.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -1,4 +1,4 @@
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,7 +1,7 @@
 // Images are drawn in steps: they may take turns, and no step does more than so much.
-#include "frame_plan.hpp"
-#include "glass_shape.hpp"
-#include "step_work.hpp"
+#include "plan/draw_budget.hpp"
+#include "plan/frame_plan.hpp"
+#include "plan/glass_shape.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -1,5 +1,5 @@
 #include "expected_texture.hpp"
-#include "mipmaps.hpp"
+#include "gl/mipmaps.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "studio.hpp"
 
 using namespace vrut;

@@ -11,10 +11,10 @@
 #include <regex>
 #include <set>
 
-#include "drawing_errors.hpp"
+#include "base/drawing_errors.hpp"
 #include "engine/encoder.hpp"
 #include "exposition.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;

@@ -1,7 +1,7 @@
 #include <random>
 
 #include "looks.hpp"
-#include "textures.hpp"
+#include "reference/textures.hpp"
 
 using namespace vrut;
 

@@ -1,11 +1,11 @@
-#include "box_tree.hpp"
+#include "reference/box_tree.hpp"
 
 #include <doctest/doctest.h>
 
 #include <random>
 
+#include "reference/surfaces.hpp"
 #include "shapes.hpp"
-#include "surfaces.hpp"
 
 using namespace vrut;
 

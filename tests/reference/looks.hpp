@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "shapes.hpp"
 
 namespace vrut {

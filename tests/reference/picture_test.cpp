@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "colors.hpp"
 #include "looks.hpp"
+#include "scene/colors.hpp"
 
 using namespace vrut;
 

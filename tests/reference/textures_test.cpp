@@ -1,9 +1,9 @@
-#include "textures.hpp"
+#include "reference/textures.hpp"
 
 #include <random>
 
 #include "looks.hpp"
-#include "shading.hpp"
+#include "reference/shading.hpp"
 
 using namespace vrut;
 

@@ -8,7 +8,7 @@
 #include "base/files.hpp"
 #include "engine/images.hpp"
 #include "recorded_session.hpp"
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
 
 using namespace vrut;
 using namespace vrut::server::base;

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "read_scene.hpp"
+#include "io/read_scene.hpp"
 #include "room/room.hpp"
 #include "stage.hpp"
 

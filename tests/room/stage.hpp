@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "codec.hpp"
+#include "io/vrut/text_reader.hpp"
 #include "room/room.hpp"
-#include "vrut_text.hpp"
 
 /// A room to which messages are said as they come over the wire, at times that a test gives.
 namespace stage {

@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "dying_clients.hpp"
-#include "handles.hpp"
+#include "gl/handles.hpp"
 #include "process.hpp"
 #include "scene/library.hpp"
 

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "engine/engine.hpp"
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "detail_levels.hpp"
-#include "detail_plan.hpp"
 #include "measure/settings.hpp"
+#include "mesh/detail_levels.hpp"
 #include "pictures.hpp"
+#include "plan/detail_plan.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "difference.hpp"
+#include "compare/difference.hpp"
 #include "engine/images.hpp"
-#include "picture_file.hpp"
+#include "io/image_file.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {

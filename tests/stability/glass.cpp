@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "pictures.hpp"
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {

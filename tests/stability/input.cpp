@@ -1,8 +1,9 @@
 // Studies of fingers, clocks and links that deliver less than was sent.
 #include <cmath>
 
-#include "clicks.hpp"
-#include "gestures.hpp"
+#include "navigation/camera_moves.hpp"
+#include "navigation/clicks.hpp"
+#include "navigation/gestures.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {

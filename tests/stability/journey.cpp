@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "rendering.hpp"
+#include "plan/rendering.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 

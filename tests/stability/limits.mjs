@@ -62,7 +62,7 @@ export const ROWS = [
   {
     what: 'size of a texture',
     studies: ['odd-textures', 'small-odd-textures'],
-    tests: [['tests/unit/picture_file_test.cpp', 'the size is judged from the header']],
+    tests: [['tests/io/image_file_test.cpp', 'the size is judged from the header']],
     holds: () => 'any, odd or not, up to 16,384 texels a side, if the driver takes as many',
     beyond: 'a file with more is rejected; what the driver does not take is drawn half as sharp or less',
   },

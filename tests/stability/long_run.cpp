@@ -5,6 +5,7 @@
 #include <future>
 #include <limits>
 
+#include "navigation/camera_moves.hpp"
 #include "observe/process_usage.hpp"
 #include "pictures.hpp"
 #include "shapes.hpp"

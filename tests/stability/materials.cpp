@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <glm/gtc/matrix_inverse.hpp>
 
-#include "difference.hpp"
+#include "compare/difference.hpp"
 #include "pictures.hpp"
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {

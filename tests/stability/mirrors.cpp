@@ -2,9 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/plane.hpp"
 #include "pictures.hpp"
-#include "plane.hpp"
-#include "reference.hpp"
+#include "reference/reference.hpp"
+#include "scene/fitted_plane.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {
@@ -91,7 +92,7 @@ Study bent_mirrors(const Laboratory& laboratory) {
         });
         // The normal at the rim leans by the slope there, the reflection by twice that.
         const double error = glm::degrees(2 * std::atan(2 * bulge));
-        const bool is_flat = plane_of(cap).has_value();
+        const bool is_flat = fitted_plane(cap).has_value();
         const bool is_lost = !is_flat && bulge <= kFlat;
         study.method.points.push_back({bulge, is_lost ? kNothing : is_flat ? error : 0});
     }

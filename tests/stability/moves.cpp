@@ -3,8 +3,9 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "camera.hpp"
-#include "gestures.hpp"
+#include "navigation/camera_moves.hpp"
+#include "navigation/gestures.hpp"
+#include "scene/camera.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {

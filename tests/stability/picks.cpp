@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "camera.hpp"
-#include "picking.hpp"
+#include "mesh/picking.hpp"
 #include "pictures.hpp"
+#include "scene/camera.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <limits>
 
-#include "difference.hpp"
-#include "reference.hpp"
+#include "compare/difference.hpp"
+#include "reference/reference.hpp"
 
 namespace vrut::stability {
 

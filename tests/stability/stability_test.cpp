@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "handles.hpp"
+#include "gl/handles.hpp"
 #include "study.hpp"
 
 using namespace vrut;

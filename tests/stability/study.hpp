@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "renderer.hpp"
+#include "renderer/renderer.hpp"
 
 /// Each method is pushed as far as its limit or beyond: how far it holds, and what happens there.
 namespace vrut::stability {

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "pictures.hpp"
-#include "reference.hpp"
+#include "reference/reference.hpp"
 #include "shapes.hpp"
 
 namespace vrut::stability {

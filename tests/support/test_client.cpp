@@ -14,9 +14,9 @@
 
 #include "engine/frame_quality.hpp"
 #include "frame_header.hpp"
-#include "rendering.hpp"
-#include "view.hpp"
-#include "vrut_text.hpp"
+#include "io/vrut/text_reader.hpp"
+#include "plan/rendering.hpp"
+#include "plan/view.hpp"
 
 namespace vrut::test {
 

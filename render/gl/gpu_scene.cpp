@@ -1,0 +1,287 @@
+#include "gl/gpu_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <tuple>
+
+#include "gl/gpu_textures.hpp"
+#include "mesh/simplification.hpp"
+
+namespace vrut {
+
+namespace {
+
+struct Vertex {
+    glm::vec3 position, normal;
+};
+
+struct Arrays {
+    std::vector<Vertex> vertices;
+    std::vector<unsigned> corners;      ///< for each vertex the geometry's of which it is made
+    std::vector<glm::uvec3> triangles;  ///< empty: the geometry's
+};
+
+GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
+    GlVertexArray result = make_vertex_array();
+    const GLuint array = result.get();
+    glVertexArrayVertexBuffer(array, 0, vertices.get(), 0, sizeof(Vertex));
+    glVertexArrayElementBuffer(array, indices.get());
+    const auto attribute = [&](GLuint location, std::size_t offset) {
+        glEnableVertexArrayAttrib(array, location);
+        glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+        glVertexArrayAttribBinding(array, location, 0);
+    };
+    attribute(0, offsetof(Vertex, position));
+    attribute(1, offsetof(Vertex, normal));
+    return result;
+}
+
+/// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
+/// its face's, so that the shader need not know the difference. Most geometries have none, and keep their
+/// triangles.
+Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
+    const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
+    // Unit, so that float can square them.
+    const auto normal = [&](unsigned i) {
+        const glm::dvec3 given = geometry.normals.empty() ? glm::dvec3(0) : glm::dvec3(geometry.normals[i]);
+        const double length = glm::length(given);
+        return length > 0 ? glm::vec3(given / length) : glm::vec3(0);
+    };
+
+    Arrays arrays;
+    bool all = !geometry.normals.empty();
+    if (all) {
+        arrays.vertices.reserve(geometry.positions.size());
+        for (unsigned i = 0; i < geometry.positions.size(); ++i) {
+            arrays.vertices.push_back({position(i), normal(i)});
+            all = all && arrays.vertices.back().normal != glm::vec3(0);
+        }
+        arrays.corners.resize(arrays.vertices.size());
+        std::iota(arrays.corners.begin(), arrays.corners.end(), 0U);
+    }
+    if (all) return arrays;
+    arrays.triangles = geometry.triangles;
+    for (glm::uvec3& triangle : arrays.triangles) {
+        const glm::uvec3 corners = triangle;
+        for (int k = 0; k < 3; ++k) {
+            if (normal(corners[k]) != glm::vec3(0)) continue;
+            const glm::dvec3& a = geometry.positions[corners[0]];
+            const glm::dvec3 cross =
+                glm::cross(geometry.positions[corners[1]] - a, geometry.positions[corners[2]] - a);
+            const double length = glm::length(cross);
+            triangle[k] = static_cast<unsigned>(arrays.vertices.size());
+            arrays.vertices.push_back(
+                {position(corners[k]), length > 0 ? glm::vec3(cross / length) : glm::vec3(0)});
+            arrays.corners.push_back(corners[k]);
+        }
+    }
+    return arrays;
+}
+
+const std::vector<glm::uvec3>& triangles_of(const Arrays& arrays, const Geometry& geometry) {
+    return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
+}
+
+/// Textures repeat, so that whole numbers may be taken off; what is left keeps more digits in float between
+/// the vertices.
+std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const Geometry& geometry) {
+    glm::dvec2 low(geometry.texcoords.front()), high = low;
+    for (const glm::dvec2 texcoord : geometry.texcoords) {
+        low = glm::min(low, texcoord);
+        high = glm::max(high, texcoord);
+    }
+    const glm::dvec2 origin = glm::floor((low + high) / 2.0);
+    std::vector<glm::vec2> result;
+    result.reserve(corners.size());
+    for (const unsigned corner : corners)
+        result.emplace_back(glm::dvec2(geometry.texcoords[corner]) - origin);
+    return result;
+}
+
+void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array) {
+    const GLuint array = vertex_array.get();
+    glVertexArrayVertexBuffer(array, 1, texcoords.get(), 0, sizeof(glm::vec2));
+    glEnableVertexArrayAttrib(array, 2);
+    glVertexArrayAttribFormat(array, 2, 2, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribBinding(array, 2, 1);
+}
+
+GpuGeometry upload(const Geometry& geometry) {
+    GpuGeometry result;
+    result.origin = geometry.bounds.center();
+    const Arrays arrays = make_arrays(geometry, result.origin);
+    result.vertices =
+        make_buffer("vertices", arrays.vertices.data(), arrays.vertices.size() * sizeof(Vertex));
+    const std::vector<glm::uvec3>& triangles = triangles_of(arrays, geometry);
+    result.indices = make_buffer("triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    result.index_count = static_cast<GLsizei>(triangles.size() * 3);
+
+    result.vertex_array = vertex_array_of(result.vertices, result.indices);
+    if (geometry.texcoords.empty()) return result;
+    const std::vector<glm::vec2> texcoords = texcoords_of(arrays.corners, geometry);
+    result.texcoords =
+        make_buffer("texture coordinates", texcoords.data(), texcoords.size() * sizeof(glm::vec2));
+    add_texcoords(result.texcoords, result.vertex_array);
+    return result;
+}
+
+/// For each position the lowest index of one that is the same, so that corners with normals of their own are
+/// known as one.
+std::vector<unsigned> first_of_same(const std::vector<glm::dvec3>& positions) {
+    std::vector<unsigned> order(positions.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto before = [&](unsigned a, unsigned b) {
+        const glm::dvec3 &p = positions[a], &q = positions[b];
+        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
+    };
+    std::sort(order.begin(), order.end(), before);
+    std::vector<unsigned> first(positions.size());
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+        first[order[i]] = same ? first[order[i - 1]] : order[i];
+    }
+    return first;
+}
+
+/// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
+std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector<glm::uvec3>& vertices) {
+    struct Edge {
+        glm::uvec2 corners;  // known as one, the lower first
+        std::size_t number;
+        glm::uvec2 vertices;
+    };
+    const std::vector<unsigned> known_as = first_of_same(geometry.positions);
+    std::vector<Edge> edges;
+    edges.reserve(vertices.size() * 3);
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+        for (int k = 0; k < 3; ++k) {
+            const int next = (k + 1) % 3;
+            const unsigned a = known_as[geometry.triangles[i][k]], b = known_as[geometry.triangles[i][next]];
+            if (a == b) continue;
+            edges.push_back(
+                {{std::min(a, b), std::max(a, b)}, edges.size(), {vertices[i][k], vertices[i][next]}});
+        }
+    const auto key = [](const Edge& edge) { return std::tie(edge.corners.x, edge.corners.y, edge.number); };
+    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+    std::vector<glm::uvec2> result;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (i == 0 || edges[i].corners != edges[i - 1].corners) result.push_back(edges[i].vertices);
+    return result;
+}
+
+GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
+    GpuEdges result;
+    const Arrays arrays = make_arrays(geometry, uploaded.origin);
+    const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
+    if (edges.empty()) return result;
+    result.indices = make_buffer("edges", edges.data(), edges.size() * sizeof(glm::uvec2));
+    result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
+    result.index_count = static_cast<GLsizei>(edges.size() * 2);
+    return result;
+}
+
+}  // namespace
+
+GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
+    : scene_(std::move(scene)),
+      geometries_(scene_->geometries().size()),
+      edges_(geometries_.size()),
+      textures_(scene_->textures().size()) {}
+
+void GpuScene::upload_shown(const View& view) {
+    for (const DrawItem& item : shown_items(view)) {
+        geometry(item.geometry);
+        if (item.texture != kNone) texture(item.texture);
+    }
+    if (view.background.cube_map)
+        cube_map(*view.background.cube_map);
+    else if (view.background.texture != kNone)
+        texture(view.background.texture);
+}
+
+const GpuGeometry& GpuScene::geometry(Index index) {
+    GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
+    if (!geometry.vertex_array) {
+        geometry = upload(scene_->geometries()[static_cast<std::size_t>(index)]);
+        ++uploads_;
+    }
+    return geometry;
+}
+
+const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
+    if (!item.level) return geometry(item.geometry);
+    GpuGeometry& level = levels_[{item.geometry, item.level->number}];
+    if (!level.vertex_array) {
+        level =
+            upload(geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
+        ++uploads_;
+        // The same in another order: what still needs the file's uploads it again.
+        if (item.level->number == 0) geometries_[static_cast<std::size_t>(item.geometry)] = {};
+    }
+    return level;
+}
+
+bool GpuScene::holds(const DrawItem& item) const {
+    if (!item.level) return bool(geometries_[static_cast<std::size_t>(item.geometry)].vertex_array);
+    return levels_.contains({item.geometry, item.level->number});
+}
+
+const GpuEdges& GpuScene::edges(Index index) {
+    std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
+    if (!edges) {
+        edges = upload_edges(scene_->geometries()[static_cast<std::size_t>(index)], geometry(index));
+        ++uploads_;
+    }
+    return *edges;
+}
+
+const GlTexture& GpuScene::texture(Index index) {
+    GlTexture& texture = textures_[static_cast<std::size_t>(index)];
+    if (!texture) {
+        texture = upload_texture(scene_->textures()[static_cast<std::size_t>(index)].image);
+        ++uploads_;
+    }
+    return texture;
+}
+
+const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
+    GlTexture& cube_map = cube_maps_[textures];
+    if (!cube_map) {
+        std::array<const Image*, 6> images{};
+        for (std::size_t i = 0; i < 6; ++i)
+            images[i] = &scene_->textures()[static_cast<std::size_t>(textures[i])].image;
+        cube_map = upload_cube_map(images);
+        ++uploads_;
+    }
+    return cube_map;
+}
+
+const GpuTriangles& GpuScene::ordered(const DrawItem& item) {
+    const std::vector<unsigned>& order = *item.order;
+    GpuTriangles& result = ordered_[{item.geometry, order.size()}];
+    if (result.order && (result.order == item.order || *result.order == order)) return result;
+    if (!result.vertex_array) {
+        const GpuGeometry& uploaded = geometry(item.geometry);
+        const Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
+        result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
+        result.indices = make_changing_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
+        result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
+        if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
+        result.index_count = static_cast<GLsizei>(order.size() * 3);
+        ++uploads_;
+    }
+    std::vector<glm::uvec3> triangles;
+    triangles.reserve(order.size());
+    for (const unsigned number : order) {
+        glm::uvec3& triangle = triangles.emplace_back(result.in_file[number % result.in_file.size()]);
+        if (number >= result.in_file.size()) std::swap(triangle.y, triangle.z);
+    }
+    glNamedBufferSubData(result.indices.get(), 0,
+                         static_cast<GLsizeiptr>(triangles.size() * sizeof(glm::uvec3)), triangles.data());
+    result.order = item.order;
+    return result;
+}
+
+}  // namespace vrut

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gl/handles.hpp"
+#include "plan/frame_plan.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a
+/// scene far from the world's origin keeps its precision.
+struct GpuGeometry {
+    GlBuffer vertices, indices;
+    GlBuffer texcoords;  ///< for each vertex, if the geometry has any; moved by whole numbers to lie around 0
+    GlVertexArray vertex_array;
+    GLsizei index_count = 0;
+    glm::dvec3 origin{0};
+};
+
+/// The edges of a geometry's triangles, as lines between its vertices: each once, however many triangles
+/// share it, and though their corners have normals of their own.
+struct GpuEdges {
+    GlBuffer indices;
+    GlVertexArray vertex_array;  ///< with the geometry's vertices
+    GLsizei index_count = 0;
+};
+
+/// A geometry's triangles in another order, which can change from frame to frame.
+struct GpuTriangles {
+    GlBuffer indices;
+    GlVertexArray vertex_array;  ///< with the geometry's vertices
+    GLsizei index_count = 0;
+    std::vector<glm::uvec3> in_file;
+    std::shared_ptr<const std::vector<unsigned>> order;
+};
+
+/// The geometries and textures of a scene, each uploaded when it is first drawn.
+class GpuScene {
+public:
+    explicit GpuScene(std::shared_ptr<const Scene> scene);
+    const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    /// What a view of it shows, in the picture or beside it. Throws OutOfMemory, as all below.
+    void upload_shown(const View& view);
+    const GpuGeometry& geometry(Index index);
+    /// Of an item: its level's, if it has one.
+    const GpuGeometry& geometry(const DrawItem& item);
+    /// Whether that is there already.
+    bool holds(const DrawItem& item) const;
+    const GpuEdges& edges(Index index);
+    /// Its triangles in an item's order, which is not null.
+    const GpuTriangles& ordered(const DrawItem& item);
+    const GlTexture& texture(Index index);
+    /// Of the six textures (upload_cube_map()).
+    const GlTexture& cube_map(const std::array<Index, 6>& textures);
+    /// Geometries, their levels and edges, textures and cube maps uploaded so far.
+    int uploads() const { return uploads_; }
+
+private:
+    std::shared_ptr<const Scene> scene_;
+    std::vector<GpuGeometry> geometries_;
+    std::map<std::pair<Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
+    std::vector<std::optional<GpuEdges>> edges_;           // after the geometries, whose vertices they use
+    std::map<std::pair<Index, std::size_t>, GpuTriangles> ordered_;  // by the number of triangles, too
+    std::vector<GlTexture> textures_;
+    std::map<std::array<Index, 6>, GlTexture> cube_maps_;
+    int uploads_ = 0;
+};
+
+}  // namespace vrut

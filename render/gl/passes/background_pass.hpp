@@ -1,0 +1,23 @@
+#pragma once
+
+#include "gl/passes/surface_programs.hpp"
+
+namespace vrut {
+
+/// A picture or a panorama behind everything; a plain colour needs no pass.
+class BackgroundPass {
+public:
+    static bool is_needed(const View& view) {
+        return view.scene && (view.background.cube_map || view.background.texture != kNone);
+    }
+    /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. A picture is stretched
+    /// over the view; of a panorama each pixel shows what lies in the direction of its ray.
+    void draw(const Sight& sight, const View& view, GpuScene& scene, FrameStats& stats);
+
+private:
+    GlProgram picture_, panorama_;
+    GlSampler clamped_;
+    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+};
+
+}  // namespace vrut

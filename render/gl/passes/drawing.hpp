@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string_view>
+
+#include "gl/gpu_scene.hpp"
+#include "plan/frame_plan.hpp"
+#include "plan/view.hpp"
+
+namespace vrut {
+
+/// One triangle that holds the whole picture; its corners need no attributes.
+inline constexpr std::string_view kScreenShader = R"(#version 450 core
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
+)";
+
+/// All that drawing changes, as each pass expects it: what was drawn before may have failed in its midst.
+void set_up_drawing();
+
+/// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
+void cull_sides(const DrawItem& item, bool front_only = false);
+
+/// Nothing outside the box is drawn or cleared, while GL_SCISSOR_TEST is enabled.
+void scissor(const PixelBox& box);
+
+/// With the current program; adds to the draws and triangles of `stats`.
+void draw_triangles(const GpuGeometry& geometry, FrameStats& stats);
+void draw_triangles(const GpuTriangles& triangles, FrameStats& stats);
+
+}  // namespace vrut

@@ -1,0 +1,50 @@
+#include "gl/passes/edge_pass.hpp"
+
+#include "scene/colors.hpp"
+
+namespace vrut {
+
+namespace {
+
+void draw_lines(const GpuEdges& edges, FrameStats& stats) {
+    if (edges.index_count == 0) return;  // triangles that are points
+    glBindVertexArray(edges.vertex_array.get());
+    glDrawElements(GL_LINES, edges.index_count, GL_UNSIGNED_INT, nullptr);
+    ++stats.draws;
+    stats.edges += static_cast<std::uint64_t>(edges.index_count) / 2;
+}
+
+}  // namespace
+
+void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
+                    const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDisable(GL_BLEND);
+    const bool stylized = mode == DrawMode::stylized;
+    glDepthMask(!stylized);  // of one colour, none hides another
+    if (stylized) plain_.use(kStylizedEdges, clip_from_view);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        if (stylized)
+            set_place(item, geometry);
+        else
+            programs.use(SurfacePrograms::Shape::edges, item, geometry,
+                         scene.scene()->material(item.material));
+        draw_lines(scene.edges(item.geometry), stats);
+    }
+    glDepthMask(GL_TRUE);
+}
+
+void EdgePass::draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
+                         const glm::dmat4& clip_from_view, FrameStats& stats) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    plain_.use(color, clip_from_view);
+    for (const DrawItem& item : items) {
+        set_place(item, scene.geometry(item.geometry));
+        draw_lines(scene.edges(item.geometry), stats);
+    }
+}
+
+}  // namespace vrut

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <span>
+
+#include "gl/passes/surface_programs.hpp"
+
+namespace vrut {
+
+/// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too.
+class EdgePass {
+public:
+    /// Realistic ones in their materials under the view's light, stylized ones in one colour; hidden where a
+    /// face stands before them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
+    void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
+              const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats);
+    /// In one colour, over everything.
+    void draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
+                   const glm::dmat4& clip_from_view, FrameStats& stats);
+
+private:
+    PlainProgram plain_;
+};
+
+}  // namespace vrut

@@ -1,0 +1,55 @@
+#include "gl/passes/id_pass.hpp"
+
+#include <stdexcept>
+
+#include "gl/passes/drawing.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// Integers with depth, used once.
+struct Target {
+    Target(int width, int height)
+        : numbers(make_renderbuffer(GL_R32I, width, height)),
+          depth(make_renderbuffer(GL_DEPTH_COMPONENT32F, width, height)),
+          framebuffer(make_framebuffer()) {
+        const GLuint name = framebuffer.get();
+        glNamedFramebufferRenderbuffer(name, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, numbers.get());
+        glNamedFramebufferRenderbuffer(name, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth.get());
+        if (glCheckNamedFramebufferStatus(name, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+            throw std::runtime_error("no ids can be drawn: the driver refuses the framebuffer");
+    }
+
+    GlRenderbuffer numbers, depth;
+    GlFramebuffer framebuffer;
+};
+
+}  // namespace
+
+std::vector<Index> IdPass::draw(std::span<const DrawItem> items, GpuScene& scene, int width, int height,
+                                const glm::dmat4& clip_from_view) {
+    const Target target(width, height);
+    glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
+    glViewport(0, 0, width, height);
+    glClearBufferiv(GL_COLOR, 0, &kNone);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDisable(GL_BLEND);
+    program_.use(clip_from_view);
+    FrameStats stats;
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        set_place(item, geometry);
+        program_.set_number(item.node);
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    std::vector<Index> nodes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_INT, nodes.data());
+    return nodes;
+}
+
+}  // namespace vrut

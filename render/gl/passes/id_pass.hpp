@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "gl/passes/surface_programs.hpp"
+
+namespace vrut {
+
+/// Which node each pixel shows, for a judge of pictures: all surfaces as if they were opaque.
+class IdPass {
+public:
+    /// What is drawn at the centres of width × height pixels, as indices of nodes, kNone for nothing; rows
+    /// from the bottom up. `items` are by rising id.
+    std::vector<Index> draw(std::span<const DrawItem> items, GpuScene& scene, int width, int height,
+                            const glm::dmat4& clip_from_view);
+
+private:
+    NumberProgram program_;
+};
+
+}  // namespace vrut

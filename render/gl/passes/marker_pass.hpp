@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+
+#include "gl/framebuffer.hpp"
+#include "gl/shader_program.hpp"
+#include "plan/view.hpp"
+
+namespace vrut {
+
+/// Round signs of constant size in pixels over the picture, each around its point: full where the point is
+/// seen, and the fainter the more of its surroundings is hidden.
+class MarkPass {
+public:
+    /// What depth tells of a point: whether it is hidden, or, in a wireframe, nothing.
+    enum class Cover { by_depth, none };
+
+    /// `points` in view space, all before the eye, are drawn in that order into `target`, whose depth is the
+    /// scene's; it is bound afterwards. Adds its draws to `stats`.
+    void draw(std::span<const glm::dvec3> points, Cover cover, const glm::dmat4& clip_from_view,
+              const Framebuffer& target, FrameStats& stats);
+
+private:
+    GlProgram program_;
+    GlBuffer points_;
+    GlVertexArray nothing_;  ///< a sign's corners need no attributes
+};
+
+}  // namespace vrut

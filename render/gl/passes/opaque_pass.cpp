@@ -1,0 +1,46 @@
+#include "gl/passes/opaque_pass.hpp"
+
+#include "gl/passes/drawing.hpp"
+#include "scene/colors.hpp"
+
+namespace vrut {
+
+void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
+                      SurfacePrograms& programs, FrameStats& stats) {
+    const bool stylized = mode == DrawMode::stylized;
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_GEQUAL);
+    glDisable(GL_BLEND);
+    if (stylized) {
+        // Depth falls with distance. A line's pixel lies up to half a pixel beside the line.
+        glEnable(GL_POLYGON_OFFSET_FILL);
+        glPolygonOffset(-1, -16);
+    }
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        programs.use(SurfacePrograms::Shape::faces, item, geometry,
+                     stylized ? stylized_faces() : scene.scene()->material(item.material));
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
+                             const glm::dmat4& clip_from_view, FrameStats& stats) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthFunc(GL_ALWAYS);
+    glDepthRange(0, 0);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    cover_.use(glm::dvec3(0), clip_from_view);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        set_place(item, geometry);
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthRange(0, 1);
+}
+
+}  // namespace vrut

@@ -1,0 +1,167 @@
+#include "gl/passes/outline_pass.hpp"
+
+#include <algorithm>
+#include <glm/gtc/type_ptr.hpp>
+#include <stdexcept>
+
+#include "scene/colors.hpp"
+
+namespace vrut {
+
+namespace {
+
+enum Uniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
+
+// What lies outside the box is of an earlier picture, or of none.
+constexpr std::string_view kMeasureShader = R"(#version 450 core
+layout(location = 0) uniform int width;
+layout(location = 2) uniform ivec4 box;
+layout(binding = 0) uniform sampler2D covered;
+out float across;
+
+bool is_covered(ivec2 at) {
+    return at.x >= box.x && at.x < box.z && texelFetch(covered, at, 0).r > 0.5;
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    int found = 255;
+    for (int step = width; step >= 0; --step)
+        if (is_covered(here - ivec2(step, 0)) || is_covered(here + ivec2(step, 0))) found = step;
+    across = found / 255.0;
+}
+)";
+
+constexpr std::string_view kMarkShader = R"(#version 450 core
+layout(location = 0) uniform int width;
+layout(location = 1) uniform vec3 mark;
+layout(location = 2) uniform ivec4 box;
+layout(binding = 0) uniform sampler2D measured;
+out vec4 color;
+
+int across(ivec2 at) {
+    return at.y >= box.y && at.y < box.w ? int(round(texelFetch(measured, at, 0).r * 255)) : 255;
+}
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy);
+    if (across(here) == 0) discard;  // covered
+    int nearest = width * width + 1;
+    for (int step = -width; step <= width; ++step) {
+        int along = across(here + ivec2(0, step));
+        nearest = min(nearest, along * along + step * step);
+    }
+    if (nearest > width * width) discard;
+    color = vec4(mark, 1);
+}
+)";
+
+GlFramebuffer make_target(const GlTexture& texture) {
+    GlFramebuffer framebuffer = make_framebuffer();
+    glNamedFramebufferTexture(framebuffer.get(), GL_COLOR_ATTACHMENT0, texture.get(), 0);
+    if (glCheckNamedFramebufferStatus(framebuffer.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+        throw std::runtime_error("no outline can be drawn: the driver refuses the framebuffer");
+    return framebuffer;
+}
+
+void use(const GlProgram& program, int width, const PixelBox& box, const GlTexture& texture) {
+    glUseProgram(program.get());
+    glUniform1i(width_at, width);
+    glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
+    glBindTextureUnit(0, texture.get());
+}
+
+PixelBox box_of(const DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
+                const glm::ivec2& picture) {
+    const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+    return pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+}
+
+}  // namespace
+
+int outline_width(int picture_height) { return std::clamp((picture_height + 431) / 432, 1, 200); }
+
+OutlinePass::Mask::Mask(int mask_width, int mask_height)
+    : width(mask_width),
+      height(mask_height),
+      covered(make_texture(GL_R8, width, height)),
+      across(make_texture(GL_R8, width, height)),
+      covered_target(make_target(covered)),
+      across_target(make_target(across)) {}
+
+void OutlinePass::prepare(const Framebuffer& target) {
+    if (!mask_ || mask_->width != target.width() || mask_->height != target.height()) {
+        mask_.reset();
+        mask_.emplace(target.width(), target.height());
+    }
+    if (nothing_) return;
+    measure_ = make_program(kScreenShader, kMeasureShader);
+    mark_ = make_program(kScreenShader, kMarkShader);
+    nothing_ = make_vertex_array();
+}
+
+void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+                        const glm::dmat4& clip_from_view, const Framebuffer& target) {
+    prepare(target);
+    const glm::ivec2 picture{target.width(), target.height()};
+    const int width = outline_width(target.height());
+    all_ = {picture, {0, 0}};
+    for (const DrawItem& item : items) {
+        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+        all_ = {glm::min(all_.low, box.low - width), glm::max(all_.high, box.high + width)};
+    }
+    all_ = {glm::max(all_.low, 0), glm::min(all_.high, picture)};
+    glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
+    glEnable(GL_SCISSOR_TEST);
+    scissor(all_);
+    glClearColor(0, 0, 0, 0);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
+
+void OutlinePass::cover(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                        FrameStats& stats) {
+    const glm::ivec2 picture{mask_->width, mask_->height};
+    glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_SCISSOR_TEST);
+    scissor(all_);
+    glClearColor(1, 1, 1, 1);
+    cover_.use(glm::dvec3(1), clip_from_view);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        set_place(item, geometry);
+        draw_triangles(geometry, stats);
+        // So small that it may miss all centres of pixels: it is found all the same.
+        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+        if (box.size().x > 2 || box.size().y > 2) continue;
+        scissor(box);
+        glClear(GL_COLOR_BUFFER_BIT);
+        scissor(all_);
+    }
+}
+
+void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
+    const int width = outline_width(target.height());
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_SCISSOR_TEST);
+    scissor(all_);
+    glBindVertexArray(nothing_.get());
+    glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
+    use(measure_, width, all_, mask_->covered);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    target.bind();
+    use(mark_, width, all_, mask_->across);
+    const glm::vec3 color(kSelection);
+    glUniform3fv(color_at, 1, glm::value_ptr(color));
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glBindTextureUnit(0, 0);
+    glDisable(GL_SCISSOR_TEST);
+    stats.draws += 2;
+    ++stats.passes;
+}
+
+}  // namespace vrut

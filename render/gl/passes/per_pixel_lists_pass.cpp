@@ -1,0 +1,173 @@
+#include "gl/passes/per_pixel_lists_pass.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace vrut {
+
+namespace {
+
+// After the lists' block. Takes the nearest few of the list, then those behind them, and so on, so that a
+// list of any length needs no more room than these.
+constexpr std::string_view kCompositeShader = R"(
+const int kAtOnce = 16;
+out vec4 color;
+
+bool is_nearer(uint a, uint b) {
+    float depth_a = layers[a - 1].depth, depth_b = layers[b - 1].depth;
+    if (depth_a != depth_b) return depth_a > depth_b;
+    uint order_a = layers[a - 1].order, order_b = layers[b - 1].order;
+    return order_a != order_b ? order_a > order_b : a > b;
+}
+
+void main() {
+    uint first = first_layer[list_index(ivec2(gl_FragCoord.xy))];
+    if (first == 0) discard;
+    vec3 sum = vec3(0);
+    float through = 1;
+    uint done = 0;
+    uint nearest[kAtOnce];
+    for (int i = 0; i < kAtOnce; ++i) nearest[i] = 0;
+    int found;
+    do {
+        found = 0;
+        for (uint at = first; at != 0; at = layers[at - 1].next) {
+            if (done != 0 && !is_nearer(done, at)) continue;
+            uint further = at;  // moves the others on, and the last one out
+            for (int i = 0; i < found; ++i) {
+                uint here = nearest[i];
+                bool passes = is_nearer(further, here);
+                nearest[i] = passes ? further : here;
+                further = passes ? here : further;
+            }
+            if (found < kAtOnce) nearest[found++] = further;
+        }
+        for (int i = 0; i < found; ++i) {
+            done = nearest[i];
+            vec4 own = vec4(unpackUnorm2x16(layers[done - 1].red_green),
+                            unpackUnorm2x16(layers[done - 1].blue_alpha));
+            sum += through * own.rgb;
+            through *= 1 - own.a;
+        }
+    } while (found == kAtOnce && through > 1e-5);
+    color = vec4(sum, 1 - through);
+}
+)";
+
+/// Into so many parts of about the same size, one above the other, or beside it if the box is wider than
+/// high; fewer where there are not so many pixels.
+void split(const PixelBox& box, std::uint64_t parts, std::vector<PixelBox>& into) {
+    const int along = box.size().x > box.size().y ? 0 : 1, length = box.size()[along];
+    const int count = static_cast<int>(std::min(parts, static_cast<std::uint64_t>(length)));
+    for (int i = 0; i < count; ++i) {
+        PixelBox& part = into.emplace_back(box);
+        part.low[along] = box.low[along] + length * i / count;
+        part.high[along] = box.low[along] + length * (i + 1) / count;
+    }
+}
+
+}  // namespace
+
+void PixelSortPass::prepare(std::size_t pixels) {
+    if (!composite_) {
+        composite_ = make_program(
+            kScreenShader, "#version 450 core\n" + std::string(kLayerLists) + std::string(kCompositeShader));
+        nothing_ = make_vertex_array();
+    }
+    if (pixels == pixels_) return;
+    release();
+    layers_ = make_changing_buffer("transparent layers", kHeadBytes + most_layers(pixels) * kLayerBytes);
+    lists_ = make_changing_buffer("lists of layers", kHeadBytes + pixels * sizeof(GLuint));
+    pixels_ = pixels;
+}
+
+void PixelSortPass::release() {
+    layers_ = {};
+    lists_ = {};
+    pixels_ = 0;
+}
+
+void PixelSortPass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+                          const glm::dmat4& clip_from_view, const glm::ivec2& picture,
+                          const PixelBox& within) {
+    PixelBox all{picture, {0, 0}};
+    for (const DrawItem& item : items) {
+        const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+        const PixelBox box = pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+        all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
+    }
+    all = intersection(all, within);
+    if (all.empty()) return;
+    prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
+    left_.push_back(all);
+}
+
+void PixelSortPass::bind() const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLayersBinding, layers_.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kListsBinding, lists_.get());
+    glEnable(GL_SCISSOR_TEST);
+    scissor(box());
+    glDepthMask(GL_FALSE);
+}
+
+void PixelSortPass::clear_lists() const {
+    const std::array<GLuint, 2> none{0, static_cast<GLuint>(most_layers(pixels_))};
+    glNamedBufferSubData(layers_.get(), 0, sizeof none, none.data());
+    const std::array<GLint, 4> place{box().low.x, box().low.y, box().size().x, box().size().y};
+    glNamedBufferSubData(lists_.get(), 0, sizeof place, place.data());
+    glClearNamedBufferSubData(lists_.get(), GL_R32UI, kHeadBytes,
+                              static_cast<GLsizeiptr>(sizeof(GLuint)) * box().size().x * box().size().y,
+                              GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void PixelSortPass::collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
+                            SurfacePrograms& programs, FrameStats& stats) {
+    bind();
+    if (first == 0) clear_lists();
+    glEnable(GL_DEPTH_TEST);
+    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const DrawItem& item = items[i];
+        const GpuGeometry& geometry = scene.geometry(item);
+        programs.use(SurfacePrograms::Shape::layered_glass, item, geometry,
+                     scene.scene()->material(item.material));
+        set_order(static_cast<GLuint>(first + i));
+        glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
+        cull_sides(item);
+        draw_triangles(geometry, stats);
+    }
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+std::uint64_t PixelSortPass::composite(FrameStats& stats) {
+    GLuint layers = 0;
+    glGetNamedBufferSubData(layers_.get(), 0, sizeof layers, &layers);
+    const PixelBox box = left_.back();
+    left_.pop_back();
+    if (const std::size_t most = most_layers(pixels_); layers <= most || box.size() == glm::ivec2(1))
+        blend(stats);
+    else
+        split(box, 2 + layers / most, left_);
+    return layers;
+}
+
+void PixelSortPass::blend(FrameStats& stats) {
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glDisable(GL_CLIP_DISTANCE0);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    glUseProgram(composite_.get());
+    glBindVertexArray(nothing_.get());
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    // The lists are written again: Mesa's llvmpipe would not wait for this.
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+    glDisable(GL_BLEND);
+    ++stats.draws;
+    ++stats.passes;
+}
+
+}  // namespace vrut

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "gl/framebuffer.hpp"
+#include "gl/passes/drawing.hpp"
+#include "gl/passes/surface_programs.hpp"
+
+namespace vrut {
+
+/// Faces of transparent materials whose order changes from pixel to pixel. Those that the depth lets through
+/// are kept in a list for each pixel, which is then composited from near to far; at equal depth the item that
+/// comes later is in front. There is room for two layers in each pixel of the picture, but 64 MiB at most;
+/// lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
+/// single pixel needs more than all of it.
+class PixelSortPass {
+public:
+    /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
+    /// composited, again and again while it is drawing.
+    void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
+               const glm::ivec2& picture, const PixelBox& within);
+    bool is_drawing() const { return !left_.empty(); }
+    /// The part of the picture for which items are collected.
+    const PixelBox& box() const { return left_.back(); }
+    /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
+    /// `stats`.
+    void collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
+                 SurfacePrograms& programs, FrameStats& stats);
+    /// Draws all that was collected into the bound target, or divides the box where it does not fit; how many
+    /// layers there are.
+    std::uint64_t composite(FrameStats& stats);
+    /// Gives up what it is drawing.
+    void abandon() { left_.clear(); }
+    /// Gives its memory back until it draws again.
+    void release();
+
+private:
+    static constexpr std::size_t kLayerBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
+    /// Two in each pixel, but 64 MiB.
+    static constexpr std::size_t most_layers(std::size_t pixels) {
+        return std::min(8 * pixels, (std::size_t{64} << 20) / kLayerBytes);
+    }
+
+    void prepare(std::size_t pixels);
+    void bind() const;
+    void clear_lists() const;
+    void blend(FrameStats& stats);
+
+    std::vector<PixelBox> left_;  // the last one first
+    std::size_t pixels_ = 0;
+    GlBuffer layers_, lists_;
+    GlProgram composite_;
+    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+};
+
+}  // namespace vrut

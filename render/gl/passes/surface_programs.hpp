@@ -1,0 +1,98 @@
+#pragma once
+
+#include <map>
+#include <string_view>
+#include <tuple>
+
+#include "gl/gpu_scene.hpp"
+#include "gl/shader_program.hpp"
+#include "plan/frame_plan.hpp"
+#include "plan/view.hpp"
+
+namespace vrut {
+
+/// From where a target's contents are seen. In a mirror the view from the world is a reflected one.
+struct Sight {
+    glm::dmat4 clip_from_view{1};
+    glm::dmat4 view_from_world{1};
+};
+
+/// Phong light (Macků 2016, eq. 6.4–6.9 in their robust form) per pixel, or per vertex: then what light adds
+/// to the matte and to the shiny part of a surface is interpolated, and the rest is done at the pixel as
+/// ever. A program is compiled for what surfaces and lights ask of it, when they first do.
+class SurfacePrograms {
+public:
+    enum class Shape {
+        faces,
+        edges,          ///< without sides: their normals are turned to the viewer
+        glass,          ///< faces, their colour multiplied by alpha
+        layered_glass,  ///< the same, into the lists of kLayerLists
+        mirror,         ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
+    };
+    static constexpr GLuint kReflectionUnit = 2;
+
+    /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
+    void begin(const Sight& sight, const View& view, GpuScene* scene);
+    /// Makes the program for this item the current one and gives it all that it needs.
+    void use(Shape shape, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
+
+private:
+    enum class LightKind { headlight, point, directional, spot };
+    struct Variant {
+        Shape shape = Shape::faces;
+        LightKind light = LightKind::headlight;
+        bool textured = false;
+        bool environment = false;
+        bool clipped = false;
+        Methods::Light lit_at = Methods::Light::pixel;
+
+        bool operator<(const Variant& other) const {
+            const auto key = [](const Variant& v) {
+                return std::tie(v.shape, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+            };
+            return key(*this) < key(other);
+        }
+    };
+    static LightKind kind_of(const Light& light, const Sight& sight);
+    static GlProgram make(const Variant& variant);
+
+    LightKind light_ = LightKind::headlight;
+    Methods::Light lit_at_ = Methods::Light::pixel;
+    std::map<Variant, GlProgram> programs_;
+    GlBuffer sight_;
+    GpuScene* scene_ = nullptr;
+    std::optional<std::array<Index, 6>> cube_map_;
+};
+
+/// One colour everywhere.
+class PlainProgram {
+public:
+    void use(const glm::dvec3& color, const glm::dmat4& clip_from_view);
+
+private:
+    GlProgram program_;
+};
+
+/// The number of a node everywhere, into a target of integers.
+class NumberProgram {
+public:
+    void use(const glm::dmat4& clip_from_view);
+    /// Of what is drawn from here on.
+    void set_number(Index number);
+
+private:
+    GlProgram program_;
+};
+
+/// Lists of the transparent layers at each pixel of a box: GLSL of a layered_glass program and of one that
+/// reads them. Layers are numbered from 1.
+extern const std::string_view kLayerLists;
+inline constexpr GLuint kLayersBinding = 0, kListsBinding = 1;
+
+/// With a layered_glass program: at equal depth the higher order is in front.
+void set_order(GLuint order);
+
+/// Where the next draw of the current program lies.
+void set_place(const DrawItem& item, const GpuGeometry& geometry);
+
+}  // namespace vrut

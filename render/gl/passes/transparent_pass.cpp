@@ -1,0 +1,27 @@
+#include "gl/passes/transparent_pass.hpp"
+
+#include "gl/passes/drawing.hpp"
+
+namespace vrut {
+
+void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
+                           FrameStats& stats) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (const DrawItem& item : items) {
+        const GpuGeometry& geometry = scene.geometry(item);
+        programs.use(SurfacePrograms::Shape::glass, item, geometry, scene.scene()->material(item.material));
+        glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
+        cull_sides(item, item.order != nullptr);
+        if (item.order)
+            draw_triangles(scene.ordered(item), stats);
+        else
+            draw_triangles(geometry, stats);
+    }
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+}
+
+}  // namespace vrut

@@ -1,0 +1,39 @@
+#include "io/assimp/axes.hpp"
+
+#include <cmath>
+
+namespace vrut {
+
+namespace {
+
+/// One of FBX's axes, by the names of its number and its sign.
+glm::dvec3 axis_of(const aiMetadata& settings, const char* name, const char* sign_name) {
+    std::int32_t axis = -1, sign = 1;
+    settings.Get(name, axis);
+    settings.Get(sign_name, sign);
+    glm::dvec3 direction(0);
+    if (axis >= 0 && axis < 3) direction[axis] = sign < 0 ? -1 : 1;
+    return direction;
+}
+
+}  // namespace
+
+glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Losses& losses) {
+    if (format != AssimpFormat::fbx || scene.mMetaData == nullptr) return glm::dmat4(1);
+    const glm::dvec3 right = axis_of(*scene.mMetaData, "CoordAxis", "CoordAxisSign");
+    const glm::dvec3 up = axis_of(*scene.mMetaData, "UpAxis", "UpAxisSign");
+    const glm::dvec3 front = axis_of(*scene.mMetaData, "FrontAxis", "FrontAxisSign");
+    const glm::dmat3 upright = glm::transpose(glm::dmat3(right, up, front));
+    if (glm::determinant(upright) == 1) return glm::dmat4(upright);
+    losses.add("its axes are left as they are: those that it names are not right-handed");
+    return glm::dmat4(1);
+}
+
+double unit_of(const aiScene& scene, AssimpFormat format) {
+    float centimetres = 100;
+    if (format == AssimpFormat::fbx && scene.mMetaData != nullptr)
+        scene.mMetaData->Get("UnitScaleFactor", centimetres);
+    return std::isfinite(centimetres) && centimetres > 0 ? double{centimetres} / 100 : 1;
+}
+
+}  // namespace vrut

@@ -1,0 +1,117 @@
+#include "io/assimp/lights.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/assimp/materials.hpp"
+
+namespace vrut {
+
+namespace {
+
+glm::dvec3 vector_of(const aiVector3D& from) { return {from.x, from.y, from.z}; }
+
+/// Vertical, in degrees; no number where the file's is none.
+double field_of_view(const aiCamera& from, AssimpFormat format) {
+    const double angle = from.mHorizontalFOV, aspect = from.mAspect > 0 ? from.mAspect : 1;
+    // Of glTF assimp 5.2 gives the vertical angle times the aspect.
+    return glm::degrees(format == AssimpFormat::gltf ? angle / aspect
+                                                     : 2 * std::atan(std::tan(angle / 2) / aspect));
+}
+
+/// Of Collada, assimp 5.2 reads only cameras with names, and angles only with enough beside them; of the
+/// others it makes this, its default taken for degrees.
+bool is_unread(const aiCamera& from, AssimpFormat format) {
+    return format == AssimpFormat::collada && std::abs(from.mHorizontalFOV - 0.013708F) < 1e-5F;
+}
+
+glm::dvec3 color_of(const aiLight& from, AssimpFormat format) {
+    const aiColor3D& color = from.mColorDiffuse;  // times the strength
+    const float most = std::max({color.r, color.g, color.b});
+    if (!std::isfinite(most)) return glm::dvec3(1);
+    if (format == AssimpFormat::gltf) return displayed_color(most > 0 ? color * (1 / most) : color);
+    return glm::clamp(glm::dvec3(color.r, color.g, color.b) / std::max(1.0, double{most}), 0.0, 1.0);
+}
+
+/// The full cone, in degrees.
+double cone_of(const aiLight& from, AssimpFormat format) {
+    const double angle = format == AssimpFormat::gltf      ? 2 * double{from.mAngleOuterCone}
+                         : format == AssimpFormat::collada ? double{from.mAngleInnerCone}
+                                                           // as the file has it
+                                                           : double{from.mAngleOuterCone};
+    return std::isfinite(angle) ? std::clamp(glm::degrees(angle), 0.0, 180.0) : 90;
+}
+
+/// Only of Collada are these the file's, in its words.
+glm::dvec3 attenuation_of(const aiLight& from, AssimpFormat format, Losses& losses) {
+    const glm::dvec3 file(from.mAttenuationConstant, from.mAttenuationLinear, from.mAttenuationQuadratic);
+    const auto is_usable = [](double part) { return part >= 0 && part <= 1e15; };
+    if (format == AssimpFormat::collada && is_usable(file.x) && is_usable(file.y) && is_usable(file.z))
+        return file;
+    losses.add("a light shines with full colour at any distance: its strength and range are not read");
+    return {1, 0, 0};
+}
+
+/// Turns the direction in which our lights shine, -z, into another.
+glm::dmat4 turn_to(const glm::dvec3& direction) {
+    const double length = glm::length(direction);
+    if (!(length > 0) || !std::isfinite(length)) return glm::dmat4(1);
+    const glm::dvec3 back = -direction / length;
+    if (back == glm::dvec3(0, 0, 1)) return glm::dmat4(1);
+    const glm::dvec3 other = std::abs(back.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+    const glm::dvec3 right = glm::normalize(glm::cross(other, back));
+    return glm::dmat4(glm::dmat3(right, glm::cross(back, right), back));
+}
+
+}  // namespace
+
+std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Losses& losses) {
+    if (from.mHorizontalFOV <= 0) {
+        losses.add("a camera without perspective is not read");
+        return std::nullopt;
+    }
+    const double fov = field_of_view(from, format);
+    if (!std::isfinite(fov)) {
+        losses.add("a camera whose field of view is no number is not read");
+        return std::nullopt;
+    }
+    Node node;
+    node.name = "camera";
+    node.type = NodeType::camera;
+    CameraData& camera = node.data.emplace<CameraData>();
+    if (is_unread(from, format))
+        losses.add("a camera's field of view is not read: it is 40 degrees");
+    else
+        camera.fov = std::clamp(fov, 1.0, 170.0);
+    // At the node's origin: into its position assimp 5.2 puts the node's own a second time.
+    camera.focus = vector_of(from.mLookAt);
+    camera.up = vector_of(from.mUp);
+    return node;
+}
+
+std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, Losses& losses) {
+    Node node;
+    node.name = "light";
+    node.type = NodeType::light;
+    LightData& light = node.data.emplace<LightData>();
+    switch (from.mType) {
+        case aiLightSource_DIRECTIONAL:
+            light.type = LightData::Type::directional;
+            break;
+        case aiLightSource_SPOT:
+            light.type = LightData::Type::spot;
+            break;
+        case aiLightSource_POINT:
+            break;
+        default:
+            losses.add("a light that shines from an area or from everywhere is not read");
+            return std::nullopt;
+    }
+    light.color = glm::dvec4(color_of(from, format), 1);
+    light.attenuation = attenuation_of(from, format, losses);
+    if (light.type == LightData::Type::spot) light.angle = cone_of(from, format);
+    if (light.type != LightData::Type::point) node.matrix = turn_to(vector_of(from.mDirection));
+    return node;
+}
+
+}  // namespace vrut

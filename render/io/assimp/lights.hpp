@@ -1,0 +1,19 @@
+#pragma once
+
+#include <assimp/camera.h>
+#include <assimp/light.h>
+
+#include <optional>
+
+#include "io/assimp/format.hpp"
+#include "io/conversion_warnings.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// What hangs in the node of that name: a camera, or none where it is of a kind that we have not.
+std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Losses& losses);
+/// The same of a light. Its matrix turns it where it shines.
+std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, Losses& losses);
+
+}  // namespace vrut

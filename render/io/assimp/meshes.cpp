@@ -1,0 +1,141 @@
+#include "io/assimp/meshes.hpp"
+
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "io/assimp/text.hpp"
+#include "io/vrut/tokenizer.hpp"
+
+namespace vrut {
+
+namespace {
+
+std::string called(const aiMesh& mesh) {
+    const std::string name = text_of(mesh.mName);
+    return name.empty() ? "the mesh" : "mesh '" + excerpt(name) + "'";
+}
+
+void require_coordinates(const aiVector3D* vectors, const char* what, const aiMesh& mesh) {
+    int all = 1;  // without an early end, so that several are looked at at once
+    for (const aiVector3D* v = vectors; v != vectors + mesh.mNumVertices; ++v)
+        all &= int{is_coordinate(v->x)} & int{is_coordinate(v->y)} & int{is_coordinate(v->z)};
+    if (all == 0)
+        throw Refused("a " + std::string(what) + " of " + called(mesh) +
+                      " is not a number from -1e15 to 1e15");
+}
+
+/// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
+template <class T>
+void release(T*& array) {
+    delete[] array;
+    array = nullptr;
+}
+
+void take_vertices(aiMesh& mesh, Geometry& geometry) {
+    require_coordinates(mesh.mVertices, "vertex", mesh);
+    geometry.positions.reserve(mesh.mNumVertices);
+    for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v)
+        geometry.bounds.add(geometry.positions.emplace_back(v->x, v->y, v->z));
+    release(mesh.mVertices);
+}
+
+void take_normals(aiMesh& mesh, Geometry& geometry) {
+    if (!mesh.HasNormals()) return;
+    require_coordinates(mesh.mNormals, "normal", mesh);
+    geometry.normals.reserve(mesh.mNumVertices);
+    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v)
+        geometry.normals.emplace_back(v->x, v->y, v->z);
+    release(mesh.mNormals);
+}
+
+/// assimp has turned v upwards already, as we have it.
+void take_texcoords(aiMesh& mesh, Geometry& geometry) {
+    if (!mesh.HasTextureCoords(0)) return;
+    require_coordinates(mesh.mTextureCoords[0], "texture coordinate", mesh);
+    geometry.texcoords.reserve(mesh.mNumVertices);
+    for (const aiVector3D* v = mesh.mTextureCoords[0]; v != mesh.mTextureCoords[0] + mesh.mNumVertices; ++v)
+        geometry.texcoords.emplace_back(v->x, v->y);
+    release(mesh.mTextureCoords[0]);
+}
+
+void take_triangles(aiMesh& mesh, Geometry& geometry) {
+    geometry.triangles.reserve(mesh.mNumFaces);
+    unsigned last = 0;
+    for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
+        if (face->mNumIndices != 3) continue;
+        const unsigned* i = face->mIndices;
+        geometry.triangles.emplace_back(i[0], i[1], i[2]);
+        last = std::max({last, i[0], i[1], i[2]});
+    }
+    if (last >= mesh.mNumVertices) throw Refused(called(mesh) + " has an index out of range");
+    release(mesh.mFaces);
+    mesh.mNumFaces = 0;
+}
+
+template <class T>
+void add_stream(const std::vector<T>& values, std::vector<meshopt_Stream>& streams) {
+    if (!values.empty()) streams.push_back({values.data(), sizeof(T), sizeof(T)});
+}
+
+template <class T>
+void remap(std::vector<T>& values, const std::vector<unsigned>& numbers, std::size_t count) {
+    if (values.empty()) return;
+    std::vector<T> kept(count);
+    meshopt_remapVertexBuffer(kept.data(), values.data(), values.size(), sizeof(T), numbers.data());
+    values = std::move(kept);
+}
+
+/// Makes one of vertices that are equal in everything: most readers of assimp give each corner its own.
+void weld(Geometry& geometry) {
+    std::vector<meshopt_Stream> streams;
+    add_stream(geometry.positions, streams);
+    add_stream(geometry.normals, streams);
+    add_stream(geometry.texcoords, streams);
+    std::vector<unsigned> numbers(geometry.positions.size());
+    unsigned* const indices = &geometry.triangles[0].x;
+    const std::size_t corners = 3 * geometry.triangles.size();
+    const std::size_t count = meshopt_generateVertexRemapMulti(
+        numbers.data(), indices, corners, numbers.size(), streams.data(), streams.size());
+    if (count == numbers.size()) return;
+    meshopt_remapIndexBuffer(indices, indices, corners, numbers.data());
+    remap(geometry.positions, numbers, count);
+    remap(geometry.normals, numbers, count);
+    remap(geometry.texcoords, numbers, count);
+    geometry.bounds = {};  // a vertex that no triangle has is gone
+    for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
+}
+
+}  // namespace
+
+void check_faces(const aiMesh& mesh) {
+    if (!mesh.HasPositions()) throw Refused(called(mesh) + " has no vertices");
+    for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
+        if (face->mNumIndices == 0) throw Refused(called(mesh) + " has a face without corners");
+        for (unsigned i = 0; i < face->mNumIndices; ++i)
+            if (face->mIndices[i] >= mesh.mNumVertices)
+                throw Refused(called(mesh) + " has an index out of range");
+    }
+}
+
+Geometry take_geometry(aiMesh& mesh, AssimpFormat format) {
+    Geometry geometry;
+    take_triangles(mesh, geometry);
+    take_vertices(mesh, geometry);
+    if (format != AssimpFormat::stl) take_normals(mesh, geometry);  // there each triangle has its own
+    take_texcoords(mesh, geometry);
+    if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
+    return geometry;
+}
+
+void tell_lost_parts(const aiMesh& mesh, Losses& losses) {
+    if (mesh.HasBones()) losses.add("a skin is not shown: the mesh stands as it was modelled");
+    if (mesh.mNumAnimMeshes > 0) losses.add("the shapes that a mesh can take on are not shown");
+    if (mesh.HasVertexColors(0)) losses.add("a mesh's colours at its vertices are not shown");
+    if (mesh.HasTextureCoords(1)) losses.add("a mesh's further texture coordinates are not read");
+    if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
+        losses.add("a mesh of points or lines is not shown");
+}
+
+}  // namespace vrut

@@ -1,0 +1,170 @@
+#include "io/assimp/pictures.hpp"
+
+#include <assimp/GltfMaterial.h>
+
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "io/assimp/files.hpp"
+#include "io/assimp/text.hpp"
+#include "io/image_file.hpp"
+#include "io/notices.hpp"
+#include "io/scene_textures.hpp"
+#include "io/vrut/tokenizer.hpp"
+
+namespace vrut {
+
+namespace {
+
+std::string picture_name(const aiMaterial& material, aiTextureType type) {
+    aiString name;
+    return material.Get(AI_MATKEY_TEXTURE(type, 0), name) == aiReturn_SUCCESS ? text_of(name) : "";
+}
+
+/// The picture of the colour; of some materials it is called another thing than of most.
+aiTextureType color_picture(const aiMaterial& material) {
+    return has_picture(material, aiTextureType_DIFFUSE) ? aiTextureType_DIFFUSE : aiTextureType_BASE_COLOR;
+}
+
+/// As assimp looks for it: a picture inside the file may be meant by its number or by its name.
+std::string name_of(const std::string& address, const aiScene& scene, const std::filesystem::path& folder,
+                    AssimpFormat format) {
+    if (format == AssimpFormat::gltf) return name_of_address(folder, address);
+    const int number = scene.GetEmbeddedTextureAndIndex(address.c_str()).second;
+    return number >= 0 ? "*" + std::to_string(number) : name_of_foreign_address(folder, address);
+}
+
+void tell_lost_placement(const aiMaterial& from, aiTextureType type, Losses& losses) {
+    int set = 0, wrap = aiTextureMapMode_Wrap;
+    if (from.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS && set != 0)
+        losses.add("a picture is laid by the first texture coordinates, and not by others as the file says");
+    for (const char* key : {"$tex.mapmodeu", "$tex.mapmodev"})
+        if (from.Get(key, type, 0, wrap) == aiReturn_SUCCESS && wrap != aiTextureMapMode_Wrap)
+            losses.add("a picture is repeated where the file clamps or mirrors it");
+    aiUVTransform shift;
+    if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), shift) == aiReturn_SUCCESS &&
+        (shift.mTranslation != aiVector2D(0, 0) || shift.mScaling != aiVector2D(1, 1) ||
+         shift.mRotation != 0))
+        losses.add("a picture is neither shifted nor scaled nor turned as the file says");
+    if (from.GetTextureCount(type) > 1) losses.add("of several pictures on top of each other one is shown");
+}
+
+using TextureResult = tl::expected<Index, std::string>;
+
+TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint64_t max_pixels,
+                              std::vector<Texture>& textures) {
+    unsigned index = 0;
+    const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), index);
+    if (error != std::errc() || end != name.data() + name.size() || index >= scene.mNumTextures)
+        return tl::unexpected(std::string("there is no such picture in the file"));
+    aiTexture& from = *scene.mTextures[index];
+    if (from.mHeight != 0 || from.pcData == nullptr)
+        return tl::unexpected(std::string("it is neither PNG nor JPEG"));
+    auto image = decode_picture({reinterpret_cast<const char*>(from.pcData), from.mWidth}, max_pixels);
+    delete[] from.pcData;  // each is decoded once
+    from.pcData = nullptr;
+    if (!image) return tl::unexpected(image.error());
+    const bool transparent = has_transparent_pixel(*image);
+    textures.push_back({name, *std::move(image), transparent});
+    return static_cast<Index>(textures.size() - 1);
+}
+
+}  // namespace
+
+bool has_picture(const aiMaterial& material, aiTextureType type) {
+    return material.GetTextureCount(type) > 0;
+}
+
+void name_picture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                  AssimpFormat format, Material& material, Losses& losses) {
+    const aiTextureType type = color_picture(from);
+    if (!has_picture(from, type)) return;
+    material.image = name_of(picture_name(from, type), scene, folder, format);
+    tell_lost_placement(from, type, losses);
+    if (glm::dvec3(material.diffuse) != glm::dvec3(1))
+        losses.add("a picture's colours are shown as they are, and not multiplied by the base colour");
+}
+
+void tell_lost_pictures(const aiMaterial& from, Losses& losses) {
+    constexpr std::pair<aiTextureType, const char*> kLost[] = {
+        {aiTextureType_NORMALS, "a normal map is not shown"},
+        {aiTextureType_HEIGHT, "a bump map is not shown"},
+        {aiTextureType_DISPLACEMENT, "a picture of displacement is not shown"},
+        {aiTextureType_METALNESS, "a picture of metal and roughness is not shown"},
+        {aiTextureType_SPECULAR, "a picture of highlights is not shown"},
+        {aiTextureType_SHININESS, "a picture of shininess is not shown"},
+        {aiTextureType_REFLECTION, "a picture of reflections is not shown"},
+        {aiTextureType_LIGHTMAP, "a picture of occlusion is not shown"},
+        {aiTextureType_EMISSIVE, "a picture that glows is not shown"},
+    };
+    for (const auto& [type, what] : kLost)
+        if (has_picture(from, type)) losses.add(what);
+    if (has_picture(from, aiTextureType_OPACITY) && ignores_alpha(from, AssimpFormat::obj))
+        losses.add("a picture of transparency on its own is not shown");
+}
+
+std::string alpha_mode(const aiMaterial& material) {
+    aiString mode;
+    return material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == aiReturn_SUCCESS ? mode.C_Str() : "OPAQUE";
+}
+
+bool ignores_alpha(const aiMaterial& material, AssimpFormat format) {
+    if (format == AssimpFormat::gltf) return alpha_mode(material) == "OPAQUE";
+    const std::string opacity = picture_name(material, aiTextureType_OPACITY);
+    return opacity.empty() || opacity != picture_name(material, color_picture(material));
+}
+
+void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, std::vector<Texture>& textures,
+                            const std::string& file, std::vector<std::string>& notices) {
+    Notices faults;
+    std::map<std::string, TextureResult> known;
+    std::uint64_t pixels_left = kMaxScenePixels;
+    for (Material& material : materials) {
+        if (!material.image.starts_with('*')) continue;
+        auto found = known.find(material.image);
+        if (found == known.end()) {
+            found = known
+                        .emplace(material.image,
+                                 decode_embedded(scene, material.image,
+                                                 std::min(pixels_left, kMaxPicturePixels), textures))
+                        .first;
+            if (found->second) pixels_left -= textures.back().image.rgba.size() / 4;
+        }
+        if (found->second)
+            material.texture = *found->second;
+        else
+            faults.add(file + ": material " + std::to_string(material.id) +
+                       " is drawn without its picture '" + excerpt(material.image) +
+                       "': " + found->second.error());
+        material.image.clear();  // no file that could be read
+    }
+    faults.append_to(notices);
+}
+
+void make_pictures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<Texture>& textures) {
+    std::vector<bool> keeps_alpha(textures.size());
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].texture != kNone && !ignore_alpha[i])
+            keeps_alpha[static_cast<std::size_t>(materials[i].texture)] = true;
+    std::map<Index, Index> opaque;  // by the picture that it was made from
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const Index from = materials[i].texture;
+        if (from == kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)
+            continue;
+        const auto [found, is_new] = opaque.emplace(from, from);
+        if (is_new && keeps_alpha[static_cast<std::size_t>(from)]) {
+            found->second = static_cast<Index>(textures.size());
+            textures.push_back(textures[static_cast<std::size_t>(from)]);
+        }
+        materials[i].texture = found->second;
+    }
+    for (const auto& [from, made] : opaque) {
+        Texture& texture = textures[static_cast<std::size_t>(made)];
+        for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
+        texture.transparent = false;
+    }
+}
+
+}  // namespace vrut

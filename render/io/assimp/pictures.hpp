@@ -1,0 +1,37 @@
+#pragma once
+
+#include <assimp/material.h>
+#include <assimp/scene.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/assimp/format.hpp"
+#include "io/conversion_warnings.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+bool has_picture(const aiMaterial& material, aiTextureType type);
+
+/// Gives a material the name of its colour's picture, where it has one: a file in `folder`, or `*` and a
+/// number where it lies inside the scene's file.
+void name_picture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                  AssimpFormat format, Material& material, Losses& losses);
+void tell_lost_pictures(const aiMaterial& from, Losses& losses);
+
+/// Of glTF.
+std::string alpha_mode(const aiMaterial& material);
+/// Whether the alpha of the material's picture means nothing.
+bool ignores_alpha(const aiMaterial& material, AssimpFormat format);
+
+/// Decodes the pictures inside the file that `materials` name into `textures`, and frees them.
+void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, std::vector<Texture>& textures,
+                            const std::string& file, std::vector<std::string>& notices);
+
+/// Gives those of the materials that ignore alpha pictures without it.
+void make_pictures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<Texture>& textures);
+
+}  // namespace vrut

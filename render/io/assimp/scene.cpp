@@ -1,0 +1,324 @@
+#include "io/assimp/scene.hpp"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "io/assimp/axes.hpp"
+#include "io/assimp/files.hpp"
+#include "io/assimp/lights.hpp"
+#include "io/assimp/materials.hpp"
+#include "io/assimp/meshes.hpp"
+#include "io/assimp/pictures.hpp"
+#include "io/assimp/ply_check.hpp"
+#include "io/assimp/text.hpp"
+#include "io/gltf/check.hpp"
+#include "io/scene_textures.hpp"
+#include "io/vrut/tokenizer.hpp"
+#include "mesh/watertight.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// Builds the parts of a scene, and frees what it has taken over from assimp's.
+class AssimpConverter {
+public:
+    AssimpConverter(aiScene& scene, AssimpFormat format, Losses losses, const std::filesystem::path& path,
+                    const ReadProgress& progress)
+        : scene_(scene), format_(format), path_(path), progress_(progress), losses_(std::move(losses)) {}
+
+    SceneParts convert() {
+        parts_.name = path_.stem().string();
+        parts_.unit = unit_of(scene_, format_);
+        for (unsigned i = 0; i < scene_.mNumCameras; ++i)
+            cameras_.emplace(scene_.mCameras[i]->mName.C_Str(), i);
+        for (unsigned i = 0; i < scene_.mNumLights; ++i) lights_.emplace(scene_.mLights[i]->mName.C_Str(), i);
+        convert_materials();
+        convert_meshes();
+        convert_nodes();
+        losses_.add("a camera or light that no node of its own has is not read",
+                    cameras_.size() + lights_.size());
+        losses_.add("an animation is not shown", scene_.mNumAnimations);
+        losses_.append_to(parts_.notices, path_.string());
+        read_pictures(parts_, path_, progress_);
+        make_pictures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
+        if (format_ != AssimpFormat::gltf) find_single_sided();
+        return std::move(parts_);
+    }
+
+private:
+    // --- materials and meshes
+
+    /// Only those that meshes have: assimp adds one of its own.
+    void convert_materials() {
+        std::vector<bool> used(scene_.mNumMaterials);
+        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+            if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw Refused("a mesh has no material");
+            used[scene_.mMeshes[i]->mMaterialIndex] = true;
+        }
+        materials_.assign(scene_.mNumMaterials, kNone);
+        for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
+            if (!used[i]) continue;
+            materials_[i] = static_cast<Index>(parts_.materials.size());
+            parts_.materials.push_back(
+                convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, losses_));
+            parts_.materials.back().id = materials_[i];
+            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i], format_));
+        }
+        read_embedded_pictures(scene_, parts_.materials, parts_.textures, path_.string(), parts_.notices);
+    }
+
+    void convert_meshes() {
+        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+            if (progress_) progress_(0.5 + 0.5 * i / scene_.mNumMeshes);
+            geometries_.push_back(add_geometry(*scene_.mMeshes[i]));
+        }
+        if (parts_.geometries.empty()) throw Refused("it has no triangles to show");
+    }
+
+    /// kNone: there is nothing in it that could be drawn.
+    Index add_geometry(aiMesh& mesh) {
+        tell_lost_parts(mesh, losses_);
+        if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return kNone;
+        Geometry geometry = take_geometry(mesh, format_);
+        if (geometry.triangles.empty()) return kNone;
+        geometry.id = static_cast<Id>(parts_.geometries.size());
+        parts_.geometries.push_back(std::move(geometry));
+        return static_cast<Index>(parts_.geometries.size() - 1);
+    }
+
+    /// Those that may be drawn from one side and look the same: opaque, and on closed parts only.
+    void find_single_sided() {
+        const std::atomic<bool> go_on{false};
+        std::vector<bool> open(parts_.materials.size());
+        for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
+            const auto material = static_cast<std::size_t>(materials_[scene_.mMeshes[i]->mMaterialIndex]);
+            if (geometries_[i] != kNone && !open[material])
+                open[material] =
+                    !is_closed(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
+        }
+        for (std::size_t i = 0; i < open.size(); ++i) {
+            Material& material = parts_.materials[i];
+            const bool transparent =
+                material.diffuse.a < 1 ||
+                (material.texture != kNone &&
+                 parts_.textures[static_cast<std::size_t>(material.texture)].transparent);
+            material.two_sided = open[i] || transparent;
+        }
+    }
+
+    // --- nodes
+
+    /// From the root downwards, each before its children; without recursion, since a chain may be long.
+    void convert_nodes() {
+        struct Place {
+            const aiNode* node;
+            Id parent;
+            glm::dmat4 matrix;  // parent from node
+        };
+        std::vector<Place> open;
+        const auto open_children = [&](const aiNode& node, Id id, const glm::dmat4& matrix) {
+            for (unsigned i = node.mNumChildren; i-- > 0;)
+                open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
+        };
+        const aiNode& root = *scene_.mRootNode;
+        const glm::dmat4 matrix = upright_from_file(scene_, format_, losses_) * matrix_of(root);
+        if (is_made_up(root, matrix))
+            open_children(root, 0, glm::dmat4(1));
+        else
+            open.push_back({&root, 0, matrix});
+        while (!open.empty()) {
+            const Place place = open.back();
+            open.pop_back();
+            if (is_step(*place.node))
+                open_children(*place.node, place.parent, place.matrix);
+            else
+                open_children(*place.node, add_node(*place.node, place.parent, place.matrix), glm::dmat4(1));
+        }
+    }
+
+    /// Whether assimp added this root to hold what the file has.
+    bool is_made_up(const aiNode& root, const glm::dmat4& matrix) const {
+        return root.mNumMeshes == 0 && matrix == glm::dmat4(1) && cameras_.count(root.mName.C_Str()) == 0 &&
+               lights_.count(root.mName.C_Str()) == 0 &&
+               (format_ != AssimpFormat::gltf || text_of(root.mName) == "ROOT");
+    }
+
+    /// Whether it is one of the many that assimp makes of a single node's turns, pivots and shifts in FBX.
+    bool is_step(const aiNode& node) const {
+        return format_ == AssimpFormat::fbx &&
+               std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos;
+    }
+
+    /// What a node shows: it alone is the node itself, several hang below it.
+    Id add_node(const aiNode& from, Id parent, const glm::dmat4& matrix) {
+        std::vector<Node> contents;
+        for (unsigned i = 0; i < from.mNumMeshes; ++i) add_mesh(from.mMeshes[i], contents);
+        add_named(cameras_, scene_.mCameras, convert_camera, from, contents);
+        add_named(lights_, scene_.mLights, convert_light, from, contents);
+        const bool alone =
+            contents.size() == 1 && from.mNumChildren == 0 && contents.front().matrix == glm::dmat4(1);
+        Node node = alone ? std::move(contents.front()) : Node{};
+        node.name = text_of(from.mName);
+        if (node.name.empty() && is_one_part()) node.name = parts_.name;
+        node.matrix = matrix;
+        const Id id = add(std::move(node), parent);
+        if (!alone)
+            for (Node& content : contents) add(std::move(content), id);
+        return id;
+    }
+
+    /// A format of one part, which often has no name.
+    bool is_one_part() const { return format_ == AssimpFormat::stl || format_ == AssimpFormat::ply; }
+
+    Id add(Node node, Id parent) {
+        node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+        parts_.nodes.push_back({std::move(node), parent});
+        return parts_.nodes.back().node.id;
+    }
+
+    void add_mesh(unsigned mesh, std::vector<Node>& contents) const {
+        if (mesh >= geometries_.size()) throw Refused("a node has a mesh that there is not");
+        if (geometries_[mesh] == kNone) return;
+        Node& node = contents.emplace_back();
+        node.name = text_of(scene_.mMeshes[mesh]->mName);
+        node.type = NodeType::geometry;
+        node.data = GeometryData{geometries_[mesh], materials_[scene_.mMeshes[mesh]->mMaterialIndex]};
+    }
+
+    using Names = std::multimap<std::string, unsigned>;
+
+    /// assimp knows cameras and lights by their nodes' names; of nodes with one name each has the next.
+    template <class T, class Conversion>
+    void add_named(Names& names, T* const* all, Conversion conversion, const aiNode& from,
+                   std::vector<Node>& contents) {
+        const auto found = names.find(from.mName.C_Str());
+        if (found == names.end()) return;
+        const unsigned number = found->second;
+        names.erase(found);
+        if (auto node = conversion(*all[number], format_, losses_)) contents.push_back(*std::move(node));
+    }
+
+    static glm::dmat4 matrix_of(const aiNode& node) {
+        const aiMatrix4x4& from = node.mTransformation;
+        glm::dmat4 matrix;
+        for (unsigned row = 0; row < 4; ++row)
+            for (unsigned column = 0; column < 4; ++column) {
+                if (!is_coordinate(from[row][column]))
+                    throw Refused("the matrix of node '" + excerpt(text_of(node.mName)) +
+                                  "' has an element that is not a number from -1e15 to 1e15");
+                matrix[static_cast<int>(column)][static_cast<int>(row)] = from[row][column];
+            }
+        if (from.d1 != 0 || from.d2 != 0 || from.d3 != 0 || from.d4 != 1)
+            throw Refused("the matrix of node '" + excerpt(text_of(node.mName)) +
+                          "' does not end with the row 0 0 0 1");
+        return matrix;
+    }
+
+    aiScene& scene_;
+    const AssimpFormat format_;
+    const std::filesystem::path& path_;
+    const ReadProgress& progress_;
+    SceneParts parts_;
+    Losses losses_;
+    std::vector<Index> materials_, geometries_;  // ours for each of assimp's
+    std::vector<bool> ignore_alpha_;             // for each of ours
+    Names cameras_, lights_;
+};
+
+/// assimp takes what it knows best for a file that it does not know by its ending: only this reader is left
+/// it.
+void leave_only(Assimp::Importer& importer, const char* reader) {
+    for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+        Assimp::BaseImporter* other = importer.GetImporter(i);
+        if (std::string_view(other->GetInfo()->mName) == reader) continue;
+        importer.UnregisterLoader(other);
+        delete other;
+    }
+}
+
+std::uint64_t count_triangles(const aiScene& scene) {
+    std::uint64_t count = 0;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        if ((scene.mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0)
+            count += scene.mMeshes[i]->mNumFaces;
+    return count;
+}
+
+/// Polygons become triangles, once they are known to be some.
+void check_and_triangulate(Assimp::Importer& importer) {
+    const aiScene& scene = *importer.GetScene();
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_faces(*scene.mMeshes[i]);
+    if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
+        throw Refused("its polygons cannot be cut into triangles");
+}
+
+std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) {
+    if (!files.refusal().empty()) return files.refusal();
+    const std::string error = importer.GetErrorString();
+    constexpr std::pair<const char*, const char*> kKnown[] = {
+        {"No suitable reader", "it does not begin as a file with this ending does"},
+        {"STL storage representation", "it is neither text nor as long as its number of triangles asks for"},
+        {"block offset is out of range",
+         "it is cut off, or it is binary FBX written by assimp 5.2, which does not read that itself"},
+    };
+    for (const auto& [part, meaning] : kKnown)
+        if (error.find(part) != std::string::npos) return meaning;
+    return "it cannot be read: " + excerpt(error, 300);
+}
+
+std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format, std::string head,
+                                Losses& losses) {
+    Assimp::Importer importer;
+    leave_only(importer, importer_name(format));
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+    auto* files = new SceneFiles(path, std::move(head));
+    importer.SetIOHandler(files);  // which it deletes
+    if (importer.ReadFile(files->main_name(), 0) == nullptr) throw Refused(fault_of(importer, *files));
+    if (!files->refusal().empty()) losses.add(files->refusal());
+    if (format != AssimpFormat::gltf) check_and_triangulate(importer);
+    return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
+}
+
+std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, Losses& losses) {
+    auto checked = check_gltf(path);
+    if (!checked) throw Refused(checked.error());
+    losses = std::move(checked->losses);
+    auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), losses);
+    if (count_triangles(*scene) != checked->triangles) throw Refused("a mesh has an index out of range");
+    return scene;
+}
+
+std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, AssimpFormat format,
+                                        Losses& losses) {
+    if (format == AssimpFormat::gltf) return import_gltf(path, losses);
+    if (format == AssimpFormat::ply)
+        if (const auto fault = ply_fault(path)) throw Refused(*fault);
+    return import(path, format, {}, losses);
+}
+
+}  // namespace
+
+PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,
+                              const ReadProgress& progress) {
+    try {
+        if (progress) progress(0);
+        Losses losses;
+        const auto scene = import_checked(path, format, losses);
+        if (progress) progress(0.5);
+        return AssimpConverter(*scene, format, std::move(losses), path, progress).convert();
+    } catch (const Refused& refused) {
+        return tl::unexpected(path.string() + ": " + refused.what());
+    }
+}
+
+}  // namespace vrut

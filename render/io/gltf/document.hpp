@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/gltf/check.hpp"
+
+namespace vrut {
+
+using Index32 = std::optional<std::uint32_t>;
+
+struct GltfBuffer {
+    std::uint64_t length = 0;
+    std::string address;  // of data, the beginning
+};
+
+struct GltfView {
+    std::uint64_t buffer = 0, offset = 0, length = 0, stride = 0;
+};
+
+struct GltfAccessor {
+    Index32 view, sparse_indices, sparse_values;
+    std::uint64_t offset = 0, sparse_indices_offset = 0, sparse_values_offset = 0;
+    std::uint32_t count = 0, component = 0, sparse_count = 0, sparse_component = 0;
+    std::uint64_t components = 0;
+    bool sparse = false;
+};
+
+struct GltfPrimitive {
+    std::uint32_t mode = 4;
+    Index32 indices, positions, normals, texcoords;
+    std::string_view texcoords_name, indices_name;
+};
+
+struct GltfNode {
+    std::vector<std::uint32_t> children;
+    Index32 mesh;
+};
+
+/// What of a glTF file is checked.
+struct GltfDocument {
+    std::vector<GltfBuffer> buffers;
+    std::vector<std::uint32_t> image_views;  // the buffer views of pictures
+    std::vector<GltfView> views;
+    std::vector<GltfAccessor> accessors;
+    std::vector<std::vector<GltfPrimitive>> meshes;
+    std::vector<GltfNode> nodes;
+    std::vector<std::vector<std::uint32_t>> scenes;  // their roots
+    std::uint32_t scene = 0;
+};
+
+/// Gives a member or an extension, by its name in the head, a name that nobody looks for.
+void hide_member(CheckedGltf& gltf, std::string_view name);
+
+/// Reads the head's JSON, which begins at `start`, hides what is not shown anyway, and checks addresses and
+/// kinds of pictures. Names in the document are parts of the head. Throws JsonFault.
+GltfDocument read_gltf(CheckedGltf& gltf, std::size_t start);
+
+}  // namespace vrut

@@ -1,0 +1,93 @@
+#include "io/gltf/material.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vrut {
+
+namespace {
+
+constexpr double kDielectric = 0.22;    // how a reflectance of 4 % displays
+constexpr double kVisible = 0.5 / 255;  // what rounds to the same byte is the same
+constexpr double kSharpest = 10'000;    // Phong's exponent, which is what the reader gives smoother ones
+
+double linear(double displayed) {
+    const double value = std::clamp(displayed, 0.0, 1.0);
+    if (value == 1) return 1;
+    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// The roughness whose highlight has this exponent; the reader's exponents are 1 to 10,000.
+double roughness_of(double shininess) { return std::pow(2 * shininess + 1, -0.25); }
+
+/// What the reader makes of it is k · 0.22 + q (c - 0.22), with k = 1 - roughness and q = k · metallic.
+struct Highlight {
+    double k = 0, q = 0;
+    glm::dvec3 color{0};
+};
+
+/// The nearest to `wanted` with k in a range and q from 0 to k, for the displayed base colour c.
+Highlight fit(const glm::dvec3& wanted, const glm::dvec3& c, double least_k, double most_k) {
+    const glm::dvec3 a(kDielectric), b = c - kDielectric;
+    const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b);
+    const double determinant = aa * bb - ab * ab;
+    // With a grey base there are many: the one without metal.
+    double k = determinant > 1e-9 ? (glm::dot(a, wanted) * bb - glm::dot(b, wanted) * ab) / determinant
+                                  : glm::dot(a, wanted) / aa;
+    k = std::clamp(k, least_k, most_k);
+    const double q = bb > 1e-12 ? std::clamp(glm::dot(wanted - k * a, b) / bb, 0.0, k) : 0;
+    return {k, q, k * a + q * b};
+}
+
+/// At both ends of its exponents the reader's rule leaves the roughness free.
+std::pair<double, double> range_of_k(double shininess) {
+    if (shininess <= 1) return {0, 1 - roughness_of(1)};
+    if (shininess >= kSharpest) return {1 - roughness_of(kSharpest), 1};
+    return {1 - roughness_of(shininess), 1 - roughness_of(shininess)};
+}
+
+void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& material, Losses& losses) {
+    const glm::dvec3 wanted(from.specular);
+    const auto [least_k, most_k] = range_of_k(from.shininess);
+    if (from.shininess < 1 && largest(wanted) > 0) losses.add("a highlight is as narrow as with shininess 1");
+    const Highlight best = fit(wanted, c, least_k, most_k);
+    if (largest(best.color - wanted) <= kVisible) {
+        material.roughness = 1 - best.k;
+        material.metallic = best.k > 0 ? best.q / best.k : 0;
+        return;
+    }
+    if (largest(wanted) == 0) return;  // roughness 1 has none
+    material.roughness = 1 - most_k;
+    material.specular = linear_color(wanted / most_k);
+    if (largest(wanted) > most_k + kVisible)
+        losses.add("a highlight is weaker, as glTF's are the wider they are");
+}
+
+}  // namespace
+
+glm::dvec3 linear_color(const glm::dvec3& displayed) {
+    return {linear(displayed.r), linear(displayed.g), linear(displayed.b)};
+}
+
+GltfMaterial gltf_material(const Scene& scene, const Material& from, Losses& losses) {
+    GltfMaterial material;
+    const bool has_picture = from.texture != kNone;
+    const glm::dvec3 diffuse(from.diffuse), c = has_picture ? glm::dvec3(1) : glm::clamp(diffuse, 0.0, 1.0);
+    material.base = linear_color(c);
+    material.alpha = std::clamp(from.diffuse.a, 0.0, 1.0);
+    material.blend = scene.is_transparent(from);
+    material.emission = linear_color(glm::dvec3(from.emission));
+    convert_highlight(from, c, material, losses);
+    if (has_picture && largest(diffuse - c) > kVisible)
+        losses.add("the diffuse colour under a picture becomes white");
+    if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
+        losses.add("a material's ambient colour becomes a tenth of its diffuse one");
+    if (largest(diffuse) > 1 || largest(glm::dvec3(from.emission)) > 1)
+        losses.add("a colour above 1 is cut to 1");
+    if (from.reflectivity > 0) losses.add("that a material reflects is not kept");
+    return material;
+}
+
+}  // namespace vrut

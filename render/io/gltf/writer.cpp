@@ -1,0 +1,314 @@
+#include "io/gltf/writer.hpp"
+
+#include <cmath>
+#include <map>
+#include <ostream>
+
+#include "io/gltf/binary_chunk.hpp"
+#include "io/gltf/json_writer.hpp"
+#include "io/gltf/material.hpp"
+#include "io/texture_writer.hpp"
+#include "io/visible_shapes.hpp"
+
+namespace vrut {
+
+namespace {
+
+constexpr std::string_view kLights = "KHR_lights_punctual";
+constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+/// The frame in which a camera looks along -z, with y upwards.
+glm::dmat4 frame_of(const CameraData& camera) {
+    const glm::dvec3 z = glm::normalize(camera.eye - camera.focus);
+    const glm::dvec3 x = glm::normalize(glm::cross(camera.up, z));
+    glm::dmat4 frame(glm::dmat3(x, glm::cross(z, x), z));
+    frame[3] = glm::dvec4(camera.eye, 1);
+    return frame;
+}
+
+/// Whether the matrix turns, scales and moves, as glTF asks for, and neither shears nor flattens.
+bool keeps_right_angles(const glm::dmat4& matrix) {
+    return std::abs(std::abs(relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
+}
+
+class GlbWriter {
+public:
+    GlbWriter(const Scene& scene, Losses& losses) : scene_(scene), losses_(losses) {
+        shapes_ = shown_shapes(scene, losses);
+        for (const ShownShape& shape : shapes_) add_shape(shape);
+        for (const Index material : material_list_)
+            if (const Index texture = scene_.material(material).texture; texture != kNone)
+                pictures_.emplace(texture, 0);
+        int place = 0;
+        for (auto& [texture, own] : pictures_) {
+            own = place++;
+            const Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
+            buffer_.add_picture(encode_png(from.image, from.transparent));
+        }
+    }
+
+    /// The JSON chunk; after it size(), that of the binary one, is known.
+    std::string describe() {
+        json_.open_object();
+        write_head();
+        write_nodes();
+        write_cameras_and_lights();
+        write_meshes();
+        write_materials();
+        write_pictures();
+        size_ = buffer_.describe(json_);
+        json_.close();
+        std::string text = json_.text();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        return text;
+    }
+
+    std::uint64_t size() const { return size_; }
+
+    void write_binary(std::ostream& out, const WriteProgress& progress) const {
+        buffer_.write(out, progress);
+    }
+
+private:
+    // --- what is written, and where
+
+    using Mesh = std::pair<const Geometry*, Index>;  // with a material
+
+    void add_shape(const ShownShape& shape) {
+        const Mesh mesh{shape.geometry, shape.material};
+        if (const auto [found, is_new] = meshes_.emplace(mesh, static_cast<int>(mesh_list_.size())); is_new)
+            mesh_list_.push_back(mesh);
+        mesh_of_node_[shape.node] = meshes_.at(mesh);
+        if (const auto [found, is_new] = materials_.emplace(shape.material, 0); is_new) {
+            found->second = static_cast<int>(material_list_.size());
+            material_list_.push_back(shape.material);
+        }
+        if (buffer_.add(*shape.geometry)) tell_rounding(*shape.geometry);
+    }
+
+    void tell_rounding(const Geometry& geometry) {
+        for (const glm::dvec3& position : geometry.positions)
+            if (glm::dvec3(glm::vec3(position)) != position)
+                return losses_.add("a geometry's positions are rounded to single precision");
+    }
+
+    // --- JSON
+
+    void write_head() {
+        json_.open_object("asset").string("2.0", "version").string("vrut-preview", "generator").close();
+        json_.number(0, "scene");
+        bool lights = false, glossiness = false;
+        for (const Node& node : scene_.nodes()) lights = lights || node.type == NodeType::light;
+        for (const Index material : material_list_) {
+            converted_.push_back(gltf_material(scene_, scene_.material(material), losses_));
+            glossiness = glossiness || converted_.back().specular;
+        }
+        if (!lights && !glossiness) return;
+        json_.open_array("extensionsUsed");
+        if (lights) json_.string(kLights);
+        if (glossiness) json_.string(kGlossiness);
+        json_.close();
+    }
+
+    /// Ours without the root, unless it moves them all; cameras that do not look along -z get nodes of their
+    /// own below.
+    void write_nodes() {
+        const std::vector<Node>& nodes = scene_.nodes();
+        const bool has_root = nodes[0].matrix != glm::dmat4(1);
+        const int first = has_root ? 0 : 1;
+        int next = static_cast<int>(nodes.size()) - first;
+        std::vector<std::pair<Index, int>> extra;  // cameras with a frame, and their nodes
+        json_.open_array("nodes");
+        for (std::size_t i = static_cast<std::size_t>(first); i < nodes.size(); ++i) {
+            const auto* const camera = std::get_if<CameraData>(&nodes[i].data);
+            const bool framed = camera != nullptr && frame_of(*camera) != glm::dmat4(1);
+            const bool below = framed && !nodes[i].children.empty();
+            if (below) extra.emplace_back(static_cast<Index>(i), next++);
+            write_node(static_cast<Index>(i), first, framed && !below ? frame_of(*camera) : glm::dmat4(1),
+                       below ? extra.back().second : kNone);
+        }
+        for (const auto& [node, place] : extra) write_extra_camera(node);
+        json_.close();
+        json_.open_array("scenes").open_object().string(nodes[0].name, "name").open_array("nodes");
+        if (has_root) json_.number(0);
+        for (const Index child : nodes[0].children)
+            if (!has_root) json_.number(child - first);
+        json_.close().close().close();
+    }
+
+    void write_node(Index index, int first, const glm::dmat4& frame, int extra_child) {
+        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+        json_.open_object().string(node.name, "name");
+        if (const glm::dmat4 matrix = node.matrix * frame; matrix != glm::dmat4(1))
+            json_.numbers(&matrix[0][0], 16, "matrix");
+        if (!keeps_right_angles(node.matrix))
+            losses_.add(
+                "a matrix that shears or flattens is kept, though glTF knows none: other programs may refuse "
+                "it");
+        if (!node.children.empty() || extra_child != kNone) {
+            json_.open_array("children");
+            for (const Index child : node.children) json_.number(child - first);
+            if (extra_child != kNone) json_.number(extra_child);
+            json_.close();
+        }
+        if (const auto mesh = mesh_of_node_.find(index); mesh != mesh_of_node_.end())
+            json_.number(mesh->second, "mesh");
+        if (node.type == NodeType::camera && extra_child == kNone) add_camera(index);
+        if (node.type == NodeType::light) add_light(index);
+        json_.close();
+    }
+
+    void write_extra_camera(Index index) {
+        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+        const glm::dmat4 frame = frame_of(std::get<CameraData>(node.data));
+        json_.open_object().string(node.name + " camera", "name").numbers(&frame[0][0], 16, "matrix");
+        add_camera(index);
+        json_.close();
+    }
+
+    void add_camera(Index node) {
+        json_.number(cameras_.size(), "camera");
+        cameras_.push_back(&std::get<CameraData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+    }
+
+    void add_light(Index node) {
+        json_.open_object("extensions").open_object(kLights).number(lights_.size(), "light").close().close();
+        lights_.push_back(&std::get<LightData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+    }
+
+    void write_cameras_and_lights() {
+        if (!cameras_.empty()) json_.open_array("cameras");
+        for (const CameraData* const camera : cameras_) {
+            json_.open_object().string("perspective", "type").open_object("perspective");
+            json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
+            if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
+                losses_.add("a camera's focus is kept as a direction");
+        }
+        if (!cameras_.empty()) json_.close();
+        if (lights_.empty()) return;
+        json_.open_object("extensions").open_object(kLights).open_array("lights");
+        for (const LightData* const light : lights_) write_light(*light);
+        json_.close().close().close();
+    }
+
+    void write_light(const LightData& light) {
+        constexpr std::string_view kTypes[] = {"point", "directional", "spot"};
+        const glm::dvec3 color = linear_color(light.color);
+        json_.open_object().string(kTypes[static_cast<std::size_t>(light.type)], "type");
+        json_.numbers(&color[0], 3, "color");
+        if (light.type == LightData::Type::spot) {
+            const double cone = glm::radians(std::max(light.angle, 0.1));
+            json_.open_object("spot")
+                .number(0.45 * cone, "innerConeAngle")
+                .number(0.5 * cone, "outerConeAngle")
+                .close();
+        }
+        json_.close();
+        if (light.attenuation != glm::dvec3(1, 0, 0) && light.attenuation != glm::dvec3(0))
+            losses_.add("how a light weakens with distance is not kept");
+    }
+
+    void write_meshes() {
+        if (mesh_list_.empty()) return;
+        json_.open_array("meshes");
+        for (const auto& [geometry, material] : mesh_list_) {
+            const GltfBinaryChunk::Accessors& accessors = buffer_.accessors_of(*geometry);
+            json_.open_object().open_array("primitives").open_object().open_object("attributes");
+            json_.number(accessors.positions, "POSITION");
+            if (accessors.normals != kNone) json_.number(accessors.normals, "NORMAL");
+            if (accessors.texcoords != kNone) json_.number(accessors.texcoords, "TEXCOORD_0");
+            json_.close().number(accessors.indices, "indices").number(materials_.at(material), "material");
+            json_.close().close().close();
+        }
+        json_.close();
+    }
+
+    void write_materials() {
+        if (material_list_.empty()) return;
+        json_.open_array("materials");
+        for (std::size_t i = 0; i < material_list_.size(); ++i)
+            write_material(scene_.material(material_list_[i]), converted_[i]);
+        json_.close();
+    }
+
+    void write_material(const Material& from, const GltfMaterial& material) {
+        const glm::dvec4 base(material.base, material.alpha);
+        json_.open_object().string(from.name, "name").open_object("pbrMetallicRoughness");
+        json_.numbers(&base[0], 4, "baseColorFactor");
+        json_.number(material.metallic, "metallicFactor").number(material.roughness, "roughnessFactor");
+        write_texture(from, "baseColorTexture");
+        json_.close();
+        if (material.emission != glm::dvec3(0)) json_.numbers(&material.emission[0], 3, "emissiveFactor");
+        if (material.blend) json_.string("BLEND", "alphaMode");
+        if (from.two_sided) json_.boolean(true, "doubleSided");
+        if (material.specular) {
+            json_.open_object("extensions").open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
+            json_.numbers(&(*material.specular)[0], 3, "specularFactor");
+            json_.number(1 - material.roughness, "glossinessFactor");
+            write_texture(from, "diffuseTexture");
+            json_.close().close();
+        }
+        json_.close();
+    }
+
+    void write_texture(const Material& from, std::string_view name) {
+        if (from.texture != kNone)
+            json_.open_object(name).number(pictures_.at(from.texture), "index").close();
+    }
+
+    void write_pictures() {
+        if (buffer_.picture_count() == 0) return;
+        json_.open_array("textures");
+        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
+            json_.open_object().number(i, "source").close();
+        json_.close().open_array("images");
+        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
+            json_.open_object()
+                .number(buffer_.view_of_picture(i), "bufferView")
+                .string("image/png", "mimeType")
+                .close();
+        json_.close();
+    }
+
+    const Scene& scene_;
+    Losses& losses_;
+    std::vector<ShownShape> shapes_;
+    std::map<Mesh, int> meshes_;
+    std::vector<Mesh> mesh_list_;
+    std::map<Index, int> mesh_of_node_, materials_, pictures_;  // places in the file
+    std::vector<Index> material_list_;
+    std::vector<GltfMaterial> converted_;  // for each of them
+    GltfBinaryChunk buffer_;
+    std::vector<const CameraData*> cameras_;
+    std::vector<const LightData*> lights_;
+    JsonWriter json_;
+    std::uint64_t size_ = 0;  // of the binary chunk
+};
+
+void write_words(std::ostream& out, std::initializer_list<std::uint64_t> words) {
+    for (const std::uint64_t word : words) {
+        const auto value = static_cast<std::uint32_t>(word);
+        out.write(reinterpret_cast<const char*>(&value), 4);
+    }
+}
+
+}  // namespace
+
+void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+               const WriteProgress& progress) {
+    GlbWriter writer(scene, losses);
+    tell_lost_nodes(scene, losses);
+    const std::string json = writer.describe();
+    const std::uint64_t binary = writer.size(), all = 12 + 8 + json.size() + (binary > 0 ? 8 + binary : 0);
+    if (all > UINT32_MAX) throw WriteFault(path.string() + ": a GLB file holds at most 4 GiB");
+    constexpr std::uint32_t kGltf = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
+    files.write(path, [&](std::ostream& out) {
+        write_words(out, {kGltf, 2, all, json.size(), kJson});
+        out << json;
+        if (binary == 0) return;
+        write_words(out, {binary, kBinary});
+        writer.write_binary(out, progress);
+    });
+}
+
+}  // namespace vrut

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <tl/expected.hpp>
+
+#include "scene/image.hpp"
+
+namespace vrut {
+
+/// The most pixels, and the longest side, of a picture that is read.
+inline constexpr std::uint64_t kMaxPicturePixels = std::uint64_t{1} << 26;
+inline constexpr std::uint32_t kMaxPictureSide = 16384;
+
+/// The picture in a PNG file (of any kind) or a JPEG file (grey or colour), told apart by their first bytes.
+/// Its values are the file's: gamma, colour profile and orientation tags mean nothing here; 16 bits are
+/// rounded to 8. Size is judged before pixels get any memory. Else why there is none, without the file's
+/// name.
+tl::expected<Image, std::string> decode_picture(std::string_view bytes,
+                                                std::uint64_t max_pixels = kMaxPicturePixels);
+
+/// The same, from a file.
+tl::expected<Image, std::string> read_picture(const std::filesystem::path& path,
+                                              std::uint64_t max_pixels = kMaxPicturePixels);
+
+}  // namespace vrut

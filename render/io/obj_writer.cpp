@@ -1,0 +1,215 @@
+#include "io/obj_writer.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <ostream>
+#include <set>
+
+#include "io/plain_name.hpp"
+#include "io/texture_writer.hpp"
+#include "io/visible_shapes.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// Gives each thing a name of its own.
+class Names {
+public:
+    std::string take(const std::string& name, Id id, const std::string& otherwise) {
+        std::string own = plain_name(name.empty() ? otherwise : name);
+        while (!taken_.insert(own).second) own += "_" + std::to_string(id);
+        return own;
+    }
+
+private:
+    std::set<std::string> taken_;
+};
+
+class ObjWriter {
+public:
+    explicit ObjWriter(std::ostream& out) : out_(out) {}
+
+    void begin(const std::string& library) { text("mtllib ").text(library).text("\n").flush(); }
+
+    void write_shape(const ShownShape& shape, const std::string& name, const std::string& material) {
+        const Geometry& geometry = *shape.geometry;
+        text("o ").text(name).text("\nusemtl ").text(material).text("\n");
+        for (const glm::dvec3& position : geometry.positions)
+            vector("v", glm::dvec3(shape.world * glm::dvec4(position, 1)));
+        for (const glm::vec2& texcoord : geometry.texcoords) vector("vt", glm::dvec2(texcoord));
+        write_normals(geometry, glm::dmat3(shape.world));
+        write_faces(geometry, glm::determinant(glm::dmat3(shape.world)) < 0);
+        positions_ += geometry.positions.size();
+        texcoords_ += geometry.texcoords.size();
+        normals_ += geometry.normals.size();
+        flush();
+    }
+
+    /// `picture` is empty for none; with holes, it is that of the opacity as well.
+    void write_material(const Material& material, const std::string& name, const std::string& picture,
+                        bool holes) {
+        text("newmtl ").text(name).text("\nillum 2\n");
+        vector("Ka", glm::dvec3(material.ambient));
+        vector("Kd", glm::dvec3(material.diffuse));
+        vector("Ks", glm::dvec3(material.specular));
+        vector("Ke", glm::dvec3(material.emission));
+        vector("Ns", glm::dvec1(material.shininess));
+        vector("d", glm::dvec1(material.diffuse.a));
+        if (!picture.empty()) text("map_Kd ").text(picture).text("\n");
+        if (holes) text("map_d ").text(picture).text("\n");
+        flush();
+    }
+
+private:
+    ObjWriter& text(std::string_view piece) {
+        buffer_ += piece;
+        if (buffer_.size() > (1 << 16)) flush();
+        return *this;
+    }
+
+    void flush() {
+        out_ << buffer_;
+        buffer_.clear();
+    }
+
+    template <int N>
+    void vector(std::string_view keyword, const glm::vec<N, double>& value) {
+        text(keyword);
+        for (int i = 0; i < N; ++i) {
+            char digits[32];
+            char* const end =
+                std::to_chars(digits, digits + sizeof digits, value[i] + 0.0, std::chars_format::general, 9)
+                    .ptr;
+            text(" ").text({digits, static_cast<std::size_t>(end - digits)});
+        }
+        text("\n");
+    }
+
+    /// By the matrix's cofactors times the sign of its determinant, as they are drawn.
+    void write_normals(const Geometry& geometry, const glm::dmat3& m) {
+        const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+        const double sign = glm::determinant(m) < 0 ? -1 : 1;
+        for (const glm::vec3& normal : geometry.normals) {
+            const glm::dvec3 turned = cofactors * glm::dvec3(normal) * sign;
+            const double length = glm::length(turned);
+            vector("vn", length > 0 ? turned / length : turned);
+        }
+    }
+
+    /// Under a mirroring matrix corners change their turn, so that the front stays the front.
+    void write_faces(const Geometry& geometry, bool mirrored) {
+        for (const glm::uvec3& triangle : geometry.triangles) {
+            text("f");
+            for (int i = 0; i < 3; ++i) write_corner(geometry, triangle[mirrored ? 2 - i : i]);
+            text("\n");
+        }
+    }
+
+    void write_corner(const Geometry& geometry, std::size_t vertex) {
+        text(" ").text(std::to_string(positions_ + vertex + 1));
+        if (!geometry.texcoords.empty() || !geometry.normals.empty()) text("/");
+        if (!geometry.texcoords.empty()) text(std::to_string(texcoords_ + vertex + 1));
+        if (!geometry.normals.empty()) text("/").text(std::to_string(normals_ + vertex + 1));
+    }
+
+    std::ostream& out_;
+    std::string buffer_;
+    std::size_t positions_ = 0, texcoords_ = 0, normals_ = 0;  // written before
+};
+
+/// For each material and, at last, the default one, its name; empty where no shape has it.
+std::vector<std::string> name_materials(const Scene& scene, const std::vector<ShownShape>& shapes) {
+    std::vector<std::string> names(scene.materials().size() + 1);
+    Names taken;
+    for (const ShownShape& shape : shapes) {
+        const std::size_t i =
+            shape.material == kNone ? names.size() - 1 : static_cast<std::size_t>(shape.material);
+        const Material& material = scene.material(shape.material);
+        if (names[i].empty()) names[i] = taken.take(material.name, material.id, "material");
+    }
+    return names;
+}
+
+/// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
+void tell_lost_look(const Scene& scene, const Material& material, Losses& losses) {
+    losses.add("whether a material is drawn from both sides is not kept");
+    if (material.reflectivity > 0) losses.add("that a material reflects is not kept");
+    const bool has_holes =
+        material.texture != kNone && scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
+    if (has_holes && material.diffuse.a < 1)
+        losses.add("a material's opacity beside that of its picture is written, but not read here");
+    if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
+        losses.add("a material's ambient colour is written, but read here as a tenth of its diffuse one");
+    if (material.shininess < 1 && glm::dvec3(material.specular) != glm::dvec3(0))
+        losses.add("a highlight with a shininess below 1 is written, but read here as another or none");
+}
+
+void tell_lost_looks(const Scene& scene, const std::vector<std::string>& names, Losses& losses) {
+    for (std::size_t i = 0; i + 1 < names.size(); ++i) {
+        const Material& material = scene.materials()[i];
+        if (names[i].empty()) {
+            losses.add("a material that nothing shows is left out");
+            continue;
+        }
+        if (names[i] != material.name) losses.add("a material's name is changed to one word of its own");
+        tell_lost_look(scene, material, losses);
+    }
+}
+
+void tell_lost_geometry(const std::vector<ShownShape>& shapes, Losses& losses) {
+    std::set<const Geometry*> written;
+    for (const ShownShape& shape : shapes) {
+        if (!written.insert(shape.geometry).second)
+            losses.add("a geometry that several nodes show is written for each of them");
+        const auto& positions = shape.geometry->positions;
+        const auto is_single = [&](const glm::dvec3& position) {
+            const glm::dvec4 world = shape.world * glm::dvec4(position, 1);
+            return glm::dvec4(glm::vec4(world)) == world;
+        };
+        if (!std::all_of(positions.begin(), positions.end(), is_single))
+            losses.add("a geometry's positions are rounded to nine digits");
+    }
+}
+
+}  // namespace
+
+void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+               const WriteProgress& progress) {
+    const auto shapes = shown_shapes(scene, losses);
+    const auto materials = name_materials(scene, shapes);
+    tell_lost_nodes(scene, losses);
+    tell_lost_tree(scene, losses);
+    tell_lost_looks(scene, materials, losses);
+    tell_lost_geometry(shapes, losses);
+    const auto pictures = write_pictures(scene, path, files);
+    const std::string library = plain_name(path.stem().string()) + ".mtl";
+    files.write(path.parent_path() / library, [&](std::ostream& out) {
+        for (std::size_t i = 0; i < materials.size(); ++i) {
+            if (materials[i].empty()) continue;
+            const Material& material =
+                scene.material(i + 1 < materials.size() ? static_cast<Index>(i) : kNone);
+            const auto texture = static_cast<std::size_t>(material.texture);
+            const bool pictured = material.texture != kNone;
+            ObjWriter(out).write_material(material, materials[i], pictured ? pictures[texture] : "",
+                                          pictured && scene.textures()[texture].transparent);
+        }
+    });
+    files.write(path, [&](std::ostream& out) {
+        ObjWriter writer(out);
+        Names names;
+        writer.begin(library);
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            const Node& node = scene.nodes()[static_cast<std::size_t>(shapes[i].node)];
+            const std::string name = names.take(node.name, node.id, "node");
+            if (name != node.name) losses.add("a node's name is changed to one word of its own");
+            const Index material = shapes[i].material;
+            writer.write_shape(
+                shapes[i], name,
+                materials[material == kNone ? materials.size() - 1 : static_cast<std::size_t>(material)]);
+            if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(shapes.size()));
+        }
+    });
+}
+
+}  // namespace vrut

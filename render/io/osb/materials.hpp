@@ -1,0 +1,32 @@
+#pragma once
+
+#include "io/conversion_warnings.hpp"
+#include "io/osb/file.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// Turns OpenSG's materials into ours, by the rule that osb_scene.hpp tells.
+class OsbMaterials {
+public:
+    OsbMaterials(const OsbFile& file, Losses& losses) : file_(file), losses_(losses) {}
+
+    /// The place in `all` of the material with this id, made when it is first asked for; kNone for an id that
+    /// is none of a material that is known. Throws OsbFault.
+    Index take(std::uint32_t id);
+
+    std::vector<Material> all;
+    std::vector<Texture> textures;  ///< that lie in the file
+
+private:
+    void read_simple(const OsbContainer& from, Material& material);
+    void read_chunks(const OsbContainer& from, Material& material);
+    void read_image(std::uint32_t id, Material& material);
+    Index decode(const OsbContainer& image, OsbCursor pixels);
+
+    const OsbFile& file_;
+    Losses& losses_;
+    std::unordered_map<std::uint32_t, Index, SaltedHash> known_, known_textures_;
+};
+
+}  // namespace vrut

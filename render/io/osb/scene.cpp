@@ -1,0 +1,293 @@
+#include "io/osb/scene.hpp"
+
+#include <algorithm>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/gtx/transform.hpp>
+#include <map>
+
+#include "base/file_bytes.hpp"
+#include "io/notices.hpp"
+#include "io/osb/geometry.hpp"
+#include "io/osb/materials.hpp"
+#include "io/scene_textures.hpp"
+#include "io/vrut/tokenizer.hpp"
+
+namespace vrut {
+
+namespace {
+
+constexpr std::string_view kKnownTypes[] = {"Node",
+                                            "Group",
+                                            "Geometry",
+                                            "Transform",
+                                            "ComponentTransform",
+                                            "Switch",
+                                            "DistanceLOD",
+                                            "MaterialGroup",
+                                            "PointLight",
+                                            "DirectionalLight",
+                                            "SpotLight",
+                                            "Name",
+                                            "SimpleMaterial",
+                                            "ChunkMaterial",
+                                            "SimpleTexturedMaterial",
+                                            "MaterialChunk",
+                                            "PolygonChunk",
+                                            "TextureChunk",
+                                            "Image",
+                                            "GeoPositions3f",
+                                            "GeoNormals3f",
+                                            "GeoNormals3s",
+                                            "GeoNormals3b",
+                                            "GeoTexCoords2f",
+                                            "GeoIndicesUI32",
+                                            "GeoIndicesUI16",
+                                            "GeoPLengthsUI32",
+                                            "GeoPLengthsUI16",
+                                            "GeoPLengthsUI8",
+                                            "GeoPTypesUI32",
+                                            "GeoPTypesUI16",
+                                            "GeoPTypesUI8"};
+
+glm::dmat4 rotation(const OsbContainer& from, std::string_view field) {
+    auto data = from.find(field);
+    if (!data) return glm::dmat4(1);
+    const glm::dvec3 axis = data->take_vec3("a rotation");
+    const glm::dquat turn(data->take_real("a rotation"), axis);
+    return glm::length(turn) > 0 ? glm::mat4_cast(glm::normalize(turn)) : glm::dmat4(1);
+}
+
+/// The matrix of a ComponentTransform: about its centre, scaled along turned axes, turned, moved.
+glm::dmat4 composed_matrix(const OsbContainer& core) {
+    const glm::dmat4 center = glm::translate(core.vec3("center", {}));
+    const glm::dmat4 scale_axes = rotation(core, "scaleOrientation");
+    return glm::translate(core.vec3("translation", {})) * center * rotation(core, "rotation") * scale_axes *
+           glm::scale(core.vec3("scale", glm::dvec3(1))) * glm::transpose(scale_axes) * glm::inverse(center);
+}
+
+glm::dmat4 stored_matrix(const OsbContainer& core) {
+    glm::dmat4 matrix(1);
+    if (auto data = core.find("matrix"))
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) matrix[column][row] = data->take_real("a matrix element");
+    return matrix;
+}
+
+glm::dmat4 matrix_of(const OsbContainer& core) {
+    const glm::dmat4 matrix = core.type == "Transform" ? stored_matrix(core) : composed_matrix(core);
+    for (int column = 0; column < 4; ++column) {
+        if (matrix[column][3] != (column == 3 ? 1 : 0))
+            throw OsbFault(core.at, "a matrix whose last row is 0 0 0 1", "another one");
+        for (int row = 0; row < 3; ++row)
+            if (!(std::abs(matrix[column][row]) <= 1e15))
+                throw OsbFault(core.at, "matrix elements from -1e15 to 1e15", "others");
+    }
+    return matrix;
+}
+
+/// Turned so that z points along a direction.
+glm::dmat4 frame_along(const glm::dvec3& direction) {
+    const double length = glm::length(direction);
+    const glm::dvec3 z = length > 0 ? direction / length : glm::dvec3(0, 0, 1);
+    const glm::dvec3 x =
+        glm::normalize(glm::cross(std::abs(z.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0), z));
+    return glm::dmat4(glm::dmat3(x, glm::cross(z, x), z));
+}
+
+bool is_light(std::string_view type) {
+    return type == "PointLight" || type == "DirectionalLight" || type == "SpotLight";
+}
+
+Node light_of(const OsbContainer& core) {
+    Node node;
+    node.name = "light";
+    node.type = NodeType::light;
+    node.active = core.flag("on", true);
+    auto& light = node.data.emplace<LightData>();
+    light.color = glm::dvec4(glm::clamp(core.vec3("diffuse", glm::dvec3(1)), 0.0, 1e6), 1);
+    light.attenuation = {core.real("constantAttenuation", 1), core.real("linearAttenuation", 0),
+                         core.real("quadraticAttenuation", 0)};
+    light.attenuation = glm::max(light.attenuation, 0.0);
+    const glm::dvec3 direction = core.vec3("direction", {0, 0, 1});
+    if (core.type == "DirectionalLight") {
+        light.type = LightData::Type::directional;
+        node.matrix = frame_along(direction);  // towards the light
+        return node;
+    }
+    node.matrix = glm::translate(core.vec3("position", {}));
+    if (core.type != "SpotLight") return node;
+    light.type = LightData::Type::spot;
+    light.angle = std::clamp(2 * glm::degrees(core.real("spotCutOff", 0)), 0.0, 180.0);
+    node.matrix = node.matrix * frame_along(-direction);
+    return node;
+}
+
+class OsbReader {
+public:
+    OsbReader(std::string_view bytes, std::string file, const ReadProgress& progress)
+        : file_name_(std::move(file)), progress_(progress), file_(bytes) {}
+
+    SceneParts read() {
+        parts_.name = std::filesystem::path(file_name_).stem().string();
+        if (!file_.containers().empty()) read_nodes();
+        add_lights();
+        parts_.geometries = std::move(geometries_.all);
+        parts_.materials = std::move(materials_.all);
+        parts_.textures = std::move(materials_.textures);
+        losses_.append_to(parts_.notices, file_name_);
+        tell_skipped();
+        return std::move(parts_);
+    }
+
+private:
+    struct Place {
+        const OsbContainer* node;
+        Id parent;
+        Index material;  ///< that a group above gives to all below it
+    };
+
+    /// From the root, which comes first, downwards; without recursion, since a chain may be long.
+    void read_nodes() {
+        const OsbContainer& root = file_.containers().front();
+        if (root.type != "Node") throw OsbFault(root.at, "a Node first", "'" + excerpt(root.type) + "'");
+        std::vector<Place> open{{&root, 0, kNone}};
+        ids_.emplace(root.id, 0);
+        std::vector<Place> children;
+        while (!open.empty()) {
+            const Place place = open.back();
+            open.pop_back();
+            if (progress_)
+                progress_(static_cast<double>(ids_.size()) / static_cast<double>(file_.containers().size()));
+            children.clear();
+            open_children(place, children);
+            add_node(place, children);
+            open.insert(open.end(), children.rbegin(), children.rend());
+        }
+    }
+
+    /// Each node hangs in one place: what is met again would be a cycle, or stand in two places.
+    void open_children(const Place& place, std::vector<Place>& children) {
+        auto ids = place.node->find("children");
+        for (std::size_t left = ids ? ids->take_count(4, "a count") : 0; left > 0; --left) {
+            const std::size_t at = ids->at();
+            const std::uint32_t id = ids->take_unsigned(4, "an id");
+            const OsbContainer* const child = file_.find(id);
+            if (child == nullptr || child->type != "Node") {
+                losses_.add("a child that is no node of the file is left out");
+                continue;
+            }
+            if (!ids_.emplace(id, 0).second)
+                throw OsbFault(at, "a child that hangs nowhere else",
+                               "node " + std::to_string(id) + " again");
+            children.push_back({child, 0, place.material});
+        }
+    }
+
+    void add_node(const Place& place, std::vector<Place>& children) {
+        Node node;
+        node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+        node.name = osb_name(file_, *place.node);
+        node.active = place.node->integer("travMask", -1) != 0;
+        for (Place& child : children) child.parent = node.id;
+        if (const OsbContainer* const core = file_.find(place.node->pointer("core"))) {
+            if (node.name.empty()) node.name = osb_name(file_, *core);
+            read_core(*core, place, node, children);
+        }
+        ids_[place.node->id] = node.id;
+        parts_.nodes.push_back({std::move(node), place.parent});
+    }
+
+    void read_core(const OsbContainer& core, const Place& place, Node& node, std::vector<Place>& children) {
+        if (core.type == "Transform" || core.type == "ComponentTransform") {
+            node.matrix = matrix_of(core);
+        } else if (core.type == "Geometry") {
+            const Index material =
+                place.material != kNone ? place.material : materials_.take(core.pointer("material"));
+            node.type = NodeType::geometry;
+            node.data = GeometryData{geometries_.take(core), material};
+        } else if (core.type == "Switch") {
+            node.type = NodeType::switch_;
+            node.data =
+                SwitchData{std::max(core.integer("choice", SwitchData::kNoChild), SwitchData::kAllChildren)};
+        } else if (core.type == "DistanceLOD") {
+            node.type = NodeType::lod;
+            node.data = LodData{ranges_of(core, children.size())};
+        } else if (core.type == "MaterialGroup" && place.material == kNone) {
+            for (Place& child : children) child.material = materials_.take(core.pointer("material"));
+        } else if (is_light(core.type)) {
+            lights_.push_back({&core, node.id});
+        }
+    }
+
+    /// Beyond the last one that OpenSG looks at, the last child shows.
+    std::vector<double> ranges_of(const OsbContainer& core, std::size_t children) {
+        std::vector<double> ranges;
+        if (core.vec3("center", {}) != glm::dvec3(0))
+            losses_.add(
+                "a level of detail is chosen by the distance of its node, and not of the centre given");
+        auto data = core.find("range");
+        const std::size_t count = data ? data->take_count(4, "a count") : 0;
+        while (ranges.size() < count && ranges.size() + 1 < children)
+            ranges.push_back(std::max(0.0, data->take_real("a range")));
+        return ranges;
+    }
+
+    /// Where their beacons are, or else where they hang.
+    void add_lights() {
+        for (const auto& [core, own] : lights_) {
+            Node node = light_of(*core);
+            node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+            const auto beacon = ids_.find(core->pointer("beacon"));
+            parts_.nodes.push_back({std::move(node), beacon != ids_.end() ? beacon->second : own});
+            losses_.add(
+                "a light shines on the whole scene, with the colour that it has for diffuse surfaces");
+        }
+    }
+
+    void tell_skipped() {
+        std::map<std::string_view, std::size_t> count;
+        for (const OsbContainer& container : file_.containers())
+            if (std::find(std::begin(kKnownTypes), std::end(kKnownTypes), container.type) ==
+                std::end(kKnownTypes))
+                ++count[container.type];
+        Notices notices;
+        for (const auto& [type, times] : count)
+            notices.add(file_name_ + ": what the file holds of type '" + excerpt(type) + "' is not read (" +
+                        std::to_string(times) + (times > 1 ? " times)" : " time)"));
+        notices.append_to(parts_.notices);
+    }
+
+    std::string file_name_;
+    const ReadProgress& progress_;
+    OsbFile file_;
+    Losses losses_;
+    OsbGeometries geometries_{file_, losses_};
+    OsbMaterials materials_{file_, losses_};
+    SceneParts parts_;
+    std::unordered_map<std::uint32_t, Id, SaltedHash> ids_;  // ours, of the nodes met
+    struct Light {
+        const OsbContainer* core;
+        Id node;
+    };
+    std::vector<Light> lights_;
+};
+
+}  // namespace
+
+PartsResult read_osb_parts(std::string_view bytes, const std::string& file, const ReadProgress& progress) {
+    try {
+        return OsbReader(bytes, file, progress).read();
+    } catch (const OsbFault& fault) {
+        return tl::unexpected(file + ": " + fault.what());
+    }
+}
+
+PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+    const auto bytes = read_bytes(path);
+    if (!bytes) return tl::unexpected(path.string() + ": " + bytes.error());
+    auto parts = read_osb_parts(*bytes, path.string(), progress);
+    if (parts) read_pictures(*parts, path, progress);
+    return parts;
+}
+
+}  // namespace vrut

@@ -1,0 +1,93 @@
+#include "io/read_scene.hpp"
+
+#include <algorithm>
+
+#include "base/file_bytes.hpp"
+#include "io/assimp/scene.hpp"
+#include "io/osb/scene.hpp"
+#include "io/vrut/text_reader.hpp"
+
+namespace vrut {
+
+namespace {
+
+struct Format {
+    const char* extension;
+    PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
+    bool foreign;  ///< its reader is not ours
+};
+
+constexpr Format kFormats[] = {
+    {".vrut", read_vrut_file, false},
+    {".osb", read_osb_scene, false},
+    {".glb", read_assimp_scene<AssimpFormat::gltf>, true},
+    {".gltf", read_assimp_scene<AssimpFormat::gltf>, true},
+    {".obj", read_assimp_scene<AssimpFormat::obj>, true},
+    {".stl", read_assimp_scene<AssimpFormat::stl>, true},
+    {".ply", read_assimp_scene<AssimpFormat::ply>, true},
+    {".dae", read_assimp_scene<AssimpFormat::collada>, true},
+    {".fbx", read_assimp_scene<AssimpFormat::fbx>, true},
+};
+
+/// null: none reads this ending, in whatever case.
+const Format* format_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    for (const Format& format : kFormats)
+        if (extension == format.extension) return &format;
+    return nullptr;
+}
+
+std::string known_extensions() {
+    std::string list;
+    for (const Format& format : kFormats) list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    return list;
+}
+
+}  // namespace
+
+ReadResult build_scene(SceneParts parts, const std::string& file) {
+    std::vector<std::size_t> lines;
+    for (const auto& part : parts.nodes) lines.push_back(part.line);
+    auto scene = Scene::build(std::move(parts));
+    if (scene) return *std::move(scene);
+    // The root that build adds itself is never at fault.
+    const std::size_t line = scene.error().node < lines.size() ? lines[scene.error().node] : 0;
+    return tl::unexpected(file + ":" + (line > 0 ? std::to_string(line) + ":" : "") + " " +
+                          scene.error().message);
+}
+
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) {
+        return c < 0x80 ? static_cast<char>(std::tolower(c)) : static_cast<char>(c);
+    });
+    return extension;
+}
+
+bool has_reader(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
+bool has_foreign_reader(const std::filesystem::path& path) {
+    const Format* const format = format_of(path);
+    return format != nullptr && format->foreign;
+}
+
+PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress) {
+    const std::string file = path.string();
+    const Format* const format = format_of(path);
+    if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
+    if (lower_extension(path) == ".csb")
+        return tl::unexpected(file +
+                              ": the CSB format has no public specification, so that nothing reads it here; "
+                              "OpenSG's own format, .osb, is read");
+    if (format == nullptr)
+        return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
+    return format->read(path, progress);
+}
+
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+    auto parts = read_scene_parts(path, progress);
+    if (!parts) return tl::unexpected(parts.error());
+    return build_scene(*std::move(parts), path.string());
+}
+
+}  // namespace vrut

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <tl/expected.hpp>
+
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// A scene, or one sentence that names the file, where it can the line, and what was expected.
+using ReadResult = tl::expected<Scene, std::string>;
+
+/// Is told now and then which part, 0 to 1, has been read.
+using ReadProgress = std::function<void(double)>;
+
+/// What the reader of a format hands over, or the same kind of sentence.
+using PartsResult = tl::expected<SceneParts, std::string>;
+
+/// Scene::build with its error as a reader's, of the scene in `file`.
+ReadResult build_scene(SceneParts parts, const std::string& file);
+
+/// The file's ending with its dot, a to z in lower case.
+std::string lower_extension(const std::filesystem::path& path);
+
+/// Whether the file's ending is that of a known format.
+bool has_reader(const std::filesystem::path& path);
+
+/// Whether a foreign library reads this ending: one that may crash, or take whatever memory there is.
+bool has_foreign_reader(const std::filesystem::path& path);
+
+/// What read_scene() reads, before Scene::build.
+PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {});
+
+/// Reads a scene file in any known format, chosen by the file's ending, and the pictures that it names
+/// (read_pictures()).
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
+
+}  // namespace vrut

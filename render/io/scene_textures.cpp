@@ -1,0 +1,109 @@
+#include "io/scene_textures.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "base/file_bytes.hpp"
+#include "io/image_file.hpp"
+#include "io/notices.hpp"
+#include "io/vrut/tokenizer.hpp"
+
+namespace vrut {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+using TextureResult = tl::expected<Index, std::string>;
+
+class PictureReader {
+public:
+    PictureReader(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+                  std::uint64_t max_pixels)
+        : textures_(parts.textures),
+          folder_(scene_file.parent_path()),
+          progress_(progress),
+          pixels_left_(max_pixels) {
+        for (const Texture& texture : textures_)
+            pixels_left_ -= std::min<std::uint64_t>(pixels_left_, texture.image.rgba.size() / 4);
+    }
+
+    TextureResult read(const std::string& name) {
+        const auto file = find_below(folder_, name);
+        if (!file) return tl::unexpected(file.error());
+        if (const auto known = known_.find(file->string()); known != known_.end()) return known->second;
+        if (progress_) progress_(1);
+        return known_.emplace(file->string(), read_new(*file, name)).first->second;
+    }
+
+private:
+    TextureResult read_new(const fs::path& file, const std::string& name) {
+        auto image = read_picture(file, std::min(pixels_left_, kMaxPicturePixels));
+        if (!image) return tl::unexpected(image.error());
+        pixels_left_ -= image->rgba.size() / 4;
+        const bool transparent = has_transparent_pixel(*image);
+        textures_.push_back({name, *std::move(image), transparent});
+        return static_cast<Index>(textures_.size() - 1);
+    }
+
+    std::vector<Texture>& textures_;
+    const fs::path folder_;
+    const ReadProgress& progress_;
+    std::uint64_t pixels_left_;
+    std::map<std::string, TextureResult> known_;  // by the file's own path
+};
+
+using CubeResult = tl::expected<std::array<Index, 6>, std::string>;
+
+CubeResult read_cube(PictureReader& reader, const std::vector<Texture>& textures,
+                     const std::array<std::string, 6>& names) {
+    std::array<Index, 6> faces{};
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+        const TextureResult face = reader.read(names[i]);
+        if (!face) return tl::unexpected("'" + excerpt(names[i]) + "': " + face.error());
+        faces[i] = *face;
+    }
+    const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        if (const Image& image = textures[static_cast<std::size_t>(faces[i])].image;
+            image.width != side || image.height != side)
+            return tl::unexpected("its pictures are squares of one size, and '" + excerpt(names[i]) +
+                                  "' is " + std::to_string(image.width) + " x " +
+                                  std::to_string(image.height) + " pixels");
+    return faces;
+}
+
+}  // namespace
+
+bool has_transparent_pixel(const Image& image) {
+    for (std::size_t i = 3; i < image.rgba.size(); i += 4)
+        if (image.rgba[i] < 255) return true;
+    return false;
+}
+
+void read_pictures(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+                   std::uint64_t max_pixels) {
+    PictureReader reader(parts, scene_file, progress, max_pixels);
+    Notices notices;
+    const auto say = [&](const std::string& what) { notices.add(scene_file.string() + ": " + what); };
+    for (Material& material : parts.materials) {
+        if (material.image.empty()) continue;
+        if (const TextureResult texture = reader.read(material.image))
+            material.texture = *texture;
+        else
+            say("material " + std::to_string(material.id) + " is drawn without its picture '" +
+                excerpt(material.image) + "': " + texture.error());
+    }
+    for (auto& [node, parent_id, line] : parts.nodes) {
+        auto* background = std::get_if<BackgroundData>(&node.data);
+        if (!background || !background->cube_map) continue;
+        if (const CubeResult faces = read_cube(reader, parts.textures, *background->cube_map))
+            background->cube_textures = *faces;
+        else
+            say("background " + std::to_string(node.id) + " is drawn without its cube map: " + faces.error());
+    }
+    notices.append_to(parts.notices);
+}
+
+}  // namespace vrut

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "base/output_files.hpp"
+#include "io/conversion_warnings.hpp"
+#include "io/write_scene.hpp"
+
+namespace vrut {
+
+/// Binary STL: the triangles that show at the start, in world space, with their faces' normals. Names,
+/// materials, vertex normals and everything else are lost. Throws WriteFault.
+void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+               const WriteProgress& progress);
+
+}  // namespace vrut

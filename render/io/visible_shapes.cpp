@@ -1,0 +1,63 @@
+#include "io/visible_shapes.hpp"
+
+#include <algorithm>
+
+namespace vrut {
+
+namespace {
+
+bool shows_child(const Node& parent, Index child) {
+    const auto place =
+        std::find(parent.children.begin(), parent.children.end(), child) - parent.children.begin();
+    if (const auto* data = std::get_if<SwitchData>(&parent.data))
+        return data->active_child == SwitchData::kAllChildren || data->active_child == place;
+    return !std::holds_alternative<LodData>(parent.data) || place == 0;
+}
+
+}  // namespace
+
+std::vector<ShownShape> shown_shapes(const Scene& scene, Losses& losses) {
+    const auto world = world_matrices(scene, file_states(scene));
+    std::vector<bool> shown(scene.nodes().size());
+    std::vector<ShownShape> shapes;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        const Node& node = scene.nodes()[i];
+        const auto parent = static_cast<std::size_t>(node.parent);
+        shown[i] =
+            node.active && (node.parent == kNone ||
+                            (shown[parent] && shows_child(scene.nodes()[parent], static_cast<Index>(i))));
+        const auto* const data = std::get_if<GeometryData>(&node.data);
+        if (data == nullptr || data->geometry == kNone) continue;
+        const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
+        if (geometry.triangles.empty()) continue;
+        if (!shown[i])
+            losses.add("a geometry that is hidden at the start is left out");
+        else if (!is_finite(world[i]))
+            losses.add("a geometry beyond the range of numbers is left out");
+        else
+            shapes.push_back({static_cast<Index>(i), &geometry, data->material, world[i]});
+    }
+    return shapes;
+}
+
+void tell_lost_nodes(const Scene& scene, Losses& losses) {
+    for (const Node& node : scene.nodes()) {
+        if (node.hinge) losses.add("how a part turns about its hinge is not kept");
+        if (node.type == NodeType::background) losses.add("a background is not kept");
+        if (node.type == NodeType::switch_) losses.add("a switch is kept as the child that it chooses");
+        if (node.type == NodeType::lod) losses.add("a level of detail is kept as its first child");
+        if (node.type == NodeType::sound) losses.add("a sound is not kept");
+    }
+    if (scene.unit() != 1) losses.add("how many metres a unit has is not kept");
+}
+
+void tell_lost_tree(const Scene& scene, Losses& losses) {
+    for (const Node& node : scene.nodes()) {
+        if (node.type == NodeType::camera) losses.add("a camera is not kept");
+        if (node.type == NodeType::light) losses.add("a light is not kept");
+        if (node.type == NodeType::assembly)
+            losses.add("an assembly is not kept: its matrix goes into the vertices");
+    }
+}
+
+}  // namespace vrut

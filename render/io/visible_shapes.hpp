@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "io/conversion_warnings.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// A geometry node that is drawn at the start: by its file it is active, and its switches choose it; of a
+/// level of detail, the first child.
+struct ShownShape {
+    Index node = kNone;
+    const Geometry* geometry = nullptr;  ///< with a triangle at least
+    Index material = kNone;
+    glm::dmat4 world{1};  ///< world from node
+};
+
+/// What a format without activity, switches and levels of detail shows of a scene, in the order of the nodes;
+/// what it leaves out is told.
+std::vector<ShownShape> shown_shapes(const Scene& scene, Losses& losses);
+
+/// Tells of what neither of the formats but VRUT's own holds.
+void tell_lost_nodes(const Scene& scene, Losses& losses);
+/// Tells of cameras, lights and the tree, which a format of triangles alone does not hold.
+void tell_lost_tree(const Scene& scene, Losses& losses);
+
+}  // namespace vrut

@@ -1,0 +1,197 @@
+#include "io/vrut/text_writer.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <ostream>
+#include <string_view>
+#include <type_traits>
+
+namespace vrut {
+
+namespace {
+
+/// To the last bit: a matrix with -0 is none.
+bool is_identity(const glm::dmat4& matrix) {
+    bool negative = false;
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) negative |= std::signbit(matrix[column][row]);
+    return matrix == glm::dmat4(1) && !negative;
+}
+
+class VrutTextWriter {
+public:
+    VrutTextWriter(std::ostream& out, const std::vector<std::string>& pictures)
+        : out_(out), pictures_(pictures) {}
+
+    void write(const Scene& scene, const std::string& comment) {
+        text("vrut-text 1\n");
+        write_comment(comment);
+        text("unit").number(scene.unit()).text("\n");
+        for (const Material& material : scene.materials()) write_material(material);
+        for (const Geometry& geometry : scene.geometries()) write_geometry(geometry);
+        for (const Node& node : scene.nodes()) write_node(scene, node);
+        flush();
+    }
+
+private:
+    // --- tokens, each after a space
+
+    VrutTextWriter& text(std::string_view piece) {
+        buffer_ += piece;
+        if (buffer_.size() > (1 << 16)) flush();
+        return *this;
+    }
+
+    template <class Number>
+    VrutTextWriter& number(Number value) {
+        char digits[40];
+        char* const last = digits + sizeof digits;
+        char* end = std::to_chars(digits, last, value).ptr;
+        if constexpr (std::is_same_v<Number, float>) {
+            // The reader takes them as a double, which in rare cases rounds to a neighbour.
+            double read = 0;
+            std::from_chars(digits, end, read);
+            if (static_cast<float>(read) != value) end = std::to_chars(digits, last, double{value}).ptr;
+        }
+        return text(" ").text({digits, static_cast<std::size_t>(end - digits)});
+    }
+
+    template <int N, class Number>
+    VrutTextWriter& numbers(const glm::vec<N, Number>& value) {
+        for (int i = 0; i < N; ++i) number(value[i]);
+        return *this;
+    }
+
+    VrutTextWriter& string(std::string_view value) {
+        std::string quoted = " \"";
+        for (const char c : value) {
+            if (c == '"' || c == '\\') quoted += '\\';
+            quoted += c == '\n' ? ' ' : c;
+        }
+        return text(quoted + '"');
+    }
+
+    void flush() {
+        out_ << buffer_;
+        buffer_.clear();
+    }
+
+    // --- blocks
+
+    void write_comment(std::string_view comment) {
+        while (!comment.empty()) {
+            const std::size_t end = std::min(comment.find('\n'), comment.size());
+            text("# ").text(comment.substr(0, end)).text("\n");
+            comment.remove_prefix(std::min(end + 1, comment.size()));
+        }
+    }
+
+    void write_material(const Material& material) {
+        text("\nmaterial").number(material.id).string(material.name);
+        text("\n  ambient").numbers(material.ambient);
+        text("  diffuse").numbers(material.diffuse);
+        text("  specular").numbers(material.specular);
+        text("  emission").numbers(material.emission);
+        text("\n  shininess").number(material.shininess);
+        text("  reflectivity").number(material.reflectivity);
+        text("  two-sided").number(material.two_sided ? 1 : 0);
+        if (const std::string& image = picture(material.texture, material.image); !image.empty())
+            text("\n  image").string(image);
+        text("\nend\n");
+    }
+
+    template <class Rows>
+    void write_rows(std::string_view name, const Rows& rows) {
+        if (rows.empty()) return;
+        text("\n  ").text(name).number(rows.size());
+        for (const auto& row : rows) text("\n ").numbers(row);
+    }
+
+    const std::string& picture(Index texture, const std::string& own) const {
+        return texture == kNone || pictures_.empty() ? own : pictures_[static_cast<std::size_t>(texture)];
+    }
+
+    void write_geometry(const Geometry& geometry) {
+        text("\ngeometry").number(geometry.id);
+        write_rows("vertices", geometry.positions);
+        write_rows("normals", geometry.normals);
+        write_rows("texcoords", geometry.texcoords);
+        write_rows("triangles", geometry.triangles);
+        text("\nend\n");
+    }
+
+    void write_node(const Scene& scene, const Node& node) {
+        text("\nnode").number(node.id).string(node.name).text(" ").text(name_of(node.type));
+        if (node.parent != kNone)
+            text("  parent").number(scene.nodes()[static_cast<std::size_t>(node.parent)].id);
+        if (!node.active) text("  active 0");
+        if (!is_identity(node.matrix)) {
+            text("\n  matrix");
+            for (int row = 0; row < 4; ++row)
+                for (int column = 0; column < 4; ++column) number(node.matrix[column][row]);
+            text("\n ");
+        }
+        if (node.hinge) text("  hinge").numbers(node.hinge->axis).number(node.hinge->degrees);
+        std::visit([&](const auto& data) { write_data(scene, data); }, node.data);
+        text("  end\n");
+    }
+
+    // --- what nodes of each type hold
+
+    void write_material_of(const Scene& scene, Index material) {
+        if (material != kNone) text("  material").number(scene.material(material).id);
+    }
+
+    void write_data(const Scene&, const GroupData&) {}
+
+    void write_data(const Scene& scene, const GeometryData& data) {
+        if (data.geometry != kNone)
+            text("  geometry").number(scene.geometries()[static_cast<std::size_t>(data.geometry)].id);
+        write_material_of(scene, data.material);
+    }
+
+    void write_data(const Scene&, const CameraData& camera) {
+        text("  eye").numbers(camera.eye).text("  focus").numbers(camera.focus);
+        text("  up").numbers(camera.up).text("  fov").number(camera.fov);
+    }
+
+    void write_data(const Scene&, const LightData& light) {
+        constexpr std::string_view kNames[] = {"point", "directional", "spot"};
+        text("  type ").text(kNames[static_cast<std::size_t>(light.type)]);
+        text("  color").numbers(light.color).text("  attenuation").numbers(light.attenuation);
+        text("  angle").number(light.angle);
+    }
+
+    void write_data(const Scene&, const SwitchData& data) {
+        text("  active-child").number(data.active_child);
+    }
+
+    void write_data(const Scene&, const LodData& lod) {
+        if (lod.ranges.empty()) return;
+        text("  ranges");
+        for (const double range : lod.ranges) number(range);
+    }
+
+    void write_data(const Scene& scene, const BackgroundData& background) {
+        write_material_of(scene, background.material);
+        if (!background.cube_map) return;
+        text("  cube-map");
+        for (std::size_t i = 0; i < 6; ++i)
+            string(picture(background.cube_textures ? (*background.cube_textures)[i] : kNone,
+                           (*background.cube_map)[i]));
+    }
+
+    std::ostream& out_;
+    const std::vector<std::string>& pictures_;
+    std::string buffer_;
+};
+
+}  // namespace
+
+void write_vrut_text(const Scene& scene, std::ostream& out, const std::string& comment,
+                     const std::vector<std::string>& pictures) {
+    VrutTextWriter(out, pictures).write(scene, comment);
+}
+
+}  // namespace vrut

@@ -1,0 +1,73 @@
+#include "io/write_scene.hpp"
+
+#include <algorithm>
+
+#include "base/output_files.hpp"
+#include "io/gltf/writer.hpp"
+#include "io/obj_writer.hpp"
+#include "io/read_scene.hpp"
+#include "io/stl_writer.hpp"
+#include "io/texture_writer.hpp"
+#include "io/vrut/text_writer.hpp"
+
+namespace vrut {
+
+namespace {
+
+void write_vrut_file(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses&,
+                     const WriteProgress&) {
+    const auto pictures = write_pictures(scene, path, files);
+    files.write(path, [&](std::ostream& out) { write_vrut_text(scene, out, {}, pictures); });
+}
+
+struct Format {
+    const char* extension;
+    void (*write)(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
+                  const WriteProgress& progress);  // throws WriteFault
+};
+
+constexpr Format kFormats[] = {
+    {".vrut", write_vrut_file},
+    {".obj", write_obj},
+    {".stl", write_stl},
+    {".glb", write_glb},
+};
+
+const Format* format_of(const std::filesystem::path& path) {
+    const std::string extension = lower_extension(path);
+    const auto* const found =
+        std::find_if(std::begin(kFormats), std::end(kFormats),
+                     [&](const Format& format) { return extension == format.extension; });
+    return found == std::end(kFormats) ? nullptr : found;
+}
+
+}  // namespace
+
+bool has_writer(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+
+std::string written_extensions() {
+    std::string list;
+    for (const Format& format : kFormats) list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    return list;
+}
+
+WriteResult write_scene(const Scene& scene, const std::filesystem::path& path, const WriteProgress& progress,
+                        std::vector<std::filesystem::path> kept) {
+    const Format* const format = format_of(path);
+    if (format == nullptr)
+        return tl::unexpected(path.string() + ": no writer for this ending; known are " +
+                              written_extensions());
+    try {
+        OutputFiles files(std::move(kept));
+        Losses losses;
+        format->write(scene, path, files, losses, progress);
+        files.commit();
+        std::vector<std::string> lost;
+        losses.append_to(lost, path.string());
+        return lost;
+    } catch (const WriteFault& fault) {
+        return tl::unexpected(std::string(fault.what()));
+    }
+}
+
+}  // namespace vrut

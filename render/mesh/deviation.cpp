@@ -1,0 +1,149 @@
+#include "mesh/deviation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+
+namespace vrut {
+
+namespace {
+
+/// Up to so many their middles count: where there are more, vertices lie close together.
+constexpr std::size_t kFewTriangles = 10000;
+/// Where there are more, and so many for each new one, the vertices tell enough, and edges do not count.
+constexpr std::size_t kDense = 8;
+
+/// Of a surface with more edges only about so many are asked, spread evenly.
+constexpr std::size_t kEdges = 20000;
+
+constexpr unsigned kNowhere = std::numeric_limits<unsigned>::max();
+
+float squared(const glm::vec3& v) { return glm::dot(v, v); }
+
+}  // namespace
+
+Deviation::Deviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, float least,
+                     const std::atomic<bool>& stop)
+    : positions_(positions),
+      stop_(stop),
+      original_{triangles, {triangles, positions.size()}},
+      anchors_(positions.size()),
+      squared_(least * least) {
+    std::iota(anchors_.begin(), anchors_.end(), 0U);
+    const std::size_t step = 1 + triangles.size() * 3 / 2 / kEdges;
+    for (std::size_t i = 0; i < triangles.size(); i += step)
+        for (int k = 0; k < 3; ++k) {
+            const unsigned from = triangles[i][k], to = triangles[i][(k + 1) % 3];
+            if (from < to || !has_edge(original_, to, from)) edges_.push_back({from, to});
+        }
+}
+
+/// Whether a triangle runs from one vertex to the other.
+bool Deviation::has_edge(const Surface& surface, unsigned from, unsigned to) {
+    return std::ranges::any_of(surface.stars.of(from), [&](unsigned number) {
+        const glm::uvec3& t = surface.triangles[number];
+        return (t.x == from && t.y == to) || (t.y == from && t.z == to) || (t.z == from && t.x == to);
+    });
+}
+
+/// Vertices that are gone hand on those that they stood for to the nearest neighbour that is left; false
+/// where one has no such neighbour, however far.
+bool Deviation::move_anchors(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after) {
+    std::vector<unsigned> next(positions_.size(), kNowhere);
+    for (const glm::uvec3& triangle : after)
+        for (int k = 0; k < 3; ++k) next[triangle[k]] = triangle[k];
+    struct News {
+        unsigned vertex, anchor;
+    };
+    const auto is_missing = [&](const glm::uvec3& t) {
+        return next[t.x] == kNowhere || next[t.y] == kNowhere || next[t.z] == kNowhere;
+    };
+    std::vector<glm::uvec3> missing;
+    std::ranges::copy_if(before, std::back_inserter(missing), is_missing);
+    while (!missing.empty()) {
+        std::vector<News> news;
+        for (const glm::uvec3& triangle : missing)
+            for (int k = 0; k < 3; ++k)
+                for (const int other : {(k + 1) % 3, (k + 2) % 3})
+                    if (next[triangle[k]] == kNowhere && next[triangle[other]] != kNowhere)
+                        news.push_back({triangle[k], next[triangle[other]]});
+        if (news.empty()) return false;
+        for (const auto& [vertex, anchor] : news)
+            if (next[vertex] == kNowhere || squared(positions_[anchor] - positions_[vertex]) <
+                                                squared(positions_[next[vertex]] - positions_[vertex]))
+                next[vertex] = anchor;
+        std::erase_if(missing, [&](const glm::uvec3& t) { return !is_missing(t); });
+    }
+    for (unsigned& anchor : anchors_)
+        if (next[anchor] != kNowhere) anchor = next[anchor];
+    return true;
+}
+
+/// Around the anchor first, where most points find what is near enough; `anchor` moves to where they found
+/// it.
+void Deviation::include(const glm::vec3& point, unsigned& anchor, Surface& surface) {
+    if (stop_.load(std::memory_order_relaxed)) return;
+    NearTriangle found{0, std::numeric_limits<float>::infinity()};
+    for (const unsigned number : surface.stars.of(anchor)) {
+        const glm::uvec3& t = surface.triangles[number];
+        const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
+        if (here < found.squared) found = {number, here};
+        if (here <= squared_) return;
+    }
+    if (!surface.tree) surface.tree.emplace(positions_, surface.triangles);
+    found = surface.tree->nearest(point, found, squared_);
+    squared_ = std::max(squared_, found.squared);
+    const glm::uvec3& t = surface.triangles[found.number];
+    anchor = t.x;
+    for (const unsigned corner : {t.y, t.z})
+        if (squared(positions_[corner] - point) < squared(positions_[anchor] - point)) anchor = corner;
+}
+
+unsigned Deviation::near(const glm::vec3& point, const glm::uvec3& triangle) const {
+    NearTriangle found{0, std::numeric_limits<float>::infinity()};
+    const glm::uvec3 now(anchors_[triangle.x], anchors_[triangle.y], anchors_[triangle.z]);
+    for (int k = 0; k < 3; ++k) {
+        if (k > 0 && (now[k] == now[0] || now[k] == now[k - 1])) continue;
+        for (const unsigned number : newest_->stars.of(now[k])) {
+            const glm::uvec3& t = newest_->triangles[number];
+            const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
+            if (here < found.squared) found = {number, here};
+        }
+    }
+    return found.number;
+}
+
+std::optional<float> Deviation::measure(std::span<const glm::uvec3> before,
+                                        std::span<const glm::uvec3> after) {
+    if (!move_anchors(before, after)) return {};
+    Surface& surface = newest_.emplace(Surface{after, {after, positions_.size()}});
+    // Some from everywhere come first: the further one has been found, the sooner the others are done.
+    for (const std::size_t step : {std::size_t{61}, std::size_t{1}})
+        for (std::size_t vertex = 0; vertex < positions_.size(); vertex += step)
+            if (anchors_[vertex] != vertex) include(positions_[vertex], anchors_[vertex], surface);
+    const bool few = original_.triangles.size() <= kFewTriangles;
+    if (few || kDense * after.size() > original_.triangles.size())
+        for (const Edge& edge : edges_) {
+            unsigned anchor = anchors_[edge.from];
+            include((positions_[edge.from] + positions_[edge.to]) * 0.5F, anchor, surface);
+        }
+    if (few)
+        for (const glm::uvec3& t : original_.triangles) {
+            unsigned anchor = anchors_[t.x];
+            include((positions_[t.x] + positions_[t.y] + positions_[t.z]) / 3.0F, anchor, surface);
+        }
+    const std::size_t step = 1 + after.size() * 3 / 2 / kEdges;
+    for (std::size_t i = 0; i < after.size(); i += step)
+        for (int k = 0; k < 3; ++k) {
+            unsigned anchor = after[i][k];
+            const unsigned to = after[i][(k + 1) % 3];
+            if (anchor < to || !has_edge(surface, to, anchor))
+                include((positions_[anchor] + positions_[to]) * 0.5F, anchor, original_);
+        }
+    if (stop_) return {};
+    return std::sqrt(squared_);
+}
+
+}  // namespace vrut

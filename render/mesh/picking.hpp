@@ -1,0 +1,32 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <optional>
+
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// A half-line in world space; `direction` is unit.
+struct Ray {
+    glm::dvec3 origin{0}, direction{0, 0, -1};
+};
+
+/// What a ray meets first.
+struct Hit {
+    Index node = kNone;
+    glm::dvec3 point{0};   ///< world space
+    glm::dvec3 normal{0};  ///< the triangle's own, in world space: unit, towards the ray's origin
+    double distance = 0;   ///< from the ray's origin, above 0, in the scene's unit
+};
+
+/// The nearest triangle along the ray among what a picture from `ray.origin` shows: nodes that are active and
+/// chosen by their switches and LODs, front faces, and back faces where they are drawn. At exactly equal
+/// distance the node of higher id is hit. With `through_transparent` transparent materials are passed,
+/// whatever their picture's alpha is there. Edges and corners belong to their triangles, so that a closed
+/// surface has no gaps; a triangle without area, or seen exactly along its plane, is missed. Nothing is hit
+/// by a ray that is not finite or has no direction. Edge test: Woop, Benthin, Wald, "Watertight Ray/Triangle
+/// Intersection", JCGT 2(1), 2013.
+std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_transparent);
+
+}  // namespace vrut

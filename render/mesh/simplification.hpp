@@ -1,0 +1,29 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// A geometry's surface with fewer triangles, between some of its vertices; or with its own in another order.
+struct DetailLevel {
+    int number = 0;  ///< from 1; 0 is the geometry itself, reordered
+    /// How far the two surfaces lie apart at most, and their normals make them look apart but for a
+    /// twentieth of their area; in the geometry's unit.
+    double error = 0;
+    std::vector<glm::uvec3> triangles;  ///< of the geometry's positions
+};
+
+/// Ever coarser, each with about half the triangles of the one before; none where nothing is to be gained.
+/// Gives up, and returns what it has, soon after `stop` is set. Edges are collapsed by quadric error (Garland
+/// and Heckbert 1997, as in meshoptimizer); how far that moves the surface and turns its normals is measured
+/// (Deviation, Slant). Corners of the same position stay together, whatever normals and texture coordinates
+/// they have.
+std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bool>& stop);
+
+/// The level as a geometry of its own, with the same bounds, without the vertices that it does not use.
+Geometry geometry_of(const Geometry& geometry, const DetailLevel& level);
+
+}  // namespace vrut

@@ -1,0 +1,37 @@
+#include "plan/draw_budget.hpp"
+
+#include "mesh/simplification.hpp"
+
+namespace vrut {
+
+namespace {
+
+constexpr std::int64_t kDraw = 150, kTriangle = 3;
+constexpr std::int64_t kUpload = 400, kUploadedTriangle = 10;  // besides, for the first draw
+
+std::int64_t work_of(const DrawItem& item, const Geometry& geometry, bool is_uploaded) {
+    const auto triangles =
+        static_cast<std::int64_t>((item.level ? item.level->triangles : geometry.triangles).size());
+    const std::int64_t draw = kDraw + kTriangle * triangles;
+    return is_uploaded ? draw : draw + kUpload + kUploadedTriangle * triangles;
+}
+
+}  // namespace
+
+std::span<const DrawItem> StepWork::take(std::span<const DrawItem> items, const Scene& scene,
+                                         const glm::dmat4& clip_from_view, const PixelBox& box,
+                                         const glm::ivec2& picture,
+                                         const std::function<bool(const DrawItem&)>& is_uploaded) {
+    std::size_t count = 0;
+    for (; count < items.size() && !spent(); ++count) {
+        const DrawItem& item = items[count];
+        const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
+        const PixelBox covered =
+            intersection(pixel_box(geometry.bounds, clip_from_view * item.view_from_node, picture), box);
+        if (!covered.empty()) spend_pixels(std::int64_t{covered.size().x} * covered.size().y);
+        spend(work_of(item, geometry, is_uploaded(item)));
+    }
+    return items.first(count);
+}
+
+}  // namespace vrut

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "plan/triangle_order.hpp"
+
+namespace vrut {
+
+/// A box of any orientation: the points center + Σ t_k · axes[k] with t_k from -1 to 1.
+struct OrientedBox {
+    glm::dvec3 center{0};
+    std::array<glm::dvec3, 3> axes{};
+};
+
+/// Around a geometry, in its own space, with one axis along the normal of its largest triangle's side: thin
+/// around a sheet of glass, however that lies in its space.
+OrientedBox oriented_box(const Geometry& geometry);
+
+/// The box seen through an affine `matrix`.
+OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
+
+/// What decides in which order glass of a scene's geometries is drawn, found when it is first asked for.
+class GlassShapes {
+public:
+    /// The scene must outlive it.
+    explicit GlassShapes(const Scene& scene) : scene_(scene), shapes_(scene.geometries().size()) {}
+    /// Finds what is asked below for an item; what that took, in units of StepWork.
+    std::int64_t find(const DrawItem& item);
+    const OrientedBox& box(Index geometry);
+    const TriangleOrder& order(Index geometry, Sides sides);
+
+private:
+    struct Shape {
+        std::optional<OrientedBox> box;
+        std::array<std::optional<TriangleOrder>, 2> orders;  // with front faces, with both
+    };
+    const Geometry& geometry(Index index) const {
+        return scene_.geometries()[static_cast<std::size_t>(index)];
+    }
+
+    const Scene& scene_;
+    std::vector<Shape> shapes_;
+};
+
+}  // namespace vrut

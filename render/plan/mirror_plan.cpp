@@ -1,0 +1,199 @@
+#include "plan/mirror_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plan/frustum.hpp"
+#include "plan/transparency_plan.hpp"
+
+namespace vrut {
+
+namespace {
+
+/// In pixels. A mirror that covers less is seen along its plane, or from afar; whether it meets the centre of
+/// a pixel is left to chance, and what it shows there to the next hair's breadth.
+constexpr double kSmallestArea = 1.0 / 256;
+
+/// Part of a part's radius. Float positions are wrong by less; where a part stands on a mirror, so much of it
+/// is not reflected.
+constexpr double kClipMargin = 5e-7;
+
+/// Of homogeneous points, at whose corners a plane's product is positive inside.
+using Polygon = std::vector<glm::dvec4>;
+
+Polygon cut(const Polygon& polygon, const glm::dvec4& inside) {
+    Polygon rest;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec4 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double at_a = glm::dot(inside, a), at_b = glm::dot(inside, b);
+        if (at_a >= 0) rest.push_back(a);
+        if ((at_a >= 0) != (at_b >= 0)) rest.push_back(glm::mix(a, b, at_a / (at_a - at_b)));
+    }
+    return rest;
+}
+
+/// The part of a geometry's plane that lies in its bounds.
+Polygon slice(const Plane& plane, const Bounds& bounds) {
+    const double radius = bounds.radius();
+    const glm::dvec3& n = plane.normal;
+    const glm::dvec3 u =
+        glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0)));
+    const glm::dvec3 v = glm::cross(n, u);
+    const glm::dvec3 center = bounds.center() - n * plane.distance(bounds.center());
+    Polygon polygon;
+    for (const glm::dvec2& corner : {glm::dvec2(1, 1), {-1, 1}, {-1, -1}, {1, -1}})
+        polygon.emplace_back(center + (u * corner.x + v * corner.y) * radius, 1);
+    const glm::dvec3 low = bounds.min - 1e-4 * radius, high = bounds.max + 1e-4 * radius;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec4 inside(0);
+        inside[axis] = 1;
+        inside.w = -low[axis];
+        polygon = cut(polygon, inside);
+        inside[axis] = -1;
+        inside.w = high[axis];
+        polygon = cut(polygon, inside);
+    }
+    return polygon;
+}
+
+/// Pixels of the picture, and of half a pixel around it, that a polygon of clip space covers.
+double covered_area(Polygon polygon, const glm::dvec2& picture) {
+    const glm::dvec2 edge = 1.0 + 1.0 / picture;
+    for (const glm::dvec4& inside : {glm::dvec4(0, 0, -1, 1),
+                                     {1, 0, 0, edge.x},
+                                     {-1, 0, 0, edge.x},
+                                     {0, 1, 0, edge.y},
+                                     {0, -1, 0, edge.y}})
+        polygon = cut(polygon, inside);
+    double doubled = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec4 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const glm::dvec2 p = glm::dvec2(a) / a.w * picture / 2.0, q = glm::dvec2(b) / b.w * picture / 2.0;
+        doubled += p.x * q.y - p.y * q.x;
+    }
+    return std::abs(doubled) / 2;
+}
+
+const Geometry& geometry_of(const Scene& scene, const DrawItem& item) {
+    return scene.geometries()[static_cast<std::size_t>(item.geometry)];
+}
+
+struct Candidate {
+    std::size_t place = 0;  ///< among the opaque
+    Plane plane;            ///< whose normal is on the viewer's side
+    double area = 0;
+};
+
+std::vector<Candidate> candidates(std::span<const DrawItem> opaque, const Scene& scene,
+                                  const glm::dmat4& clip_from_view, const glm::dvec2& picture) {
+    std::vector<Candidate> found;
+    for (std::size_t i = 0; i < opaque.size(); ++i) {
+        const DrawItem& item = opaque[i];
+        auto plane = mirror_plane(scene, item);
+        if (!plane) continue;
+        if (plane->distance(glm::dvec3(0)) < 0) plane->normal = -plane->normal;
+        Polygon polygon = slice(*scene.plane(item.geometry), geometry_of(scene, item).bounds);
+        const glm::dmat4 clip_from_node = clip_from_view * item.view_from_node;
+        for (glm::dvec4& point : polygon) point = clip_from_node * point;
+        const double area = covered_area(std::move(polygon), picture);
+        if (area >= kSmallestArea) found.push_back({i, *plane, area});
+    }
+    return found;
+}
+
+void keep_largest(std::vector<Candidate>& mirrors) {
+    if (mirrors.size() <= kMostMirrors) return;
+    std::stable_sort(mirrors.begin(), mirrors.end(),
+                     [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
+    mirrors.resize(kMostMirrors);
+    std::sort(mirrors.begin(), mirrors.end(),
+              [](const Candidate& a, const Candidate& b) { return a.place < b.place; });
+}
+
+/// A pixel more on all sides: samples lie beside the pixels' centres.
+PixelBox box_of(const DrawItem& item, const Scene& scene, const glm::dmat4& clip_from_view,
+                const glm::ivec2& picture) {
+    const PixelBox box =
+        pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, picture);
+    return intersection({box.low - 1, box.high + 1}, {{0, 0}, picture});
+}
+
+bool are_twins(const DrawItem& a, const DrawItem& b) {
+    return a.geometry == b.geometry && a.view_from_node == b.view_from_node;
+}
+
+/// `item` as the mirror shows it; none where all of it lies behind the mirror, or in its plane.
+std::optional<DrawItem> reflected(const DrawItem& item, const Scene& scene, const Plane& plane,
+                                  const glm::dmat4& reflection) {
+    const Bounds& bounds = geometry_of(scene, item).bounds;
+    const glm::dmat4& matrix = item.view_from_node;
+    // Distances from the plane, of points of the node's space.
+    glm::dvec4 distance = glm::dvec4(plane.normal, -glm::dot(plane.normal, plane.point)) * matrix;
+    const glm::dvec3 half = bounds.half_extent();
+    const double margin = kClipMargin * glm::length(transformed(matrix, bounds).half_extent());
+    const double middle = glm::dot(distance, glm::dvec4(bounds.center(), 1));
+    const double reach = glm::dot(glm::abs(glm::dvec3(distance)), half);
+    if (!(middle + reach > margin)) return {};
+    DrawItem image = item;
+    image.view_from_node = reflection * matrix;
+    image.mirrored = !item.mirrored;
+    if (middle - reach < margin) {
+        distance.w -= margin;
+        image.kept = distance;
+    }
+    return image;
+}
+
+std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const Plane& plane,
+                                      std::span<const DrawItem> shown, const View& view) {
+    const glm::dvec2 scale = 2.0 / glm::dvec2(view.width, view.height);
+    const PictureArea area{glm::dvec2(mirror.box.low) * scale - 1.0,
+                           glm::dvec2(mirror.box.high) * scale - 1.0};
+    const Frustum frustum = frustum_of(view.camera, static_cast<double>(view.width) / view.height, area);
+    const Scene& scene = *view.scene->scene;
+    std::vector<DrawItem> items;
+    for (const DrawItem& item : shown) {
+        if (are_twins(item, mirror.surface)) continue;
+        const auto image = reflected(item, scene, plane, mirror.reflection);
+        if (image && !lies_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
+            items.push_back(*image);
+    }
+    return items;
+}
+
+}  // namespace
+
+std::optional<Plane> mirror_plane(const Scene& scene, const DrawItem& item) {
+    if (!is_mirror(scene, item.geometry, item.material)) return {};
+    return transformed(item.view_from_node, *scene.plane(item.geometry));
+}
+
+std::vector<MirrorItem> take_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
+                                     const View& view) {
+    const Scene& scene = *view.scene->scene;
+    const glm::ivec2 picture(view.width, view.height);
+    const glm::dmat4 clip_from_view =
+        reversed_clip_from_view(view, fit_clip_range(view.camera, view.scene->bounds).near);
+    std::vector<Candidate> chosen = candidates(opaque, scene, clip_from_view, picture);
+    if (chosen.empty()) return {};
+    keep_largest(chosen);
+    std::vector<DrawItem> surfaces;
+    surfaces.reserve(chosen.size());
+    for (const Candidate& candidate : chosen) surfaces.push_back(opaque[candidate.place]);
+    mark_hidden_twins(surfaces, opaque, scene);
+    std::vector<MirrorItem> mirrors;
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Plane& plane = chosen[i].plane;
+        MirrorItem& mirror = mirrors.emplace_back();
+        mirror.surface = surfaces[i];
+        mirror.reflection = reflection_about(plane);
+        mirror.box = box_of(mirror.surface, scene, clip_from_view, picture);
+        mirror.reflected.opaque = reflected_items(mirror, plane, shown, view);
+    }
+    for (auto taken = chosen.rbegin(); taken != chosen.rend(); ++taken)
+        opaque.erase(opaque.begin() + static_cast<std::ptrdiff_t>(taken->place));
+    return mirrors;
+}
+
+}  // namespace vrut

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "plan/view.hpp"
+
+namespace vrut {
+
+/// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
+/// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
+/// down.
+glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset = glm::dvec2(0));
+
+/// Pixels from `low` to before `high`, y up.
+struct PixelBox {
+    glm::ivec2 low{0}, high{0};
+    glm::ivec2 size() const { return high - low; }
+    bool empty() const { return low.x >= high.x || low.y >= high.y; }
+};
+PixelBox intersection(const PixelBox& a, const PixelBox& b);
+
+/// All that something within `bounds` can cover of a picture, whose clip space is a reversed one; what lies
+/// before the near plane counts for nothing.
+PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& picture);
+
+}  // namespace vrut

@@ -1,0 +1,38 @@
+#include "plan/rendering.hpp"
+
+#include <cmath>
+#include <span>
+#include <utility>
+
+namespace vrut {
+
+namespace {
+
+void average(std::span<const std::uint32_t> sums, int samples, std::span<std::uint8_t> rgba) {
+    // Division in float is vectorised, where bytes cannot lie over what holds them, and exact here: the sums
+    // are integers far below 2^24.
+    const auto count = static_cast<float>(samples), half = std::floor(count / 2);
+    for (std::size_t k = 0; k < rgba.size(); ++k)
+        rgba[k] = static_cast<std::uint8_t>((static_cast<float>(sums[k]) + half) / count);
+}
+
+}  // namespace
+
+Rendering::Rendering(View what, Image buffer) : view(std::move(what)), image(std::move(buffer)) {
+    image.resize(view.width, view.height);
+    if (view.samples > 1) sums.assign(image.rgba.size(), 0);
+}
+
+bool add_sample(Rendering& rendering, std::vector<std::uint8_t>& pixels) {
+    ++rendering.samples;
+    if (rendering.view.samples <= 1) {
+        rendering.image.rgba.swap(pixels);
+        return true;
+    }
+    for (std::size_t k = 0; k < pixels.size(); ++k) rendering.sums[k] += pixels[k];
+    if (rendering.samples < rendering.view.samples) return false;
+    average(rendering.sums, rendering.samples, rendering.image.rgba);
+    return true;
+}
+
+}  // namespace vrut

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "plan/view.hpp"
+#include "scene/image.hpp"
+
+namespace vrut {
+
+class FramePlanner;
+
+/// An image of a view that is drawn in steps (Renderer::step). Between two steps it may wait while others are
+/// drawn, and it may outlive its renderer.
+struct Rendering {
+    /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again.
+    explicit Rendering(View what, Image buffer = {});
+
+    View view;
+    Image image;                      ///< of the view's size; its pixels once all samples are drawn
+    FrameStats stats;                 ///< of all steps so far
+    std::vector<std::uint32_t> sums;  ///< for each byte of the image, over the samples; empty for one sample
+    int samples = 0;                  ///< drawn, of view.samples
+    std::shared_ptr<FramePlanner> planner = nullptr;  ///< the renderer's, by which it knows this image
+    // Copies would share one unfinished sample.
+    Rendering(const Rendering&) = delete;
+    Rendering& operator=(const Rendering&) = delete;
+    Rendering(Rendering&&) = default;
+    Rendering& operator=(Rendering&&) = default;
+    ~Rendering() = default;
+};
+
+/// Adds a sample, given by the bytes of its pixels; where there is only one, they become the image, and
+/// `pixels` takes the image's memory. True if all samples are drawn: then the image holds their averages.
+bool add_sample(Rendering& rendering, std::vector<std::uint8_t>& pixels);
+
+}  // namespace vrut

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/camera.hpp"
+#include "scene/light.hpp"
+#include "scene/scene.hpp"
+
+namespace vrut {
+
+/// The plain background: 230/255, 235/255, 242/255.
+inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+
+/// What stands behind everything: a cube map, else a picture stretched over the view, else a colour. Textures
+/// are the scene's.
+struct Background {
+    glm::dvec3 color = kDefaultBackground;
+    Index texture = kNone;
+    std::optional<std::array<Index, 6>> cube_map;  ///< px nx py ny pz nz
+
+    bool operator==(const Background&) const = default;
+};
+
+/// A sign on a surface, in world space, and the name by which clients know it.
+struct Mark {
+    glm::dvec3 point{0};
+    std::string name = {};
+
+    bool operator==(const Mark&) const = default;
+};
+
+/// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
+enum class DrawMode { realistic, stylized };
+
+class DetailLevels;
+
+/// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
+/// default is the most accurate.
+struct Methods {
+    enum class Light { pixel, vertex };         ///< where Phong's equation is evaluated
+    enum class Transparency { exact, sorted };  ///< right at each pixel, or part by part from far to near
+    Light light = Light::pixel;
+    Transparency transparency = Transparency::exact;
+
+    bool operator==(const Methods&) const = default;
+};
+
+/// What a picture shows, in pixels of the picture.
+struct View {
+    std::shared_ptr<const PlacedScene> scene;  ///< null: the background only; views are equal by its address
+    Camera camera;
+    int width = 1280, height = 720;
+    int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
+    double detail =
+        0;  ///< how far, in pixels, the surfaces drawn may lie from the scene's; 0: every triangle
+    /// Of the scene, for `detail`, and to leave out triangles that are hidden; null: none are made.
+    std::shared_ptr<const DetailLevels> levels;
+    Methods methods;
+    Light light;
+    DrawMode mode = DrawMode::realistic;
+    bool wireframe = false;  ///< the edges of all triangles, and no faces
+    /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
+    Index selected = kNone;
+    Background background;
+    std::shared_ptr<const std::vector<Mark>> marks;  ///< null: none; views are equal by its address
+
+    bool operator==(const View&) const = default;
+};
+
+/// What a picture took.
+struct FrameStats {
+    int passes = 0;
+    int draws = 0;
+    int samples = 0;    ///< drawn
+    int readbacks = 0;  ///< of pixels, from the GPU into memory
+    std::uint64_t triangles = 0;
+    std::uint64_t edges = 0;
+    int uploads = 0;         ///< geometries, edges, textures and cube maps brought to the GPU
+    double render_ms = 0;    ///< from the first command to the fence behind the last
+    double readback_ms = 0;  ///< from the GPU into memory
+};
+
+}  // namespace vrut

@@ -1,0 +1,212 @@
+#include "renderer/renderer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <list>
+
+#include "gl/context.hpp"
+#include "gl/framebuffer.hpp"
+#include "gl/gpu_scene.hpp"
+#include "gl/passes/drawing.hpp"
+#include "gl/passes/id_pass.hpp"
+#include "gl/sample_drawing.hpp"
+#include "plan/frame_plan.hpp"
+#include "plan/glass_shape.hpp"
+#include "plan/projection.hpp"
+
+namespace vrut {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+    Impl(std::optional<int> device, bool debug) : context({device, debug}) {}
+
+    void require_context() const {
+        if (context.lost()) throw ContextLost("the graphics driver has reset itself");
+    }
+
+    static void require_memory() {
+        constexpr int kMostErrors = 100;
+        GLenum error = glGetError();
+        for (int i = 0; i < kMostErrors && error != GL_NO_ERROR && error != GL_OUT_OF_MEMORY; ++i)
+            error = glGetError();
+        if (error == GL_OUT_OF_MEMORY) throw OutOfMemory("the graphics driver has no memory to draw with");
+    }
+
+    /// Draws. The one place that asks whether the context was lost meanwhile, whatever that made of it, and
+    /// whether there was too little memory for something.
+    template <class Draw>
+    auto draw_or_fail(Draw draw) {
+        try {
+            set_up_drawing();
+            auto drawn = draw();
+            require_context();
+            require_memory();
+            return drawn;
+        } catch (const std::bad_alloc&) {
+            require_context();
+            throw OutOfMemory("this machine has no memory left to draw with");
+        } catch (const std::exception&) {
+            require_context();
+            throw;
+        }
+    }
+
+    void use_scene(const std::shared_ptr<const Scene>& wanted) {
+        if (scene && scene->scene() == wanted) return;
+        scene.reset();
+        if (taken && taken->scene() == wanted)
+            scene = std::move(taken);
+        else
+            scene = std::make_unique<GpuScene>(wanted);
+        taken.reset();
+        shapes.emplace(*wanted);
+    }
+
+    void take(const View& view) {
+        taken.reset();
+        if (scene && scene->scene() == view.scene->scene) return;
+        auto next = std::make_unique<GpuScene>(view.scene->scene);
+        next->upload_shown(view);
+        taken = std::move(next);
+    }
+
+    /// Gives back what was drawn with; what is needed comes again.
+    void release() {
+        scene.reset();
+        taken.reset();
+        begun.clear();
+        targets.reset();
+        pixels = {};
+    }
+
+    /// What draws the rendering's next sample.
+    SampleDrawing& sample_of(const Rendering& rendering) {
+        const auto is_its = [&](const SampleDrawing& sample) { return sample.is_of(rendering); };
+        if (const auto found = std::ranges::find_if(begun, is_its); found != begun.end()) return *found;
+        for (SampleDrawing& sample : begun)
+            if (sample.abandoned()) targets = sample.release();
+        std::erase_if(begun, [](const SampleDrawing& sample) { return sample.abandoned(); });
+        if (!targets) targets = std::make_unique<SampleTargets>();
+        return begun.emplace_back(rendering, std::move(targets));
+    }
+
+    void forget_sample_of(const Rendering& rendering) {
+        std::erase_if(begun, [&](const SampleDrawing& sample) { return sample.is_of(rendering); });
+    }
+
+    bool step(Rendering& rendering);
+    bool draw(Rendering& rendering);
+
+    GlContext context;  // first: destroyed after everything below
+    std::unique_ptr<GpuScene> scene, taken;
+    std::optional<GlassShapes> shapes;
+    Passes passes;
+    std::list<SampleDrawing> begun;          // of renderings that wait
+    std::unique_ptr<SampleTargets> targets;  // of a sample before, for the next
+    IdPass ids;
+    std::vector<std::uint8_t> pixels;  // of a sample
+};
+
+/// True if a sample is drawn: then `pixels` are its colours.
+bool Renderer::Impl::draw(Rendering& rendering) {
+    const View& view = rendering.view;
+    FrameStats& stats = rendering.stats;
+    Clock::time_point start = Clock::now();
+    if (view.scene) use_scene(view.scene->scene);
+    StepWork work(context.software());
+    if (!rendering.planner) rendering.planner = std::make_shared<FramePlanner>();
+    if (view.scene && !rendering.planner->step(view, *shapes, work)) {
+        stats.render_ms += milliseconds_since(start);
+        return false;
+    }
+    const int uploads_before = scene ? scene->uploads() : 0;
+    SampleDrawing& sample = sample_of(rendering);
+    const bool drawn = sample.draw(rendering, scene.get(), passes, work);
+    wait_for_gl();
+    stats.render_ms += milliseconds_since(start);
+    stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;
+    if (!drawn) return false;
+
+    start = Clock::now();
+    pixels.resize(rendering.image.rgba.size());
+    sample.picture().read(pixels);
+    targets = sample.release();
+    ++stats.samples;
+    ++stats.readbacks;
+    stats.readback_ms += milliseconds_since(start);
+    return true;
+}
+
+bool Renderer::Impl::step(Rendering& rendering) {
+    bool drawn = false;
+    try {
+        drawn = draw_or_fail([&] { return draw(rendering); });
+    } catch (...) {
+        forget_sample_of(rendering);
+        throw;
+    }
+    if (!drawn) return false;
+    forget_sample_of(rendering);
+    const Clock::time_point start = Clock::now();
+    const bool whole = add_sample(rendering, pixels);
+    rendering.stats.readback_ms += milliseconds_since(start);
+    return whole;
+}
+
+Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {}
+Renderer::~Renderer() = default;
+
+const std::string& Renderer::description() const { return impl_->context.description(); }
+const std::vector<std::string>& Renderer::rejected() const { return impl_->context.rejected(); }
+bool Renderer::software() const { return impl_->context.software(); }
+int Renderer::max_size() const { return impl_->context.max_size(); }
+long Renderer::gl_objects() const { return live_gl_objects(); }
+std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
+
+bool Renderer::step(Rendering& rendering) {
+    try {
+        return impl_->step(rendering);
+    } catch (const OutOfMemory&) {
+        // Much may be there of pictures before: levels of detail, edges, the targets of larger ones.
+        impl_->release();
+    }
+    return impl_->step(rendering);
+}
+
+void Renderer::render(const View& view, Image& image, FrameStats& stats) {
+    Rendering rendering(view, std::move(image));
+    while (!step(rendering)) {
+    }
+    image = std::move(rendering.image);
+    stats = rendering.stats;
+}
+
+void Renderer::take(const View& view) {
+    impl_->draw_or_fail([&] {
+        impl_->take(view);
+        return true;
+    });
+}
+
+std::vector<Index> Renderer::node_ids(const View& view) {
+    if (!view.scene)
+        return std::vector<Index>(
+            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), kNone);
+    return impl_->draw_or_fail([&] {
+        impl_->use_scene(view.scene->scene);
+        const double near = fit_clip_range(view.camera, view.scene->bounds).near;
+        return impl_->ids.draw(faces_of(view), *impl_->scene, view.width, view.height,
+                               reversed_clip_from_view(view, near, glm::dvec2(0)));
+    });
+}
+
+}  // namespace vrut

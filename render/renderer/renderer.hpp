@@ -1,0 +1,59 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/drawing_errors.hpp"
+#include "plan/rendering.hpp"
+#include "plan/view.hpp"
+#include "scene/image.hpp"
+
+namespace vrut {
+
+/// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread. Whatever draws
+/// throws ContextLost when the driver has reset itself: from then on it draws nothing any more. It throws
+/// OutOfMemory where there is too little: what was drawn before can be drawn still.
+class Renderer {
+public:
+    /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's
+    /// enumeration; with `debug` the driver's messages are collected.
+    explicit Renderer(std::optional<int> device = std::nullopt, bool debug = false);
+    ~Renderer();
+
+    /// What draws, for a log; why other devices were passed over; whether the processor draws.
+    const std::string& description() const;
+    const std::vector<std::string>& rejected() const;
+    bool software() const;
+    /// Largest width and height of a picture.
+    int max_size() const;
+    /// That live now, in the whole process.
+    long gl_objects() const;
+    std::vector<std::string> take_messages();
+
+    /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
+    /// drawn last stays there, too, until then; for good where this throws.
+    void take(const View& view);
+
+    /// Draws the next sample, or a part of it where that is too much for one step (StepWork); first of all it
+    /// may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
+    /// this throws, the samples drawn before hold, and what was drawn of the next is drawn again: after
+    /// ContextLost a new renderer goes on, or the view is begun anew. The scene drawn last stays on the GPU.
+    bool step(Rendering& rendering);
+
+    /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has
+    /// nothing else to do meanwhile.
+    void render(const View& view, Image& image, FrameStats& stats);
+
+    /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
+    /// is in front of what is seen through it. Rows from the bottom up.
+    std::vector<Index> node_ids(const View& view);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace vrut

@@ -1,0 +1,471 @@
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+
+#include "../assimp_leaks.hpp"
+#include "image_bytes.hpp"
+#include "scene_queries.hpp"
+
+using namespace vrut;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string text_of(const std::string& name) {
+    std::ifstream stream(VRUT_TEST_DATA "/scenes/" + name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Blue at the bottom left, the alpha of its neighbour 128.
+std::string picture() {
+    return png_bytes({.width = 2,
+                      .height = 2,
+                      .color_type = PNG_COLOR_TYPE_RGBA,
+                      .rows = {{255, 0, 0, 255, 0, 255, 0, 255}, {0, 0, 255, 255, 255, 255, 255, 128}}});
+}
+
+/// The scene of one of the files there, with `from` in it as `to`, beside its material library and picture.
+Scene read_panel(const std::string& name, const std::string& from = "", const std::string& to = "") {
+    const TemporaryFolder folder;
+    folder.write("panel.mtl", text_of("panel.mtl"));
+    folder.write("paint.png", picture());
+    folder.write("tex/my paint.png", picture());
+    std::string text = text_of(name);
+    const std::size_t at = text.find(from);
+    REQUIRE_MESSAGE(at != std::string::npos, from);
+    return read_well(folder.write(name, text.replace(at, from.size(), to)));
+}
+
+const Geometry& geometry_of(const Scene& scene, const Node& node) {
+    return scene.geometries()[static_cast<std::size_t>(std::get<GeometryData>(node.data).geometry)];
+}
+
+const Material& material_of(const Scene& scene, const Node& node) {
+    return scene.material(std::get<GeometryData>(node.data).material);
+}
+
+/// The picture as it is, or without its alpha.
+void check_picture(const Scene& scene, const Material& material, std::uint8_t alpha) {
+    REQUIRE(material.texture != kNone);
+    const Image& image = scene.textures()[static_cast<std::size_t>(material.texture)].image;
+    CHECK(image.rgba == std::vector<std::uint8_t>{0, 0, 255, 255, 255, 255, 255, alpha,  // from the bottom
+                                                  255, 0, 0, 255, 0, 255, 0, 255});
+}
+
+/// Two triangles over the unit square, laid with the picture upright.
+void check_panel(const Geometry& panel, bool has_texcoords) {
+    CHECK(panel.positions.size() == 4);
+    CHECK(panel.triangles.size() == 2);
+    CHECK(panel.bounds.max == glm::dvec3(1, 1, 0));
+    for (const glm::uvec3& t : panel.triangles)
+        CHECK(glm::cross(panel.positions[t.y] - panel.positions[t.x],
+                         panel.positions[t.z] - panel.positions[t.x])
+                  .z > 0);
+    REQUIRE(panel.texcoords.size() == (has_texcoords ? 4 : 0));
+    for (std::size_t i = 0; i < panel.texcoords.size(); ++i)
+        CHECK(panel.texcoords[i] == glm::vec2(panel.positions[i]));
+}
+
+/// A cube's triangles as seen from outside, or from inside; or one of them left out.
+std::string cube_obj(bool outwards, bool whole) {
+    constexpr int kQuads[6][4] = {{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5},
+                                  {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}};
+    std::string text;
+    for (int i = 0; i < 8; ++i)
+        text += "v " + std::to_string(i & 1) + " " + std::to_string(i >> 1 & 1) + " " +
+                std::to_string(i >> 2) + "\n";
+    for (int quad = whole ? 0 : 1; quad < 6; ++quad) {
+        text += "f";
+        for (int i = 0; i < 4; ++i) text += " " + std::to_string(kQuads[quad][outwards ? i : 3 - i]);
+        text += "\n";
+    }
+    return text;
+}
+
+/// A triangle's 36 bytes and a face's 13, with the counts that its header tells.
+std::string binary_ply(std::uint64_t vertices, std::uint64_t faces) {
+    std::string text = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(vertices) +
+                       "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+                       std::to_string(faces) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    const float corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    const std::int32_t face[] = {0, 1, 2};
+    text.append(reinterpret_cast<const char*>(corners), sizeof corners).append(1, '\3');
+    return text.append(reinterpret_cast<const char*>(face), sizeof face);
+}
+
+}  // namespace
+
+TEST_CASE("an OBJ scene keeps its objects, normals and places on pictures") {
+    const Scene scene = read_panel("panel.obj");
+    CHECK(scene.nodes().size() == 3);
+    const Node &panel = node_of(scene, "Panel"), &pane = node_of(scene, "Pane");
+    CHECK(panel.parent == 0);
+    CHECK(panel.type == NodeType::geometry);
+    check_panel(geometry_of(scene, panel), true);
+    CHECK(geometry_of(scene, panel).normals.empty());  // flat
+    CHECK(geometry_of(scene, pane).normals == std::vector(3, glm::vec3(0, 0.6F, 0.8F)));
+}
+
+TEST_CASE("materials that are Phong's follow one rule") {
+    const Scene scene = read_panel("panel.obj");
+    const Material& paint = material_of(scene, "Paint");
+    CHECK(paint.diffuse == glm::dvec4(0.5, 0.25, 0, 1));
+    CHECK(is_near(paint.ambient, {0.05, 0.025, 0, 1}));
+    CHECK(paint.specular == glm::dvec4(0.5, 0.25, 0, 1));
+    CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
+    CHECK(paint.shininess == 50);
+    CHECK(paint.two_sided);
+    check_picture(scene, paint, 255);
+    const Material& glass = material_of(scene, "Glass");
+    CHECK(is_near(glass.diffuse, {0.1, 0.2, 0.3, 0.4}));
+    CHECK(glass.specular == glm::dvec4(0, 0, 0, 1));  // without an exponent
+    CHECK(has_notice(scene, "a bump map is not shown"));
+    CHECK(has_notice(scene, "not multiplied by the base colour"));
+    CHECK(scene.notices().size() == 2);
+}
+
+TEST_CASE("a picture's alpha counts in OBJ where it is the picture of the opacity too") {
+    const TemporaryFolder folder;
+    folder.write("paint.png", picture());
+    const fs::path path = folder.write("panel.obj", text_of("panel.obj"));
+    for (const auto& [opacity, alpha] : {std::pair("paint.png", 128), {"other.png", 255}}) {
+        folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\nmap_d " + std::string(opacity) + "\n");
+        const Scene scene = read_well(path);
+        check_picture(scene, material_of(scene, "Paint"), static_cast<std::uint8_t>(alpha));
+        CHECK(has_notice(scene, "a picture of transparency on its own") == (alpha == 255));
+    }
+}
+
+TEST_CASE("parts are two-sided unless they are closed, wound outwards and opaque") {
+    const TemporaryFolder folder;
+    const auto two_sided = [&](const std::string& text) {
+        return read_well(folder.write("cube.obj", text)).materials()[0].two_sided;
+    };
+    CHECK_FALSE(two_sided(cube_obj(true, true)));
+    CHECK(two_sided(cube_obj(false, true)));
+    CHECK(two_sided(cube_obj(true, false)));
+    folder.write("glass.mtl", "newmtl Glass\nd 0.5\n");
+    CHECK(two_sided("mtllib glass.mtl\nusemtl Glass\n" + cube_obj(true, true)));
+    // The material of a closed and of an open part.
+    CHECK(two_sided("o Whole\n" + cube_obj(true, true) + "o Open\n" + "f 1 2 3\n"));
+}
+
+TEST_CASE("an STL scene keeps its solids, each welded and flat") {
+    const Scene scene = read_panel("panel.stl");
+    CHECK(scene.nodes().size() == 3);
+    const Node& panel = node_of(scene, "Panel");
+    check_panel(geometry_of(scene, panel), false);
+    CHECK(geometry_of(scene, panel).normals.empty());
+    CHECK(geometry_of(scene, node_of(scene, "Pane")).triangles.size() == 1);
+    CHECK(scene.material(0).diffuse == Material().diffuse);
+    CHECK(scene.material(0).two_sided);
+    CHECK(scene.notices().empty());
+}
+
+TEST_CASE("a binary STL scene is one part by its file's name") {
+    std::string text(80, ' ');
+    const std::uint32_t count = 1;
+    text.append(reinterpret_cast<const char*>(&count), 4);
+    const float numbers[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0};
+    text.append(reinterpret_cast<const char*>(numbers), sizeof numbers).append(2, '\0');
+    const TemporaryFolder folder;
+    const Scene scene = read_well(folder.write("lid.STL", text));
+    CHECK(geometry_of(scene, node_of(scene, "lid")).positions.size() == 3);
+}
+
+TEST_CASE("a PLY scene is one part by its file's name") {
+    const Scene scene = read_panel("panel.ply");
+    CHECK(scene.nodes().size() == 2);
+    const Node& panel = node_of(scene, "panel");
+    check_panel(geometry_of(scene, panel), false);  // and the vertex that no face has is gone
+    CHECK(geometry_of(scene, panel).normals == std::vector(4, glm::vec3(0, 0.6F, 0.8F)));
+    CHECK(material_of(scene, panel).diffuse == Material().diffuse);
+    CHECK(has_notice(scene, "colours at its vertices are not shown"));
+    CHECK(scene.notices().size() == 1);
+}
+
+TEST_CASE(
+    "a binary PLY scene is read where its counts fit to the byte, and one of lists and spare lines too") {
+    const TemporaryFolder folder;
+    CHECK(read_well(folder.write("lid.ply", binary_ply(3, 1))).triangle_count() == 1);
+    const std::string text =
+        "PLY\r\nformat ascii 1.0\r\ncomment element vertex 999\r\nobj_info x\r\n"
+        "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
+        "element face 1\r\nproperty list uchar int vertex_indices\r\nend_header\r\n"
+        "0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2";
+    CHECK(read_well(folder.write("lid.ply", text)).triangle_count() == 1);
+    std::string of_old_mac = text_of("panel.ply");
+    std::replace(of_old_mac.begin(), of_old_mac.end(), '\n', '\r');
+    CHECK(read_well(folder.write("lid.ply", of_old_mac)).triangle_count() ==
+          read_panel("panel.ply").triangle_count());
+}
+
+TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and in metres") {
+    const Scene scene = read_panel("panel.dae");
+    CHECK(scene.unit() == 1);
+    const Node &top = node_of(scene, "Scene"), &car = node_of(scene, "Car"), &door = node_of(scene, "Door");
+    CHECK(is_near(top.matrix[2], {0, 0.01, 0, 0}));   // up
+    CHECK(is_near(top.matrix[1], {0, 0, -0.01, 0}));  // away
+    CHECK(&parent_of(scene, car) == &top);
+    CHECK(&parent_of(scene, door) == &car);
+    CHECK(car.matrix[3] == glm::dvec4(1, 2, 3, 1));
+    CHECK(door.matrix == glm::dmat4(0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1));
+    check_panel(geometry_of(scene, door), true);
+    const Material& paint = material_of(scene, door);
+    CHECK(paint.name == "Paint");
+    CHECK(paint.diffuse == glm::dvec4(1, 1, 1, 0.5));
+    CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
+    CHECK(paint.specular == glm::dvec4(0.5, 0.5, 0.5, 1));
+    CHECK(paint.shininess == 50);
+    check_picture(scene, paint, 255);
+}
+
+TEST_CASE("a Collada scene keeps its cameras and lights") {
+    const Scene scene = read_panel("panel.dae");
+    const Node& camera = node_of(scene, "Camera");
+    CHECK(camera.matrix[3] == glm::dvec4(0, 0, 9, 1));
+    const auto& seen = std::get<CameraData>(camera.data);
+    CHECK(seen.fov == doctest::Approx(2 * 21.0517));  // of 60 degrees across, 3 : 2
+    CHECK(seen.eye == glm::dvec3(0));
+    CHECK(seen.focus == glm::dvec3(0, 0, -1));
+    CHECK(std::get<CameraData>(node_of(scene, "Camera2").data).fov == 40);
+    const auto& lamp = std::get<LightData>(node_of(scene, "Lamp").data);
+    CHECK(lamp.type == LightData::Type::spot);
+    CHECK(lamp.color == glm::dvec4(1, 0.5, 0, 1));
+    CHECK(lamp.attenuation == glm::dvec3(1, 0.5, 0.25));
+    CHECK(lamp.angle == doctest::Approx(60));
+    CHECK(node_of(scene, "Amb").type == NodeType::assembly);
+    CHECK(has_notice(scene, "a camera's field of view is not read"));
+    CHECK(has_notice(scene, "from an area or from everywhere"));
+    CHECK(scene.notices().size() == 2);
+}
+
+TEST_CASE("an FBX scene keeps its hierarchy, names and matrices, upright and with its unit") {
+    const Scene scene = read_panel("panel.fbx");
+    CHECK(scene.unit() == doctest::Approx(0.0254));
+    const Node &root = node_of(scene, "RootNode"), &car = node_of(scene, "Car");
+    CHECK(root.matrix == glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
+    CHECK(&parent_of(scene, car) == &root);
+    CHECK(car.matrix[3] == glm::dvec4(1, 2, 3, 1));
+    // Shift, pivot, turn by 180 degrees, the post-rotation back by 90, pivot back, and the mesh's own shift.
+    const Node& door = node_of(scene, "Door");
+    CHECK(&parent_of(scene, door) == &car);
+    CHECK(is_near(door.matrix[0], {0, 1, 0, 0}));
+    CHECK(is_near(door.matrix[1], {-1, 0, 0, 0}));
+    CHECK(is_near(door.matrix[3], {5, 4, 13, 1}));
+    // To which that shift does not belong.
+    const Node& handle = node_of(scene, "Handle");
+    CHECK(&parent_of(scene, handle) == &door);
+    CHECK(is_near(handle.matrix[3], {1, 0, -7, 1}));
+    check_panel(geometry_of(scene, handle), true);
+    CHECK(scene.geometries().size() == 1);
+    CHECK(scene.nodes().size() == 9);
+}
+
+TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
+    const Scene scene = read_panel("panel.fbx");
+    const Material& paint = material_of(scene, "Paint");
+    CHECK(is_near(paint.diffuse, {0.5, 0.25, 0, 0.4}));
+    CHECK(paint.specular == glm::dvec4(0.5, 0.25, 0, 1));
+    CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
+    CHECK(paint.shininess == 50);
+    check_picture(scene, paint, 255);
+    const auto& camera = std::get<CameraData>(node_of(scene, "Presenter").data);
+    CHECK(camera.fov == doctest::Approx(2 * 21.0517));
+    CHECK(camera.focus == glm::dvec3(1, 0, 0));
+    CHECK(camera.up == glm::dvec3(0, 1, 0));
+    const Node& light = node_of(scene, "light");
+    CHECK(parent_of(scene, light).name == "Lamp");
+    CHECK(is_near(light.matrix[2], {0, 1, 0, 0}));  // so that -z, where it shines, is -y
+    CHECK(std::get<LightData>(light.data).color == glm::dvec4(0.5, 0.25, 0, 1));
+    CHECK(std::get<LightData>(light.data).angle == doctest::Approx(60));
+    CHECK(has_notice(scene, "strength and range are not read"));
+    CHECK(scene.notices().size() == 2);
+}
+
+TEST_CASE("FBX axes that are none are left as they are") {
+    const Scene scene = read_panel("panel.fbx", "\"FrontAxis\", \"int\", \"Integer\", \"\",1",
+                                   "\"FrontAxis\", \"int\", \"Integer\", \"\",7");
+    CHECK(parent_of(scene, node_of(scene, "Car")).type == NodeType::root);
+    CHECK(has_notice(scene, "axes are left as they are"));
+}
+
+TEST_CASE("the material library and pictures of an OBJ scene lie in its folder") {
+    const TemporaryFolder outer;
+    outer.write("secret.mtl", "newmtl Paint\nKd 1 0 0\n");
+    outer.write("secret.png", picture());
+    outer.write("scenes/tex/paint.png", picture());
+    fs::create_symlink(outer.path() / "secret.png",
+                       fs::path(outer.write("scenes/x", "")).parent_path() / "link.png");
+    const auto notices_with = [&](const std::string& library, const std::string& image) {
+        outer.write("scenes/paint.mtl", "newmtl Paint\nKd 1 1 1\nmap_Kd " + image + "\n");
+        std::string text = text_of("panel.obj");
+        text.replace(text.find("panel.mtl"), 9, library);
+        return read_well(outer.write("scenes/panel.obj", text));
+    };
+    CHECK(notices_with("paint.mtl", "tex\\paint.png").notices().empty());
+    const std::string outside = "the files of a scene lie in the folder of the scene's file";
+    for (const std::string& image :
+         {std::string("../secret.png"), std::string("link.png"), (outer.path() / "secret.png").string(),
+          std::string("tex/../../secret.png")}) {
+        const Scene scene = notices_with("paint.mtl", image);
+        CHECK_MESSAGE(has_notice(scene, outside), image);
+        CHECK_MESSAGE(scene.textures().empty(), image);
+    }
+    CHECK(has_notice(notices_with("paint.mtl", "none.png"),
+                     "without its picture 'none.png': there is no such file"));
+    CHECK(has_notice(notices_with("none.mtl", "x"), "'none.mtl': there is no such file"));
+    fs::create_symlink(outer.path() / "secret.mtl", outer.path() / "scenes/link.mtl");
+    for (const std::string& library :
+         {std::string("../secret.mtl"), std::string("link.mtl"), (outer.path() / "secret.mtl").string()}) {
+        const Scene scene = notices_with(library, "x");
+        CHECK_MESSAGE(has_notice(scene, "'" + library + "': " + outside), library);
+        for (const Material& material : scene.materials()) CHECK(material.diffuse != glm::dvec4(1, 0, 0, 1));
+    }
+}
+
+TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
+    const TemporaryFolder outer;
+    outer.write("secret.png", picture());
+    outer.write("scenes/paint.png", picture());
+    fs::create_symlink(outer.path() / "secret.png", outer.path() / "scenes/link.png");
+    for (const auto& panel :
+         {std::pair("panel.dae", "tex/my%20paint.png"), {"panel.fbx", "tex\\paint.png"}}) {
+        const std::string file = panel.first, own = panel.second;
+        const auto with_picture = [&](const std::string& image) {
+            std::string text = text_of(file);
+            if (const std::size_t at = text.find("C:\\work\\"); at != std::string::npos) text.erase(at, 8);
+            for (std::size_t at = 0; (at = text.find(own, at)) != std::string::npos; at += image.size())
+                text.replace(at, own.size(), image);
+            return read_well(outer.write("scenes/" + file, text));
+        };
+        CAPTURE(file);
+        CHECK(with_picture("paint.png").textures().size() == 1);
+        for (const std::string& image : {std::string("../secret.png"), std::string("link.png"),
+                                         (outer.path() / "secret.png").string()}) {
+            const Scene scene = with_picture(image);
+            CHECK_MESSAGE(has_notice(scene, "in the folder of the scene's file"), image);
+            CHECK_MESSAGE(scene.textures().empty(), image);
+        }
+    }
+}
+
+TEST_CASE("a picture that says that it is huge is not read") {
+    const TemporaryFolder folder;
+    folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\n");
+    std::string png = picture();
+    png[17] = png[21] = 1;  // 65,538 pixels on each side, and a checksum that is no longer right
+    folder.write("paint.png", png);
+    CHECK(has_notice(read_well(folder.write("panel.obj", text_of("panel.obj"))),
+                     "without its picture 'paint.png'"));
+}
+
+TEST_CASE("files of other programs that are none are refused in a sentence") {
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n", ply = text_of("panel.ply"),
+                      dae = text_of("panel.dae"), fbx = text_of("panel.fbx");
+    const auto with = [](std::string text, const std::string& from, const std::string& to) {
+        REQUIRE(text.find(from) != std::string::npos);
+        return text.replace(text.find(from), from.size(), to);
+    };
+    const struct {
+        const char* file;
+        std::string text;
+        const char* why;
+    } kFiles[] = {
+        {"a.obj", "", "too small"},
+        {"a.obj", "nothing that a model is made of\n", "no triangles"},
+        {"a.obj", triangle, "no triangles"},
+        {"a.obj", triangle + "f 1 2 9\n", "index out of range"},
+        {"a.obj", triangle + "f -1 -2 -9\n", "index out of range"},
+        {"a.obj", triangle + "f 99999999999999999999 1 2\n", "index out of range"},
+        {"a.obj", triangle + "f 0 0 0\n", "Invalid face index"},
+        {"a.obj", triangle + "f 1 2", "no triangles"},
+        {"a.obj", "v nan 0 0\n" + triangle + "f 1 2 3\n", "a vertex of mesh 'defaultobject' is not a number"},
+        {"a.obj", "v 1e300 0 0\n" + triangle + "f 1 2 3\n",
+         "a vertex of mesh 'defaultobject' is not a number"},
+        {"a.obj", "v 1e999 0 0\n" + triangle + "f 1 2 3\n", "is not a number from -1e15 to 1e15"},
+        {"a.obj", "v inf 0 0\n" + triangle + "f 1 2 3\n", "is not a number from -1e15 to 1e15"},
+        {"a.stl", "", "empty"},
+        {"a.stl", std::string(80, 'x') + std::string(4, '\1') + std::string(50, '\0'),
+         "as long as its number of triangles"},
+        {"a.stl", std::string(80, 'x') + std::string(4, '\xff') + std::string(50, '\0'),
+         "as long as its number of triangles"},
+        {"a.stl",
+         std::string(80, 'x') + std::string("\x20\x85\xeb\x51") + std::string(64, '\0'),  // 2^36 bytes
+         "too small to hold all facets"},
+        {"a.stl", std::string(80, 'x') + std::string("\2\0\0\0", 4) + std::string(50, '\0'),
+         "as long as its number of triangles"},
+        {"a.stl",
+         "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1e999 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+         "endloop\nendfacet\nendsolid a\n",
+         "a vertex of mesh 'a' is not a number"},
+        {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "Invalid number of vertices"},
+        {"a.ply", "", "empty"},
+        {"a.ply", "not a model", "magic number"},
+        {"a.ply", with(ply, "4 0 1 2 3", "0"), "a face without corners"},
+        {"a.ply", with(ply, "4 0 1 2 3", "4 0 1 2 9"), "the mesh has an index out of range"},
+        {"a.ply", with(ply, "4 0 1 2 3", "3 0 1 -2"), "the mesh has an index out of range"},
+        {"a.ply", with(ply, "1 1 0 0 0.6", "1 1e30 0 0 0.6"), "a vertex of the mesh is not a number"},
+        {"a.ply", ply.substr(0, ply.size() - 20), "an index out of range"},
+        {"a.ply", ply.substr(0, 60), "its header has no 'end_header'"},
+        {"a.ply", ply.substr(0, ply.size() - 100),
+         "line 3: expected a count of 'vertex' that fits into the file"},
+        {"a.ply", with(ply, "vertex 5", "vertex 4000000000"), "line 3: expected a count of 'vertex'"},
+        {"a.ply", with(ply, "vertex 5", "vertex 99999999999999999999"),
+         "line 3: expected a count of 'vertex'"},
+        {"a.ply", with(ply, "vertex 5", "vertex -1"), "line 3: expected a count of 'vertex', found '-1'"},
+        {"a.ply", with(ply, "face 1", "face 4000000000"),
+         "line 13: expected a count of 'face' that fits into the file, found 4000000000"},
+        {"a.ply", with(ply, "element face 1", "element edge 4000000000\nelement face 1"),
+         "line 13: expected a count of 'edge'"},
+        {"a.ply", with(ply, "element face", "element vertex 7\nelement face"),
+         "'vertex' once, found it twice"},
+        {"a.ply", binary_ply(4'000'000'000, 1), "line 3: expected a count of 'vertex'"},
+        {"a.ply", binary_ply(5, 1), "line 3: expected a count of 'vertex' that fits into the file, found 5"},
+        {"a.ply", binary_ply(3, 4'000'000'000), "line 7: expected a count of 'face'"},
+        {"a.dae", "", "malformed XML"},
+        {"a.dae", dae.substr(0, dae.size() / 2), "malformed XML"},
+        {"a.dae", with(dae, "3 3</p>", "9 3</p>"), "Invalid data index"},
+        {"a.dae", with(dae, "0 0 0 1 0 0", "0 0 0 1e999 0 0"), "a vertex of mesh 'Panel' is not a number"},
+        {"a.dae", with(dae, "url=\"#Scene\"", "url=\"#none\""), "Unable to resolve visual_scene"},
+        {"a.dae", with(dae, "<vcount>4<", "<vcount>400<"), "index count"},
+        {"a.dae", with(dae, "<translate>1 2 3", "<translate>1 2e30 3"), "the matrix of node 'Car'"},
+        {"a.fbx", "", "unexpected end of file"},
+        {"a.fbx", "nothing that a model is made of\n", "unexpected token"},
+        {"a.fbx", fbx.substr(0, fbx.size() / 2), "FBX-Parser"},
+        {"a.fbx", "Kaydara FBX Binary  " + std::string(1, '\0') + "\x1a" + std::string(40, '\x7f'),
+         "written by assimp 5.2"},
+        {"a.fbx", with(fbx, "0,1,2,-4", "0,1,9,-4"), "no triangles"},
+        {"a.fbx", with(fbx, "0,1,2,-4", "0,1,2,3"), "no triangles"},
+        {"a.fbx", with(fbx, "0,0,0,1,0,0,1,1,0", "0,0,0,1,0,0,1,1e999,0"),
+         "a vertex of mesh 'Door' is not a number"},
+        {"a.fbx", with(fbx, "0,0,0,1,0,0,1,1,0", "0,0,0,1,0,0,1,nan,0"),
+         "a vertex of mesh 'Door' is not a number"},
+    };
+    for (const auto& [file, text, why] : kFiles) check_refused_file(file, text, why);
+}
+
+TEST_CASE("models of other programs are read whole") {
+    const char* const models = std::getenv("VRUT_TEST_MODELS");
+    if (models == nullptr) {
+        MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
+        return;
+    }
+    const struct {
+        const char* file;
+        std::uint64_t triangles;
+        std::size_t geometries, materials, textures;
+    } kModels[] = {
+        {"bmw_m6/bmw_m6.glb", 791'468, 110, 24, 0},
+        {"hatchback/hatchback/meshes/hatchback.obj", 788, 4, 2, 0},  // its pictures lie elsewhere
+        {"jeep/2013_ASCII/jeep1.fbx", 2'032, 7, 2, 1},
+        {"jeep/2013_BINARY/jeep1.fbx", 2'032, 7, 2, 1},
+    };
+    for (const auto& model : kModels) {
+        const Scene scene = read_well(fs::path(models) / model.file);
+        CHECK_MESSAGE(scene.triangle_count() == model.triangles, model.file);
+        CHECK_MESSAGE(scene.geometries().size() == model.geometries, model.file);
+        CHECK_MESSAGE(scene.materials().size() == model.materials, model.file);
+        CHECK_MESSAGE(scene.textures().size() == model.textures, model.file);
+    }
+}

@@ -1,0 +1,176 @@
+#include "io/scene_textures.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "image_bytes.hpp"
+#include "temporary_folder.hpp"
+
+using namespace vrut;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<std::uint8_t> kSolid = {10, 20, 30, 255}, kGlass = {10, 20, 30, 254};
+
+Scene read_well(const fs::path& path) {
+    auto scene = read_scene(path);
+    REQUIRE_MESSAGE(scene, scene.error());
+    return *std::move(scene);
+}
+
+std::string material(int id, const std::string& image) {
+    return "material " + std::to_string(id) + " \"M\" image \"" + image + "\" end\n";
+}
+
+std::string sky(const std::vector<std::string>& faces) {
+    std::string text = "node 8 \"Sky\" background cube-map";
+    for (const std::string& face : faces) text += " \"" + face + "\"";
+    return text + " end\n";
+}
+
+/// A scene in `folder` of one material that names `image`; its only notice, or nothing.
+std::string notice_of(const TemporaryFolder& folder, const std::string& image) {
+    const Scene scene = read_well(folder.write("cars/car.vrut", "vrut-text 1\n" + material(3, image)));
+    REQUIRE(scene.notices().size() <= 1);
+    CHECK((scene.materials()[0].texture == kNone) == (scene.notices().size() == 1));
+    return scene.notices().empty() ? "" : scene.notices()[0];
+}
+
+void check_notice(const std::string& notice, const std::vector<std::string>& parts) {
+    for (const std::string& part : parts) CHECK_MESSAGE(notice.find(part) != std::string::npos, notice);
+}
+
+const BackgroundData& background(const Scene& scene) {
+    return std::get<BackgroundData>(scene.nodes()[static_cast<std::size_t>(scene.find_node(8))].data);
+}
+
+}  // namespace
+
+TEST_CASE("pictures come with the scene that names them, each file once") {
+    const TemporaryFolder folder;
+    folder.write("solid.png", flat_png(2, 3, kSolid));
+    folder.write("textures/glass.png", flat_png(4, 4, kGlass));
+    fs::create_symlink("textures/glass.png", folder.path() / "link.png");
+    const Scene scene = read_well(folder.write(
+        "car.vrut",
+        "vrut-text 1\n" + material(1, "solid.png") + material(2, "textures/glass.png") +
+            material(3, "link.png") + material(4, "./textures/glass.png") + "material 5 \"Plain\" end\n" +
+            sky({"link.png", "link.png", "link.png", "textures/glass.png", "link.png", "link.png"})));
+    CHECK(scene.notices().empty());
+    REQUIRE(scene.textures().size() == 2);
+    CHECK(scene.textures()[0].file == "solid.png");
+    CHECK(scene.textures()[0].image.width == 2);
+    CHECK(scene.textures()[0].image.height == 3);
+    CHECK_FALSE(scene.textures()[0].transparent);
+    CHECK(scene.textures()[1].transparent);
+    const Index wanted[] = {0, 1, 1, 1, kNone};
+    for (std::size_t i = 0; i < std::size(wanted); ++i) CHECK(scene.materials()[i].texture == wanted[i]);
+    CHECK(scene.is_transparent(scene.materials()[1]));
+    REQUIRE(background(scene).cube_textures);
+    CHECK(*background(scene).cube_textures == std::array<Index, 6>{1, 1, 1, 1, 1, 1});
+}
+
+TEST_CASE("a scene that is named without a folder finds its pictures") {
+    const TemporaryFolder folder;
+    folder.write("solid.png", flat_png(2, 2, kSolid));
+    folder.write("car.vrut", "vrut-text 1\n" + material(1, "solid.png"));
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    const Scene scene = read_well("car.vrut");
+    fs::current_path(before);
+    CHECK(scene.notices().empty());
+    CHECK(scene.textures().size() == 1);
+}
+
+TEST_CASE("pictures outside of the scene's folder are never read") {
+    const TemporaryFolder folder;
+    const fs::path outside = folder.write("outside.png", flat_png(2, 2, kSolid));
+    folder.write("cars/inside.png", flat_png(2, 2, kSolid));
+    fs::create_symlink("../outside.png", folder.path() / "cars/leads-out.png");
+    fs::create_directory_symlink("..", folder.path() / "cars/up");
+    fs::create_directory_symlink(folder.path() / "cars", folder.path() / "cars/here");
+    CHECK(notice_of(folder, "inside.png").empty());
+    CHECK(notice_of(folder, "here/inside.png").empty());
+    for (const std::string& name :
+         {std::string("../outside.png"), outside.string(), std::string("leads-out.png"),
+          std::string("up/outside.png"), std::string("../cars/inside.png"),
+          (folder.path() / "cars/inside.png").string()})
+        check_notice(notice_of(folder, name), {"car.vrut: material 3 ", "the folder of the scene"});
+    // A folder whose name only begins like the scene's is another.
+    folder.write("cars2/other.png", flat_png(2, 2, kSolid));
+    fs::create_symlink("../cars2/other.png", folder.path() / "cars/other.png");
+    check_notice(notice_of(folder, "other.png"), {"the folder of the scene"});
+}
+
+TEST_CASE("a picture that cannot be read is left out with a notice") {
+    const TemporaryFolder folder;
+    folder.write("cars/text.png", "no picture");
+    folder.write("cars/short.png", flat_png(2, 2, kSolid).substr(0, 50));
+    fs::create_directory(folder.path() / "cars/folder.png");
+    fs::create_symlink("loop.png", folder.path() / "cars/loop.png");
+    check_notice(notice_of(folder, "none.png"),
+                 {"car.vrut: material 3 ", "'none.png'", "there is no such file"});
+    check_notice(notice_of(folder, "text.png"), {"material 3 ", "'text.png'", "neither PNG nor JPEG"});
+    check_notice(notice_of(folder, "short.png"), {"material 3 ", "'short.png'", "damaged"});
+    check_notice(notice_of(folder, "folder.png"), {"material 3 ", "'folder.png'", "not a file"});
+    check_notice(notice_of(folder, "loop.png"), {"material 3 ", "'loop.png'", "cannot be found"});
+    check_notice(notice_of(folder, "text.png/a.png"), {"material 3 ", "'text.png/a.png'"});
+    check_notice(notice_of(folder, std::string("a\0b.png", 7)), {"material 3 "});
+}
+
+TEST_CASE("a cube map is six squares of one size, or is left out with a notice") {
+    const TemporaryFolder folder;
+    folder.write("a.png", flat_png(4, 4, kSolid));
+    folder.write("b.png", flat_png(8, 8, kSolid));
+    folder.write("c.png", flat_png(4, 5, kSolid));
+    const auto read = [&](const std::string& third) {
+        return read_well(folder.write(
+            "car.vrut", "vrut-text 1\n" + sky({"a.png", "a.png", third, "a.png", "a.png", "a.png"})));
+    };
+    CHECK(background(read("a.png")).cube_textures);
+    const std::pair<const char*, const char*> bad[] = {
+        {"b.png", "8 x 8"}, {"c.png", "4 x 5"}, {"none.png", "there is no such file"}};
+    for (const auto& [third, cause] : bad) {
+        const Scene scene = read(third);
+        CHECK_FALSE(background(scene).cube_textures);
+        REQUIRE(scene.notices().size() == 1);
+        check_notice(scene.notices()[0], {"car.vrut: background 8 ", "'" + std::string(third) + "'", cause});
+    }
+}
+
+TEST_CASE("the pictures of a scene are limited together") {
+    const TemporaryFolder folder;
+    folder.write("a.png", flat_png(10, 10, kSolid));
+    folder.write("b.png", flat_png(10, 10, kSolid));
+    folder.write("c.png", flat_png(5, 5, kSolid));
+    SceneParts parts;
+    parts.materials.resize(4);
+    for (std::size_t i = 0; i < 4; ++i) {
+        const char* const names[] = {"a.png", "b.png", "c.png", "a.png"};
+        parts.materials[i].id = static_cast<Id>(i);
+        parts.materials[i].image = names[i];
+    }
+    read_pictures(parts, folder.path() / "car.vrut", {}, 150);
+    const Index wanted[] = {0, kNone, 1, 0};
+    for (std::size_t i = 0; i < 4; ++i) CHECK(parts.materials[i].texture == wanted[i]);
+    REQUIRE(parts.notices.size() == 1);
+    check_notice(parts.notices[0], {"material 1 ", "'b.png'", "10 x 10", "at most 50"});
+}
+
+TEST_CASE("notices of pictures are few; reading can be given up between pictures") {
+    const TemporaryFolder folder;
+    folder.write("a.png", flat_png(1, 1, kSolid));
+    std::string text = "vrut-text 1\n";
+    for (int id = 0; id < 100; ++id) text += material(id, "none.png");
+    const fs::path path = folder.write("car.vrut", text + material(100, "a.png"));
+    const Scene scene = read_well(path);
+    REQUIRE(scene.notices().size() == 21);
+    check_notice(scene.notices().back(), {"80 more"});
+    SceneParts parts;
+    parts.materials.resize(1);
+    parts.materials[0].image = "a.png";
+    struct Stop {};
+    CHECK_THROWS_AS(read_pictures(parts, path, [](double) { throw Stop(); }), Stop);
+}

@@ -1,0 +1,134 @@
+#include "plan/transparency_plan.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "io/read_scene.hpp"
+#include "shapes.hpp"
+#include "views.hpp"
+
+using namespace vrut;
+
+namespace {
+
+std::shared_ptr<const PlacedScene> car() {
+    auto scene = read_scene(VRUT_CARS "/car-20k.vrut");
+    REQUIRE(scene);
+    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+}
+
+/// Of window glass, not of a lamp.
+bool is_window(const Scene& scene, const DrawItem& item) {
+    return scene.material(item.material).name.starts_with("Glass");
+}
+
+}  // namespace
+
+TEST_CASE("a car's windows are drawn sorted from all around, but for one that is seen along its edge") {
+    int along = 0;
+    View view = view_from({0, 1, 5});
+    view.scene = car();
+    const Scene& scene = *view.scene->scene;
+    for (int side = 0; side < 8; ++side)
+        for (const double height : {0.4, 1.2, 2.5}) {
+            CAPTURE(side);
+            CAPTURE(height);
+            const double angle = glm::radians(45.0 * side + 10);
+            view.camera.eye = {5 * std::sin(angle), height, 5 * std::cos(angle)};
+            const FramePlan plan = plan_frame(view);
+            std::size_t blended = 0, windows = 0, expected = 0, exact = 0;
+            for (const TransparentGroup& group : plan.scene.transparent)
+                for (const DrawItem& item : group.items) {
+                    ++blended;
+                    if (!is_window(scene, item)) continue;
+                    ++windows;
+                    exact += group.exact;
+                }
+            for (const DrawItem& item : faces_of(view))
+                expected += scene.is_transparent(scene.material(item.material));
+            CHECK(blended == expected);
+            CHECK(windows >= 8);  // of four doors, two quarters, the boot lid, and the windscreen
+            CHECK(exact <= 2);    // a bent pane's outer and inner sheet, where both are seen
+            along += exact > 0;
+        }
+    CHECK(along <= 3);
+}
+
+namespace {
+
+Part pane(Id id, const glm::dvec3& color, const glm::dmat4& matrix) {
+    Material material;
+    material.emission = {color, 1};
+    material.diffuse = {0, 0, 0, 0.5};
+    material.two_sided = true;
+    return {id, quad(1), material, matrix};
+}
+
+std::vector<TransparentGroup> groups_of(const std::vector<Part>& parts) {
+    View view = view_from({0, 0, 5});
+    view.scene = scene_of(parts);
+    return plan_frame(view).scene.transparent;
+}
+
+}  // namespace
+
+TEST_CASE("panes that cross are an exact group where that can be seen") {
+    const glm::dvec3 red(0.9, 0, 0), blue(0, 0, 0.9);
+    const glm::dmat4 left = turned_by(30, {0, 1, 0}), right = turned_by(-30, {0, 1, 0});
+    const auto different = groups_of({pane(1, red, left), pane(2, blue, right)});
+    REQUIRE(different.size() == 1);
+    CHECK(different[0].exact);
+    const auto same = groups_of({pane(1, red, left), pane(2, red, right)});
+    REQUIRE(same.size() == 1);
+    CHECK(!same[0].exact);
+    // Only those that cross pay for it: one behind them and one before them are sorted.
+    const auto four = groups_of({pane(1, red, left), pane(2, blue, right), pane(3, red, moved_by({0, 0, 2})),
+                                 pane(4, blue, moved_by({0, 0, -2}))});
+    REQUIRE(four.size() == 3);
+    CHECK(four[0].items.size() == 1);
+    CHECK(four[1].exact);
+    CHECK(four[1].items.size() == 2);
+    CHECK(!four[2].exact);
+}
+
+TEST_CASE("panes beside each other, and panes that meet in an edge, are sorted") {
+    const glm::dvec3 red(0.9, 0, 0), blue(0, 0, 0.9);
+    const auto box_of_panes =
+        groups_of({pane(1, red, moved_by({0, 0, 1})), pane(2, blue, moved_by({0, 0, -1})),
+                   pane(3, blue, turned_by(90, {0, 1, 0}) * moved_by({0, 0, 1})),
+                   pane(4, red, turned_by(90, {0, 1, 0}) * moved_by({0, 0, -1})),
+                   pane(5, blue, turned_by(90, {1, 0, 0}) * moved_by({0, 0, 1}))});
+    REQUIRE(box_of_panes.size() == 1);
+    CHECK(!box_of_panes[0].exact);
+    CHECK(box_of_panes[0].items.front().node != box_of_panes[0].items.back().node);
+    const auto coplanar = groups_of({pane(1, red, glm::dmat4(1)), pane(2, blue, moved_by({0.5, 0, 0})),
+                                     pane(3, red, moved_by({1, 0.5, 0}))});
+    REQUIRE(coplanar.size() == 1);
+    CHECK(!coplanar[0].exact);
+}
+
+TEST_CASE("more panes than can be compared are sorted at each pixel where not too many lie over each other") {
+    std::vector<Part> parts;
+    for (int i = 0; i < 2500; ++i)
+        parts.push_back(
+            pane(i + 1, {0.5, 0, 0},
+                 moved_by({0, 0.03 * (i % 50 - 25), -0.01 * (i * 617 % 2500)}) * scaled_by({1, 0.01, 1})));
+    const auto groups = groups_of(parts);
+    REQUIRE(groups.size() == 1);
+    CHECK(groups[0].items.size() == 2500);
+    CHECK(groups[0].exact);
+}
+
+TEST_CASE("more panes than can be compared, in a deep stack, are drawn by their distance") {
+    std::vector<Part> parts;
+    parts.reserve(1500);
+    for (int i = 0; i < 1500; ++i)
+        parts.push_back(pane(i + 1, {0.5, 0, 0}, moved_by({0, 0, -0.01 * (i * 617 % 1500)})));
+    const auto groups = groups_of(parts);
+    REQUIRE(groups.size() == 1);
+    REQUIRE(groups[0].items.size() == 1500);
+    CHECK(!groups[0].exact);
+    for (std::size_t i = 1; i < 1500; ++i)
+        CHECK(groups[0].items[i - 1].view_from_node[3].z < groups[0].items[i].view_from_node[3].z);
+}
