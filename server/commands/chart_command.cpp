@@ -12,8 +12,8 @@
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
 #include "room/scene_state.hpp"
-#include "scene/level_store.hpp"
-#include "scene/library.hpp"
+#include "scenes/level_store.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
@@ -32,7 +32,7 @@ void require_size(const ChartArguments& arguments, const Renderer& renderer) {
 }
 
 Subject subject_of(const fs::path& path, const ChartArguments& arguments, observe::Progress& progress) {
-    auto scene = scene::load_scene(path, path.stem().string(), [&](double part) {
+    auto scene = scenes::load_scene(path, path.stem().string(), [&](double part) {
         progress.show(part, path.filename().string() + ", loading");
     });
     if (!scene) throw std::runtime_error(scene.error());
@@ -121,7 +121,7 @@ public:
             for (const Experiment& experiment : experiments_)
                 if (experiment.subject.sha256 == subject.sha256) add(scene.rows, experiment);
             for (const Row& row : laboratory_.picking_rows(subject)) add(scene.rows, row);
-            const auto kept = scene::stored_levels(subject.sha256, laboratory_.renderer());
+            const auto kept = scenes::stored_levels(subject.sha256, laboratory_.renderer());
             scene.stored = kept.has_value();
             if (kept)
                 scene.levels = *kept;
@@ -216,7 +216,7 @@ void calibrate_scene(const ChartArguments& arguments) {
     }
     table.scene = subject.sha256;
     print(table);
-    observe::log_info("levels_kept", {{"file", scene::store_levels(table).string()}});
+    observe::log_info("levels_kept", {{"file", scenes::store_levels(table).string()}});
 }
 
 void make_folder(const fs::path& folder) {

@@ -8,7 +8,7 @@
 #include "commands/commands.hpp"
 #include "io/write_scene.hpp"
 #include "observe/progress.hpp"
-#include "scene/import_process.hpp"
+#include "scenes/import_process.hpp"
 
 namespace vrut::server::commands {
 
@@ -47,7 +47,7 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
     std::optional<observe::Progress> bar;
     if (isatty(STDERR_FILENO) == 1) bar.emplace();
     const auto scene =
-        scene::import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
+        scenes::import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
     auto lost =
         write_scene(*scene, arguments.out, shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),

@@ -7,8 +7,8 @@
 #include "observe/progress.hpp"
 #include "report.hpp"
 #include "room/scene_state.hpp"
-#include "scene/import_process.hpp"
-#include "scene/loaded_scene.hpp"
+#include "scenes/import_process.hpp"
+#include "scenes/loaded_scene.hpp"
 
 namespace vrut::server::commands {
 
@@ -71,11 +71,11 @@ void print(const protocol::SceneState& scene, const std::vector<protocol::NodeRe
 
 void info_command(const InfoArguments& arguments) {
     auto scene =
-        scene::import_scene(arguments.scene, observe::loading_bar(arguments.scene.filename().string()));
+        scenes::import_scene(arguments.scene, observe::loading_bar(arguments.scene.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
     const PlacedScene placed = place(*std::move(scene));
     const protocol::SceneState state =
-        *room::starting_state(placed, 1, scene::all_notices(*placed.scene)).scene.value;
+        *room::starting_state(placed, 1, scenes::all_notices(*placed.scene)).scene.value;
     const auto nodes = list_nodes(placed);
     if (arguments.json)
         std::cout << protocol::encode_info(state, nodes) << std::endl;

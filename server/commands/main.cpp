@@ -12,7 +12,7 @@
 #include "commands/commands.hpp"
 #include "io/write_scene.hpp"
 #include "observe/log.hpp"
-#include "scene/import_process.hpp"
+#include "scenes/import_process.hpp"
 
 namespace {
 
@@ -238,7 +238,7 @@ void add_chart(CLI::App& app, commands::ChartArguments& arguments) {
 
 /// The exit status. What goes wrong is printed.
 int run(int argc, char** argv) try {
-    if (scene::is_import_process(argc, argv)) scene::run_import_process(argv);
+    if (scenes::is_import_process(argc, argv)) scenes::run_import_process(argv);
     open_standard_descriptors();
     observe::start_log();  // results go to standard output, what is told on the way to standard error
 

@@ -14,7 +14,7 @@
 #include "renderer/renderer.hpp"
 #include "report.hpp"
 #include "room/room.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
@@ -61,7 +61,7 @@ Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
 
 View view_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
-    auto scene = scene::load_scene(arguments.scene, name, observe::loading_bar(name));
+    auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     for (const std::string& notice : scene->notices) observe::log_warning("notice", {{"text", notice}});
     room::Room room(*std::move(scene));

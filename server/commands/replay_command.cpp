@@ -12,7 +12,7 @@
 #include "renderer/renderer.hpp"
 #include "report.hpp"
 #include "room/replay.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
@@ -33,9 +33,9 @@ public:
         }
     }
 
-    tl::expected<scene::LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
+    tl::expected<scenes::LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
         if (fs::path given = std::exchange(given_, {}); !given.empty()) {
-            auto scene = scene::load_scene(given, name, observe::loading_bar(name));
+            auto scene = scenes::load_scene(given, name, observe::loading_bar(name));
             if (scene && scene->sha256 != sha256)
                 observe::log_warning("another_scene", {{"file", given.string()},
                                                        {"reason", "it is not the scene that was recorded"}});
@@ -46,8 +46,8 @@ public:
             const fs::path file = folder / name;
             if (!fs::is_regular_file(file)) continue;
             found = true;
-            if (scene::sha256_of(file) == sha256)
-                return scene::load_scene(file, name, observe::loading_bar(name));
+            if (scenes::sha256_of(file) == sha256)
+                return scenes::load_scene(file, name, observe::loading_bar(name));
         }
         return tl::unexpected("the scene '" + name + "' " +
                               (found ? "has changed since it was recorded" : "is not found") +

@@ -11,7 +11,7 @@
 #include "net/server.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
@@ -103,7 +103,7 @@ void serve_command(const ServeArguments& arguments) {
 
     const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
     const std::string name = path.filename().string();
-    auto scene = scene::load_scene(path, name, observe::loading_bar(name));
+    auto scene = scenes::load_scene(path, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
     const Scene& read = *scene->placed->scene;
     for (const std::string& notice : scene->notices)
@@ -111,7 +111,7 @@ void serve_command(const ServeArguments& arguments) {
     observe::log_info(
         "scene_read",
         {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});
-    options.library = scene::SceneLibrary(existing_folder("--scenes", arguments.scenes));
+    options.library = scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes));
     options.record_folder = existing_folder("--record", arguments.record);
 
     net::Server server(options, *std::move(scene), engine::gl_renderer(arguments.device));

@@ -7,7 +7,7 @@
 #include "codec.hpp"
 #include "observe/log.hpp"
 #include "renderer/renderer.hpp"
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
 namespace vrut::server::engine {
 
@@ -83,8 +83,8 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
           [this](Picture picture, std::string why) {
               mailbox_.push(PictureFailed{std::move(picture), std::move(why)});
           }),
-      loader_([this](scene::SceneLoading loading) { mailbox_.push(std::move(loading)); },
-              [this](scene::SceneLoaded loaded) { mailbox_.push(std::move(loaded)); }),
+      loader_([this](scenes::SceneLoading loading) { mailbox_.push(std::move(loading)); },
+              [this](scenes::SceneLoaded loaded) { mailbox_.push(std::move(loaded)); }),
       factory_(std::move(factory)),
       stats_(metrics) {
     std::promise<void> started;
@@ -126,19 +126,19 @@ Engine::~Engine() {
     file_results_->close();
 }
 
-scene::LoadedScene Engine::with_notices(scene::LoadedScene scene) const {
+scenes::LoadedScene Engine::with_notices(scenes::LoadedScene scene) const {
     if (renderer_.software)
         scene.notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
     return scene;
 }
 
-void Engine::begin(const scene::LoadedScene& scene) {
+void Engine::begin(const scenes::LoadedScene& scene) {
     watchdog_.busy();
     renderer_ = factory_();
     description_ = renderer_.description;
     limits_.max_side = std::min(renderer_.max_size, limits_.max_side);
     pixel_budget_ = limits_;
-    use(scene::built_in_levels());
+    use(scenes::built_in_levels());
     read_levels(scene);
     room::RoomOptions options;
     connect_files(options);
@@ -331,7 +331,7 @@ void Engine::handle(const PictureAsked& asked) {
     snapshots_.push_back({std::move(order)});
 }
 
-void Engine::handle(const scene::SceneLoading& loading) {
+void Engine::handle(const scenes::SceneLoading& loading) {
     broadcast({loading.name, loading.fraction, {}, {}});
 }
 
@@ -340,7 +340,7 @@ void Engine::broadcast(const protocol::Loading& loading) {
     output_.loads = !loading.done && !loading.refused;
 }
 
-void Engine::handle(const scene::SceneLoaded& loaded) {
+void Engine::handle(const scenes::SceneLoaded& loaded) {
     arrived_ = loaded;
     arrival_losses_ = 0;
 }

@@ -27,8 +27,8 @@
 #include "plan/rendering.hpp"
 #include "plan/view.hpp"
 #include "room/room.hpp"
-#include "scene/library.hpp"
-#include "scene/loader.hpp"
+#include "scenes/library.hpp"
+#include "scenes/loader.hpp"
 #include "state.hpp"
 
 namespace vrut::server::engine {
@@ -65,8 +65,8 @@ struct EngineCallbacks {
 };
 
 struct EngineOptions {
-    scene::LoadedScene scene;
-    scene::SceneLibrary library;
+    scenes::LoadedScene scene;
+    scenes::SceneLibrary library;
     std::filesystem::path record_folder;
 };
 
@@ -152,8 +152,8 @@ private:
     void handle(const PictureFailed& failed);
     void handle(const SnapshotSent& sent);
     void handle(const PictureAsked& asked);
-    void handle(const scene::SceneLoading& loading);
-    void handle(const scene::SceneLoaded& loaded);
+    void handle(const scenes::SceneLoading& loading);
+    void handle(const scenes::SceneLoaded& loaded);
     void handle(const FileWorkDone& done);
     /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
@@ -161,7 +161,7 @@ private:
                         Client& client);
     void connect_files(room::RoomOptions& options);
     std::optional<protocol::Error> load(const SceneLookup::Found& found);
-    void read_levels(const scene::LoadedScene& scene);
+    void read_levels(const scenes::LoadedScene& scene);
     std::optional<base::Clock::time_point> files_due() const;
     void check_files();
     room::SessionTime time_of(base::Clock::time_point when) const {
@@ -195,7 +195,7 @@ private:
     void lose_renderer(const std::string& why);
     void renew_renderer();
     void show_arrived();
-    void show(const scene::SceneLoaded& loaded, std::optional<std::string> rejected);
+    void show(const scenes::SceneLoaded& loaded, std::optional<std::string> rejected);
     struct Failed {
         View visible;
         protocol::Resize view_size;
@@ -212,10 +212,10 @@ private:
     protocol::Quality refined_quality(int samples) const;
     std::size_t choose_level();
 
-    void begin(const scene::LoadedScene& scene);
-    scene::LoadedScene with_notices(scene::LoadedScene scene) const;
+    void begin(const scenes::LoadedScene& scene);
+    scenes::LoadedScene with_notices(scenes::LoadedScene scene) const;
 
-    scene::SceneLibrary library_;
+    scenes::SceneLibrary library_;
     std::filesystem::path record_folder_;
     observe::Metrics& metrics_;
     EngineCallbacks callbacks_;
@@ -230,12 +230,12 @@ private:
     base::Watchdog watchdog_;
     std::atomic<bool> draws_{false};
     Encoder encoder_, snapshot_encoder_;
-    scene::SceneLoader loader_;
+    scenes::SceneLoader loader_;
     FrameRendererFactory factory_;
     FrameRenderer renderer_;
     std::optional<Renewal> renewal_;             ///< while there is no renderer
     std::size_t tries_ = 0;                      ///< renderers made since the last whole picture
-    std::optional<scene::SceneLoaded> arrived_;  ///< to be shown
+    std::optional<scenes::SceneLoaded> arrived_;  ///< to be shown
     int arrival_losses_ = 0;                     ///< of the context, by what has arrived
     PictureLimits pixel_budget_;                 ///< of the live picture, as far as is known
     protocol::Resize budget_for_;                ///< of a view of this size

@@ -1,6 +1,6 @@
 // Scenes and recordings: what takes a disk is done elsewhere, and comes back as an event.
 #include "engine/engine.hpp"
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
 namespace vrut::server::engine {
 
@@ -23,10 +23,10 @@ void Engine::connect_files(room::RoomOptions& options) {
 }
 
 /// The levels of `scene`, which is shown first, as they were measured on this machine.
-void Engine::read_levels(const scene::LoadedScene& scene) {
+void Engine::read_levels(const scenes::LoadedScene& scene) {
     run_file_work(
         [this, post = file_results_, shown = scene.placed, sha256 = scene.sha256, renderer = description_] {
-            post->send([this, shown, table = scene::levels_of(sha256, renderer)] {
+            post->send([this, shown, table = scenes::levels_of(sha256, renderer)] {
                 if (room_->scene().scene == shown->scene) use(table);
             });
         });

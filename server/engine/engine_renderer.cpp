@@ -67,7 +67,7 @@ void Engine::show_arrived() {
     if (!arrived_->scene) {
         rejected = arrived_->scene.error();
     } else if (renderer_.take) {
-        const scene::LoadedScene& next = *arrived_->scene;
+        const scenes::LoadedScene& next = *arrived_->scene;
         try {
             renderer_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
         } catch (const OutOfMemory& error) {
@@ -81,7 +81,7 @@ void Engine::show_arrived() {
     show(*std::exchange(arrived_, std::nullopt), std::move(rejected));
 }
 
-void Engine::show(const scene::SceneLoaded& loaded, std::optional<std::string> rejected) {
+void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> rejected) {
     loader_.finish();
     protocol::Loading loading{loaded.name, 1, {}, std::move(rejected)};
     if (loading.refused) {

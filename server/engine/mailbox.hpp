@@ -12,7 +12,7 @@
 #include "engine/link.hpp"
 #include "engine/picture.hpp"
 #include "message_table.hpp"
-#include "scene/loader.hpp"
+#include "scenes/loader.hpp"
 
 namespace vrut::server::engine {
 
@@ -81,7 +81,7 @@ struct FileWorkDone {
 
 using EngineEvent =
     std::variant<ClientJoined, ClientLeft, MessageReceived, FramesWanted, SnapshotSent, FrameEncoded,
-                 PictureFailed, PictureAsked, scene::SceneLoading, scene::SceneLoaded, FileWorkDone>;
+                 PictureFailed, PictureAsked, scenes::SceneLoading, scenes::SceneLoaded, FileWorkDone>;
 
 /// The one way into the render thread. Of a client's moves that come one after the other the last of each
 /// pointer is kept, and of what it wants the newest; nothing else is merged or dropped.

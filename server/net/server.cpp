@@ -20,7 +20,7 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 struct Server::Impl {
-    Impl(ServerOptions server_options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer)
+    Impl(ServerOptions server_options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer)
         : options(std::move(server_options)),
           acceptor(context),
           accept_pause(context),
@@ -187,7 +187,7 @@ struct Server::Impl {
     std::unique_ptr<engine::Engine> engine;
 };
 
-Server::Server(ServerOptions options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer)
+Server::Server(ServerOptions options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), renderer)) {}
 Server::~Server() = default;
 

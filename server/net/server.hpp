@@ -9,7 +9,7 @@
 #include "net/access.hpp"
 #include "net/addresses.hpp"
 #include "net/deadlines.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::observe {
 struct Metrics;
@@ -22,7 +22,7 @@ struct ServerOptions {
     Access access;
     std::size_t max_clients = 64;
     Deadlines deadlines{};
-    scene::SceneLibrary library{};
+    scenes::SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
     /// A thread that has something to do and does not come round for longer is not alive.
     std::chrono::milliseconds longest_busy{30'000};
@@ -33,7 +33,7 @@ class Server {
 public:
     /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port
     /// is taken or nothing can draw.
-    Server(ServerOptions options, scene::LoadedScene scene, const engine::FrameRendererFactory& renderer);
+    Server(ServerOptions options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;

@@ -24,7 +24,7 @@ struct EventLog {
 tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name);
 
 /// Finds a scene of a log by its name and SHA-256, or why it cannot be had.
-using SceneFinder = std::function<tl::expected<scene::LoadedScene, std::string>(const std::string& name,
+using SceneFinder = std::function<tl::expected<scenes::LoadedScene, std::string>(const std::string& name,
                                                                                 const std::string& sha256)>;
 
 /// What a replay reports.

@@ -22,7 +22,7 @@ bool includes(Senders senders, Role role) {
 
 }  // namespace
 
-Room::Room(scene::LoadedScene scene, RoomOptions options)
+Room::Room(scenes::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
       loaded_(std::move(scene)),
       scene_(loaded_.placed),
@@ -138,7 +138,7 @@ void Room::advance(SessionTime at) {
     end_flight(true);
 }
 
-void Room::show(scene::LoadedScene scene, SessionTime at) {
+void Room::show(scenes::LoadedScene scene, SessionTime at) {
     advance(at);
     document();
     changing_.clear();

@@ -19,7 +19,7 @@
 #include "room/recording.hpp"
 #include "room/scene_state.hpp"
 #include "room/steering.hpp"
-#include "scene/loaded_scene.hpp"
+#include "scenes/loaded_scene.hpp"
 #include "state.hpp"
 
 namespace vrut::server::room {
@@ -59,7 +59,7 @@ struct RoomOptions {
 /// camera to the last bit.
 class Room {
 public:
-    explicit Room(scene::LoadedScene scene, RoomOptions options = {});
+    explicit Room(scenes::LoadedScene scene, RoomOptions options = {});
 
     // What happens. Times never fall: an earlier one counts as the latest before.
     /// `name`: as the client calls itself; empty: it does not.
@@ -71,7 +71,7 @@ public:
     /// A flight goes on to where it is then.
     void advance(SessionTime at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
-    void show(scene::LoadedScene scene, SessionTime at);
+    void show(scenes::LoadedScene scene, SessionTime at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
     void notice(const std::string& sentence);
     /// Loading has begun, or why not; once for each call of RoomOptions::load.
@@ -229,7 +229,7 @@ private:
     void end_flight(bool completed);
 
     RoomOptions options_;
-    scene::LoadedScene loaded_;
+    scenes::LoadedScene loaded_;
     std::shared_ptr<const PlacedScene> scene_;  ///< with its nodes as they stand now
     protocol::Resize view_size_;
     protocol::State starting_, state_;

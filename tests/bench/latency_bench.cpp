@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace vrut::test;
 

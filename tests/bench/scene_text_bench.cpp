@@ -21,10 +21,10 @@
 
 #include "io/read_scene.hpp"
 #include "io/vrut/text_reader.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 using namespace vrut;
 using namespace vrut::server::observe;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace vrut::server::net;
 using namespace vrut::test;

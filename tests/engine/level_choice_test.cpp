@@ -6,11 +6,11 @@
 #include <limits>
 #include <set>
 
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
 using namespace vrut;
 using namespace vrut::server::base;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace std::chrono_literals;
 using protocol::Quality;

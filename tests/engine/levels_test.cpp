@@ -10,13 +10,13 @@
 #include "engine/scheduler.hpp"
 #include "environment_variable.hpp"
 #include "plan/rendering.hpp"
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
 using namespace vrut::server::observe;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace vrut::test;
 using protocol::Quality;

@@ -4,12 +4,12 @@
 
 #include "gl/handles.hpp"
 #include "gl_faults.hpp"
-#include "scene/import_process.hpp"
+#include "scenes/import_process.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace vrut::server::net;
 using namespace vrut::test;

@@ -14,7 +14,7 @@
 #include "raw_connection.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::net;
 using namespace vrut::test;
 

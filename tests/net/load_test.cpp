@@ -49,7 +49,7 @@ std::vector<std::string> stubborn() {
 }
 
 /// Nodes whose names take several times their length in an answer.
-server::scene::LoadedScene long_names() {
+server::scenes::LoadedScene long_names() {
     std::string name, text = "vrut-text 1\n";
     for (int i = 0; i < 500; ++i) name += "\\\"";
     for (int i = 1; i <= 300; ++i) text += "node " + std::to_string(i) + " \"" + name + "\" assembly end\n";

@@ -5,7 +5,7 @@
 #include "test_client.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::net;
 using namespace vrut::test;
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::test {
 
@@ -27,12 +27,12 @@ server::room::EventLog read_session() {
     return *std::move(log);
 }
 
-tl::expected<server::scene::LoadedScene, std::string> find_scene(const std::string& name,
+tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
                                                                  const std::string& sha256) {
     const fs::path file = fs::path(VRUT_DATA) / "scenes" / name;
-    if (server::scene::sha256_of(file) != sha256)
+    if (server::scenes::sha256_of(file) != sha256)
         return tl::unexpected(name + " has changed since it was recorded");
-    return server::scene::load_scene(file, name);
+    return server::scenes::load_scene(file, name);
 }
 
 }  // namespace vrut::test

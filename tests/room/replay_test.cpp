@@ -16,9 +16,9 @@ using namespace stage;
 
 namespace {
 
-tl::expected<server::scene::LoadedScene, std::string> find_scene(const std::string& name,
+tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
                                                                  const std::string& sha256) {
-    server::scene::LoadedScene found = name == "other.vrut" ? other_scene() : scene();
+    server::scenes::LoadedScene found = name == "other.vrut" ? other_scene() : scene();
     if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
     return found;
 }
@@ -37,7 +37,7 @@ std::string pointer(const std::string& what, double x, double y, int id = 1, con
 /// A stage whose session is recorded from some point on.
 class Recorded {
 public:
-    explicit Recorded(const std::string& clients, server::scene::LoadedScene shown = scene())
+    explicit Recorded(const std::string& clients, server::scenes::LoadedScene shown = scene())
         : logs(folder.path()), stage(clients, std::move(shown), logs.options()) {
         stage.after_message = [this](Stage& told) { logs.tell_results(told); };
         spdlog::set_level(spdlog::level::warn);
@@ -340,7 +340,7 @@ TEST_CASE("whatever happens, before and in a recording, the replay ends in the s
 }
 
 TEST_CASE("a light of a file that is brighter than clients may make it is no hindrance") {
-    const server::scene::LoadedScene shown = scene_of(R"(vrut-text 1
+    const server::scenes::LoadedScene shown = scene_of(R"(vrut-text 1
 geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
 node 1 "Part" geometry geometry 1 end
 node 2 "Key" light type point color 1.08 1.06 1.02 1 end
@@ -351,7 +351,7 @@ node 2 "Key" light type point color 1.08 1.06 1.02 1 end
     recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
     const auto replayed = server::room::replay(
         recorded.log(),
-        [&](const auto&, const auto&) -> tl::expected<server::scene::LoadedScene, std::string> {
+        [&](const auto&, const auto&) -> tl::expected<server::scenes::LoadedScene, std::string> {
             return shown;
         });
     REQUIRE_MESSAGE(replayed, replayed.error());

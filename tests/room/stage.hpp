@@ -14,7 +14,7 @@
 namespace stage {
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::room;
 using namespace std::chrono_literals;
 using nlohmann::json;

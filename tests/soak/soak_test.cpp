@@ -8,10 +8,10 @@
 #include "dying_clients.hpp"
 #include "gl/handles.hpp"
 #include "process.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::engine;
 using namespace vrut::server::net;
 using namespace vrut::test;

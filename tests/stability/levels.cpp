@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "engine/level_choice.hpp"
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {
@@ -64,7 +64,7 @@ Study loads_at_a_border(const Laboratory& laboratory) {
         "is not tried again for 2 s, then 4, up to a minute. Times vary by 10 %.";
     study.cost = "At 85 to 100 % of the target the better level would do, and may not be taken.";
     for (const double percent : laboratory.chosen({75, 80, 85, 90, 95, 98, 100})) {
-        server::engine::LevelChoice choice(server::scene::built_in_levels());
+        server::engine::LevelChoice choice(server::scenes::built_in_levels());
         const auto& levels = choice.levels();
         const std::size_t best = levels.size() / 2;
         const double target = levels[best + 1].ms * 100 / percent;
@@ -107,7 +107,7 @@ Study noisy_times(const Laboratory& laboratory) {
         "a while where it was too slow, each time for longer.";
     study.cost = "After a load has gone, the better level comes up to a minute later.";
     for (const double percent : laboratory.chosen({1, 2, 5, 10, 20, 40, 60})) {
-        server::engine::LevelChoice choice(server::scene::built_in_levels());
+        server::engine::LevelChoice choice(server::scenes::built_in_levels());
         const auto& levels = choice.levels();
         Machine machine(percent / 100), same(percent / 100);
         server::base::Clock::time_point now{std::chrono::hours(1)};

@@ -44,7 +44,7 @@ Json header_of(const std::string& jpeg) {
 
 }  // namespace
 
-server::scene::LoadedScene scene_of(const std::string& text, const std::string& name) {
+server::scenes::LoadedScene scene_of(const std::string& text, const std::string& name) {
     auto scene = read_vrut_text(text, name);
     REQUIRE_MESSAGE(scene.has_value(), scene.error());
     return {name, "", std::make_shared<const PlacedScene>(place(*std::move(scene))), {}};
@@ -86,7 +86,7 @@ server::engine::FrameRendererFactory FakeRenderer::factory() const {
 TestServer::TestServer(const FakeRenderer& renderer, const server::net::ServerOptions& options)
     : TestServer(scene_of(kScene, "triangle.vrut"), renderer.factory(), options) {}
 
-TestServer::TestServer(server::scene::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
+TestServer::TestServer(server::scenes::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
                        server::net::ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
     options.listen.port = 0;

@@ -24,13 +24,13 @@ struct FakeRenderer {
 };
 
 /// A scene as read from its text.
-server::scene::LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
+server::scenes::LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
 
 /// A server in this process, on a port of its own. It serves one triangle if nothing else is said.
 class TestServer {
 public:
     explicit TestServer(const FakeRenderer& renderer = {}, const server::net::ServerOptions& options = {});
-    TestServer(server::scene::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
+    TestServer(server::scenes::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
                server::net::ServerOptions options = {});
     ~TestServer();
     std::uint16_t port() const { return server_->port(); }

@@ -1,12 +1,12 @@
-#include "scene/loader.hpp"
+#include "scenes/loader.hpp"
 
 #include <mutex>
 #include <utility>
 
 #include "base/clock.hpp"
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace {
 
@@ -79,4 +79,4 @@ void SceneLoader::start(const std::filesystem::path& path, const std::string& na
     });
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

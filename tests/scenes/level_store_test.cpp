@@ -1,4 +1,4 @@
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
 #include <doctest/doctest.h>
 #include <spdlog/spdlog.h>
@@ -7,7 +7,7 @@
 #include "temporary_folder.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using protocol::Quality;
 namespace fs = std::filesystem;
 

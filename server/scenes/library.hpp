@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "messages.hpp"
-#include "scene/import_process.hpp"
-#include "scene/loaded_scene.hpp"
+#include "scenes/import_process.hpp"
+#include "scenes/loaded_scene.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// Reads a scene file in a process of its own (import_scene()), or fails with one sentence. `name` is the
 /// name that the client asked for.
@@ -50,4 +50,4 @@ private:
 std::string sha256_of(const std::filesystem::path& path, const std::stop_token& stop = {});
 std::string sha256_of_text(std::string_view text);
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -8,7 +8,7 @@
 #include "messages.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// A scene as it was read.
 struct LoadedScene {
@@ -27,4 +27,4 @@ std::size_t most_state_bytes(const LoadedScene& scene);
 /// for what clients change.
 inline constexpr std::size_t kMaxStateBytes = protocol::kMaxServerMessageBytes - (std::size_t{8} << 20);
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

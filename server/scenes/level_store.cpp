@@ -1,4 +1,4 @@
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
 #include <unistd.h>
 
@@ -11,9 +11,9 @@
 
 #include "base/files.hpp"
 #include "observe/log.hpp"
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace fs = std::filesystem;
 
@@ -106,4 +106,4 @@ protocol::LevelTable levels_of(const std::string& scene_sha256, const std::strin
     return table;
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

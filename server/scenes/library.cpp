@@ -1,4 +1,4 @@
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 #include <openssl/evp.h>
 
@@ -13,7 +13,7 @@
 #include "base/abandonable_task.hpp"
 #include "base/utf8.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace fs = std::filesystem;
 
@@ -145,4 +145,4 @@ std::string sha256_of_text(std::string_view text) {
     return sum.digest();
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -1,4 +1,4 @@
-#include "scene/sandbox.hpp"
+#include "scenes/sandbox.hpp"
 
 #include <fcntl.h>
 #include <linux/audit.h>
@@ -21,7 +21,7 @@
 #include <sanitizer/common_interface_defs.h>
 #endif
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace {
 
@@ -144,4 +144,4 @@ SandboxGaps enter_sandbox(const std::filesystem::path& scene_file) {
     return gaps;
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -1,10 +1,10 @@
-#include "scene/loaded_scene.hpp"
+#include "scenes/loaded_scene.hpp"
 
 #include <string_view>
 
 #include "plan/frame_plan.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 std::vector<std::string> all_notices(const Scene& scene) {
     std::vector<std::string> notices = scene.notices();
@@ -45,4 +45,4 @@ std::size_t most_state_bytes(const LoadedScene& loaded) {
     return bytes;
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

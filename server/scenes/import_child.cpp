@@ -13,11 +13,11 @@
 #include <system_error>
 
 #include "io/scene_serialization.hpp"
-#include "scene/import_channel.hpp"
-#include "scene/import_process.hpp"
-#include "scene/sandbox.hpp"
+#include "scenes/import_channel.hpp"
+#include "scenes/import_process.hpp"
+#include "scenes/sandbox.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace {
 
@@ -78,4 +78,4 @@ void run_import_process(char** argv) try {
     _exit(1);
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// What a process that reads a file has open. It writes doubles there: how far it is, from 0 to 1, and what
 /// of enter_sandbox() it could not have; then kReady, then the parts (write_parts()).
@@ -10,4 +10,4 @@ inline constexpr double kReady = -1, kFilesOpen = -2, kCallsOpen = -3;
 /// Its exit status where its memory does not suffice.
 inline constexpr int kOutOfMemory = 3;
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

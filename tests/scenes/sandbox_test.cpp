@@ -1,7 +1,7 @@
 // What the process that reads foreign files can still do. Each attempt is made by a process of its own, since
 // nothing leads out of a sandbox.
 #define DOCTEST_CONFIG_IMPLEMENT
-#include "scene/sandbox.hpp"
+#include "scenes/sandbox.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -21,11 +21,11 @@
 
 #include "environment_variable.hpp"
 #include "observe/log.hpp"
-#include "scene/import_process.hpp"
+#include "scenes/import_process.hpp"
 #include "temporary_folder.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 namespace fs = std::filesystem;
 
 /// What reads a file is this program, started anew.

@@ -1,4 +1,4 @@
-#include "scene/loader.hpp"
+#include "scenes/loader.hpp"
 
 #include <doctest/doctest.h>
 #include <fcntl.h>
@@ -11,7 +11,7 @@
 #include "base/detached_thread.hpp"
 #include "temporary_folder.hpp"
 
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 
 TEST_CASE("a loader that ends leaves a thread behind whose file does not open, and hears no more of it") {
     std::signal(SIGIO, SIG_IGN);  // tells that somebody waits for the lease below

@@ -8,13 +8,13 @@
 
 #include "environment_variable.hpp"
 #include "heap.hpp"
-#include "scene/import_process.hpp"
-#include "scene/library.hpp"
+#include "scenes/import_process.hpp"
+#include "scenes/library.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 using namespace vrut::server::net;
 using namespace vrut::test;
 namespace fs = std::filesystem;

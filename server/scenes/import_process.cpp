@@ -1,4 +1,4 @@
-#include "scene/import_process.hpp"
+#include "scenes/import_process.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -23,9 +23,9 @@
 #include "base/descriptor.hpp"
 #include "io/scene_serialization.hpp"
 #include "observe/log.hpp"
-#include "scene/import_channel.hpp"
+#include "scenes/import_channel.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 namespace {
 
@@ -281,4 +281,4 @@ ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& p
     return tl::unexpected(out_of_memory(path));
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -8,10 +8,10 @@
 
 #include "base/abandonable_task.hpp"
 #include "level_table.hpp"
-#include "scene/library.hpp"
-#include "scene/loaded_scene.hpp"
+#include "scenes/library.hpp"
+#include "scenes/loaded_scene.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 struct SceneLoading {
     std::string name;
@@ -54,4 +54,4 @@ private:
     std::optional<base::AbandonableTask<void>> task_;
 };
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

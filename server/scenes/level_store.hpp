@@ -6,7 +6,7 @@
 
 #include "level_table.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// Where the levels of a scene on a machine are kept, once they are measured: in $XDG_STATE_HOME, else in
 /// ~/.local/state, the folder vrut-preview/levels. Empty where neither is an absolute path.
@@ -26,4 +26,4 @@ const protocol::LevelTable& built_in_levels();
 /// Those that are kept, else the built-in ones; these with their errors for the car only.
 protocol::LevelTable levels_of(const std::string& scene_sha256, const std::string& renderer);
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

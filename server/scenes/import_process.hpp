@@ -8,7 +8,7 @@
 
 #include "io/read_scene.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// What reading one file may take in a process of its own.
 struct ImportLimits {
@@ -34,4 +34,4 @@ std::string out_of_memory(const std::filesystem::path& path);
 bool is_import_process(int argc, char** argv);
 [[noreturn]] void run_import_process(char** argv);
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 /// What of a sandbox the kernel does not have, or does not let this process have.
 struct SandboxGaps {
@@ -16,4 +16,4 @@ struct SandboxGaps {
 /// part, the other still holds.
 SandboxGaps enter_sandbox(const std::filesystem::path& scene_file);
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

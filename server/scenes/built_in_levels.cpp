@@ -1,6 +1,6 @@
-#include "scene/level_store.hpp"
+#include "scenes/level_store.hpp"
 
-namespace vrut::server::scene {
+namespace vrut::server::scenes {
 
 // As `chart --calibrate --size 1180x820` measured the car, drawn by two cores. Of other scenes the errors are
 // others.
@@ -22,4 +22,4 @@ const protocol::LevelTable& built_in_levels() {
     return table;
 }
 
-}  // namespace vrut::server::scene
+}  // namespace vrut::server::scenes

@@ -1,4 +1,4 @@
-#include "scene/library.hpp"
+#include "scenes/library.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/stat.h>
@@ -6,7 +6,7 @@
 #include "temporary_folder.hpp"
 
 using namespace vrut;
-using namespace vrut::server::scene;
+using namespace vrut::server::scenes;
 namespace fs = std::filesystem;
 
 namespace {
