@@ -6,7 +6,7 @@
 
 namespace vrut {
 
-std::optional<std::string> file_fault(const std::filesystem::path& path) {
+std::optional<std::string> file_error(const std::filesystem::path& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) return "there is no such file";
@@ -35,7 +35,7 @@ tl::expected<std::filesystem::path, std::string> find_below(const std::filesyste
 }
 
 tl::expected<FileReader, std::string> FileReader::open(const std::filesystem::path& path) {
-    if (auto fault = file_fault(path)) return tl::unexpected(*std::move(fault));
+    if (auto fault = file_error(path)) return tl::unexpected(*std::move(fault));
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream stream(path, std::ios::binary);

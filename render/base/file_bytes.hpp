@@ -11,7 +11,7 @@
 namespace vrut {
 
 /// Why a path names no file that could be read, without its name; nothing where it names one.
-std::optional<std::string> file_fault(const std::filesystem::path& path);
+std::optional<std::string> file_error(const std::filesystem::path& path);
 
 /// The file that `name`, relative to a scene's folder, means there or below, links followed; or why it is
 /// none that may be read: what lies outside of the folder is not.

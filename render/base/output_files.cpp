@@ -20,10 +20,10 @@ void OutputFiles::write(const fs::path& target, const std::function<void(std::os
     std::error_code error;
     if (!target.parent_path().empty() && fs::create_directory(target.parent_path(), error))
         made_folders_.push_back(target.parent_path());
-    if (fs::is_directory(target, error)) throw WriteFault(target.string() + ": it is a folder");
-    for (const fs::path& file : kept_)
+    if (fs::is_directory(target, error)) throw WriteError(target.string() + ": it is a folder");
+    for (const fs::path& file : protected_files_)
         if (fs::equivalent(file, target, error))
-            throw WriteFault(target.string() +
+            throw WriteError(target.string() +
                              ": the scene is read from this file, which is not written over");
     const std::string hidden = "." + target.filename().string() + "." + std::to_string(getpid()) + ".part";
     staged_.push_back({target.parent_path() / hidden, target});
@@ -36,7 +36,7 @@ void OutputFiles::write(const fs::path& target, const std::function<void(std::os
         stream.close();
     } catch (const std::ios::failure&) {
         const std::string cause = errno != 0 ? std::strerror(errno) : "the folder takes no more";
-        throw WriteFault(target.string() + ": it cannot be written: " + cause);
+        throw WriteError(target.string() + ": it cannot be written: " + cause);
     }
 }
 
@@ -44,7 +44,7 @@ void OutputFiles::commit() {
     for (const Staged& file : staged_) {
         std::error_code error;
         fs::rename(file.temporary, file.target, error);
-        if (error) throw WriteFault(file.target.string() + ": it cannot be written: " + error.message());
+        if (error) throw WriteError(file.target.string() + ": it cannot be written: " + error.message());
     }
     staged_.clear();
     made_folders_.clear();

@@ -10,7 +10,7 @@
 namespace vrut {
 
 /// Why a file cannot be written, in one sentence that names it; caught by write_scene().
-struct WriteFault : std::runtime_error {
+struct WriteError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -19,21 +19,22 @@ struct WriteFault : std::runtime_error {
 class OutputFiles {
 public:
     /// None of `kept` is written over.
-    explicit OutputFiles(std::vector<std::filesystem::path> kept = {}) : kept_(std::move(kept)) {}
+    explicit OutputFiles(std::vector<std::filesystem::path> protected_files = {})
+        : protected_files_(std::move(protected_files)) {}
     ~OutputFiles();
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
 
-    /// Makes the folder, where it is missing, in a folder that is there. Throws WriteFault.
+    /// Makes the folder, where it is missing, in a folder that is there. Throws WriteError.
     void write(const std::filesystem::path& target, const std::function<void(std::ostream&)>& content);
-    /// Puts the files in their places in the order in which they were written. Throws WriteFault.
+    /// Puts the files in their places in the order in which they were written. Throws WriteError.
     void commit();
 
 private:
     struct Staged {
         std::filesystem::path temporary, target;
     };
-    std::vector<std::filesystem::path> kept_;
+    std::vector<std::filesystem::path> protected_files_;
     std::vector<Staged> staged_;
     std::vector<std::filesystem::path> made_folders_;
 };

@@ -171,7 +171,7 @@ double error_of_distance(double distance_of_colors) {
 
 // --- what is seen of some rows
 
-struct Sight {
+struct PerceivedRows {
     std::array<Channel, 3> color;  ///< CIELAB, with the Hunt effect
     Channel edges, points;
 };
@@ -179,9 +179,9 @@ struct Sight {
 class Viewer {
 public:
     /// Rows from `first` on. The rows beyond the picture's edges are as these edges are.
-    Sight see(const Image& image, std::size_t first, std::size_t rows) const {
+    PerceivedRows see(const Image& image, std::size_t first, std::size_t rows) const {
         const std::array<Channel, 3> opponent = opponent_channels(image, first, rows);
-        Sight sight{filtered_colors(opponent), {0, 0}, {0, 0}};
+        PerceivedRows sight{filtered_colors(opponent), {0, 0}, {0, 0}};
         Channel grey = opponent[0];
         for (float& value : grey.values) value = (value + 16) / 116;
         sight.edges = gradient(grey, features_.slope);
@@ -250,8 +250,8 @@ private:
 };
 
 /// Colour difference, raised where features differ (sections 4.2 and 4.3).
-double flip_error(const Sight& a, const Sight& b, std::size_t i) {
-    const auto color = [&](const Sight& sight) {
+double flip_error(const PerceivedRows& a, const PerceivedRows& b, std::size_t i) {
+    const auto color = [&](const PerceivedRows& sight) {
         return glm::dvec3(sight.color[0].values[i], sight.color[1].values[i], sight.color[2].values[i]);
     };
     const double color_error = error_of_distance(distance(color(a), color(b)));
@@ -272,7 +272,7 @@ std::vector<float> flip(const Image& a, const Image& b) {
     errors.reserve(a.rgba.size() / 4);
     for (std::size_t first = 0; first < height; first += kBand) {
         const std::size_t rows = std::min(kBand, height - first);
-        const Sight seen_a = viewer.see(a, first, rows), seen_b = viewer.see(b, first, rows);
+        const PerceivedRows seen_a = viewer.see(a, first, rows), seen_b = viewer.see(b, first, rows);
         for (std::size_t i = 0; i < seen_a.edges.values.size(); ++i)
             errors.push_back(static_cast<float>(flip_error(seen_a, seen_b, i)));
     }

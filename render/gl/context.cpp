@@ -15,7 +15,7 @@
 
 namespace vrut {
 
-struct GlContext::Candidate {
+struct GlContext::DeviceCandidate {
     EGLDeviceEXT device = EGL_NO_DEVICE_EXT;  // none: the surfaceless platform
     int index = -1;
     bool software = false;
@@ -152,7 +152,7 @@ void check_drawing() {
 }  // namespace
 
 GlContext::GlContext(const GlOptions& options) {
-    std::vector<Candidate> candidates;
+    std::vector<DeviceCandidate> candidates;
     const std::vector<EGLDeviceEXT> devices = all_devices();
     for (std::size_t i = 0; i < devices.size(); ++i)
         candidates.push_back({devices[i], static_cast<int>(i), is_software(devices[i])});
@@ -163,11 +163,11 @@ GlContext::GlContext(const GlOptions& options) {
         candidates = {candidates[static_cast<std::size_t>(*options.device)]};
     } else {
         std::stable_partition(candidates.begin(), candidates.end(),
-                              [](const Candidate& c) { return !c.software; });
+                              [](const DeviceCandidate& c) { return !c.software; });
         candidates.push_back({});
     }
 
-    for (const Candidate& candidate : candidates) {
+    for (const DeviceCandidate& candidate : candidates) {
         try {
             make_current(candidate, options.debug);
             check_drawing();
@@ -194,7 +194,7 @@ bool GlContext::lost() const {
            status == GL_UNKNOWN_CONTEXT_RESET;
 }
 
-void GlContext::make_current(const Candidate& candidate, bool debug) {
+void GlContext::make_current(const DeviceCandidate& candidate, bool debug) {
     const auto get_display = egl_function<PFNEGLGETPLATFORMDISPLAYEXTPROC>("eglGetPlatformDisplayEXT");
     if (!get_display) throw std::runtime_error("EGL has no platform displays");
     auto display = std::make_unique<Display>();
@@ -220,7 +220,7 @@ void GlContext::make_current(const Candidate& candidate, bool debug) {
     }
 }
 
-void GlContext::describe(const Candidate& candidate) {
+void GlContext::describe(const DeviceCandidate& candidate) {
     const std::string renderer = gl_string(GL_RENDERER);
     description_ = candidate.name() + ": " + renderer + ", OpenGL " + gl_string(GL_VERSION);
     // The surfaceless platform does not say which device it took.

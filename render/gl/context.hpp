@@ -38,10 +38,10 @@ public:
     std::vector<std::string> take_messages();
 
 private:
-    struct Candidate;
+    struct DeviceCandidate;
     struct Display;
-    void make_current(const Candidate& candidate, bool debug);
-    void describe(const Candidate& candidate);
+    void make_current(const DeviceCandidate& candidate, bool debug);
+    void describe(const DeviceCandidate& candidate);
 
     std::unique_ptr<Display> display_;
     std::string description_;

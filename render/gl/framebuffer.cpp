@@ -10,18 +10,18 @@ namespace vrut {
 namespace {
 
 /// (v + 128) / 257, since 65535 / 255 = 257, in a form that is vectorised.
-void round_to_bytes(std::span<const std::uint16_t> deep, std::span<std::uint8_t> bytes) {
+void round_to_bytes(std::span<const std::uint16_t> rgba16, std::span<std::uint8_t> bytes) {
     for (std::size_t k = 0; k < bytes.size(); ++k)
-        bytes[k] = static_cast<std::uint8_t>((deep[k] * 255U + 32895U) >> 16);
+        bytes[k] = static_cast<std::uint8_t>((rgba16[k] * 255U + 32895U) >> 16);
 }
 
 }  // namespace
 
-Framebuffer::Framebuffer(int width, int height, bool deep)
+Framebuffer::Framebuffer(int width, int height, bool rgba16)
     : width_(width),
       height_(height),
-      deep_(deep),
-      color_(make_texture(deep ? GL_RGBA16 : GL_RGBA8, width, height)),
+      rgba16_(rgba16),
+      color_(make_texture(rgba16 ? GL_RGBA16 : GL_RGBA8, width, height)),
       depth_(make_texture(GL_DEPTH_COMPONENT32F, width, height)),
       framebuffer_(make_framebuffer()) {
     glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, color_.get(), 0);
@@ -40,13 +40,13 @@ void Framebuffer::read(std::span<std::uint8_t> pixels) {
     assert(pixels.size() == static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 4);
     glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    if (!deep_) {
+    if (!rgba16_) {
         glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
         return;
     }
-    deep_pixels_.resize(pixels.size());
-    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_SHORT, deep_pixels_.data());
-    round_to_bytes(deep_pixels_, pixels);
+    rgba16_pixels_.resize(pixels.size());
+    glReadPixels(0, 0, width_, height_, GL_RGBA, GL_UNSIGNED_SHORT, rgba16_pixels_.data());
+    round_to_bytes(rgba16_pixels_, pixels);
 }
 
 void wait_for_gl() {

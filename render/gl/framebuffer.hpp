@@ -13,11 +13,11 @@ namespace vrut {
 class Framebuffer {
 public:
     /// Throws OutOfMemory, also where the driver refuses it for reasons of its own.
-    Framebuffer(int width, int height, bool deep = false);
+    Framebuffer(int width, int height, bool rgba16 = false);
 
     int width() const { return width_; }
     int height() const { return height_; }
-    bool deep() const { return deep_; }
+    bool rgba16() const { return rgba16_; }
     /// Its colours and its depth, to be read texel by texel.
     const GlTexture& color() const { return color_; }
     const GlTexture& depth() const { return depth_; }
@@ -28,10 +28,10 @@ public:
 
 private:
     int width_, height_;
-    bool deep_;
+    bool rgba16_;
     GlTexture color_, depth_;
     GlFramebuffer framebuffer_;
-    std::vector<std::uint16_t> deep_pixels_;  // read as they are: the driver takes longer to convert them
+    std::vector<std::uint16_t> rgba16_pixels_;  // read as they are: the driver takes longer to convert them
 };
 
 /// Waits until everything submitted so far is drawn.

@@ -13,12 +13,12 @@ namespace vrut {
 
 namespace {
 
-struct Vertex {
+struct GpuVertex {
     glm::vec3 position, normal;
 };
 
-struct Arrays {
-    std::vector<Vertex> vertices;
+struct VertexArrays {
+    std::vector<GpuVertex> vertices;
     std::vector<unsigned> corners;      ///< for each vertex the geometry's of which it is made
     std::vector<glm::uvec3> triangles;  ///< empty: the geometry's
 };
@@ -26,22 +26,22 @@ struct Arrays {
 GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
     GlVertexArray result = make_vertex_array();
     const GLuint array = result.get();
-    glVertexArrayVertexBuffer(array, 0, vertices.get(), 0, sizeof(Vertex));
+    glVertexArrayVertexBuffer(array, 0, vertices.get(), 0, sizeof(GpuVertex));
     glVertexArrayElementBuffer(array, indices.get());
     const auto attribute = [&](GLuint location, std::size_t offset) {
         glEnableVertexArrayAttrib(array, location);
         glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
         glVertexArrayAttribBinding(array, location, 0);
     };
-    attribute(0, offsetof(Vertex, position));
-    attribute(1, offsetof(Vertex, normal));
+    attribute(0, offsetof(GpuVertex, position));
+    attribute(1, offsetof(GpuVertex, normal));
     return result;
 }
 
 /// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
 /// its face's, so that the shader need not know the difference. Most geometries have none, and keep their
 /// triangles.
-Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
+VertexArrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
     // Unit, so that float can square them.
     const auto normal = [&](unsigned i) {
@@ -50,7 +50,7 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
         return length > 0 ? glm::vec3(given / length) : glm::vec3(0);
     };
 
-    Arrays arrays;
+    VertexArrays arrays;
     bool all = !geometry.normals.empty();
     if (all) {
         arrays.vertices.reserve(geometry.positions.size());
@@ -80,7 +80,7 @@ Arrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     return arrays;
 }
 
-const std::vector<glm::uvec3>& triangles_of(const Arrays& arrays, const Geometry& geometry) {
+const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const Geometry& geometry) {
     return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
 }
 
@@ -111,9 +111,9 @@ void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array)
 GpuGeometry upload(const Geometry& geometry) {
     GpuGeometry result;
     result.origin = geometry.bounds.center();
-    const Arrays arrays = make_arrays(geometry, result.origin);
+    const VertexArrays arrays = make_arrays(geometry, result.origin);
     result.vertices =
-        make_buffer("vertices", arrays.vertices.data(), arrays.vertices.size() * sizeof(Vertex));
+        make_buffer("vertices", arrays.vertices.data(), arrays.vertices.size() * sizeof(GpuVertex));
     const std::vector<glm::uvec3>& triangles = triangles_of(arrays, geometry);
     result.indices = make_buffer("triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
     result.index_count = static_cast<GLsizei>(triangles.size() * 3);
@@ -129,7 +129,7 @@ GpuGeometry upload(const Geometry& geometry) {
 
 /// For each position the lowest index of one that is the same, so that corners with normals of their own are
 /// known as one.
-std::vector<unsigned> first_of_same(const std::vector<glm::dvec3>& positions) {
+std::vector<unsigned> first_with_same_position(const std::vector<glm::dvec3>& positions) {
     std::vector<unsigned> order(positions.size());
     std::iota(order.begin(), order.end(), 0U);
     const auto before = [&](unsigned a, unsigned b) {
@@ -147,24 +147,28 @@ std::vector<unsigned> first_of_same(const std::vector<glm::dvec3>& positions) {
 
 /// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
 std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector<glm::uvec3>& vertices) {
-    struct Edge {
+    struct EdgeCandidate {
         glm::uvec2 corners;  // known as one, the lower first
         std::size_t number;
         glm::uvec2 vertices;
     };
-    const std::vector<unsigned> known_as = first_of_same(geometry.positions);
-    std::vector<Edge> edges;
+    const std::vector<unsigned> representative = first_with_same_position(geometry.positions);
+    std::vector<EdgeCandidate> edges;
     edges.reserve(vertices.size() * 3);
     for (std::size_t i = 0; i < vertices.size(); ++i)
         for (int k = 0; k < 3; ++k) {
             const int next = (k + 1) % 3;
-            const unsigned a = known_as[geometry.triangles[i][k]], b = known_as[geometry.triangles[i][next]];
+            const unsigned a = representative[geometry.triangles[i][k]],
+                           b = representative[geometry.triangles[i][next]];
             if (a == b) continue;
             edges.push_back(
                 {{std::min(a, b), std::max(a, b)}, edges.size(), {vertices[i][k], vertices[i][next]}});
         }
-    const auto key = [](const Edge& edge) { return std::tie(edge.corners.x, edge.corners.y, edge.number); };
-    std::sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) { return key(a) < key(b); });
+    const auto key = [](const EdgeCandidate& edge) {
+        return std::tie(edge.corners.x, edge.corners.y, edge.number);
+    };
+    std::sort(edges.begin(), edges.end(),
+              [&](const EdgeCandidate& a, const EdgeCandidate& b) { return key(a) < key(b); });
     std::vector<glm::uvec2> result;
     for (std::size_t i = 0; i < edges.size(); ++i)
         if (i == 0 || edges[i].corners != edges[i - 1].corners) result.push_back(edges[i].vertices);
@@ -173,7 +177,7 @@ std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector
 
 GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
     GpuEdges result;
-    const Arrays arrays = make_arrays(geometry, uploaded.origin);
+    const VertexArrays arrays = make_arrays(geometry, uploaded.origin);
     const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
     if (edges.empty()) return result;
     result.indices = make_buffer("edges", edges.data(), edges.size() * sizeof(glm::uvec2));
@@ -191,7 +195,7 @@ GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
       textures_(scene_->textures().size()) {}
 
 void GpuScene::upload_shown(const View& view) {
-    for (const DrawItem& item : shown_items(view)) {
+    for (const DrawItem& item : visible_items(view)) {
         geometry(item.geometry);
         if (item.texture != kNone) texture(item.texture);
     }
@@ -223,7 +227,7 @@ const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
     return level;
 }
 
-bool GpuScene::holds(const DrawItem& item) const {
+bool GpuScene::is_resident(const DrawItem& item) const {
     if (!item.level) return bool(geometries_[static_cast<std::size_t>(item.geometry)].vertex_array);
     return levels_.contains({item.geometry, item.level->number});
 }
@@ -258,15 +262,15 @@ const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
     return cube_map;
 }
 
-const GpuTriangles& GpuScene::ordered(const DrawItem& item) {
+const GpuTriangles& GpuScene::sorted_triangles(const DrawItem& item) {
     const std::vector<unsigned>& order = *item.order;
-    GpuTriangles& result = ordered_[{item.geometry, order.size()}];
+    GpuTriangles& result = sorted_triangles_[{item.geometry, order.size()}];
     if (result.order && (result.order == item.order || *result.order == order)) return result;
     if (!result.vertex_array) {
         const GpuGeometry& uploaded = geometry(item.geometry);
         const Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
         result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
-        result.indices = make_changing_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
+        result.indices = make_dynamic_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
         result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
         if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
         result.index_count = static_cast<GLsizei>(order.size() * 3);

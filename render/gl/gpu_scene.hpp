@@ -51,10 +51,10 @@ public:
     /// Of an item: its level's, if it has one.
     const GpuGeometry& geometry(const DrawItem& item);
     /// Whether that is there already.
-    bool holds(const DrawItem& item) const;
+    bool is_resident(const DrawItem& item) const;
     const GpuEdges& edges(Index index);
     /// Its triangles in an item's order, which is not null.
-    const GpuTriangles& ordered(const DrawItem& item);
+    const GpuTriangles& sorted_triangles(const DrawItem& item);
     const GlTexture& texture(Index index);
     /// Of the six textures (upload_cube_map()).
     const GlTexture& cube_map(const std::array<Index, 6>& textures);
@@ -66,7 +66,8 @@ private:
     std::vector<GpuGeometry> geometries_;
     std::map<std::pair<Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
     std::vector<std::optional<GpuEdges>> edges_;           // after the geometries, whose vertices they use
-    std::map<std::pair<Index, std::size_t>, GpuTriangles> ordered_;  // by the number of triangles, too
+    std::map<std::pair<Index, std::size_t>, GpuTriangles>
+        sorted_triangles_;  // by the number of triangles, too
     std::vector<GlTexture> textures_;
     std::map<std::array<Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;

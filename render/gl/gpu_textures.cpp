@@ -9,9 +9,9 @@ namespace vrut {
 namespace {
 
 /// An image and the levels below it, from the first that is no larger than `limit` names.
-class Levels {
+class MipChain {
 public:
-    Levels(const Image& image, GLenum limit) : image_(image), below_(mip_levels(image)) {
+    MipChain(const Image& image, GLenum limit) : image_(image), below_(mip_levels(image)) {
         GLint largest = 0;
         glGetIntegerv(limit, &largest);
         while (std::max(at(0).width, at(0).height) > largest) ++first_;
@@ -40,7 +40,7 @@ Image upside_down(const Image& image) {
 }  // namespace
 
 GlTexture upload_texture(const Image& image) {
-    const Levels levels(image, GL_MAX_TEXTURE_SIZE);
+    const MipChain levels(image, GL_MAX_TEXTURE_SIZE);
     GlTexture texture =
         make_mipmapped_texture(GL_TEXTURE_2D, levels.at(0).width, levels.at(0).height, levels.count());
     for (int i = 0; i < levels.count(); ++i) {
@@ -55,7 +55,7 @@ GlTexture upload_cube_map(const std::array<const Image*, 6>& images) {
     constexpr std::array<int, 6> kFaces{0, 1, 2, 3, 5, 4};  // of px nx py ny pz nz
     GlTexture texture;
     for (std::size_t face = 0; face < 6; ++face) {
-        const Levels levels(*images[face], GL_MAX_CUBE_MAP_TEXTURE_SIZE);
+        const MipChain levels(*images[face], GL_MAX_CUBE_MAP_TEXTURE_SIZE);
         if (!texture)
             texture = make_mipmapped_texture(GL_TEXTURE_CUBE_MAP, levels.at(0).width, levels.at(0).height,
                                              levels.count());

@@ -13,11 +13,11 @@ namespace {
 std::atomic<long> live_objects{0};
 
 /// Lets the driver take memory; `what()` tells what for.
-template <class Take, class What>
-void take_memory(Take take, What what) {
+template <class Allocate, class What>
+void allocate_or_throw(Allocate allocate, What what) {
     constexpr int kMostErrors = 100;  // of a lost context there may be no end
     for (int i = 0; i < kMostErrors && glGetError() != GL_NO_ERROR; ++i) continue;
-    take();
+    allocate();
     if (glGetError() != GL_NO_ERROR) throw OutOfMemory("the graphics driver has no memory for " + what());
 }
 
@@ -35,8 +35,8 @@ GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes, GLbi
     GLuint name = 0;
     glCreateBuffers(1, &name);
     GlBuffer buffer(name);
-    take_memory([&] { glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, flags); },
-                [&] { return mebibytes_of(what, bytes); });
+    allocate_or_throw([&] { glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, flags); },
+                      [&] { return mebibytes_of(what, bytes); });
     return buffer;
 }
 
@@ -61,7 +61,7 @@ GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes) {
     return make_buffer(what, data, bytes, 0);
 }
 
-GlBuffer make_changing_buffer(const char* what, std::size_t bytes) {
+GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes) {
     return make_buffer(what, nullptr, bytes, GL_DYNAMIC_STORAGE_BIT);
 }
 
@@ -75,8 +75,8 @@ GlRenderbuffer make_renderbuffer(GLenum format, int width, int height) {
     GLuint name = 0;
     glCreateRenderbuffers(1, &name);
     GlRenderbuffer renderbuffer(name);
-    take_memory([&] { glNamedRenderbufferStorage(name, format, width, height); },
-                [&] { return of_size("a picture", width, height) + " pixels"; });
+    allocate_or_throw([&] { glNamedRenderbufferStorage(name, format, width, height); },
+                      [&] { return of_size("a picture", width, height) + " pixels"; });
     return renderbuffer;
 }
 
@@ -84,8 +84,8 @@ GlTexture make_texture(GLenum format, int width, int height) {
     GLuint name = 0;
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     GlTexture texture(name);
-    take_memory([&] { glTextureStorage2D(name, 1, format, width, height); },
-                [&] { return of_size("a picture", width, height) + " pixels"; });
+    allocate_or_throw([&] { glTextureStorage2D(name, 1, format, width, height); },
+                      [&] { return of_size("a picture", width, height) + " pixels"; });
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
@@ -95,8 +95,8 @@ GlTexture make_mipmapped_texture(GLenum target, int width, int height, int level
     GLuint name = 0;
     glCreateTextures(target, 1, &name);
     GlTexture texture(name);
-    take_memory([&] { glTextureStorage2D(name, levels, GL_RGBA8, width, height); },
-                [&] { return of_size("a texture", width, height) + " texels"; });
+    allocate_or_throw([&] { glTextureStorage2D(name, levels, GL_RGBA8, width, height); },
+                      [&] { return of_size("a texture", width, height) + " texels"; });
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     return texture;

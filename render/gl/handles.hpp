@@ -63,7 +63,7 @@ using GlProgram = GlHandle<detail::destroy_program>;
 /// `what`: of which things it holds so many bytes, as in "vertices".
 GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes);
 /// Without contents, to be written again and again.
-GlBuffer make_changing_buffer(const char* what, std::size_t bytes);
+GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel: a picture's own.

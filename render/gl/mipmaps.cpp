@@ -10,45 +10,45 @@ namespace vrut {
 namespace {
 
 /// A level before it is rounded, each channel 0 to 255.
-struct Level {
+struct FloatMipLevel {
     int width = 0, height = 0;
     std::vector<glm::vec4> texels;
 };
 
 /// What a new texel covers of a row (or column) of old ones: their shares add up to 1.
-struct Cover {
+struct TexelFootprint {
     int first = 0, count = 0;
     std::array<float, 4> shares{};
 };
 
 int half_of(int size) { return std::max(size / 2, 1); }
 
-std::vector<Cover> covers(int old_size) {
+std::vector<TexelFootprint> footprints(int old_size) {
     const int size = half_of(old_size);
-    std::vector<Cover> result;
+    std::vector<TexelFootprint> result;
     result.reserve(static_cast<std::size_t>(size));
     for (int i = 0; i < size; ++i) {
         // In units of an old texel's `size`-th part, so that all but the shares are whole numbers.
         const auto begin = std::int64_t{i} * old_size, end = begin + old_size;
-        Cover cover{static_cast<int>(begin / size), 0, {}};
-        for (std::int64_t k = cover.first; k * size < end; ++k, ++cover.count) {
+        TexelFootprint footprint{static_cast<int>(begin / size), 0, {}};
+        for (std::int64_t k = footprint.first; k * size < end; ++k, ++footprint.count) {
             const auto length = std::min((k + 1) * size, end) - std::max(k * size, begin);
-            cover.shares[static_cast<std::size_t>(cover.count)] =
+            footprint.shares[static_cast<std::size_t>(footprint.count)] =
                 static_cast<float>(static_cast<double>(length) / old_size);
         }
-        result.push_back(cover);
+        result.push_back(footprint);
     }
     return result;
 }
 
 /// `texel(i)` counts along the rows from the bottom up.
 template <typename Texel>
-Level half(int width, int height, const Texel& texel) {
-    const std::vector<Cover> columns = covers(width), rows = covers(height);
-    Level result{half_of(width), half_of(height), {}};
+FloatMipLevel half(int width, int height, const Texel& texel) {
+    const std::vector<TexelFootprint> columns = footprints(width), rows = footprints(height);
+    FloatMipLevel result{half_of(width), half_of(height), {}};
     result.texels.reserve(columns.size() * rows.size());
     std::vector<glm::vec4> line(static_cast<std::size_t>(width));
-    for (const Cover& row : rows) {
+    for (const TexelFootprint& row : rows) {
         std::fill(line.begin(), line.end(), glm::vec4(0));
         for (int k = 0; k < row.count; ++k) {
             const std::size_t start =
@@ -56,7 +56,7 @@ Level half(int width, int height, const Texel& texel) {
             for (std::size_t x = 0; x < line.size(); ++x)
                 line[x] += row.shares[static_cast<std::size_t>(k)] * texel(start + x);
         }
-        for (const Cover& column : columns) {
+        for (const TexelFootprint& column : columns) {
             glm::vec4 sum(0);
             for (int k = 0; k < column.count; ++k)
                 sum += column.shares[static_cast<std::size_t>(k)] *
@@ -67,7 +67,7 @@ Level half(int width, int height, const Texel& texel) {
     return result;
 }
 
-Image rounded(const Level& level) {
+Image rounded(const FloatMipLevel& level) {
     Image image;
     image.resize(level.width, level.height);
     for (std::size_t i = 0; i < level.texels.size(); ++i)
@@ -82,7 +82,7 @@ Image rounded(const Level& level) {
 std::vector<Image> mip_levels(const Image& image) {
     std::vector<Image> levels;
     if (image.width <= 1 && image.height <= 1) return levels;
-    Level level = half(image.width, image.height, [&](std::size_t i) {
+    FloatMipLevel level = half(image.width, image.height, [&](std::size_t i) {
         const std::uint8_t* bytes = image.rgba.data() + 4 * i;
         return glm::vec4(bytes[0], bytes[1], bytes[2], bytes[3]);
     });

@@ -16,7 +16,7 @@
 #include "gl/passes/transparent_pass.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/draw_commands.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 
 namespace vrut {
 
@@ -27,58 +27,59 @@ struct Passes {
     OpaquePass opaque;
     TransparentPass transparent;
     EdgePass edges;
-    MarkPass marks;
+    MarkerPass markers;
 };
 
 /// What holds a sample until it is whole.
 struct SampleTargets {
-    std::optional<Framebuffer> picture;
+    std::optional<Framebuffer> image_target;
     MirrorPass mirrors;
-    PixelSortPass pixel_sort;
+    PerPixelListsPass per_pixel_lists;
     OutlinePass outline;
-    int images_without_layers = 0;  ///< since the last with them
+    int images_without_lists = 0;  ///< since the last with them
 };
 
 /// The next sample of a rendering, which may take several steps. Others may be drawn between them.
 class SampleDrawing {
 public:
-    SampleDrawing(const Rendering& rendering, std::unique_ptr<SampleTargets> targets);
+    SampleDrawing(const RenderJob& job, std::unique_ptr<SampleTargets> targets);
 
-    bool is_of(const Rendering& rendering) const { return planner_.lock() == rendering.planner; }
+    bool belongs_to(const RenderJob& job) const { return planner_.lock() == job.planner; }
     /// Whether nobody has the rendering any more.
     bool abandoned() const { return planner_.expired(); }
 
     /// Draws on, until `work` is spent. True if the sample is drawn: then the picture's target holds it.
     /// `scene` is the rendering's; null where it has none.
-    bool draw(Rendering& rendering, GpuScene* scene, Passes& passes, StepWork& work);
+    bool draw(RenderJob& job, GpuScene* scene, Passes& passes, DrawBudget& budget);
 
-    Framebuffer& picture() { return *targets_->picture; }
+    Framebuffer& image_target() { return *targets_->image_target; }
     /// For another sample, whether this one is drawn or not.
     std::unique_ptr<SampleTargets> release() {
-        targets_->pixel_sort.abandon();
+        targets_->per_pixel_lists.abandon();
         return std::move(targets_);
     }
 
 private:
-    struct Step;  ///< what drawing is given, and what is bound meanwhile
-    void use_target(const View& view, bool deep);
-    void enter(const MirrorItem* mirror, Step& step);
+    struct StepContext;  ///< what drawing is given, and what is bound meanwhile
+    void use_target(const View& view, bool rgba16);
+    void bind_target(const MirrorItem* mirror, StepContext& step);
     /// True if the command is done.
-    bool carry_out(const DrawCommand& command, Step& step);
-    void draw_once(const DrawCommand& command, Step& step);
-    void draw_items(const DrawCommand& command, std::span<const DrawItem> items, Step& step);
-    bool draw_layers(const DrawCommand& command, Step& step);
-    void clear(Step& step);
-    void find_mirrors(const DrawCommand& command, Step& step);
-    void open(const MirrorItem& mirror, Step& step);
+    bool execute(const DrawCommand& command, StepContext& step);
+    void draw_once(const DrawCommand& command, StepContext& step);
+    void draw_items(const DrawCommand& command, std::span<const DrawItem> items, StepContext& step);
+    bool draw_per_pixel_lists(const DrawCommand& command, StepContext& step);
+    void clear(StepContext& step);
+    void find_mirrors(const DrawCommand& command, StepContext& step);
+    void open(const MirrorItem& mirror, StepContext& step);
     bool is_hidden(const MirrorItem* mirror) const;
-    std::span<const DrawItem> take(const DrawCommand& command, const PixelBox& box, Step& step) const;
-    PixelBox whole_picture() const;
-    Sight sight_in(const MirrorItem* mirror) const;
+    std::span<const DrawItem> next_batch(const DrawCommand& command, const PixelBox& box,
+                                         StepContext& step) const;
+    PixelBox full_viewport() const;
+    CameraMatrices camera_in(const MirrorItem* mirror) const;
 
     std::weak_ptr<const FramePlanner> planner_;
     std::unique_ptr<SampleTargets> targets_;
-    Sight sight_;
+    CameraMatrices camera_;
     std::vector<DrawCommand> commands_;
     std::size_t command_ = 0, item_ = 0;  // the next
     std::vector<const MirrorItem*> hidden_;

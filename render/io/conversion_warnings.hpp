@@ -7,7 +7,7 @@
 namespace vrut {
 
 /// What of a file does not come into the scene: one notice for each kind, with how often it occurred.
-class Losses {
+class ConversionWarnings {
 public:
     void add(const std::string& what, std::size_t times = 1) {
         if (times > 0) count_[what] += times;

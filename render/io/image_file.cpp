@@ -19,13 +19,13 @@ namespace {
 using Result = tl::expected<Image, std::string>;
 
 // What the largest picture takes uncompressed: 16 bits RGBA.
-constexpr std::uintmax_t kMaxFileBytes = kMaxPicturePixels * 8 + (std::uintmax_t{1} << 20);
+constexpr std::uintmax_t kMaxFileBytes = kMaxImagePixels * 8 + (std::uintmax_t{1} << 20);
 
 std::optional<std::string> size_fault(std::uint32_t width, std::uint32_t height, std::uint64_t max_pixels) {
     const std::string size =
         "its size is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, ";
-    if (width > kMaxPictureSide || height > kMaxPictureSide)
-        return size + "and a side has at most " + std::to_string(kMaxPictureSide);
+    if (width > kMaxImageSide || height > kMaxImageSide)
+        return size + "and a side has at most " + std::to_string(kMaxImageSide);
     if (std::uint64_t{width} * height > max_pixels)
         return size + "and at most " + std::to_string(max_pixels) + " in all can be read";
     return std::nullopt;
@@ -132,16 +132,16 @@ Result decode_jpeg(std::string_view bytes, std::uint64_t max_pixels) {
 
 }  // namespace
 
-Result decode_picture(std::string_view bytes, std::uint64_t max_pixels) {
+Result decode_image(std::string_view bytes, std::uint64_t max_pixels) {
     if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(bytes, max_pixels);
     if (bytes.starts_with("\xFF\xD8\xFF")) return decode_jpeg(bytes, max_pixels);
     return tl::unexpected(std::string("it is neither PNG nor JPEG"));
 }
 
-Result read_picture(const std::filesystem::path& path, std::uint64_t max_pixels) {
+Result read_image_file(const std::filesystem::path& path, std::uint64_t max_pixels) {
     const auto bytes = read_bytes(path, kMaxFileBytes);
     if (!bytes) return tl::unexpected(bytes.error());
-    return decode_picture(*bytes, max_pixels);
+    return decode_image(*bytes, max_pixels);
 }
 
 }  // namespace vrut

@@ -14,9 +14,9 @@ namespace vrut {
 namespace {
 
 /// Gives each thing a name of its own.
-class Names {
+class UniqueNames {
 public:
-    std::string take(const std::string& name, Id id, const std::string& otherwise) {
+    std::string unique_name(const std::string& name, Id id, const std::string& otherwise) {
         std::string own = plain_name(name.empty() ? otherwise : name);
         while (!taken_.insert(own).second) own += "_" + std::to_string(id);
         return own;
@@ -121,68 +121,69 @@ private:
 /// For each material and, at last, the default one, its name; empty where no shape has it.
 std::vector<std::string> name_materials(const Scene& scene, const std::vector<ShownShape>& shapes) {
     std::vector<std::string> names(scene.materials().size() + 1);
-    Names taken;
+    UniqueNames taken;
     for (const ShownShape& shape : shapes) {
         const std::size_t i =
             shape.material == kNone ? names.size() - 1 : static_cast<std::size_t>(shape.material);
         const Material& material = scene.material(shape.material);
-        if (names[i].empty()) names[i] = taken.take(material.name, material.id, "material");
+        if (names[i].empty()) names[i] = taken.unique_name(material.name, material.id, "material");
     }
     return names;
 }
 
 /// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
-void tell_lost_look(const Scene& scene, const Material& material, Losses& losses) {
-    losses.add("whether a material is drawn from both sides is not kept");
-    if (material.reflectivity > 0) losses.add("that a material reflects is not kept");
+void report_lost_shading(const Scene& scene, const Material& material, ConversionWarnings& warnings) {
+    warnings.add("whether a material is drawn from both sides is not kept");
+    if (material.reflectivity > 0) warnings.add("that a material reflects is not kept");
     const bool has_holes =
         material.texture != kNone && scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
     if (has_holes && material.diffuse.a < 1)
-        losses.add("a material's opacity beside that of its picture is written, but not read here");
+        warnings.add("a material's opacity beside that of its picture is written, but not read here");
     if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
-        losses.add("a material's ambient colour is written, but read here as a tenth of its diffuse one");
+        warnings.add("a material's ambient colour is written, but read here as a tenth of its diffuse one");
     if (material.shininess < 1 && glm::dvec3(material.specular) != glm::dvec3(0))
-        losses.add("a highlight with a shininess below 1 is written, but read here as another or none");
+        warnings.add("a highlight with a shininess below 1 is written, but read here as another or none");
 }
 
-void tell_lost_looks(const Scene& scene, const std::vector<std::string>& names, Losses& losses) {
+void report_lost_materials(const Scene& scene, const std::vector<std::string>& names,
+                           ConversionWarnings& warnings) {
     for (std::size_t i = 0; i + 1 < names.size(); ++i) {
         const Material& material = scene.materials()[i];
         if (names[i].empty()) {
-            losses.add("a material that nothing shows is left out");
+            warnings.add("a material that nothing shows is left out");
             continue;
         }
-        if (names[i] != material.name) losses.add("a material's name is changed to one word of its own");
-        tell_lost_look(scene, material, losses);
+        if (names[i] != material.name) warnings.add("a material's name is changed to one word of its own");
+        report_lost_shading(scene, material, warnings);
     }
 }
 
-void tell_lost_geometry(const std::vector<ShownShape>& shapes, Losses& losses) {
+void report_lost_geometry(const std::vector<ShownShape>& shapes, ConversionWarnings& warnings) {
     std::set<const Geometry*> written;
     for (const ShownShape& shape : shapes) {
         if (!written.insert(shape.geometry).second)
-            losses.add("a geometry that several nodes show is written for each of them");
+            warnings.add("a geometry that several nodes show is written for each of them");
         const auto& positions = shape.geometry->positions;
         const auto is_single = [&](const glm::dvec3& position) {
             const glm::dvec4 world = shape.world * glm::dvec4(position, 1);
             return glm::dvec4(glm::vec4(world)) == world;
         };
         if (!std::all_of(positions.begin(), positions.end(), is_single))
-            losses.add("a geometry's positions are rounded to nine digits");
+            warnings.add("a geometry's positions are rounded to nine digits");
     }
 }
 
 }  // namespace
 
-void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-               const WriteProgress& progress) {
-    const auto shapes = shown_shapes(scene, losses);
+void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+               ConversionWarnings& warnings, const WriteProgress& progress) {
+    const auto shapes = shown_shapes(scene, warnings);
     const auto materials = name_materials(scene, shapes);
-    tell_lost_nodes(scene, losses);
-    tell_lost_tree(scene, losses);
-    tell_lost_looks(scene, materials, losses);
-    tell_lost_geometry(shapes, losses);
-    const auto pictures = write_pictures(scene, path, files);
+    report_lost_nodes(scene, warnings);
+    report_lost_tree(scene, warnings);
+    report_lost_materials(scene, materials, warnings);
+    report_lost_geometry(shapes, warnings);
+    const auto pictures = write_textures(scene, path, files);
     const std::string library = plain_name(path.stem().string()) + ".mtl";
     files.write(path.parent_path() / library, [&](std::ostream& out) {
         for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -197,12 +198,12 @@ void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFile
     });
     files.write(path, [&](std::ostream& out) {
         ObjWriter writer(out);
-        Names names;
+        UniqueNames names;
         writer.begin(library);
         for (std::size_t i = 0; i < shapes.size(); ++i) {
             const Node& node = scene.nodes()[static_cast<std::size_t>(shapes[i].node)];
-            const std::string name = names.take(node.name, node.id, "node");
-            if (name != node.name) losses.add("a node's name is changed to one word of its own");
+            const std::string name = names.unique_name(node.name, node.id, "node");
+            if (name != node.name) warnings.add("a node's name is changed to one word of its own");
             const Index material = shapes[i].material;
             writer.write_shape(
                 shapes[i], name,

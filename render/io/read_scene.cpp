@@ -11,13 +11,13 @@ namespace vrut {
 
 namespace {
 
-struct Format {
+struct ReaderEntry {
     const char* extension;
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
     bool foreign;  ///< its reader is not ours
 };
 
-constexpr Format kFormats[] = {
+constexpr ReaderEntry kReaders[] = {
     {".vrut", read_vrut_file, false},
     {".osb", read_osb_scene, false},
     {".glb", read_assimp_scene<AssimpFormat::gltf>, true},
@@ -30,16 +30,17 @@ constexpr Format kFormats[] = {
 };
 
 /// null: none reads this ending, in whatever case.
-const Format* format_of(const std::filesystem::path& path) {
+const ReaderEntry* reader_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
-    for (const Format& format : kFormats)
+    for (const ReaderEntry& format : kReaders)
         if (extension == format.extension) return &format;
     return nullptr;
 }
 
 std::string known_extensions() {
     std::string list;
-    for (const Format& format : kFormats) list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    for (const ReaderEntry& format : kReaders)
+        list += (list.empty() ? "" : ", ") + std::string(format.extension);
     return list;
 }
 
@@ -64,17 +65,17 @@ std::string lower_extension(const std::filesystem::path& path) {
     return extension;
 }
 
-bool has_reader(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+bool has_reader(const std::filesystem::path& path) { return reader_of(path) != nullptr; }
 
 bool has_foreign_reader(const std::filesystem::path& path) {
-    const Format* const format = format_of(path);
+    const ReaderEntry* const format = reader_of(path);
     return format != nullptr && format->foreign;
 }
 
 PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
-    const Format* const format = format_of(path);
-    if (const auto fault = file_fault(path)) return tl::unexpected(file + ": " + *fault);
+    const ReaderEntry* const format = reader_of(path);
+    if (const auto fault = file_error(path)) return tl::unexpected(file + ": " + *fault);
     if (lower_extension(path) == ".csb")
         return tl::unexpected(file +
                               ": the CSB format has no public specification, so that nothing reads it here; "

@@ -34,7 +34,7 @@ bool has_foreign_reader(const std::filesystem::path& path);
 PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 /// Reads a scene file in any known format, chosen by the file's ending, and the pictures that it names
-/// (read_pictures()).
+/// (read_textures()).
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 }  // namespace vrut

@@ -25,15 +25,15 @@ constexpr std::size_t kWord = sizeof(std::uint64_t);
 std::size_t words_of(std::size_t bytes) { return (bytes + kWord - 1) / kWord; }
 
 /// Why words are no parts.
-struct Malformed : std::runtime_error {
+struct MalformedStream : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// PartsWriter and PartsReader have the same members, so that pass() says once what follows what.
+// PartsSerializer and PartsDeserializer have the same members, so that pass() says once what follows what.
 
-class PartsWriter {
+class PartsSerializer {
 public:
-    explicit PartsWriter(const ByteSink& sink) : sink_(sink) {}
+    explicit PartsSerializer(const ByteSink& sink) : sink_(sink) {}
 
     void put(std::uint64_t word) { append(&word, sizeof word); }
 
@@ -50,9 +50,9 @@ public:
         block(items.data(), items.size(), sizeof(Item));
     }
     template <class Item, class Pass>
-    void list(std::vector<Item>& items, Pass pass_item) {
+    void list(std::vector<Item>& items, Pass serialize_item) {
         put(items.size());
-        for (Item& item : items) pass_item(item);
+        for (Item& item : items) serialize_item(item);
     }
     void require(bool /*condition*/, const char* /*what*/) const {}
     void finish() {
@@ -83,9 +83,9 @@ private:
     std::string buffer_;
 };
 
-class PartsReader {
+class PartsDeserializer {
 public:
-    PartsReader(const ByteSource& source, std::uint64_t most) : source_(source) {
+    PartsDeserializer(const ByteSource& source, std::uint64_t most) : source_(source) {
         std::uint64_t words = 0;
         source_(&words, kWord);
         require(words <= most / kWord, "fewer words");
@@ -112,13 +112,13 @@ public:
     }
     /// Grows with what is there: the count alone gets no memory.
     template <class Item, class Pass>
-    void list(std::vector<Item>& items, Pass pass_item) {
-        for (std::uint64_t left = take(); left > 0; --left) pass_item(items.emplace_back());
+    void list(std::vector<Item>& items, Pass serialize_item) {
+        for (std::uint64_t left = take(); left > 0; --left) serialize_item(items.emplace_back());
     }
     void require(bool condition, const char* what) const {
         if (!condition)
-            throw Malformed("before byte " + std::to_string(size_ - left_) + " of " + std::to_string(size_) +
-                            ", expected " + what);
+            throw MalformedStream("before byte " + std::to_string(size_ - left_) + " of " +
+                                  std::to_string(size_) + ", expected " + what);
     }
     void finish() const { require(left_ == 0, "the end"); }
 
@@ -173,53 +173,54 @@ private:
 };
 
 template <class Stream>
-void pass_flag(Stream& stream, bool& flag) {
+void serialize_flag(Stream& stream, bool& flag) {
     stream.integer(flag, 0, 1);
 }
 
 template <class Stream, class Vector>
-void pass_vector(Stream& stream, Vector& vector, double least = -kMostNumber, double most = kMostNumber) {
+void serialize_vector(Stream& stream, Vector& vector, double least = -kMostNumber,
+                      double most = kMostNumber) {
     for (int i = 0; i < Vector::length(); ++i) stream.number(vector[i], least, most);
 }
 
 template <class Stream>
-void pass_index(Stream& stream, Index& index, std::size_t count, Index least = kNone) {
+void serialize_index(Stream& stream, Index& index, std::size_t count, Index least = kNone) {
     stream.integer(index, least, static_cast<std::int64_t>(count) - 1);
 }
 
 template <class Stream, class Item, class Pass>
-void pass_optional(Stream& stream, std::optional<Item>& item, Pass pass_item) {
+void serialize_optional(Stream& stream, std::optional<Item>& item, Pass serialize_item) {
     bool there = item.has_value();
-    pass_flag(stream, there);
+    serialize_flag(stream, there);
     if (!there) return;
     if (!item) item.emplace();
-    pass_item(*item);
+    serialize_item(*item);
 }
 
 template <class Stream>
-void pass(Stream& stream, Texture& texture) {
+void serialize(Stream& stream, Texture& texture) {
     Image& image = texture.image;
     stream.text(texture.file);
-    stream.integer(image.width, 1, kMaxPictureSide);
-    stream.integer(image.height, 1, kMaxPictureSide);
+    stream.integer(image.width, 1, kMaxImageSide);
+    stream.integer(image.height, 1, kMaxImageSide);
     stream.array(image.rgba);
     stream.require(image.rgba.size() ==
                        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4,
                    "4 bytes for each pixel");
-    pass_flag(stream, texture.transparent);
+    serialize_flag(stream, texture.transparent);
 }
 
 template <class Stream>
-void pass(Stream& stream, Material& material, const SceneParts& parts) {
+void serialize(Stream& stream, Material& material, const SceneParts& parts) {
     stream.integer(material.id, 0, kMaxId);
     stream.text(material.name);
     for (glm::dvec4* color : {&material.ambient, &material.diffuse, &material.specular, &material.emission})
-        pass_vector(stream, *color, 0);
+        serialize_vector(stream, *color, 0);
     stream.number(material.shininess, 0, kMostNumber);
     stream.number(material.reflectivity, 0, kMostNumber);
-    pass_flag(stream, material.two_sided);
+    serialize_flag(stream, material.two_sided);
     stream.text(material.image);
-    pass_index(stream, material.texture, parts.textures.size());
+    serialize_index(stream, material.texture, parts.textures.size());
 }
 
 template <class Vector>
@@ -238,13 +239,13 @@ unsigned highest_index(const std::vector<glm::uvec3>& triangles) {
 }
 
 template <class Stream>
-void pass(Stream& stream, Geometry& geometry) {
+void serialize(Stream& stream, Geometry& geometry) {
     stream.integer(geometry.id, 0, kMaxId);
     stream.array(geometry.positions);
     stream.array(geometry.normals);
     stream.array(geometry.texcoords);
     stream.array(geometry.triangles);
-    if constexpr (std::is_same_v<Stream, PartsReader>) {
+    if constexpr (std::is_same_v<Stream, PartsDeserializer>) {
         const std::size_t count = geometry.positions.size();
         const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
         stream.require(fits(geometry.normals.size()) && fits(geometry.texcoords.size()),
@@ -259,14 +260,14 @@ void pass(Stream& stream, Geometry& geometry) {
 }
 
 template <class Stream>
-void pass_cube_map(Stream& stream, BackgroundData& data, const std::vector<Texture>& textures) {
-    pass_optional(stream, data.cube_map, [&](auto& faces) {
+void serialize_cube_map(Stream& stream, BackgroundData& data, const std::vector<Texture>& textures) {
+    serialize_optional(stream, data.cube_map, [&](auto& faces) {
         for (std::string& face : faces) stream.text(face);
     });
-    pass_optional(stream, data.cube_textures, [&](auto& faces) {
+    serialize_optional(stream, data.cube_textures, [&](auto& faces) {
         for (Index& face : faces) {
-            pass_index(stream, face, textures.size(), 0);
-            if constexpr (std::is_same_v<Stream, PartsReader>) {
+            serialize_index(stream, face, textures.size(), 0);
+            if constexpr (std::is_same_v<Stream, PartsDeserializer>) {
                 const Image& image = textures[static_cast<std::size_t>(face)].image;
                 const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
                 stream.require(image.width == side && image.height == side, "squares of one size");
@@ -284,25 +285,25 @@ Data& data_of(Node& node) {
 }
 
 template <class Stream>
-void pass_data(Stream& stream, Node& node, const SceneParts& parts) {
+void serialize_data(Stream& stream, Node& node, const SceneParts& parts) {
     switch (node.type) {
         case NodeType::geometry: {
             auto& data = data_of<GeometryData>(node);
-            pass_index(stream, data.geometry, parts.geometries.size());
-            pass_index(stream, data.material, parts.materials.size());
+            serialize_index(stream, data.geometry, parts.geometries.size());
+            serialize_index(stream, data.material, parts.materials.size());
             break;
         }
         case NodeType::camera: {
             auto& data = data_of<CameraData>(node);
-            for (glm::dvec3* point : {&data.eye, &data.focus, &data.up}) pass_vector(stream, *point);
+            for (glm::dvec3* point : {&data.eye, &data.focus, &data.up}) serialize_vector(stream, *point);
             stream.number(data.fov, 1, 170);
             break;
         }
         case NodeType::light: {
             auto& data = data_of<LightData>(node);
             stream.integer(data.type, 0, static_cast<std::int64_t>(LightData::Type::spot));
-            pass_vector(stream, data.color, 0);
-            pass_vector(stream, data.attenuation, 0);
+            serialize_vector(stream, data.color, 0);
+            serialize_vector(stream, data.attenuation, 0);
             stream.number(data.angle, 0, 180);
             break;
         }
@@ -318,8 +319,8 @@ void pass_data(Stream& stream, Node& node, const SceneParts& parts) {
         }
         case NodeType::background: {
             auto& data = data_of<BackgroundData>(node);
-            pass_index(stream, data.material, parts.materials.size());
-            pass_cube_map(stream, data, parts.textures);
+            serialize_index(stream, data.material, parts.materials.size());
+            serialize_cube_map(stream, data, parts.textures);
             break;
         }
         case NodeType::assembly:
@@ -330,21 +331,21 @@ void pass_data(Stream& stream, Node& node, const SceneParts& parts) {
 }
 
 template <class Stream>
-void pass(Stream& stream, Node& node, const SceneParts& parts) {
+void serialize(Stream& stream, Node& node, const SceneParts& parts) {
     stream.integer(node.id, 0, kMaxId);
     stream.text(node.name);
     stream.integer(node.type, 0, static_cast<std::int64_t>(NodeType::sound));
-    pass_flag(stream, node.active);
-    for (int column = 0; column < 4; ++column) pass_vector(stream, node.matrix[column]);
+    serialize_flag(stream, node.active);
+    for (int column = 0; column < 4; ++column) serialize_vector(stream, node.matrix[column]);
     stream.require(glm::dvec4(node.matrix[0][3], node.matrix[1][3], node.matrix[2][3], node.matrix[3][3]) ==
                        glm::dvec4(0, 0, 0, 1),
                    "0 0 0 1 as a matrix's last row");
-    pass_optional(stream, node.hinge, [&](Hinge& hinge) {
-        pass_vector(stream, hinge.axis);
+    serialize_optional(stream, node.hinge, [&](Hinge& hinge) {
+        serialize_vector(stream, hinge.axis);
         stream.require(hinge.axis != glm::dvec3(0), "a hinge's axis");
         stream.number(hinge.degrees, -360, 360);
     });
-    pass_data(stream, node, parts);
+    serialize_data(stream, node, parts);
 }
 
 template <class Stream, class Item>
@@ -354,19 +355,19 @@ void require_ids_once(const Stream& stream, const std::vector<Item>& items) {
 }
 
 template <class Stream>
-void pass(Stream& stream, SceneParts& parts) {
+void serialize(Stream& stream, SceneParts& parts) {
     stream.text(parts.name);
     stream.number(parts.unit, 1e-12, 1e12);
-    stream.list(parts.textures, [&](Texture& texture) { pass(stream, texture); });
+    stream.list(parts.textures, [&](Texture& texture) { serialize(stream, texture); });
     std::uint64_t pixels = 0;
     for (const Texture& texture : parts.textures) pixels += texture.image.rgba.size() / 4;
-    stream.require(pixels <= kMaxScenePixels, "fewer pixels");
-    stream.list(parts.materials, [&](Material& material) { pass(stream, material, parts); });
+    stream.require(pixels <= kMaxTexturePixels, "fewer pixels");
+    stream.list(parts.materials, [&](Material& material) { serialize(stream, material, parts); });
     require_ids_once(stream, parts.materials);
-    stream.list(parts.geometries, [&](Geometry& geometry) { pass(stream, geometry); });
+    stream.list(parts.geometries, [&](Geometry& geometry) { serialize(stream, geometry); });
     require_ids_once(stream, parts.geometries);
     stream.list(parts.nodes, [&](SceneParts::PartNode& part) {
-        pass(stream, part.node, parts);
+        serialize(stream, part.node, parts);
         stream.integer(part.parent_id, 0, kMaxId);
         stream.integer(part.line, 0, kMaxId);
     });
@@ -374,38 +375,38 @@ void pass(Stream& stream, SceneParts& parts) {
 }
 
 template <class Stream>
-void pass(Stream& stream, PartsResult& result) {
+void serialize(Stream& stream, PartsResult& result) {
     std::uint64_t magic = kMagic;
     stream.integer(magic, kMagic, kMagic);
-    bool refused = !result;
-    pass_flag(stream, refused);
-    if (refused) {
+    bool rejected = !result;
+    serialize_flag(stream, rejected);
+    if (rejected) {
         std::string sentence = result ? std::string() : result.error();
         stream.text(sentence);
         result = tl::unexpected(std::move(sentence));
     } else {
-        pass(stream, *result);
+        serialize(stream, *result);
     }
     stream.finish();
 }
 
 }  // namespace
 
-void write_parts(PartsResult parts, const ByteSink& sink) {
+void serialize_parts(PartsResult parts, const ByteSink& sink) {
     std::uint64_t size = 0;
     const ByteSink count = [&](std::string_view piece) { size += piece.size(); };
-    PartsWriter measured(count), stream(sink);
-    pass(measured, parts);
+    PartsSerializer measured(count), stream(sink);
+    serialize(measured, parts);
     stream.put(size / kWord);
-    pass(stream, parts);
+    serialize(stream, parts);
 }
 
-PartsResult read_parts(const ByteSource& source, std::uint64_t most, const std::string& file) try {
-    PartsReader stream(source, most);
+PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, const std::string& file) try {
+    PartsDeserializer stream(source, most);
     PartsResult parts;
-    pass(stream, parts);
+    serialize(stream, parts);
     return parts;
-} catch (const Malformed& fault) {
+} catch (const MalformedStream& fault) {
     return tl::unexpected(file + ": its reader handed over what is no scene: " + fault.what());
 }
 

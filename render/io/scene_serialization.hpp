@@ -16,11 +16,11 @@ using ByteSource = std::function<void(void* to, std::size_t size)>;
 
 /// What a reader hands over, for another process of the same program: 64-bit words as this machine has them,
 /// with their count first.
-void write_parts(PartsResult parts, const ByteSink& sink);
+void serialize_parts(PartsResult parts, const ByteSink& sink);
 
 /// The same back. The bytes may be anything: where they are no parts that a reader of `file` could hand over,
 /// or announce more than `most` bytes, a sentence says so. Takes as much memory as was announced, and less
 /// than 5 times what came. Throws what `source` throws.
-PartsResult read_parts(const ByteSource& source, std::uint64_t most, const std::string& file);
+PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, const std::string& file);
 
 }  // namespace vrut

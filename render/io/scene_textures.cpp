@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 
 using TextureResult = tl::expected<Index, std::string>;
 
-class PictureReader {
+class TextureReader {
 public:
-    PictureReader(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+    TextureReader(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
                   std::uint64_t max_pixels)
         : textures_(parts.textures),
           folder_(scene_file.parent_path()),
@@ -39,7 +39,7 @@ public:
 
 private:
     TextureResult read_new(const fs::path& file, const std::string& name) {
-        auto image = read_picture(file, std::min(pixels_left_, kMaxPicturePixels));
+        auto image = read_image_file(file, std::min(pixels_left_, kMaxImagePixels));
         if (!image) return tl::unexpected(image.error());
         pixels_left_ -= image->rgba.size() / 4;
         const bool transparent = has_transparent_pixel(*image);
@@ -56,7 +56,7 @@ private:
 
 using CubeResult = tl::expected<std::array<Index, 6>, std::string>;
 
-CubeResult read_cube(PictureReader& reader, const std::vector<Texture>& textures,
+CubeResult read_cube(TextureReader& reader, const std::vector<Texture>& textures,
                      const std::array<std::string, 6>& names) {
     std::array<Index, 6> faces{};
     for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -82,9 +82,9 @@ bool has_transparent_pixel(const Image& image) {
     return false;
 }
 
-void read_pictures(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+void read_textures(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
                    std::uint64_t max_pixels) {
-    PictureReader reader(parts, scene_file, progress, max_pixels);
+    TextureReader reader(parts, scene_file, progress, max_pixels);
     Notices notices;
     const auto say = [&](const std::string& what) { notices.add(scene_file.string() + ": " + what); };
     for (Material& material : parts.materials) {

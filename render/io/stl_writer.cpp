@@ -14,14 +14,14 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "numbers are written as they lie in memory");
 
 /// A face's normal, its corners, and two bytes of nothing.
-using Facet = std::array<char, 50>;
+using StlFacet = std::array<char, 50>;
 
-Facet facet_of(const std::array<glm::vec3, 3>& corners) {
+StlFacet facet_of(const std::array<glm::vec3, 3>& corners) {
     const glm::dvec3 a(corners[0]), b(corners[1]), c(corners[2]);
     const glm::dvec3 cross = glm::cross(b - a, c - a);
     const double length = glm::length(cross);
     const glm::vec3 normal(length > 0 ? cross / length : glm::dvec3(0));
-    Facet facet{};
+    StlFacet facet{};
     std::memcpy(facet.data(), &normal, 12);
     std::memcpy(facet.data() + 12, corners.data(), 36);
     return facet;
@@ -35,29 +35,29 @@ void write_shape(const ShownShape& shape, std::ostream& out) {
         for (int i = 0; i < 3; ++i)
             corners[static_cast<std::size_t>(mirrored ? 2 - i : i)] =
                 glm::vec3(shape.world * glm::dvec4(shape.geometry->positions[triangle[i]], 1));
-        const Facet facet = facet_of(corners);
+        const StlFacet facet = facet_of(corners);
         out.write(facet.data(), facet.size());
     }
 }
 
-void tell_lost_looks(const std::vector<ShownShape>& shapes, Losses& losses) {
-    losses.add("names and materials are not kept");
+void report_lost_materials(const std::vector<ShownShape>& shapes, ConversionWarnings& warnings) {
+    warnings.add("names and materials are not kept");
     for (const ShownShape& shape : shapes)
-        if (!shape.geometry->normals.empty()) losses.add("a geometry's normals are not kept: it is flat");
+        if (!shape.geometry->normals.empty()) warnings.add("a geometry's normals are not kept: it is flat");
 }
 
 }  // namespace
 
-void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-               const WriteProgress& progress) {
-    const auto shapes = shown_shapes(scene, losses);
-    tell_lost_nodes(scene, losses);
-    tell_lost_tree(scene, losses);
-    tell_lost_looks(shapes, losses);
+void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+               ConversionWarnings& warnings, const WriteProgress& progress) {
+    const auto shapes = shown_shapes(scene, warnings);
+    report_lost_nodes(scene, warnings);
+    report_lost_tree(scene, warnings);
+    report_lost_materials(shapes, warnings);
     std::uint64_t triangles = 0;
     for (const ShownShape& shape : shapes) triangles += shape.geometry->triangles.size();
     if (triangles > UINT32_MAX)
-        throw WriteFault(path.string() + ": an STL file holds at most 2^32 - 1 triangles");
+        throw WriteError(path.string() + ": an STL file holds at most 2^32 - 1 triangles");
     files.write(path, [&](std::ostream& out) {
         std::array<char, 84> header{};
         std::strncpy(header.data(), "binary STL of vrut-preview", 80);

@@ -7,8 +7,8 @@
 namespace vrut {
 
 /// Binary STL: the triangles that show at the start, in world space, with their faces' normals. Names,
-/// materials, vertex normals and everything else are lost. Throws WriteFault.
-void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-               const WriteProgress& progress);
+/// materials, vertex normals and everything else are lost. Throws WriteError.
+void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+               ConversionWarnings& warnings, const WriteProgress& progress);
 
 }  // namespace vrut

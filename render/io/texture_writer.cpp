@@ -29,7 +29,7 @@ std::vector<std::uint8_t> encode_png(const Image& image, bool with_alpha) {
     return png;
 }
 
-std::vector<std::string> write_pictures(const Scene& scene, const std::filesystem::path& scene_file,
+std::vector<std::string> write_textures(const Scene& scene, const std::filesystem::path& scene_file,
                                         OutputFiles& files) {
     std::vector<std::string> names;
     for (const Texture& texture : scene.textures()) {

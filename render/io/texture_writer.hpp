@@ -14,8 +14,8 @@ namespace vrut {
 std::vector<std::uint8_t> encode_png(const Image& image, bool with_alpha = false);
 
 /// Writes the scene's textures as PNG files in the folder STEM.textures beside the scene's file, and gives
-/// their names, relative to it, by their index. Throws WriteFault.
-std::vector<std::string> write_pictures(const Scene& scene, const std::filesystem::path& scene_file,
+/// their names, relative to it, by their index. Throws WriteError.
+std::vector<std::string> write_textures(const Scene& scene, const std::filesystem::path& scene_file,
                                         OutputFiles& files);
 
 }  // namespace vrut

@@ -16,7 +16,7 @@ bool shows_child(const Node& parent, Index child) {
 
 }  // namespace
 
-std::vector<ShownShape> shown_shapes(const Scene& scene, Losses& losses) {
+std::vector<ShownShape> shown_shapes(const Scene& scene, ConversionWarnings& warnings) {
     const auto world = world_matrices(scene, file_states(scene));
     std::vector<bool> shown(scene.nodes().size());
     std::vector<ShownShape> shapes;
@@ -31,32 +31,32 @@ std::vector<ShownShape> shown_shapes(const Scene& scene, Losses& losses) {
         const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
         if (geometry.triangles.empty()) continue;
         if (!shown[i])
-            losses.add("a geometry that is hidden at the start is left out");
+            warnings.add("a geometry that is hidden at the start is left out");
         else if (!is_finite(world[i]))
-            losses.add("a geometry beyond the range of numbers is left out");
+            warnings.add("a geometry beyond the range of numbers is left out");
         else
             shapes.push_back({static_cast<Index>(i), &geometry, data->material, world[i]});
     }
     return shapes;
 }
 
-void tell_lost_nodes(const Scene& scene, Losses& losses) {
+void report_lost_nodes(const Scene& scene, ConversionWarnings& warnings) {
     for (const Node& node : scene.nodes()) {
-        if (node.hinge) losses.add("how a part turns about its hinge is not kept");
-        if (node.type == NodeType::background) losses.add("a background is not kept");
-        if (node.type == NodeType::switch_) losses.add("a switch is kept as the child that it chooses");
-        if (node.type == NodeType::lod) losses.add("a level of detail is kept as its first child");
-        if (node.type == NodeType::sound) losses.add("a sound is not kept");
+        if (node.hinge) warnings.add("how a part turns about its hinge is not kept");
+        if (node.type == NodeType::background) warnings.add("a background is not kept");
+        if (node.type == NodeType::switch_) warnings.add("a switch is kept as the child that it chooses");
+        if (node.type == NodeType::lod) warnings.add("a level of detail is kept as its first child");
+        if (node.type == NodeType::sound) warnings.add("a sound is not kept");
     }
-    if (scene.unit() != 1) losses.add("how many metres a unit has is not kept");
+    if (scene.unit() != 1) warnings.add("how many metres a unit has is not kept");
 }
 
-void tell_lost_tree(const Scene& scene, Losses& losses) {
+void report_lost_tree(const Scene& scene, ConversionWarnings& warnings) {
     for (const Node& node : scene.nodes()) {
-        if (node.type == NodeType::camera) losses.add("a camera is not kept");
-        if (node.type == NodeType::light) losses.add("a light is not kept");
+        if (node.type == NodeType::camera) warnings.add("a camera is not kept");
+        if (node.type == NodeType::light) warnings.add("a light is not kept");
         if (node.type == NodeType::assembly)
-            losses.add("an assembly is not kept: its matrix goes into the vertices");
+            warnings.add("an assembly is not kept: its matrix goes into the vertices");
     }
 }
 

@@ -18,11 +18,11 @@ struct ShownShape {
 
 /// What a format without activity, switches and levels of detail shows of a scene, in the order of the nodes;
 /// what it leaves out is told.
-std::vector<ShownShape> shown_shapes(const Scene& scene, Losses& losses);
+std::vector<ShownShape> shown_shapes(const Scene& scene, ConversionWarnings& warnings);
 
 /// Tells of what neither of the formats but VRUT's own holds.
-void tell_lost_nodes(const Scene& scene, Losses& losses);
+void report_lost_nodes(const Scene& scene, ConversionWarnings& warnings);
 /// Tells of cameras, lights and the tree, which a format of triangles alone does not hold.
-void tell_lost_tree(const Scene& scene, Losses& losses);
+void report_lost_tree(const Scene& scene, ConversionWarnings& warnings);
 
 }  // namespace vrut

@@ -14,58 +14,60 @@ namespace vrut {
 
 namespace {
 
-void write_vrut_file(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses&,
-                     const WriteProgress&) {
-    const auto pictures = write_pictures(scene, path, files);
+void write_vrut_file(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+                     ConversionWarnings&, const WriteProgress&) {
+    const auto pictures = write_textures(scene, path, files);
     files.write(path, [&](std::ostream& out) { write_vrut_text(scene, out, {}, pictures); });
 }
 
-struct Format {
+struct WriterEntry {
     const char* extension;
-    void (*write)(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-                  const WriteProgress& progress);  // throws WriteFault
+    void (*write)(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+                  ConversionWarnings& warnings,
+                  const WriteProgress& progress);  // throws WriteError
 };
 
-constexpr Format kFormats[] = {
+constexpr WriterEntry kWriters[] = {
     {".vrut", write_vrut_file},
     {".obj", write_obj},
     {".stl", write_stl},
     {".glb", write_glb},
 };
 
-const Format* format_of(const std::filesystem::path& path) {
+const WriterEntry* writer_of(const std::filesystem::path& path) {
     const std::string extension = lower_extension(path);
     const auto* const found =
-        std::find_if(std::begin(kFormats), std::end(kFormats),
-                     [&](const Format& format) { return extension == format.extension; });
-    return found == std::end(kFormats) ? nullptr : found;
+        std::find_if(std::begin(kWriters), std::end(kWriters),
+                     [&](const WriterEntry& format) { return extension == format.extension; });
+    return found == std::end(kWriters) ? nullptr : found;
 }
 
 }  // namespace
 
-bool has_writer(const std::filesystem::path& path) { return format_of(path) != nullptr; }
+bool has_writer(const std::filesystem::path& path) { return writer_of(path) != nullptr; }
 
 std::string written_extensions() {
     std::string list;
-    for (const Format& format : kFormats) list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    for (const WriterEntry& format : kWriters)
+        list += (list.empty() ? "" : ", ") + std::string(format.extension);
     return list;
 }
 
 WriteResult write_scene(const Scene& scene, const std::filesystem::path& path, const WriteProgress& progress,
-                        std::vector<std::filesystem::path> kept) {
-    const Format* const format = format_of(path);
+                        std::vector<std::filesystem::path> protected_files) {
+    const WriterEntry* const format = writer_of(path);
     if (format == nullptr)
         return tl::unexpected(path.string() + ": no writer for this ending; known are " +
                               written_extensions());
     try {
-        OutputFiles files(std::move(kept));
-        Losses losses;
-        format->write(scene, path, files, losses, progress);
+        OutputFiles files(std::move(protected_files));
+        ConversionWarnings warnings;
+        format->write(scene, path, files, warnings, progress);
         files.commit();
         std::vector<std::string> lost;
-        losses.append_to(lost, path.string());
+        warnings.append_to(lost, path.string());
         return lost;
-    } catch (const WriteFault& fault) {
+    } catch (const WriteError& fault) {
         return tl::unexpected(std::string(fault.what()));
     }
 }

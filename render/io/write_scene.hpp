@@ -27,6 +27,7 @@ std::string written_extensions();
 /// leaves what was there before; so does one of `kept` in the place of a file, such as what the scene is read
 /// from.
 WriteResult write_scene(const Scene& scene, const std::filesystem::path& path,
-                        const WriteProgress& progress = {}, std::vector<std::filesystem::path> kept = {});
+                        const WriteProgress& progress = {},
+                        std::vector<std::filesystem::path> protected_files = {});
 
 }  // namespace vrut

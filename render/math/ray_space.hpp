@@ -23,7 +23,7 @@ public:
         length_ = direction[z_];
     }
 
-    glm::dvec3 from_seen(const glm::dvec3& v) const {
+    glm::dvec3 to_ray_space(const glm::dvec3& v) const {
         return {v[x_] - shear_.x * v[z_], v[y_] - shear_.y * v[z_], v[z_] / length_};
     }
 
@@ -36,7 +36,7 @@ private:
 /// The cross product of a and b across the ray, rounded, with the sign of the exact value: where the rounded
 /// products are equal, what was rounded off decides. Exchanging a and b changes the sign and nothing else,
 /// so that two triangles agree on which side of their common edge the ray passes.
-inline double edge(const glm::dvec3& a, const glm::dvec3& b) {
+inline double edge_function(const glm::dvec3& a, const glm::dvec3& b) {
     const double p = a.x * b.y, q = a.y * b.x;
     if (p != q) return p - q;
     return std::fma(a.x, b.y, -p) - std::fma(a.y, b.x, -q);

@@ -23,14 +23,14 @@ public:
     /// Of a geometry, from fine to coarse: their errors rise. Empty until all of its levels are made. From
     /// any thread; they stay where they are.
     std::span<const DetailLevel> of(Index geometry) const;
-    /// Whether a geometry is known to be closed (is_closed); asked only where a material is two-sided.
-    bool closed(Index geometry) const;
+    /// Whether a geometry is known to be closed (is_watertight); asked only where a material is two-sided.
+    bool known_watertight(Index geometry) const;
     void wait() const;  ///< until no more are made
     bool done() const;
 
 private:
-    struct Making;
-    std::shared_ptr<Making> making_;  // the thread's, too
+    struct LevelGenerator;
+    std::shared_ptr<LevelGenerator> generator_;  // the thread's, too
 };
 
 }  // namespace vrut

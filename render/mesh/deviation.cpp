@@ -24,8 +24,9 @@ float squared(const glm::vec3& v) { return glm::dot(v, v); }
 
 }  // namespace
 
-Deviation::Deviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, float least,
-                     const std::atomic<bool>& stop)
+SurfaceDeviation::SurfaceDeviation(std::span<const glm::vec3> positions,
+                                   std::span<const glm::uvec3> triangles, float least,
+                                   const std::atomic<bool>& stop)
     : positions_(positions),
       stop_(stop),
       original_{triangles, {triangles, positions.size()}},
@@ -41,8 +42,8 @@ Deviation::Deviation(std::span<const glm::vec3> positions, std::span<const glm::
 }
 
 /// Whether a triangle runs from one vertex to the other.
-bool Deviation::has_edge(const Surface& surface, unsigned from, unsigned to) {
-    return std::ranges::any_of(surface.stars.of(from), [&](unsigned number) {
+bool SurfaceDeviation::has_edge(const MeasuredSurface& surface, unsigned from, unsigned to) {
+    return std::ranges::any_of(surface.adjacency.of(from), [&](unsigned number) {
         const glm::uvec3& t = surface.triangles[number];
         return (t.x == from && t.y == to) || (t.y == from && t.z == to) || (t.z == from && t.x == to);
     });
@@ -50,11 +51,11 @@ bool Deviation::has_edge(const Surface& surface, unsigned from, unsigned to) {
 
 /// Vertices that are gone hand on those that they stood for to the nearest neighbour that is left; false
 /// where one has no such neighbour, however far.
-bool Deviation::move_anchors(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after) {
+bool SurfaceDeviation::move_anchors(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after) {
     std::vector<unsigned> next(positions_.size(), kNowhere);
     for (const glm::uvec3& triangle : after)
         for (int k = 0; k < 3; ++k) next[triangle[k]] = triangle[k];
-    struct News {
+    struct Reassignment {
         unsigned vertex, anchor;
     };
     const auto is_missing = [&](const glm::uvec3& t) {
@@ -63,14 +64,14 @@ bool Deviation::move_anchors(std::span<const glm::uvec3> before, std::span<const
     std::vector<glm::uvec3> missing;
     std::ranges::copy_if(before, std::back_inserter(missing), is_missing);
     while (!missing.empty()) {
-        std::vector<News> news;
+        std::vector<Reassignment> reassignments;
         for (const glm::uvec3& triangle : missing)
             for (int k = 0; k < 3; ++k)
                 for (const int other : {(k + 1) % 3, (k + 2) % 3})
                     if (next[triangle[k]] == kNowhere && next[triangle[other]] != kNowhere)
-                        news.push_back({triangle[k], next[triangle[other]]});
-        if (news.empty()) return false;
-        for (const auto& [vertex, anchor] : news)
+                        reassignments.push_back({triangle[k], next[triangle[other]]});
+        if (reassignments.empty()) return false;
+        for (const auto& [vertex, anchor] : reassignments)
             if (next[vertex] == kNowhere || squared(positions_[anchor] - positions_[vertex]) <
                                                 squared(positions_[next[vertex]] - positions_[vertex]))
                 next[vertex] = anchor;
@@ -83,10 +84,10 @@ bool Deviation::move_anchors(std::span<const glm::uvec3> before, std::span<const
 
 /// Around the anchor first, where most points find what is near enough; `anchor` moves to where they found
 /// it.
-void Deviation::include(const glm::vec3& point, unsigned& anchor, Surface& surface) {
+void SurfaceDeviation::include(const glm::vec3& point, unsigned& anchor, MeasuredSurface& surface) {
     if (stop_.load(std::memory_order_relaxed)) return;
-    NearTriangle found{0, std::numeric_limits<float>::infinity()};
-    for (const unsigned number : surface.stars.of(anchor)) {
+    ClosestTriangle found{0, std::numeric_limits<float>::infinity()};
+    for (const unsigned number : surface.adjacency.of(anchor)) {
         const glm::uvec3& t = surface.triangles[number];
         const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
         if (here < found.squared) found = {number, here};
@@ -101,12 +102,12 @@ void Deviation::include(const glm::vec3& point, unsigned& anchor, Surface& surfa
         if (squared(positions_[corner] - point) < squared(positions_[anchor] - point)) anchor = corner;
 }
 
-unsigned Deviation::near(const glm::vec3& point, const glm::uvec3& triangle) const {
-    NearTriangle found{0, std::numeric_limits<float>::infinity()};
+unsigned SurfaceDeviation::closest_triangle(const glm::vec3& point, const glm::uvec3& triangle) const {
+    ClosestTriangle found{0, std::numeric_limits<float>::infinity()};
     const glm::uvec3 now(anchors_[triangle.x], anchors_[triangle.y], anchors_[triangle.z]);
     for (int k = 0; k < 3; ++k) {
         if (k > 0 && (now[k] == now[0] || now[k] == now[k - 1])) continue;
-        for (const unsigned number : newest_->stars.of(now[k])) {
+        for (const unsigned number : newest_->adjacency.of(now[k])) {
             const glm::uvec3& t = newest_->triangles[number];
             const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
             if (here < found.squared) found = {number, here};
@@ -115,17 +116,17 @@ unsigned Deviation::near(const glm::vec3& point, const glm::uvec3& triangle) con
     return found.number;
 }
 
-std::optional<float> Deviation::measure(std::span<const glm::uvec3> before,
-                                        std::span<const glm::uvec3> after) {
+std::optional<float> SurfaceDeviation::measure(std::span<const glm::uvec3> before,
+                                               std::span<const glm::uvec3> after) {
     if (!move_anchors(before, after)) return {};
-    Surface& surface = newest_.emplace(Surface{after, {after, positions_.size()}});
+    MeasuredSurface& surface = newest_.emplace(MeasuredSurface{after, {after, positions_.size()}});
     // Some from everywhere come first: the further one has been found, the sooner the others are done.
     for (const std::size_t step : {std::size_t{61}, std::size_t{1}})
         for (std::size_t vertex = 0; vertex < positions_.size(); vertex += step)
             if (anchors_[vertex] != vertex) include(positions_[vertex], anchors_[vertex], surface);
     const bool few = original_.triangles.size() <= kFewTriangles;
     if (few || kDense * after.size() > original_.triangles.size())
-        for (const Edge& edge : edges_) {
+        for (const SampledEdge& edge : edges_) {
             unsigned anchor = anchors_[edge.from];
             include((positions_[edge.from] + positions_[edge.to]) * 0.5F, anchor, surface);
         }

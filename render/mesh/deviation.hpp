@@ -14,11 +14,11 @@ namespace vrut {
 /// Measures how far a surface moves while its edges are collapsed, step by step: the distance of all its
 /// vertices and, as far as those lie apart, of edges' and triangles' middles from the new surface, and of the
 /// new edges' middles from it; of very many edges only some are asked.
-class Deviation {
+class SurfaceDeviation {
 public:
     /// All must outlive it. No two positions are equal. `least` is what does not matter.
-    Deviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, float least,
-              const std::atomic<bool>& stop);
+    SurfaceDeviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, float least,
+                     const std::atomic<bool>& stop);
 
     /// Of a surface made from that of the call before: `before` and `after` are the triangles of both. No
     /// less than the last result; none where a piece has vanished or `stop` is set.
@@ -27,27 +27,27 @@ public:
 
     /// Of the newest surface, a triangle that lies as near to a point of one of the first surface's triangles
     /// as any around where its corners are now.
-    unsigned near(const glm::vec3& point, const glm::uvec3& triangle) const;
+    unsigned closest_triangle(const glm::vec3& point, const glm::uvec3& triangle) const;
 
 private:
-    struct Edge {
+    struct SampledEdge {
         unsigned from, to;
     };
-    struct Surface {
+    struct MeasuredSurface {
         std::span<const glm::uvec3> triangles;
-        Stars stars;
-        std::optional<TriangleTree> tree{};  // made when it is first needed
+        VertexAdjacency adjacency;
+        std::optional<ClosestTriangleBvh> tree{};  // made when it is first needed
     };
-    static bool has_edge(const Surface& surface, unsigned from, unsigned to);
+    static bool has_edge(const MeasuredSurface& surface, unsigned from, unsigned to);
     bool move_anchors(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after);
-    void include(const glm::vec3& point, unsigned& anchor, Surface& surface);
+    void include(const glm::vec3& point, unsigned& anchor, MeasuredSurface& surface);
 
     std::span<const glm::vec3> positions_;
     const std::atomic<bool>& stop_;
-    Surface original_;
-    std::optional<Surface> newest_;
-    std::vector<Edge> edges_;        // each once
-    std::vector<unsigned> anchors_;  // for each position one of the newest surface, near it
+    MeasuredSurface original_;
+    std::optional<MeasuredSurface> newest_;
+    std::vector<SampledEdge> edges_;  // each once
+    std::vector<unsigned> anchors_;   // for each position one of the newest surface, near it
     float squared_;
 };
 

@@ -25,7 +25,7 @@ glm::vec3 across(std::span<const glm::vec3> positions, const glm::uvec3& t) {
 }
 
 /// How much each corner has in the point of a triangle's plane below another point.
-glm::vec3 shares(const glm::vec3& point, std::span<const glm::vec3> p, const glm::uvec3& t) {
+glm::vec3 barycentrics(const glm::vec3& point, std::span<const glm::vec3> p, const glm::uvec3& t) {
     const glm::vec3 normal = across(p, t);
     const float area = glm::dot(normal, normal);
     if (!(area > 0)) return glm::vec3(1.0F / 3);
@@ -39,8 +39,8 @@ glm::vec3 shares(const glm::vec3& point, std::span<const glm::vec3> p, const glm
 
 }  // namespace
 
-Slant::Slant(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
-             const std::vector<glm::vec3>& corners)
+NormalDeviation::NormalDeviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
+                                 const std::vector<glm::vec3>& corners)
     : positions_(positions) {
     const std::size_t count = std::min(kSamples, triangles.size());
     for (std::size_t i = 0; i < count; ++i) {
@@ -57,23 +57,23 @@ Slant::Slant(std::span<const glm::vec3> positions, std::span<const glm::uvec3> t
     }
 }
 
-float Slant::measure(const Deviation& deviation, std::span<const glm::uvec3> after,
-                     const std::vector<glm::vec3>& corners) const {
-    struct Found {
+float NormalDeviation::measure(const SurfaceDeviation& deviation, std::span<const glm::uvec3> after,
+                               const std::vector<glm::vec3>& corners) const {
+    struct SampleError {
         float error, area;
     };
     const float size = corners.empty() ? kFlat : kSmooth;
-    std::vector<Found> found;
+    std::vector<SampleError> found;
     float area = 0;
-    for (const Sample& sample : samples_) {
-        const unsigned number = deviation.near(sample.point, sample.triangle);
+    for (const NormalSample& sample : samples_) {
+        const unsigned number = deviation.closest_triangle(sample.point, sample.triangle);
         const glm::uvec3& t = after[number];
         glm::vec3 normal = across(positions_, t);
         if (!corners.empty()) {
-            const glm::vec3 share = shares(sample.point, positions_, t);
+            const glm::vec3 weights = barycentrics(sample.point, positions_, t);
             normal = glm::vec3(0);
             for (int k = 0; k < 3; ++k)
-                normal += share[k] * unit(corners[3 * number + static_cast<unsigned>(k)]);
+                normal += weights[k] * unit(corners[3 * number + static_cast<unsigned>(k)]);
         }
         float longest = 0;
         for (int k = 0; k < 3; ++k)
@@ -81,7 +81,7 @@ float Slant::measure(const Deviation& deviation, std::span<const glm::uvec3> aft
         found.push_back({glm::distance(unit(normal), sample.normal) * longest * size, sample.area});
         area += sample.area;
     }
-    std::ranges::sort(found, {}, &Found::error);
+    std::ranges::sort(found, {}, &SampleError::error);
     float below = 0;
     for (const auto& [error, here] : found) {
         below += here;

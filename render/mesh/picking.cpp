@@ -39,8 +39,8 @@ glm::dvec3 exact_origin(const Bounds& box) {
 /// needs no inverse, which a flattened part has not, and keeps lengths in the scene's unit. The world's axes
 /// are kept, but all is relative to the ray's origin, so that what is far from the world's origin, or from
 /// the geometry's, cancels before it is rounded.
-struct Part {
-    Part(const Geometry& part_geometry, const glm::dmat4& world, const glm::dvec3& eye)
+struct InstanceAtRay {
+    InstanceAtRay(const Geometry& part_geometry, const glm::dmat4& world, const glm::dvec3& eye)
         : geometry(part_geometry),
           axes(world),
           origin(exact_origin(geometry.bounds)),
@@ -57,7 +57,7 @@ struct Part {
 /// where the part lies too far away to be drawn. The box stays a box along the node's axes, flat or not: it
 /// is passed by where a direction at right angles to the ray and to one of the edges parts the two. The
 /// tolerance is far above the rounding, so that the triangles decide at the box's very edge.
-std::optional<double> entry(const Part& part, const glm::dvec3& direction) {
+std::optional<double> box_entry(const InstanceAtRay& part, const glm::dvec3& direction) {
     constexpr double kTolerance = 1e-12;
     const Bounds& box = part.geometry.bounds;
     const glm::dvec3 box_center = box.center();
@@ -69,7 +69,7 @@ std::optional<double> entry(const Part& part, const glm::dvec3& direction) {
                std::abs(glm::dot(edges[2], axis));
     };
     const glm::dvec3 extent = glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]);
-    if (!(glm::length(center - extent) < kFarthestDrawn && glm::length(center + extent) < kFarthestDrawn))
+    if (!(glm::length(center - extent) < kMaxDrawDistance && glm::length(center + extent) < kMaxDrawDistance))
         return {};
 
     const double tolerance = kTolerance * (glm::length(center) + glm::length(extent));
@@ -84,7 +84,7 @@ std::optional<double> entry(const Part& part, const glm::dvec3& direction) {
 }
 
 /// Unit, by the world's axes; zero for a triangle without area.
-glm::dvec3 face_normal(const Part& part, const glm::uvec3& triangle) {
+glm::dvec3 face_normal(const InstanceAtRay& part, const glm::uvec3& triangle) {
     const auto& positions = part.geometry.positions;
     // About 1 long, so that squares of small parts do not vanish.
     const auto side = [&](unsigned corner) {
@@ -97,12 +97,12 @@ glm::dvec3 face_normal(const Part& part, const glm::uvec3& triangle) {
     return length > 0 ? cross / length : glm::dvec3(0);
 }
 
-struct Faces {
+struct Windings {
     bool clockwise = false, counter_clockwise = false;  ///< in the ray's space
 };
 
 /// The sides that are drawn.
-Faces drawn_faces(const Part& part, const Material& material) {
+Windings drawn_windings(const InstanceAtRay& part, const Material& material) {
     const double determinant = relative_determinant(part.axes);
     const bool singular = !(std::abs(determinant) > 1e-12);
     const bool both = singular || material.two_sided;
@@ -111,16 +111,16 @@ Faces drawn_faces(const Part& part, const Material& material) {
 
 /// The triangle that is met first, and before `hit.distance`; `hit.node` and `hit.point` are left alone.
 /// `corners` is memory that is used again.
-bool meet_triangles(const Part& part, const RaySpace& space, const Faces& faces,
-                    std::vector<glm::dvec3>& corners, Hit& hit) {
+bool intersect_triangles(const InstanceAtRay& part, const RaySpace& space, const Windings& faces,
+                         std::vector<glm::dvec3>& corners, Hit& hit) {
     corners.clear();
     for (const glm::dvec3& position : part.geometry.positions)
-        corners.push_back(space.from_seen(part.seen(position)));
+        corners.push_back(space.to_ray_space(part.seen(position)));
 
     bool met = false;
     for (const glm::uvec3& triangle : part.geometry.triangles) {
         const glm::dvec3 &a = corners[triangle.x], &b = corners[triangle.y], &c = corners[triangle.z];
-        const double u = edge(c, b), v = edge(a, c), w = edge(b, a);
+        const double u = edge_function(c, b), v = edge_function(a, c), w = edge_function(b, a);
         // Asked for what is hit, not for what is missed: a number that is not finite misses.
         const bool clockwise = u >= 0 && v >= 0 && w >= 0;
         const bool counter_clockwise = u <= 0 && v <= 0 && w <= 0;
@@ -156,15 +156,15 @@ std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
         if (through_transparent && placed.scene->is_transparent(material)) continue;
 
-        const Part part(geometry, placed.world[i], ray.origin);
-        const std::optional<double> from = entry(part, ray.direction);
+        const InstanceAtRay part(geometry, placed.world[i], ray.origin);
+        const std::optional<double> from = box_entry(part, ray.direction);
         if (!from || *from > best.distance) continue;
         // A tie is met too where the id is higher.
         const bool wins_ties =
             best.node != kNone && nodes[i].id > nodes[static_cast<std::size_t>(best.node)].id;
         Hit hit = best;
         if (wins_ties) hit.distance = std::nextafter(best.distance, std::numeric_limits<double>::infinity());
-        if (!meet_triangles(part, space, drawn_faces(part, material), corners, hit)) continue;
+        if (!intersect_triangles(part, space, drawn_windings(part, material), corners, hit)) continue;
         hit.node = static_cast<Index>(i);
         best = hit;
     }

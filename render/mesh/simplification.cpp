@@ -48,13 +48,13 @@ std::vector<unsigned> numbered(std::span<const meshopt_Stream> streams, const Ge
 
 /// What is simplified: vertices that differ, each with the number of its position and of a vertex of the
 /// geometry.
-struct Mesh {
+struct WorkingMesh {
     std::vector<glm::vec3> points;  ///< positions that differ
     std::vector<unsigned> point_of, vertex_of;
     std::vector<glm::uvec3> triangles;
 };
 
-Mesh mesh_of(const Geometry& geometry) {
+WorkingMesh mesh_of(const Geometry& geometry) {
     const std::vector<glm::vec3> positions = normalized_positions(geometry);
     std::vector<meshopt_Stream> streams{{positions.data(), sizeof(glm::vec3), sizeof(glm::vec3)}};
     std::size_t points = 0, vertices = 0;
@@ -65,7 +65,7 @@ Mesh mesh_of(const Geometry& geometry) {
         streams.push_back({geometry.texcoords.data(), sizeof(glm::vec2), sizeof(glm::vec2)});
     const std::vector<unsigned> vertex = numbered(streams, geometry, vertices);
 
-    Mesh mesh{
+    WorkingMesh mesh{
         std::vector<glm::vec3>(points), std::vector<unsigned>(vertices), std::vector<unsigned>(vertices), {}};
     for (std::size_t i = positions.size(); i-- > 0;) {
         if (point[i] == kUnused) continue;
@@ -80,7 +80,7 @@ Mesh mesh_of(const Geometry& geometry) {
 }
 
 /// Leaves out the vertices that are not used and orders the others as they are met.
-void compact(Mesh& mesh) {
+void compact(WorkingMesh& mesh) {
     auto* indices = &mesh.triangles[0].x;
     const std::size_t count = mesh.triangles.size() * 3;
     std::vector<unsigned> remap(mesh.point_of.size());
@@ -102,7 +102,7 @@ std::vector<glm::uvec3> renamed(const std::vector<glm::uvec3>& triangles,
 }
 
 /// For each corner of the triangles, where the geometry has normals.
-std::vector<glm::vec3> corner_normals(const Mesh& mesh, const Geometry& geometry) {
+std::vector<glm::vec3> corner_normals(const WorkingMesh& mesh, const Geometry& geometry) {
     std::vector<glm::vec3> result;
     if (geometry.normals.empty()) return result;
     result.reserve(mesh.triangles.size() * 3);
@@ -112,7 +112,7 @@ std::vector<glm::vec3> corner_normals(const Mesh& mesh, const Geometry& geometry
 }
 
 /// Leaves half the triangles, or as few as can be.
-void halve(Mesh& mesh) {
+void halve(WorkingMesh& mesh) {
     std::vector<glm::vec3> positions;
     positions.reserve(mesh.point_of.size());
     for (const unsigned point : mesh.point_of) positions.push_back(mesh.points[point]);
@@ -131,14 +131,14 @@ std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bo
     std::vector<DetailLevel> levels;
     const double radius = geometry.bounds.radius();
     if (geometry.triangles.size() < 2 * kFewest || !(radius > 0) || !std::isfinite(radius)) return levels;
-    Mesh mesh = mesh_of(geometry);
+    WorkingMesh mesh = mesh_of(geometry);
     if (stop || mesh.triangles.empty()) return levels;
     compact(mesh);
     if (stop) return levels;
     const std::vector<glm::uvec3> original = renamed(mesh.triangles, mesh.point_of);
     std::vector<glm::uvec3> before = original;
-    Deviation deviation(mesh.points, original, kNegligible, stop);
-    const Slant slant(mesh.points, original, corner_normals(mesh, geometry));
+    SurfaceDeviation deviation(mesh.points, original, kNegligible, stop);
+    const NormalDeviation normal_deviation(mesh.points, original, corner_normals(mesh, geometry));
     float error = 0;
     while (!stop && before.size() >= 2 * kFewest) {
         halve(mesh);
@@ -151,7 +151,7 @@ std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bo
         const auto moved = deviation.measure(before, after);
         if (!moved) break;
         error = std::max({error, *moved * kBetweenSamples,
-                          slant.measure(deviation, after, corner_normals(mesh, geometry))});
+                          normal_deviation.measure(deviation, after, corner_normals(mesh, geometry))});
         levels.push_back(
             {static_cast<int>(levels.size()) + 1, error * radius, renamed(mesh.triangles, mesh.vertex_of)});
         before = std::move(after);

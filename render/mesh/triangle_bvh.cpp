@@ -37,9 +37,10 @@ float squared_distance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& 
     return squared(ap - ab * (vb / sum) - ac * (vc / sum));
 }
 
-TriangleTree::TriangleTree(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles)
+ClosestTriangleBvh::ClosestTriangleBvh(std::span<const glm::vec3> positions,
+                                       std::span<const glm::uvec3> triangles)
     : positions_(positions), triangles_(triangles), order_(triangles.size()) {
-    std::vector<Box> boxes;
+    std::vector<TriangleBox> boxes;
     boxes.reserve(triangles.size());
     for (const glm::uvec3& t : triangles) {
         const glm::vec3 &a = positions[t.x], &b = positions[t.y], &c = positions[t.z];
@@ -52,9 +53,9 @@ TriangleTree::TriangleTree(std::span<const glm::vec3> positions, std::span<const
         if (nodes_[node].count > kLeaf) split(node, boxes);
 }
 
-TriangleTree::Node TriangleTree::leaf(std::uint32_t first, std::uint32_t count,
-                                      std::span<const Box> boxes) const {
-    Node node{boxes[order_[first]].low, boxes[order_[first]].high, first, count};
+ClosestTriangleBvh::ClosestTriangleBvhNode ClosestTriangleBvh::leaf(
+    std::uint32_t first, std::uint32_t count, std::span<const TriangleBox> boxes) const {
+    ClosestTriangleBvhNode node{boxes[order_[first]].low, boxes[order_[first]].high, first, count};
     for (std::uint32_t i = first; i < first + count; ++i) {
         node.low = glm::min(node.low, boxes[order_[i]].low);
         node.high = glm::max(node.high, boxes[order_[i]].high);
@@ -63,7 +64,7 @@ TriangleTree::Node TriangleTree::leaf(std::uint32_t first, std::uint32_t count,
 }
 
 /// In halves, across the longest side of its box.
-void TriangleTree::split(std::uint32_t node, std::span<const Box> boxes) {
+void ClosestTriangleBvh::split(std::uint32_t node, std::span<const TriangleBox> boxes) {
     const std::uint32_t first = nodes_[node].first, count = nodes_[node].count, half = count / 2;
     const glm::vec3 size = nodes_[node].high - nodes_[node].low;
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -77,30 +78,31 @@ void TriangleTree::split(std::uint32_t node, std::span<const Box> boxes) {
     nodes_.push_back(leaf(first + half, count - half, boxes));
 }
 
-NearTriangle TriangleTree::nearest(const glm::vec3& point, NearTriangle known, float enough) const {
-    struct Waiting {
+ClosestTriangle ClosestTriangleBvh::nearest(const glm::vec3& point, ClosestTriangle known,
+                                            float enough) const {
+    struct QueuedNode {
         std::uint32_t node = 0;
         float squared = 0;
     };
     const auto waiting_for = [&](std::uint32_t node) {
         const glm::vec3 inside = glm::clamp(point, nodes_[node].low, nodes_[node].high);
-        return Waiting{node, squared(point - inside)};
+        return QueuedNode{node, squared(point - inside)};
     };
     // One entry waits for each level of the tree, which halves its triangles at each: 2^32 at most.
-    std::array<Waiting, 64> waiting{};
+    std::array<QueuedNode, 64> waiting{};
     std::size_t count = 0;
     waiting[count++] = waiting_for(0);
     while (count > 0 && known.squared > enough) {
-        const Waiting next = waiting[--count];
+        const QueuedNode next = waiting[--count];
         if (next.squared >= known.squared) continue;
-        const Node& node = nodes_[next.node];
+        const ClosestTriangleBvhNode& node = nodes_[next.node];
         for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
             const glm::uvec3& t = triangles_[order_[i]];
             const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
             if (here < known.squared) known = {order_[i], here};
         }
         if (node.count > 0) continue;
-        const Waiting a = waiting_for(node.first), b = waiting_for(node.first + 1);
+        const QueuedNode a = waiting_for(node.first), b = waiting_for(node.first + 1);
         waiting[count++] = a.squared < b.squared ? b : a;
         waiting[count++] = a.squared < b.squared ? a : b;
     }

@@ -8,7 +8,7 @@
 namespace vrut {
 
 /// A triangle and its squared distance from a point.
-struct NearTriangle {
+struct ClosestTriangle {
     unsigned number = 0;
     float squared = 0;
 };
@@ -17,30 +17,31 @@ struct NearTriangle {
 float squared_distance(const glm::vec3& point, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c);
 
 /// A bounding volume hierarchy that finds the triangle nearest to a point.
-class TriangleTree {
+class ClosestTriangleBvh {
 public:
     /// Both must outlive it; there is at least one triangle.
-    TriangleTree(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles);
+    ClosestTriangleBvh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles);
 
     /// The nearest triangle to a point, or the first found that is no further than `enough` (squared);
     /// `known` is one to start from.
-    NearTriangle nearest(const glm::vec3& point, NearTriangle known, float enough) const;
+    ClosestTriangle nearest(const glm::vec3& point, ClosestTriangle known, float enough) const;
 
 private:
-    struct Node {
+    struct ClosestTriangleBvhNode {
         glm::vec3 low{0}, high{0};
         std::uint32_t first = 0;  ///< of a leaf: in `order_`; else of its two children
         std::uint32_t count = 0;  ///< 0: not a leaf
     };
-    struct Box {
+    struct TriangleBox {
         glm::vec3 low, high;
     };
-    Node leaf(std::uint32_t first, std::uint32_t count, std::span<const Box> boxes) const;
-    void split(std::uint32_t node, std::span<const Box> boxes);
+    ClosestTriangleBvhNode leaf(std::uint32_t first, std::uint32_t count,
+                                std::span<const TriangleBox> boxes) const;
+    void split(std::uint32_t node, std::span<const TriangleBox> boxes);
 
     std::span<const glm::vec3> positions_;
     std::span<const glm::uvec3> triangles_;
-    std::vector<Node> nodes_;
+    std::vector<ClosestTriangleBvhNode> nodes_;
     std::vector<std::uint32_t> order_;
 };
 

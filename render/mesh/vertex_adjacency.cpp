@@ -4,7 +4,7 @@
 
 namespace vrut {
 
-Stars::Stars(std::span<const glm::uvec3> triangles, std::size_t vertex_count)
+VertexAdjacency::VertexAdjacency(std::span<const glm::uvec3> triangles, std::size_t vertex_count)
     : first_(vertex_count + 1), triangles_(triangles.size() * 3) {
     for (const glm::uvec3& triangle : triangles)
         for (int k = 0; k < 3; ++k) ++first_[triangle[k]];

@@ -7,9 +7,9 @@
 namespace vrut {
 
 /// Which triangles meet in a vertex.
-class Stars {
+class VertexAdjacency {
 public:
-    Stars(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
+    VertexAdjacency(std::span<const glm::uvec3> triangles, std::size_t vertex_count);
     std::span<const unsigned> of(unsigned vertex) const {
         return std::span(triangles_).subspan(first_[vertex], first_[vertex + 1] - first_[vertex]);
     }

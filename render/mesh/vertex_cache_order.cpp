@@ -16,7 +16,7 @@ unsigned transformed_vertices(const std::vector<glm::uvec3>& triangles, std::siz
 
 }  // namespace
 
-std::optional<DetailLevel> cache_ordered(const Geometry& geometry) {
+std::optional<DetailLevel> optimize_vertex_cache(const Geometry& geometry) {
     if (geometry.triangles.size() < kFewest || geometry.normals.empty()) return std::nullopt;
     const std::size_t vertices = geometry.positions.size();
     DetailLevel level{0, 0, std::vector<glm::uvec3>(geometry.triangles.size())};

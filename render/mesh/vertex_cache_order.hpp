@@ -10,6 +10,6 @@ namespace vrut {
 /// vertices are transformed twice (meshoptimizer's, after Forsyth 2006). None where that cannot be, since
 /// triangles without normals share no vertices; nor where the file's own order needs less than twice as many,
 /// which costs nothing that can be measured.
-std::optional<DetailLevel> cache_ordered(const Geometry& geometry);
+std::optional<DetailLevel> optimize_vertex_cache(const Geometry& geometry);
 
 }  // namespace vrut

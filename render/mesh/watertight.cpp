@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastVolume = 1e-9;
 
 /// With the first corner of each position in the place of all.
-std::vector<glm::uvec3> joined(const Geometry& geometry) {
+std::vector<glm::uvec3> with_merged_positions(const Geometry& geometry) {
     std::vector<glm::dvec3> positions = geometry.positions;
     for (glm::dvec3& position : positions) position += 0.0;  // no -0, whose bytes are others
     std::vector<unsigned> numbers(positions.size());
@@ -35,32 +35,34 @@ std::vector<glm::uvec3> joined(const Geometry& geometry) {
 }
 
 /// Triangles that hang together (union-find).
-class Pieces {
+class UnionFind {
 public:
-    explicit Pieces(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0U); }
-    unsigned of(unsigned triangle) {
+    explicit UnionFind(std::size_t count) : parents_(count) {
+        std::iota(parents_.begin(), parents_.end(), 0U);
+    }
+    unsigned find(unsigned triangle) {
         while (parents_[triangle] != triangle) triangle = parents_[triangle] = parents_[parents_[triangle]];
         return triangle;
     }
-    void join(unsigned a, unsigned b) { parents_[of(b)] = of(a); }
+    void unite(unsigned a, unsigned b) { parents_[find(b)] = find(a); }
 
 private:
     std::vector<unsigned> parents_;
 };
 
 /// An edge's other end, and the triangle on one of its sides.
-struct Edge {
+struct HalfEdge {
     unsigned end, triangle;
-    bool operator<(const Edge& other) const { return end < other.end; }
+    bool operator<(const HalfEdge& other) const { return end < other.end; }
 };
 
 /// The edges that leave a vertex and those that come to it, each in the triangle to its left.
-struct Spokes {
-    std::vector<Edge> out, in;
-    void gather(unsigned vertex, const Stars& stars, std::span<const glm::uvec3> triangles) {
+struct IncidentHalfEdges {
+    std::vector<HalfEdge> out, in;
+    void gather(unsigned vertex, const VertexAdjacency& adjacency, std::span<const glm::uvec3> triangles) {
         out.clear();
         in.clear();
-        for (const unsigned number : stars.of(vertex)) {
+        for (const unsigned number : adjacency.of(vertex)) {
             const glm::uvec3& t = triangles[number];
             const int at = t.x == vertex ? 0 : t.y == vertex ? 1 : 2;
             out.push_back({t[(at + 1) % 3], number});
@@ -70,30 +72,31 @@ struct Spokes {
         std::sort(in.begin(), in.end());
     }
     /// Each of `out` is one of `in`, and none is there twice.
-    bool match() const {
+    bool are_paired() const {
         for (std::size_t i = 0; i < out.size(); ++i)
             if (out[i].end != in[i].end || (i > 0 && out[i].end == out[i - 1].end)) return false;
         return true;
     }
 };
 
-bool join_at_edges(std::span<const glm::uvec3> triangles, std::size_t vertex_count, Pieces& pieces,
-                   const std::atomic<bool>& stop) {
-    const Stars stars(triangles, vertex_count);
-    Spokes spokes;
+bool unite_across_edges(std::span<const glm::uvec3> triangles, std::size_t vertex_count,
+                        UnionFind& components, const std::atomic<bool>& stop) {
+    const VertexAdjacency adjacency(triangles, vertex_count);
+    IncidentHalfEdges incident;
     for (unsigned vertex = 0; vertex < vertex_count; ++vertex) {
-        spokes.gather(vertex, stars, triangles);
-        if (stop || !spokes.match()) return false;
-        for (std::size_t i = 0; i < spokes.out.size(); ++i)
-            pieces.join(spokes.out[i].triangle, spokes.in[i].triangle);
+        incident.gather(vertex, adjacency, triangles);
+        if (stop || !incident.are_paired()) return false;
+        for (std::size_t i = 0; i < incident.out.size(); ++i)
+            components.unite(incident.out[i].triangle, incident.in[i].triangle);
     }
     return true;
 }
 
-bool have_volume(const Geometry& geometry, std::span<const glm::uvec3> triangles, Pieces& pieces) {
+bool have_positive_volume(const Geometry& geometry, std::span<const glm::uvec3> triangles,
+                          UnionFind& components) {
     std::vector<double> sum(triangles.size()), magnitude(triangles.size());
     for (unsigned i = 0; i < triangles.size(); ++i) {
-        const unsigned piece = pieces.of(i);
+        const unsigned piece = components.find(i);
         const auto from_piece = [&](unsigned vertex) {
             return geometry.positions[vertex] - geometry.positions[triangles[piece].x];
         };
@@ -103,19 +106,19 @@ bool have_volume(const Geometry& geometry, std::span<const glm::uvec3> triangles
         magnitude[piece] += std::abs(volume);
     }
     for (unsigned i = 0; i < triangles.size(); ++i)
-        if (pieces.of(i) == i && !(sum[i] > kLeastVolume * magnitude[i])) return false;
+        if (components.find(i) == i && !(sum[i] > kLeastVolume * magnitude[i])) return false;
     return true;
 }
 
 }  // namespace
 
-bool is_closed(const Geometry& geometry, const std::atomic<bool>& stop) {
+bool is_watertight(const Geometry& geometry, const std::atomic<bool>& stop) {
     if (stop || geometry.triangles.empty()) return false;
-    const std::vector<glm::uvec3> triangles = joined(geometry);
+    const std::vector<glm::uvec3> triangles = with_merged_positions(geometry);
     if (stop || triangles.empty()) return false;
-    Pieces pieces(triangles.size());
-    return join_at_edges(triangles, geometry.positions.size(), pieces, stop) &&
-           have_volume(geometry, triangles, pieces);
+    UnionFind components(triangles.size());
+    return unite_across_edges(triangles, geometry.positions.size(), components, stop) &&
+           have_positive_volume(geometry, triangles, components);
 }
 
 }  // namespace vrut

@@ -11,6 +11,6 @@ namespace vrut {
 /// on any line of sight then shows its front. Corners of equal position are one; triangles that use one twice
 /// do not count. It does not see where a piece crosses itself so that a part of it is inside out. Gives up,
 /// with false, soon after `stop` is set.
-bool is_closed(const Geometry& geometry, const std::atomic<bool>& stop);
+bool is_watertight(const Geometry& geometry, const std::atomic<bool>& stop);
 
 }  // namespace vrut

@@ -31,7 +31,7 @@ Camera if_valid(const Camera& moved, const Camera& camera) {
 /// The part of `radians` (a turn about the right axis) that keeps up · vertical from changing its
 /// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its
 /// peak.
-double stop_at_poles(const Camera& camera, double radians) {
+double clamp_pitch(const Camera& camera, double radians) {
     const double up = camera.up.y, back = -view_direction(camera).y;
     if (std::hypot(up, back) < 1e-12) return radians;  // the right axis is vertical: nothing can tip over
     const double sign = hangs_upside_down(camera) ? -1 : 1;
@@ -66,7 +66,7 @@ Camera rotated(const Camera& camera, double right, double down, bool keep_uprigh
     // The scene turns one way, the camera the other.
     const double yaw = -right * kRadiansPerDegree;
     double pitch = -down * kRadiansPerDegree;
-    if (keep_upright) pitch = stop_at_poles(camera, pitch);
+    if (keep_upright) pitch = clamp_pitch(camera, pitch);
     if (yaw == 0 && pitch == 0) return camera;
 
     const glm::dvec3 across = right_direction(camera);

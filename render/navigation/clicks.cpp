@@ -71,7 +71,7 @@ std::optional<Click> Clicks::pointer(const PointerInput& input, const EventTime&
 
 void Clicks::press(const PointerInput& input, const EventTime& when, NavigationStyle style) {
     const glm::dvec2 at{input.x, input.y};
-    const bool drags = input.device != Device::touch && takes_clicks(style, input.modifiers);
+    const bool drags = input.device != Device::touch && suppresses_clicks(style, input.modifiers);
     pressed_.push_back({input.client, input.pointer, input.device, std::max(input.button, 0), at, at,
                         clocks_[input.client].time(when), !drags});
 }

@@ -8,7 +8,7 @@ namespace vrut {
 
 namespace {
 
-struct Frame {
+struct ViewBasis {
     glm::dvec3 view, up;
 };
 
@@ -26,7 +26,7 @@ double azimuth(const Camera& camera) {
 /// Radians of the eye above the focus, -π/2 to π/2.
 double elevation(const Camera& camera) { return std::atan2(-view_direction(camera).y, camera.up.y); }
 
-Frame between_level(const Camera& a, const Camera& b, double part) {
+ViewBasis between_level(const Camera& a, const Camera& b, double part) {
     const double from = azimuth(a), turn = std::remainder(azimuth(b) - from, 2 * std::numbers::pi);
     const double around = from + turn * part, above = std::lerp(elevation(a), elevation(b), part);
     const glm::dvec3 ahead(-std::sin(around), 0, -std::cos(around));
@@ -39,7 +39,7 @@ glm::dquat orientation(const Camera& camera) {
     return glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back)));
 }
 
-Frame between_any(const Camera& a, const Camera& b, double part) {
+ViewBasis between_any(const Camera& a, const Camera& b, double part) {
     const glm::dquat turned = glm::normalize(glm::slerp(orientation(a), orientation(b), part));
     return {turned * glm::dvec3(0, 0, -1), turned * glm::dvec3(0, 1, 0)};
 }
@@ -47,14 +47,14 @@ Frame between_any(const Camera& a, const Camera& b, double part) {
 Camera between(const Camera& a, const Camera& b, double part) {
     if (part <= 0 || a == b) return a;
     if (part >= 1) return b;
-    const Frame frame = is_level(a) && is_level(b) ? between_level(a, b, part) : between_any(a, b, part);
+    const ViewBasis basis = is_level(a) && is_level(b) ? between_level(a, b, part) : between_any(a, b, part);
     const double distance = focus_distance(a) * std::pow(focus_distance(b) / focus_distance(a), part);
     Camera result;
     result.focus = a.focus + (b.focus - a.focus) * part;
     result.center = a.center + (b.center - a.center) * part;
     result.fov = std::lerp(a.fov, b.fov, part);
-    result.eye = result.focus - frame.view * distance;
-    result.up = frame.up;
+    result.eye = result.focus - basis.view * distance;
+    result.up = basis.up;
     // Very near to something very far off the way is finer than double tells.
     if (!is_valid_pose(result, 0)) return part < 0.5 ? a : b;
     return with_orthogonal_up(result);
@@ -62,15 +62,15 @@ Camera between(const Camera& a, const Camera& b, double part) {
 
 }  // namespace
 
-Flight::Flight(const Camera& from, const std::vector<Keyframe>& keyframes, Easing easing)
+CameraPath::CameraPath(const Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing)
     : path_{{0, from}}, easing_(easing) {
     if (!keyframes.empty() && keyframes.front().at <= 0) path_.clear();
     path_.insert(path_.end(), keyframes.begin(), keyframes.end());
 }
 
-Camera Flight::at(double ms) const {
+Camera CameraPath::at(double ms) const {
     const auto next = std::upper_bound(path_.begin(), path_.end(), ms,
-                                       [](double time, const Keyframe& key) { return time < key.at; });
+                                       [](double time, const CameraKeyframe& key) { return time < key.at; });
     if (next == path_.begin()) return path_.front().camera;
     if (next == path_.end() || std::prev(next)->at == ms) return std::prev(next)->camera;
     const auto index = static_cast<std::size_t>(std::prev(next) - path_.begin());
@@ -79,7 +79,7 @@ Camera Flight::at(double ms) const {
 
 // The way through the keyframes, counted in keyframes, is a monotone cubic of time: Fritsch and Butland, A
 // method for constructing local monotone piecewise cubic interpolants (1984).
-double Flight::progress(std::size_t index, double ms) const {
+double CameraPath::progress(std::size_t index, double ms) const {
     const double step = path_[index + 1].at - path_[index].at;
     const double t = (ms - path_[index].at) / step;
     if (easing_ == Easing::linear) return t;
@@ -88,7 +88,7 @@ double Flight::progress(std::size_t index, double ms) const {
 }
 
 /// Keyframes per ms while passing one: the harmonic mean of those before and after it.
-double Flight::slope(std::size_t index) const {
+double CameraPath::slope(std::size_t index) const {
     const bool at_an_end = index == 0 || index + 1 == path_.size();
     return at_an_end ? 0 : 2 / (path_[index + 1].at - path_[index - 1].at);
 }

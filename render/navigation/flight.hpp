@@ -6,7 +6,7 @@
 
 namespace vrut {
 
-struct Keyframe {
+struct CameraKeyframe {
     double at = 0;  ///< ms since the start
     Camera camera;
 };
@@ -21,11 +21,11 @@ enum class Easing {
 /// From one to the next focus, centre and fov go straight, the distance eye-focus by equal factors in equal
 /// parts of the way, and the direction around the focus by azimuth (the shorter way) and elevation where both
 /// stand level and upright, so that the horizon stays level, else by the shortest turn of the whole frame.
-class Flight {
+class CameraPath {
 public:
     /// `from` is where it starts; the keyframes' times are 0 or more and rise, their poses are valid. One at
     /// 0 takes the place of `from`.
-    Flight(const Camera& from, const std::vector<Keyframe>& keyframes, Easing easing);
+    CameraPath(const Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing);
 
     /// Each keyframe's own camera, to the bit, at its time; the first before the start, the last after the
     /// end.
@@ -37,7 +37,7 @@ private:
     double progress(std::size_t index, double ms) const;
     double slope(std::size_t index) const;
 
-    std::vector<Keyframe> path_;  // the start and the keyframes
+    std::vector<CameraKeyframe> path_;  // the start and the keyframes
     Easing easing_;
 };
 

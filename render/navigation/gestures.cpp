@@ -17,7 +17,7 @@ constexpr std::size_t kMostPressed = 16;
 
 int first_held(unsigned buttons) {
     for (int button : {left_button, right_button, middle_button})
-        if (buttons & bit_of(button)) return button;
+        if (buttons & button_mask(button)) return button;
     return -1;
 }
 
@@ -94,7 +94,7 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
 
 void Gestures::press(const PointerInput& input) {
     Grip grip;
-    grip.buttons = input.buttons != 0 ? input.buttons : bit_of(input.button);
+    grip.buttons = input.buttons != 0 ? input.buttons : button_mask(input.button);
     grip.button = input.button >= 0 ? input.button : first_held(grip.buttons);
     grip.modifiers = input.modifiers;
     grip.number = number_held(input.client);
@@ -105,12 +105,13 @@ void Gestures::press(const PointerInput& input) {
 /// Another button went down or up.
 void Gestures::change_buttons(Pressed& pressed, const PointerInput& input) {
     Grip& grip = pressed.grip;
-    const unsigned middle = bit_of(middle_button), others = bit_of(left_button) | bit_of(right_button);
+    const unsigned middle = button_mask(middle_button),
+                   others = button_mask(left_button) | button_mask(right_button);
     grip.after_chord = (grip.buttons & input.buttons & middle) && (grip.after_chord || grip.buttons & others);
     grip.buttons = input.buttons;
-    const bool went_down = (input.buttons & bit_of(input.button)) != 0;
+    const bool went_down = (input.buttons & button_mask(input.button)) != 0;
     if (went_down) grip.button = input.button;
-    if (!(input.buttons & bit_of(grip.button))) grip.button = first_held(input.buttons);
+    if (!(input.buttons & button_mask(grip.button))) grip.button = first_held(input.buttons);
 }
 
 int Gestures::number_held(const std::string& client) const {

@@ -48,8 +48,8 @@ std::optional<KeyOperation> key_operation(const KeyInput& input) {
     return row == std::end(kKeys) ? std::nullopt : std::optional(row->operation);
 }
 
-Camera operated(const KeyOperation& operation, const Camera& camera, const Camera& home,
-                const NavigationContext& context) {
+Camera apply_key_operation(const KeyOperation& operation, const Camera& camera, const Camera& home,
+                           const NavigationContext& context) {
     const glm::dvec2& by = operation.by;
     switch (operation.kind) {
         case Kind::rotate:

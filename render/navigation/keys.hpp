@@ -23,7 +23,7 @@ std::optional<KeyOperation> key_operation(const KeyInput& input);
 
 /// The camera after an operation; the same camera for those that do not move it. Speeds do not apply. `home`
 /// is where Home goes; `context.bounds` is what fit fits, and what limits the zoom.
-Camera operated(const KeyOperation& operation, const Camera& camera, const Camera& home,
-                const NavigationContext& context);
+Camera apply_key_operation(const KeyOperation& operation, const Camera& camera, const Camera& home,
+                           const NavigationContext& context);
 
 }  // namespace vrut

@@ -55,15 +55,16 @@ constexpr DragRow kDragRows[] = {
 
 bool is_held(Chord chord, int button, const Grip& grip) {
     if (chord == Chord::last) return grip.button == button;
-    const unsigned held = grip.buttons & (bit_of(left_button) | bit_of(middle_button) | bit_of(right_button));
-    if (!(held & bit_of(button))) return false;
-    if (chord == Chord::with_other) return held != bit_of(button);
-    return held == bit_of(button) && grip.after_chord == (chord == Chord::after_other);
+    const unsigned held =
+        grip.buttons & (button_mask(left_button) | button_mask(middle_button) | button_mask(right_button));
+    if (!(held & button_mask(button))) return false;
+    if (chord == Chord::with_other) return held != button_mask(button);
+    return held == button_mask(button) && grip.after_chord == (chord == Chord::after_other);
 }
 
 }  // namespace
 
-unsigned bit_of(int button) {
+unsigned button_mask(int button) {
     switch (button) {
         case left_button:
             return 1;
@@ -85,7 +86,7 @@ DragOperation drag_operation(NavigationStyle style, const Grip& grip) {
     return row == std::end(kDragRows) ? Operation::none : row->operation;
 }
 
-bool takes_clicks(NavigationStyle style, const ModifierKeys& modifiers) {
+bool suppresses_clicks(NavigationStyle style, const ModifierKeys& modifiers) {
     return modifiers.alt && std::any_of(std::begin(kDragRows), std::end(kDragRows),
                                         [&](const DragRow& row) { return row.style == style && row.alt; });
 }

@@ -5,10 +5,10 @@ namespace vrut {
 /// Whose mouse the user's hand is used to. Touch and the wheel are the same in all of them.
 enum class NavigationStyle { vrut, maya, catia, cinema4d };
 
-/// As W3C numbers them; among those held each has another number, see bit_of().
+/// As W3C numbers them; among those held each has another number, see button_mask().
 enum MouseButton { left_button = 0, middle_button = 1, right_button = 2 };
 /// Of `PointerEvent.buttons`; 0 for buttons that mean nothing here.
-unsigned bit_of(int button);
+unsigned button_mask(int button);
 
 struct ModifierKeys {
     bool alt = false, ctrl = false, shift = false, meta = false;
@@ -30,6 +30,6 @@ struct Grip {
 DragOperation drag_operation(NavigationStyle style, const Grip& grip);
 /// Whether with these keys held the buttons are the camera's alone: a press is the begin of a drag, not of a
 /// click.
-bool takes_clicks(NavigationStyle style, const ModifierKeys& modifiers);
+bool suppresses_clicks(NavigationStyle style, const ModifierKeys& modifiers);
 
 }  // namespace vrut

@@ -10,21 +10,21 @@ namespace vrut {
 
 /// How much one step of drawing may still do. The unit is what a processor takes for the colour of a pixel,
 /// about 20 ns. An item is never divided: a step does kMost, and what its last item takes.
-class StepWork {
+class DrawBudget {
 public:
     static constexpr std::int64_t kMost = 4'000'000;
     /// Graphics cards take next to nothing for a pixel.
-    explicit StepWork(bool software) : pixel_weight_(software ? 64 : 1) {}
+    explicit DrawBudget(bool software) : pixel_weight_(software ? 64 : 1) {}
 
-    bool spent() const { return left_ <= 0; }
+    bool is_spent() const { return left_ <= 0; }
     void spend(std::int64_t work) { left_ -= work; }
     void spend_pixels(std::int64_t pixels) { left_ -= pixels * pixel_weight_ / 64; }
     /// The first of `items`, as many as may be drawn within `box`: one at least if it is not spent.
     /// `is_uploaded` says whether an item's geometry is on the GPU already.
-    std::span<const DrawItem> take(std::span<const DrawItem> items, const Scene& scene,
-                                   const glm::dmat4& clip_from_view, const PixelBox& box,
-                                   const glm::ivec2& picture,
-                                   const std::function<bool(const DrawItem&)>& is_uploaded);
+    std::span<const DrawItem> next_batch(std::span<const DrawItem> items, const Scene& scene,
+                                         const glm::dmat4& clip_from_view, const PixelBox& box,
+                                         const glm::ivec2& viewport,
+                                         const std::function<bool(const DrawItem&)>& is_uploaded);
 
 private:
     std::int64_t left_ = kMost;

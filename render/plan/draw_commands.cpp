@@ -11,25 +11,25 @@ void add(Commands& commands, Kind kind, const MirrorItem* mirror, std::span<cons
     if (!items.empty()) commands.push_back({kind, mirror, items});
 }
 
-void add_layers(Commands& commands, const Layers& layers, const MirrorItem* mirror) {
-    add(commands, Kind::opaque, mirror, layers.opaque);
+void add_draw_lists(Commands& commands, const DrawLists& lists, const MirrorItem* mirror) {
+    add(commands, Kind::opaque, mirror, lists.opaque);
     // What a mirror shows costs as much as the picture: it is drawn only where the mirror can be seen.
-    if (!layers.mirrors.empty()) commands.push_back({Kind::find_mirrors, mirror, {}, layers.mirrors});
-    for (const MirrorItem& within : layers.mirrors) {
+    if (!lists.mirrors.empty()) commands.push_back({Kind::find_mirrors, mirror, {}, lists.mirrors});
+    for (const MirrorItem& within : lists.mirrors) {
         commands.push_back({Kind::open_mirror, &within});
-        add_layers(commands, within.reflected, &within);
+        add_draw_lists(commands, within.reflected, &within);
         commands.push_back({Kind::close_mirror, &within});
     }
-    for (const TransparentGroup& group : layers.transparent)
-        add(commands, group.exact ? Kind::layered_glass : Kind::sorted_glass, mirror, group.items);
+    for (const TransparentGroup& group : lists.transparent)
+        add(commands, group.exact ? Kind::per_pixel_glass : Kind::sorted_glass, mirror, group.items);
 }
 
 void add_selection(Commands& commands, const FramePlan& plan, const View& view) {
-    if (view.wireframe) return add(commands, Kind::edges_over, nullptr, plan.selected);
-    add(commands, Kind::move_behind, nullptr, plan.selected);
-    add_layers(commands, plan.over, nullptr);
+    if (view.wireframe) return add(commands, Kind::edges_overlay, nullptr, plan.selected);
+    add(commands, Kind::reset_depth, nullptr, plan.selected);
+    add_draw_lists(commands, plan.overlay, nullptr);
     if (view.mode == DrawMode::stylized) add(commands, Kind::edges, nullptr, plan.selected);
-    add(commands, Kind::outline_cover, nullptr, plan.selected);
+    add(commands, Kind::outline_mask, nullptr, plan.selected);
     commands.push_back({Kind::outline, nullptr, plan.selected});
 }
 
@@ -39,10 +39,10 @@ bool is_reflected(const DrawCommand& command) { return command.mirror && command
 
 std::vector<DrawCommand> draw_commands(const FramePlan& plan, const View& view) {
     Commands commands{{Kind::clear}};
-    add_layers(commands, plan.scene, nullptr);
+    add_draw_lists(commands, plan.scene, nullptr);
     add(commands, Kind::edges, nullptr, plan.edges);
     if (!plan.selected.empty()) add_selection(commands, plan, view);
-    if (!plan.marks.empty()) commands.push_back({Kind::marks});
+    if (!plan.markers.empty()) commands.push_back({Kind::markers});
     return commands;
 }
 

@@ -12,19 +12,19 @@ namespace vrut {
 /// of them, and later for the others.
 struct DrawCommand {
     enum class Kind {
-        clear,          ///< the picture, and draws its background
-        opaque,         ///< faces
-        find_mirrors,   ///< which of `mirrors` can be seen; commands of the others are left out
-        open_mirror,    ///< clears the target of `mirror`, and draws its background
-        close_mirror,   ///< draws its surface
-        sorted_glass,   ///< faces, in the order of the items
-        layered_glass,  ///< faces, in the order that each pixel needs
-        edges,          ///< lines
-        edges_over,     ///< lines that nothing hides
-        move_behind,    ///< makes room in the depth for what is drawn over everything
-        outline_cover,  ///< into a mask
-        outline,        ///< around that
-        marks,          ///< the plan's
+        clear,            ///< the picture, and draws its background
+        opaque,           ///< faces
+        find_mirrors,     ///< which of `mirrors` can be seen; commands of the others are left out
+        open_mirror,      ///< clears the target of `mirror`, and draws its background
+        close_mirror,     ///< draws its surface
+        sorted_glass,     ///< faces, in the order of the items
+        per_pixel_glass,  ///< faces, in the order that each pixel needs
+        edges,            ///< lines
+        edges_overlay,    ///< lines that nothing hides
+        reset_depth,      ///< makes room in the depth for what is drawn over everything
+        outline_mask,     ///< into a mask
+        outline,          ///< around that
+        markers,          ///< the plan's
     };
     Kind kind = Kind::clear;
     /// The one that all this is seen in, that is opened, or that is closed; null: the picture itself.

@@ -8,15 +8,15 @@
 #include "plan/detail_plan.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/frustum.hpp"
-#include "plan/glass_shape.hpp"
 #include "plan/mirror_plan.hpp"
+#include "plan/transparency_cache.hpp"
 #include "plan/transparency_plan.hpp"
 
 namespace vrut {
 
 namespace {
 
-/// What it takes to plan a node that is shown, and its place among the others, in units of StepWork.
+/// What it takes to plan a node that is shown, and its place among the others, in units of DrawBudget.
 constexpr std::int64_t kListed = 20, kOrdered = 20;
 
 /// None where the node draws nothing.
@@ -33,12 +33,13 @@ std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, con
     item.material = material;
     item.view_from_node = view * placed.world[node];
     const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
-    if (!(glm::length(in_view.min) < kFarthestDrawn && glm::length(in_view.max) < kFarthestDrawn)) return {};
+    if (!(glm::length(in_view.min) < kMaxDrawDistance && glm::length(in_view.max) < kMaxDrawDistance))
+        return {};
     const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
     const bool mirror = mode == DrawMode::realistic && mirror_plane(*placed.scene, item);
     const bool both =
         is_flattened(item.view_from_node) || mirror || placed.scene->material(material).two_sided;
-    item.sides = both ? Sides::both : Sides::front;
+    item.cull_mode = both ? CullMode::none : CullMode::back;
     item.mirrored = determinant < 0;
     return item;
 }
@@ -52,7 +53,7 @@ void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
               [&](const DrawItem& a, const DrawItem& b) { return id(a) < id(b); });
 }
 
-void add_pictures(std::vector<DrawItem>& items, const View& view) {
+void assign_textures(std::vector<DrawItem>& items, const View& view) {
     const Scene& scene = *view.scene->scene;
     for (DrawItem& item : items) {
         const Material& material = scene.material(item.material);
@@ -81,82 +82,82 @@ bool has_cube_map(const Scene& scene) {
 }
 
 /// Of items by rising id; mirrors among them are ordinary surfaces.
-Layers layers_in_mirror(std::vector<DrawItem> items, const View& view, GlassShapes& shapes) {
+DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, TransparencyCache& shapes) {
     const PlacedScene& placed = *view.scene;
     const Scene& scene = *placed.scene;
     const auto is_opaque = [&](const DrawItem& item) {
         return !scene.is_transparent(scene.material(item.material));
     };
-    Layers layers;
+    DrawLists lists;
     if (view.mode == DrawMode::stylized || std::all_of(items.begin(), items.end(), is_opaque)) {
-        layers.opaque = std::move(items);
-        return layers;
+        lists.opaque = std::move(items);
+        return lists;
     }
     std::vector<DrawItem> transparent;
-    for (const DrawItem& item : items) (is_opaque(item) ? layers.opaque : transparent).push_back(item);
-    mark_hidden_twins(transparent, layers.opaque, scene);
-    layers.transparent = order_transparent(transparent, scene, view.light, view.methods.transparency, shapes);
-    return layers;
+    for (const DrawItem& item : items) (is_opaque(item) ? lists.opaque : transparent).push_back(item);
+    mark_occluded_by_coincident(transparent, lists.opaque, scene);
+    lists.transparent = order_transparent(transparent, scene, view.light, view.methods.transparency, shapes);
+    return lists;
 }
 
 /// Of items by rising id. What mirrors show is taken from `all`; those that show none of it reflect the
 /// panorama, where there is one.
-Layers layers_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
-                 GlassShapes& shapes) {
-    Layers layers = layers_in_mirror(std::move(items), view, shapes);
-    if (view.mode == DrawMode::stylized) return layers;
-    layers.mirrors = take_mirrors(layers.opaque, all, view);
-    for (MirrorItem& mirror : layers.mirrors)
-        mirror.reflected = layers_in_mirror(std::move(mirror.reflected.opaque), view, shapes);
-    if (!view.background.cube_map) return layers;
-    for (DrawItem& item : layers.opaque)
+DrawLists draw_lists_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
+                        TransparencyCache& shapes) {
+    DrawLists lists = draw_lists_in_mirror(std::move(items), view, shapes);
+    if (view.mode == DrawMode::stylized) return lists;
+    lists.mirrors = extract_mirrors(lists.opaque, all, view);
+    for (MirrorItem& mirror : lists.mirrors)
+        mirror.reflected = draw_lists_in_mirror(std::move(mirror.reflected.opaque), view, shapes);
+    if (!view.background.cube_map) return lists;
+    for (DrawItem& item : lists.opaque)
         if (mirror_plane(*view.scene->scene, item)) item.environment = true;
-    return layers;
+    return lists;
 }
 
 /// Removes the items of these nodes and returns them, in the same order.
-std::vector<DrawItem> take(std::vector<DrawItem>& items, const std::vector<bool>& nodes) {
+std::vector<DrawItem> extract(std::vector<DrawItem>& items, const std::vector<bool>& nodes) {
     const auto kept = [&](const DrawItem& item) { return !nodes[static_cast<std::size_t>(item.node)]; };
     const auto first = std::stable_partition(items.begin(), items.end(), kept);
-    std::vector<DrawItem> taken(first, items.end());
+    std::vector<DrawItem> extracted(first, items.end());
     items.erase(first, items.end());
-    return taken;
+    return extracted;
 }
 
 /// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
 /// pixels of the picture.
 Frustum frustum_of(const View& view, double margin) {
     return frustum_of(view.camera, static_cast<double>(view.width) / view.height,
-                      widened(view.width, view.height, margin));
+                      ndc_with_margin(view.width, view.height, margin));
 }
 
-void leave_out_what_lies_outside(std::vector<DrawItem>& items, const View& view) {
+void cull_frustum(std::vector<DrawItem>& items, const View& view) {
     const Frustum frustum = frustum_of(view, 1);
     const auto& geometries = view.scene->scene->geometries();
     std::erase_if(items, [&](const DrawItem& item) {
-        return lies_outside(frustum, item.view_from_node,
-                            geometries[static_cast<std::size_t>(item.geometry)].bounds);
+        return is_outside(frustum, item.view_from_node,
+                          geometries[static_cast<std::size_t>(item.geometry)].bounds);
     });
 }
 
 /// Those before the eye whose sign reaches into the picture.
-std::vector<glm::dvec3> marks_of(const View& view, const glm::dmat4& view_matrix) {
-    std::vector<glm::dvec3> marks;
-    if (!view.marks) return marks;
-    const Frustum frustum = frustum_of(view, mark_radius(view.height) + 1);
-    for (const Mark& mark : *view.marks) {
-        const glm::dvec3 point(view_matrix * glm::dvec4(mark.point, 1));
-        if (!(glm::length(point) < kFarthestDrawn && point.z < 0)) continue;
-        if (!lies_outside(frustum, glm::dmat4(1), {point, point})) marks.push_back(point);
+std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matrix) {
+    std::vector<glm::dvec3> markers;
+    if (!view.markers) return markers;
+    const Frustum frustum = frustum_of(view, marker_radius(view.height) + 1);
+    for (const PlacedMarker& marker : *view.markers) {
+        const glm::dvec3 point(view_matrix * glm::dvec4(marker.point, 1));
+        if (!(glm::length(point) < kMaxDrawDistance && point.z < 0)) continue;
+        if (!is_outside(frustum, glm::dmat4(1), {point, point})) markers.push_back(point);
     }
-    std::stable_sort(marks.begin(), marks.end(),
+    std::stable_sort(markers.begin(), markers.end(),
                      [](const glm::dvec3& a, const glm::dvec3& b) { return a.z < b.z; });
-    return marks;
+    return markers;
 }
 
 }  // namespace
 
-std::vector<DrawItem> shown_items(const View& view) {
+std::vector<DrawItem> visible_items(const View& view) {
     const PlacedScene& placed = *view.scene;
     const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
     const glm::dmat4 view_matrix = view_from_world(view.camera);
@@ -165,11 +166,11 @@ std::vector<DrawItem> shown_items(const View& view) {
         if (shown[i])
             if (const auto item = item_of(placed, i, view_matrix, view.mode)) items.push_back(*item);
     sort_by_id(items, *placed.scene);
-    if (!view.wireframe && view.mode == DrawMode::realistic) add_pictures(items, view);
+    if (!view.wireframe && view.mode == DrawMode::realistic) assign_textures(items, view);
     return items;
 }
 
-double mark_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
+double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
 bool is_mirror(const Scene& scene, Index geometry, Index material) {
     const Material& of = scene.material(material);
@@ -180,89 +181,89 @@ bool is_flattened(const glm::dmat4& view_from_node) {
     return !(std::abs(relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
 }
 
-bool has_transparent(const Layers& layers) {
-    return !layers.transparent.empty() ||
-           std::any_of(layers.mirrors.begin(), layers.mirrors.end(),
+bool has_transparent(const DrawLists& lists) {
+    return !lists.transparent.empty() ||
+           std::any_of(lists.mirrors.begin(), lists.mirrors.end(),
                        [](const MirrorItem& mirror) { return has_transparent(mirror.reflected); });
 }
 
-bool has_exact_group(const Layers& layers) {
-    return std::any_of(layers.transparent.begin(), layers.transparent.end(),
+bool has_exact_group(const DrawLists& lists) {
+    return std::any_of(lists.transparent.begin(), lists.transparent.end(),
                        [](const TransparentGroup& group) { return group.exact; }) ||
-           std::any_of(layers.mirrors.begin(), layers.mirrors.end(),
+           std::any_of(lists.mirrors.begin(), lists.mirrors.end(),
                        [](const MirrorItem& mirror) { return has_exact_group(mirror.reflected); });
 }
 
 void FramePlanner::find_items(const View& view) {
     const PlacedScene& placed = *view.scene;
-    items_ = shown_items(view);
+    items_ = visible_items(view);
     if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
             return is_mirror(*placed.scene, item.geometry, item.material);
         }))
-        all_ = items_;  // what lies beside the picture may be seen in a mirror
-    leave_out_what_lies_outside(items_, view);
-    plan_.marks = marks_of(view, view_from_world(view.camera));
+        unculled_items_ = items_;  // what lies beside the picture may be seen in a mirror
+    cull_frustum(items_, view);
+    plan_.markers = markers_of(view, view_from_world(view.camera));
 
-    if (view.selected != kNone) plan_.selected = take(items_, subtree(*placed.scene, view.selected));
+    if (view.selected != kNone) plan_.selected = extract(items_, subtree(*placed.scene, view.selected));
     if (view.wireframe || view.mode == DrawMode::stylized) plan_.edges = items_;
 }
 
 /// Of glass, which will be put in order; what only mirrors show is left to that.
-bool FramePlanner::find_shapes(const View& view, GlassShapes& shapes, StepWork& work) {
+bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
     if (view.wireframe || view.mode == DrawMode::stylized) return true;
     const Scene& scene = *view.scene->scene;
     const std::size_t count = items_.size() + plan_.selected.size();
-    for (; shapes_found_ < count && !work.spent(); ++shapes_found_) {
+    for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {
         const DrawItem& item = shapes_found_ < items_.size() ? items_[shapes_found_]
                                                              : plan_.selected[shapes_found_ - items_.size()];
-        if (scene.is_transparent(scene.material(item.material))) work.spend(shapes.find(item));
+        if (scene.is_transparent(scene.material(item.material))) budget.spend(shapes.find(item));
     }
     return shapes_found_ == count;
 }
 
-void FramePlanner::find_layers(const View& view, GlassShapes& shapes) {
+void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes) {
     if (view.wireframe) return;
-    plan_.scene = layers_of(std::move(items_), all_, view, shapes);
-    plan_.over = layers_of(plan_.selected, all_, view, shapes);
-    choose_levels(plan_, view);
-    leave_out_backs(plan_, view);
+    plan_.scene = draw_lists_of(std::move(items_), unculled_items_, view, shapes);
+    plan_.overlay = draw_lists_of(plan_.selected, unculled_items_, view, shapes);
+    select_levels(plan_, view);
+    cull_backfaces(plan_, view);
 }
 
-bool FramePlanner::step(const View& view, GlassShapes& shapes, StepWork& work) {
-    while (stage_ != Stage::whole && !work.spent()) {
+bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
+    while (stage_ != PlanStage::done && !budget.is_spent()) {
         switch (stage_) {
-            case Stage::items:
-                work.spend(kListed * static_cast<std::int64_t>(view.scene->nodes.size()));
+            case PlanStage::items:
+                budget.spend(kListed * static_cast<std::int64_t>(view.scene->nodes.size()));
                 find_items(view);
-                stage_ = Stage::shapes;
+                stage_ = PlanStage::shapes;
                 break;
-            case Stage::shapes:
-                if (find_shapes(view, shapes, work)) stage_ = Stage::layers;
+            case PlanStage::shapes:
+                if (find_shapes(view, shapes, budget)) stage_ = PlanStage::draw_lists;
                 break;
-            case Stage::layers:
-                work.spend(kOrdered * static_cast<std::int64_t>(items_.size() + plan_.selected.size()));
-                find_layers(view, shapes);
-                stage_ = Stage::whole;
+            case PlanStage::draw_lists:
+                budget.spend(kOrdered * static_cast<std::int64_t>(items_.size() + plan_.selected.size()));
+                find_draw_lists(view, shapes);
+                stage_ = PlanStage::done;
                 break;
-            case Stage::whole:
+            case PlanStage::done:
                 break;
         }
     }
-    return stage_ == Stage::whole;
+    return stage_ == PlanStage::done;
 }
 
 FramePlan plan_frame(const View& view) {
     if (!view.scene) return {};
-    GlassShapes shapes(*view.scene->scene);
+    TransparencyCache shapes(*view.scene->scene);
     FramePlanner planner;
-    for (StepWork work(false); !planner.step(view, shapes, work);) work = StepWork(false);
+    for (DrawBudget budget(false); !planner.step(view, shapes, budget);) budget = DrawBudget(false);
     return planner.plan();
 }
 
-std::vector<DrawItem> faces_of(const View& view) {
+std::vector<DrawItem> visible_faces(const View& view) {
     if (!view.scene || view.wireframe) return {};
-    std::vector<DrawItem> items = shown_items(view);
-    leave_out_what_lies_outside(items, view);
+    std::vector<DrawItem> items = visible_items(view);
+    cull_frustum(items, view);
     return items;
 }
 
@@ -278,12 +279,12 @@ ClassCounts count_classes(const PlacedScene& placed) {
     return counts;
 }
 
-std::vector<std::string> undrawn_features(const Scene& scene) {
+std::vector<std::string> unsupported_features(const Scene& scene) {
     std::vector<std::string> notices;
     const std::size_t mirrors = count_reflective(scene, true), others = count_reflective(scene, false);
-    if (mirrors > kMostMirrors)
+    if (mirrors > kMaxMirrors)
         notices.push_back(std::to_string(mirrors) + " mirrors: the scene is seen in the " +
-                          std::to_string(kMostMirrors) + " that are largest in a picture");
+                          std::to_string(kMaxMirrors) + " that are largest in a picture");
     if (others > 0 && !has_cube_map(scene))
         notices.push_back(std::to_string(others) +
                           " curved or transparent reflective parts have no cube map to reflect");

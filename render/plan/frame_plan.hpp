@@ -14,20 +14,20 @@ namespace vrut {
 struct DetailLevel;
 
 /// Closed: both, but the backs are not drawn, for fronts of the same part hide them.
-enum class Sides { front, both, closed };
+enum class CullMode { back, none, hidden_back };
 
 /// One geometry node to be drawn.
 struct DrawItem {
     Index node = kNone, geometry = kNone, material = kNone;
     glm::dmat4 view_from_node{1};
-    Sides sides = Sides::front;
+    CullMode cull_mode = CullMode::back;
     bool mirrored = false;     ///< the matrix turns counter-clockwise triangles clockwise
     Index texture = kNone;     ///< whose colour stands in the place of the material's diffuse one
     bool environment = false;  ///< mixed with the panorama that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
-    bool behind_twin = false;
+    bool occluded_by_coincident = false;
     /// Only points of the node's space whose product with this is not negative are drawn.
-    std::optional<glm::dvec4> kept;
+    std::optional<glm::dvec4> clip_plane;
     /// Its triangles from far to near, numbered as TriangleOrder does; null: as in the file.
     std::shared_ptr<const std::vector<unsigned>> order;
     /// What is drawn of the geometry, of the view's; null: every triangle.
@@ -44,7 +44,7 @@ struct TransparentGroup {
 struct MirrorItem;
 
 /// Faces that are drawn from one sight, in this order.
-struct Layers {
+struct DrawLists {
     std::vector<DrawItem> opaque;               ///< by rising id
     std::vector<MirrorItem> mirrors;            ///< by rising id
     std::vector<TransparentGroup> transparent;  ///< from far to near
@@ -58,47 +58,48 @@ struct MirrorItem {
     DrawItem surface;
     glm::dmat4 reflection{1};  ///< about its plane, in view space
     PixelBox box;              ///< all that it can cover
-    Layers reflected;
+    DrawLists reflected;
 };
 
 /// Whether something is blended, and something of it pixel by pixel; in mirrors too.
-bool has_transparent(const Layers& layers);
-bool has_exact_group(const Layers& layers);
+bool has_transparent(const DrawLists& lists);
+bool has_exact_group(const DrawLists& lists);
 
 /// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the
 /// picture is no item. Edges and what is selected by rising id.
 struct FramePlan {
-    Layers scene;
-    std::vector<DrawItem> edges;     ///< with edges
-    Layers over;                     ///< over everything before: the faces of what is selected
-    std::vector<DrawItem> selected;  ///< that itself, in no other list
-    std::vector<glm::dvec3> marks;   ///< in view space, from far to near
+    DrawLists scene;
+    std::vector<DrawItem> edges;      ///< with edges
+    DrawLists overlay;                ///< over everything before: the faces of what is selected
+    std::vector<DrawItem> selected;   ///< that itself, in no other list
+    std::vector<glm::dvec3> markers;  ///< in view space, from far to near
 };
 
 /// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
 bool is_mirror(const Scene& scene, Index geometry, Index material);
 
-class GlassShapes;
-class StepWork;
+class TransparencyCache;
+class DrawBudget;
 
 /// Finds the plan of a view in steps. It is empty where the view has no scene.
 class FramePlanner {
 public:
     /// Goes on until `work` is spent; true once the plan is whole. The view is always the same; `shapes` are
     /// of its scene, and keep what is found out about its geometries for the next frame.
-    bool step(const View& view, GlassShapes& shapes, StepWork& work);
+    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget);
     /// Once it is whole. It stays where it is.
     const FramePlan& plan() const { return plan_; }
 
 private:
-    enum class Stage { items, shapes, layers, whole };
+    enum class PlanStage { items, shapes, draw_lists, done };
     void find_items(const View& view);
-    bool find_shapes(const View& view, GlassShapes& shapes, StepWork& work);
-    void find_layers(const View& view, GlassShapes& shapes);
+    bool find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget);
+    void find_draw_lists(const View& view, TransparencyCache& shapes);
 
-    Stage stage_ = Stage::items;
-    std::vector<DrawItem> items_, all_;  // in the picture, not selected; with what may be seen in mirrors
-    std::size_t shapes_found_ = 0;       // of so many items
+    PlanStage stage_ = PlanStage::items;
+    std::vector<DrawItem> items_,
+        unculled_items_;            // in the picture, not selected; with what may be seen in mirrors
+    std::size_t shapes_found_ = 0;  // of so many items
     FramePlan plan_;
 };
 
@@ -106,13 +107,13 @@ private:
 FramePlan plan_frame(const View& view);
 
 /// The items of all faces that a view of a scene shows or has beside it, opaque or not, by rising id.
-std::vector<DrawItem> shown_items(const View& view);
+std::vector<DrawItem> visible_items(const View& view);
 
 /// The items of all faces that a view shows, opaque or not, by rising id.
-std::vector<DrawItem> faces_of(const View& view);
+std::vector<DrawItem> visible_faces(const View& view);
 
 /// Radius of a marker in a picture of that height, in pixels.
-double mark_radius(int picture_height);
+double marker_radius(int picture_height);
 
 /// Geometry nodes of a scene by what their material is.
 struct ClassCounts {
@@ -125,6 +126,6 @@ struct ClassCounts {
 ClassCounts count_classes(const PlacedScene& placed);
 
 /// A sentence for each thing that the scene holds and the renderer does not draw, or not always.
-std::vector<std::string> undrawn_features(const Scene& scene);
+std::vector<std::string> unsupported_features(const Scene& scene);
 
 }  // namespace vrut

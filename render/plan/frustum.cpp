@@ -9,12 +9,12 @@ namespace {
 constexpr double kFloatError = 1e-6;
 }  // namespace
 
-PictureArea widened(int width, int height, double pixels) {
+NdcRect ndc_with_margin(int width, int height, double pixels) {
     const glm::dvec2 edge = 1.0 + 2 * pixels / glm::dvec2(width, height);
     return {-edge, edge};
 }
 
-Frustum frustum_of(const Camera& camera, double aspect, const PictureArea& area) {
+Frustum frustum_of(const Camera& camera, double aspect, const NdcRect& area) {
     const double half = std::tan(camera.fov * kRadiansPerDegree / 2);
     const glm::dvec2 low = area.low * half * glm::dvec2(aspect, 1);
     const glm::dvec2 high = area.high * half * glm::dvec2(aspect, 1);
@@ -24,7 +24,7 @@ Frustum frustum_of(const Camera& camera, double aspect, const PictureArea& area)
              glm::dvec3(0, 0, -1)}};
 }
 
-bool lies_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box) {
+bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box) {
     const glm::dvec3 center(view_from_node * glm::dvec4(box.center(), 1));
     const glm::dvec3 half = box.half_extent();
     const glm::dmat3 linear(view_from_node);

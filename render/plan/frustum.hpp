@@ -8,11 +8,11 @@
 namespace vrut {
 
 /// Part of a picture: x and y from −1 (left, bottom) to 1 (right, top).
-struct PictureArea {
+struct NdcRect {
     glm::dvec2 low{-1}, high{1};
 };
 /// The whole of a picture and some pixels more on all sides.
-PictureArea widened(int width, int height, double pixels);
+NdcRect ndc_with_margin(int width, int height, double pixels);
 
 /// What can be seen in an area of a picture, in view space: the points before the eye with which no normal
 /// has a negative product. Without near and far.
@@ -20,10 +20,10 @@ struct Frustum {
     std::array<glm::dvec3, 5> normals;  ///< unit, pointing inwards: left, right, bottom, top, before the eye
 };
 /// `aspect` is width / height of the whole picture.
-Frustum frustum_of(const Camera& camera, double aspect, const PictureArea& area = {});
+Frustum frustum_of(const Camera& camera, double aspect, const NdcRect& area = {});
 
 /// True where the box, seen through an affine matrix, lies wholly beyond one of the frustum's planes, by more
 /// than float can be wrong about a position. Boxes before a corner of the picture may be missed.
-bool lies_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box);
+bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box);
 
 }  // namespace vrut

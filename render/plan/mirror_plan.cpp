@@ -58,8 +58,8 @@ Polygon slice(const Plane& plane, const Bounds& bounds) {
 }
 
 /// Pixels of the picture, and of half a pixel around it, that a polygon of clip space covers.
-double covered_area(Polygon polygon, const glm::dvec2& picture) {
-    const glm::dvec2 edge = 1.0 + 1.0 / picture;
+double covered_area(Polygon polygon, const glm::dvec2& viewport) {
+    const glm::dvec2 edge = 1.0 + 1.0 / viewport;
     for (const glm::dvec4& inside : {glm::dvec4(0, 0, -1, 1),
                                      {1, 0, 0, edge.x},
                                      {-1, 0, 0, edge.x},
@@ -69,7 +69,7 @@ double covered_area(Polygon polygon, const glm::dvec2& picture) {
     double doubled = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const glm::dvec4 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const glm::dvec2 p = glm::dvec2(a) / a.w * picture / 2.0, q = glm::dvec2(b) / b.w * picture / 2.0;
+        const glm::dvec2 p = glm::dvec2(a) / a.w * viewport / 2.0, q = glm::dvec2(b) / b.w * viewport / 2.0;
         doubled += p.x * q.y - p.y * q.x;
     }
     return std::abs(doubled) / 2;
@@ -79,15 +79,15 @@ const Geometry& geometry_of(const Scene& scene, const DrawItem& item) {
     return scene.geometries()[static_cast<std::size_t>(item.geometry)];
 }
 
-struct Candidate {
-    std::size_t place = 0;  ///< among the opaque
+struct MirrorCandidate {
+    std::size_t index = 0;  ///< among the opaque
     Plane plane;            ///< whose normal is on the viewer's side
     double area = 0;
 };
 
-std::vector<Candidate> candidates(std::span<const DrawItem> opaque, const Scene& scene,
-                                  const glm::dmat4& clip_from_view, const glm::dvec2& picture) {
-    std::vector<Candidate> found;
+std::vector<MirrorCandidate> candidates(std::span<const DrawItem> opaque, const Scene& scene,
+                                        const glm::dmat4& clip_from_view, const glm::dvec2& viewport) {
+    std::vector<MirrorCandidate> found;
     for (std::size_t i = 0; i < opaque.size(); ++i) {
         const DrawItem& item = opaque[i];
         auto plane = mirror_plane(scene, item);
@@ -96,30 +96,30 @@ std::vector<Candidate> candidates(std::span<const DrawItem> opaque, const Scene&
         Polygon polygon = slice(*scene.plane(item.geometry), geometry_of(scene, item).bounds);
         const glm::dmat4 clip_from_node = clip_from_view * item.view_from_node;
         for (glm::dvec4& point : polygon) point = clip_from_node * point;
-        const double area = covered_area(std::move(polygon), picture);
+        const double area = covered_area(std::move(polygon), viewport);
         if (area >= kSmallestArea) found.push_back({i, *plane, area});
     }
     return found;
 }
 
-void keep_largest(std::vector<Candidate>& mirrors) {
-    if (mirrors.size() <= kMostMirrors) return;
+void keep_largest(std::vector<MirrorCandidate>& mirrors) {
+    if (mirrors.size() <= kMaxMirrors) return;
     std::stable_sort(mirrors.begin(), mirrors.end(),
-                     [](const Candidate& a, const Candidate& b) { return a.area > b.area; });
-    mirrors.resize(kMostMirrors);
+                     [](const MirrorCandidate& a, const MirrorCandidate& b) { return a.area > b.area; });
+    mirrors.resize(kMaxMirrors);
     std::sort(mirrors.begin(), mirrors.end(),
-              [](const Candidate& a, const Candidate& b) { return a.place < b.place; });
+              [](const MirrorCandidate& a, const MirrorCandidate& b) { return a.index < b.index; });
 }
 
 /// A pixel more on all sides: samples lie beside the pixels' centres.
 PixelBox box_of(const DrawItem& item, const Scene& scene, const glm::dmat4& clip_from_view,
-                const glm::ivec2& picture) {
+                const glm::ivec2& viewport) {
     const PixelBox box =
-        pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, picture);
-    return intersection({box.low - 1, box.high + 1}, {{0, 0}, picture});
+        pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, viewport);
+    return intersection({box.low - 1, box.high + 1}, {{0, 0}, viewport});
 }
 
-bool are_twins(const DrawItem& a, const DrawItem& b) {
+bool are_coincident(const DrawItem& a, const DrawItem& b) {
     return a.geometry == b.geometry && a.view_from_node == b.view_from_node;
 }
 
@@ -140,7 +140,7 @@ std::optional<DrawItem> reflected(const DrawItem& item, const Scene& scene, cons
     image.mirrored = !item.mirrored;
     if (middle - reach < margin) {
         distance.w -= margin;
-        image.kept = distance;
+        image.clip_plane = distance;
     }
     return image;
 }
@@ -148,15 +148,14 @@ std::optional<DrawItem> reflected(const DrawItem& item, const Scene& scene, cons
 std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const Plane& plane,
                                       std::span<const DrawItem> shown, const View& view) {
     const glm::dvec2 scale = 2.0 / glm::dvec2(view.width, view.height);
-    const PictureArea area{glm::dvec2(mirror.box.low) * scale - 1.0,
-                           glm::dvec2(mirror.box.high) * scale - 1.0};
+    const NdcRect area{glm::dvec2(mirror.box.low) * scale - 1.0, glm::dvec2(mirror.box.high) * scale - 1.0};
     const Frustum frustum = frustum_of(view.camera, static_cast<double>(view.width) / view.height, area);
     const Scene& scene = *view.scene->scene;
     std::vector<DrawItem> items;
     for (const DrawItem& item : shown) {
-        if (are_twins(item, mirror.surface)) continue;
+        if (are_coincident(item, mirror.surface)) continue;
         const auto image = reflected(item, scene, plane, mirror.reflection);
-        if (image && !lies_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
+        if (image && !is_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
             items.push_back(*image);
     }
     return items;
@@ -169,30 +168,30 @@ std::optional<Plane> mirror_plane(const Scene& scene, const DrawItem& item) {
     return transformed(item.view_from_node, *scene.plane(item.geometry));
 }
 
-std::vector<MirrorItem> take_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
-                                     const View& view) {
+std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
+                                        const View& view) {
     const Scene& scene = *view.scene->scene;
-    const glm::ivec2 picture(view.width, view.height);
+    const glm::ivec2 viewport(view.width, view.height);
     const glm::dmat4 clip_from_view =
         reversed_clip_from_view(view, fit_clip_range(view.camera, view.scene->bounds).near);
-    std::vector<Candidate> chosen = candidates(opaque, scene, clip_from_view, picture);
+    std::vector<MirrorCandidate> chosen = candidates(opaque, scene, clip_from_view, viewport);
     if (chosen.empty()) return {};
     keep_largest(chosen);
     std::vector<DrawItem> surfaces;
     surfaces.reserve(chosen.size());
-    for (const Candidate& candidate : chosen) surfaces.push_back(opaque[candidate.place]);
-    mark_hidden_twins(surfaces, opaque, scene);
+    for (const MirrorCandidate& candidate : chosen) surfaces.push_back(opaque[candidate.index]);
+    mark_occluded_by_coincident(surfaces, opaque, scene);
     std::vector<MirrorItem> mirrors;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Plane& plane = chosen[i].plane;
         MirrorItem& mirror = mirrors.emplace_back();
         mirror.surface = surfaces[i];
         mirror.reflection = reflection_about(plane);
-        mirror.box = box_of(mirror.surface, scene, clip_from_view, picture);
+        mirror.box = box_of(mirror.surface, scene, clip_from_view, viewport);
         mirror.reflected.opaque = reflected_items(mirror, plane, shown, view);
     }
-    for (auto taken = chosen.rbegin(); taken != chosen.rend(); ++taken)
-        opaque.erase(opaque.begin() + static_cast<std::ptrdiff_t>(taken->place));
+    for (auto it = chosen.rbegin(); it != chosen.rend(); ++it)
+        opaque.erase(opaque.begin() + static_cast<std::ptrdiff_t>(it->index));
     return mirrors;
 }
 

@@ -9,7 +9,7 @@
 namespace vrut {
 
 /// So many mirrors of a picture show a reflection: those that are largest in it.
-inline constexpr std::size_t kMostMirrors = 16;
+inline constexpr std::size_t kMaxMirrors = 16;
 
 /// The plane about which a part mirrors, in view space: that of an opaque, reflective and flat one. None for
 /// others, and where the matrix leaves no plane.
@@ -17,7 +17,7 @@ std::optional<Plane> mirror_plane(const Scene& scene, const DrawItem& item);
 
 /// Takes out of `opaque` the mirrors that show a reflection in this view. All that is seen in one, of
 /// whatever is `shown`, stands among its opaque items, glass too. Everything is by rising id.
-std::vector<MirrorItem> take_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
-                                     const View& view);
+std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
+                                        const View& view);
 
 }  // namespace vrut

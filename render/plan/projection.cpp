@@ -18,8 +18,8 @@ PixelBox intersection(const PixelBox& a, const PixelBox& b) {
     return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
 }
 
-PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& picture) {
-    const glm::dvec2 size(picture);
+PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport) {
+    const glm::dvec2 size(viewport);
     glm::dvec2 low = size, high(0);
     const auto add = [&](const glm::dvec4& clip) {
         const glm::dvec2 pixel =

@@ -22,6 +22,6 @@ PixelBox intersection(const PixelBox& a, const PixelBox& b);
 
 /// All that something within `bounds` can cover of a picture, whose clip space is a reversed one; what lies
 /// before the near plane counts for nothing.
-PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& picture);
+PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport);
 
 }  // namespace vrut

@@ -14,7 +14,7 @@ namespace vrut {
 
 namespace {
 
-constexpr double kVisible = 1.0 / 255;
+constexpr double kVisibleDifference = 1.0 / 255;
 
 /// Between which colours a material can be seen under a light, whatever its normals.
 struct ColorRange {
@@ -32,13 +32,13 @@ ColorRange color_range(const Material& material, const Light& light) {
 }
 
 /// How much a colour can change where two surfaces are drawn in the wrong order: a₁ a₂ |c₁ - c₂|.
-double swapped_difference(const ColorRange& a, const ColorRange& b) {
+double wrong_order_error(const ColorRange& a, const ColorRange& b) {
     const glm::dvec3 most = glm::max(glm::abs(a.high - b.low), glm::abs(b.high - a.low));
     return a.alpha * b.alpha * std::max({most.x, most.y, most.z});
 }
 
 /// An item as the order sees it: in view space, the eye at the origin, looking along -z.
-struct Pane {
+struct TransparentItem {
     OrientedBox box;
     double radius = 0;
     double nearest = 0, farthest = 0;  ///< its range of z
@@ -57,42 +57,44 @@ void thicken(OrientedBox& box) {
     }
 }
 
-Pane pane_of(OrientedBox box, const ColorRange& colors) {
+TransparentItem transparent_item_of(OrientedBox box, const ColorRange& colors) {
     thicken(box);
     constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-    Pane pane{box, 0, -kEverywhere, kEverywhere, glm::dvec2(kEverywhere), glm::dvec2(-kEverywhere), colors};
+    TransparentItem result{
+        box, 0, -kEverywhere, kEverywhere, glm::dvec2(kEverywhere), glm::dvec2(-kEverywhere), colors};
     for (unsigned corner = 0; corner < 8; ++corner) {
         glm::dvec3 at = box.center;
         for (unsigned k = 0; k < 3; ++k) at += corner >> k & 1 ? box.axes[k] : -box.axes[k];
-        pane.radius = std::max(pane.radius, glm::distance(at, box.center));
-        pane.nearest = std::max(pane.nearest, at.z);
-        pane.farthest = std::min(pane.farthest, at.z);
-        pane.low = glm::min(pane.low, glm::dvec2(at) / -at.z);
-        pane.high = glm::max(pane.high, glm::dvec2(at) / -at.z);
+        result.radius = std::max(result.radius, glm::distance(at, box.center));
+        result.nearest = std::max(result.nearest, at.z);
+        result.farthest = std::min(result.farthest, at.z);
+        result.low = glm::min(result.low, glm::dvec2(at) / -at.z);
+        result.high = glm::max(result.high, glm::dvec2(at) / -at.z);
     }
-    if (!(pane.nearest < 0)) {
-        pane.low = glm::dvec2(-kEverywhere);
-        pane.high = glm::dvec2(kEverywhere);
+    if (!(result.nearest < 0)) {
+        result.low = glm::dvec2(-kEverywhere);
+        result.high = glm::dvec2(kEverywhere);
     }
-    return pane;
+    return result;
 }
 
 /// What a plane at right angles to `axis` tells of two boxes whose extents along it are these: it lies
 /// between them, and the eye, at 0, is on the side of the one in front.
-Order told_by(double first, double first_extent, double second, double second_extent) {
+DepthRelation relation_along_axis(double first, double first_extent, double second, double second_extent) {
     const bool upwards = first < second;
     const double below = upwards ? first + first_extent : second + second_extent;
     const double above = upwards ? second - second_extent : first - first_extent;
-    if (below < 0 && above > 0) return Order::apart;  // the plane holds the eye
-    return ((below + above) / 2 > 0) == upwards ? Order::first_in_front : Order::second_in_front;
+    if (below < 0 && above > 0) return DepthRelation::apart;  // the plane holds the eye
+    return ((below + above) / 2 > 0) == upwards ? DepthRelation::first_in_front
+                                                : DepthRelation::second_in_front;
 }
 
 /// Of two boxes by a plane that parts them, for which fifteen directions come into question: those of their
 /// axes and at right angles to two of them. Coplanar ones have the second in front.
-Order order_of(const OrientedBox& a, const OrientedBox& b, double size) {
+DepthRelation depth_relation(const OrientedBox& a, const OrientedBox& b, double size) {
     const double tolerance = 1e-6 * size;
     bool coplanar = false;
-    Order result = Order::unknown;
+    DepthRelation result = DepthRelation::unknown;
     const auto try_axis = [&](const glm::dvec3& direction) {
         const double length = glm::length(direction);
         if (!(length > 0)) return false;
@@ -105,7 +107,7 @@ Order order_of(const OrientedBox& a, const OrientedBox& b, double size) {
         const bool in_plane = apart + extent_a + extent_b <= tolerance;
         coplanar = coplanar || in_plane;
         if (in_plane || apart - extent_a - extent_b < -tolerance) return false;
-        result = told_by(at_a, extent_a, at_b, extent_b);
+        result = relation_along_axis(at_a, extent_a, at_b, extent_b);
         return true;
     };
     const auto facing = [](const OrientedBox& box, std::size_t k) {
@@ -115,13 +117,14 @@ Order order_of(const OrientedBox& a, const OrientedBox& b, double size) {
         if (try_axis(facing(a, k)) || try_axis(facing(b, k))) return result;
     for (std::size_t k = 0; k < 9; ++k)
         if (try_axis(glm::cross(a.axes[k / 3], b.axes[k % 3]))) return result;
-    return coplanar ? Order::second_in_front : Order::unknown;
+    return coplanar ? DepthRelation::second_in_front : DepthRelation::unknown;
 }
 
 /// Which panes lie before which others, as the eye sees them.
-class Stack {
+class DepthOrderGraph {
 public:
-    Stack(std::span<const DrawItem> items, const Scene& scene, const Light& light, GlassShapes& shapes);
+    DepthOrderGraph(std::span<const DrawItem> items, const Scene& scene, const Light& light,
+                    TransparencyCache& shapes);
 
     /// False where too many overlap.
     bool compare_all();
@@ -134,62 +137,64 @@ public:
     void sort_by_distance(std::vector<unsigned>& group) const;
     /// Says of the item how its triangles are to be drawn; true if it may show itself behind itself in an
     /// order that is not known, and that would be seen.
-    bool shows_through_itself(unsigned pane, DrawItem& item) const;
+    bool needs_per_pixel_order(unsigned index, DrawItem& item) const;
 
 private:
     bool are_comparable(std::span<const unsigned> from_left) const;
-    Order compare(unsigned a, unsigned b);
-    const std::vector<FacingTriangle>& facing(unsigned pane);
+    DepthRelation compare(unsigned a, unsigned b);
+    const std::vector<FrontFacingTriangle>& facing(unsigned index);
     /// Of its facing triangles those that may lie before or behind something of the other.
-    std::vector<FacingTriangle> covering(unsigned pane, const Pane& other);
-    const Geometry& geometry(unsigned pane) const {
-        return scene_.geometries()[static_cast<std::size_t>(items_[pane].geometry)];
+    std::vector<FrontFacingTriangle> covering(unsigned index, const TransparentItem& other);
+    const Geometry& geometry(unsigned index) const {
+        return scene_.geometries()[static_cast<std::size_t>(items_[index].geometry)];
     }
 
     std::span<const DrawItem> items_;
     const Scene& scene_;
-    GlassShapes& shapes_;
-    std::vector<Pane> panes_;
+    TransparencyCache& shapes_;
+    std::vector<TransparentItem> transparent_items_;
     std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
-    std::vector<std::optional<std::vector<FacingTriangle>>> facing_;
+    std::vector<std::optional<std::vector<FrontFacingTriangle>>> facing_;
     std::size_t compared_ = 0;  // pairs of triangles
 };
 
-Stack::Stack(std::span<const DrawItem> items, const Scene& scene, const Light& light, GlassShapes& shapes)
+DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const Scene& scene, const Light& light,
+                                 TransparencyCache& shapes)
     : items_(items), scene_(scene), shapes_(shapes), behind_(items.size()), facing_(items.size()) {
     for (const DrawItem& item : items)
-        panes_.push_back(pane_of(transformed(item.view_from_node, shapes.box(item.geometry)),
-                                 color_range(scene.material(item.material), light)));
+        transparent_items_.push_back(
+            transparent_item_of(transformed(item.view_from_node, shapes.box(item.geometry)),
+                                color_range(scene.material(item.material), light)));
 }
 
-const std::vector<FacingTriangle>& Stack::facing(unsigned pane) {
-    if (!facing_[pane]) facing_[pane] = facing_triangles(items_[pane], geometry(pane));
-    return *facing_[pane];
+const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) {
+    if (!facing_[index]) facing_[index] = front_facing_triangles(items_[index], geometry(index));
+    return *facing_[index];
 }
 
 /// `a` has the lower id.
-Order Stack::compare(unsigned a, unsigned b) {
-    const Pane &first = panes_[a], &second = panes_[b];
+DepthRelation DepthOrderGraph::compare(unsigned a, unsigned b) {
+    const TransparentItem &first = transparent_items_[a], &second = transparent_items_[b];
     if (items_[a].geometry == items_[b].geometry && items_[a].view_from_node == items_[b].view_from_node)
-        return Order::second_in_front;
-    if (first.nearest < second.farthest) return Order::second_in_front;
-    if (second.nearest < first.farthest) return Order::first_in_front;
+        return DepthRelation::second_in_front;
+    if (first.nearest < second.farthest) return DepthRelation::second_in_front;
+    if (second.nearest < first.farthest) return DepthRelation::first_in_front;
     const double size = first.radius + second.radius;
-    const Order order = order_of(first.box, second.box, size);
-    if (order != Order::unknown) return order;
+    const DepthRelation order = depth_relation(first.box, second.box, size);
+    if (order != DepthRelation::unknown) return order;
     const std::size_t size_a = geometry(a).triangles.size(), size_b = geometry(b).triangles.size();
-    if (std::max(size_a, size_b) > kMostOrdered) return order;
+    if (std::max(size_a, size_b) > kMaxOrderedTriangles) return order;
     // Looking for those that cover each other costs time as well.
-    if ((compared_ += size_a + size_b) > 16 * kMostCompared) return order;
+    if ((compared_ += size_a + size_b) > 16 * kMaxComparedPairs) return order;
     const auto mine = covering(a, second), others = covering(b, first);
     const std::size_t pairs = mine.size() * others.size();
-    if (pairs > kMostCompared || (compared_ += pairs) > 16 * kMostCompared) return order;
-    return order_of(mine, others, kNegligible * size);
+    if (pairs > kMaxComparedPairs || (compared_ += pairs) > 16 * kMaxComparedPairs) return order;
+    return depth_relation(mine, others, kNegligible * size);
 }
 
-std::vector<FacingTriangle> Stack::covering(unsigned pane, const Pane& other) {
-    std::vector<FacingTriangle> result;
-    for (const FacingTriangle& triangle : facing(pane))
+std::vector<FrontFacingTriangle> DepthOrderGraph::covering(unsigned index, const TransparentItem& other) {
+    std::vector<FrontFacingTriangle> result;
+    for (const FrontFacingTriangle& triangle : facing(index))
         if (triangle.low.x < other.high.x && other.low.x < triangle.high.x && triangle.low.y < other.high.y &&
             other.low.y < triangle.high.y)
             result.push_back(triangle);
@@ -197,65 +202,67 @@ std::vector<FacingTriangle> Stack::covering(unsigned pane, const Pane& other) {
 }
 
 /// Counts pairs that overlap in the width of the screen, which takes far less than to compare them.
-bool Stack::are_comparable(std::span<const unsigned> from_left) const {
+bool DepthOrderGraph::are_comparable(std::span<const unsigned> from_left) const {
     std::size_t pairs = 0;
-    for (std::size_t i = 0; i < from_left.size() && pairs <= kMostPairs; ++i) {
+    for (std::size_t i = 0; i < from_left.size() && pairs <= kMaxOverlappingPairs; ++i) {
         const auto rest = from_left.subspan(i + 1);
-        const auto end =
-            std::upper_bound(rest.begin(), rest.end(), panes_[from_left[i]].high.x,
-                             [&](double right, unsigned pane) { return right < panes_[pane].low.x; });
+        const auto end = std::upper_bound(
+            rest.begin(), rest.end(), transparent_items_[from_left[i]].high.x,
+            [&](double right, unsigned index) { return right < transparent_items_[index].low.x; });
         pairs += static_cast<std::size_t>(end - rest.begin());
     }
-    return pairs <= kMostPairs;
+    return pairs <= kMaxOverlappingPairs;
 }
 
-bool Stack::compare_all() {
-    std::vector<unsigned> from_left(panes_.size());
+bool DepthOrderGraph::compare_all() {
+    std::vector<unsigned> from_left(transparent_items_.size());
     std::iota(from_left.begin(), from_left.end(), 0U);
     std::sort(from_left.begin(), from_left.end(), [&](unsigned a, unsigned b) {
-        return std::tie(panes_[a].low.x, a) < std::tie(panes_[b].low.x, b);
+        return std::tie(transparent_items_[a].low.x, a) < std::tie(transparent_items_[b].low.x, b);
     });
     if (!are_comparable(from_left)) return false;
     for (std::size_t i = 0; i < from_left.size(); ++i) {
-        const Pane& left = panes_[from_left[i]];
+        const TransparentItem& left = transparent_items_[from_left[i]];
         for (std::size_t k = i + 1; k < from_left.size(); ++k) {
-            const Pane& right = panes_[from_left[k]];
+            const TransparentItem& right = transparent_items_[from_left[k]];
             if (right.low.x > left.high.x) break;
             if (right.low.y > left.high.y || left.low.y > right.high.y) continue;
             const auto [a, b] = std::minmax(from_left[i], from_left[k]);
-            const Order order = compare(a, b);
-            if (order == Order::first_in_front || order == Order::unknown) behind_[a].push_back(b);
-            if (order == Order::second_in_front || order == Order::unknown) behind_[b].push_back(a);
+            const DepthRelation order = compare(a, b);
+            if (order == DepthRelation::first_in_front || order == DepthRelation::unknown)
+                behind_[a].push_back(b);
+            if (order == DepthRelation::second_in_front || order == DepthRelation::unknown)
+                behind_[b].push_back(a);
         }
     }
     return true;
 }
 
-double Stack::depth() const {
+double DepthOrderGraph::depth() const {
     const auto area = [](const glm::dvec2& low, const glm::dvec2& high) {
         return (high.x - low.x) * (high.y - low.y);
     };
     double sum = 0;
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
-    for (const Pane& pane : panes_) {
-        sum += area(pane.low, pane.high);
-        low = glm::min(low, pane.low);
-        high = glm::max(high, pane.high);
+    for (const TransparentItem& transparent : transparent_items_) {
+        sum += area(transparent.low, transparent.high);
+        low = glm::min(low, transparent.low);
+        high = glm::max(high, transparent.high);
     }
     return sum / area(low, high);
 }
 
-double Stack::risk(const std::vector<unsigned>& group) const {
+double DepthOrderGraph::risk(const std::vector<unsigned>& group) const {
     double sum = 0;
     for (const unsigned a : group)
         for (const unsigned b : behind_[a])
             if (std::binary_search(group.begin(), group.end(), b))
-                sum += swapped_difference(panes_[a].colors, panes_[b].colors);
+                sum += wrong_order_error(transparent_items_[a].colors, transparent_items_[b].colors);
     return sum;
 }
 
-void Stack::sort_by_distance(std::vector<unsigned>& group) const {
-    const auto distance = [&](unsigned pane) { return glm::length(panes_[pane].box.center); };
+void DepthOrderGraph::sort_by_distance(std::vector<unsigned>& group) const {
+    const auto distance = [&](unsigned index) { return glm::length(transparent_items_[index].box.center); };
     std::stable_sort(group.begin(), group.end(),
                      [&](unsigned a, unsigned b) { return distance(a) > distance(b); });
 }
@@ -270,24 +277,24 @@ void put_last(const std::vector<unsigned>& last, std::span<unsigned> all) {
     std::copy(last.begin(), last.end(), rest);
 }
 
-bool Stack::shows_through_itself(unsigned pane, DrawItem& item) const {
+bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) const {
     if (is_flattened(item.view_from_node)) return false;  // all of it in one plane
-    const TriangleOrder& known = shapes_.order(item.geometry, item.sides);
-    item.order = known.far_to_near;
-    const ColorRange& colors = panes_[pane].colors;
-    if (known.rings.empty() || swapped_difference(colors, colors) <= kVisible) return false;
+    const TriangleOrder& known = shapes_.order(item.geometry, item.cull_mode);
+    item.order = known.back_to_front;
+    const ColorRange& colors = transparent_items_[index].colors;
+    if (known.cycles.empty() || wrong_order_error(colors, colors) <= kVisibleDifference) return false;
     std::vector<unsigned> order;
-    if (known.far_to_near) {
-        order = *known.far_to_near;
+    if (known.back_to_front) {
+        order = *known.back_to_front;
     } else {
-        order.resize(geometry(pane).triangles.size() * (item.sides == Sides::both ? 2 : 1));
+        order.resize(geometry(index).triangles.size() * (item.cull_mode == CullMode::none ? 2 : 1));
         std::iota(order.begin(), order.end(), 0U);
     }
-    for (const std::vector<unsigned>& ring : known.rings) {
-        const auto facing =
-            far_to_near(facing_triangles(item, geometry(pane), ring), kNegligible * panes_[pane].radius);
+    for (const std::vector<unsigned>& cycle : known.cycles) {
+        const auto facing = back_to_front(front_facing_triangles(item, geometry(index), cycle),
+                                          kNegligible * transparent_items_[index].radius);
         if (!facing) return true;
-        put_last(*facing, std::span(std::find(order.begin(), order.end(), ring.front()), ring.size()));
+        put_last(*facing, std::span(std::find(order.begin(), order.end(), cycle.front()), cycle.size()));
     }
     item.order = std::make_shared<const std::vector<unsigned>>(std::move(order));
     return false;
@@ -297,13 +304,13 @@ bool Stack::shows_through_itself(unsigned pane, DrawItem& item) const {
 
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
                                                 const Light& light, Methods::Transparency method,
-                                                GlassShapes& shapes) {
-    Stack stack(items, scene, light, shapes);
+                                                TransparencyCache& shapes) {
+    DepthOrderGraph graph(items, scene, light, shapes);
     std::vector<std::vector<unsigned>> order;
-    const bool ordered = stack.compare_all(), sorted = method == Methods::Transparency::sorted;
-    const bool all_exact = !ordered && !sorted && stack.depth() <= kMostLayers;
+    const bool ordered = graph.compare_all(), sorted = method == Methods::Transparency::sorted;
+    const bool all_exact = !ordered && !sorted && graph.depth() <= kMaxMeanLayers;
     if (ordered) {
-        order = stack.groups();
+        order = graph.groups();
     } else {
         order.emplace_back(items.size());
         std::iota(order[0].begin(), order[0].end(), 0U);
@@ -314,19 +321,20 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
         groups.back().items.push_back(item);
     };
     for (std::vector<unsigned>& members : order) {
-        const bool exact =
-            all_exact || (ordered && !sorted && members.size() > 1 && stack.risk(members) > kVisible);
-        if (!exact) stack.sort_by_distance(members);
+        const bool exact = all_exact || (ordered && !sorted && members.size() > 1 &&
+                                         graph.risk(members) > kVisibleDifference);
+        if (!exact) graph.sort_by_distance(members);
         for (const unsigned member : members) {
             DrawItem item = items[member];
-            const bool exact_alone = !exact && stack.shows_through_itself(member, item) && !sorted;
+            const bool exact_alone = !exact && graph.needs_per_pixel_order(member, item) && !sorted;
             add(item, exact || exact_alone, exact_alone || (exact && member == members.front()));
         }
     }
     return groups;
 }
 
-void mark_hidden_twins(std::vector<DrawItem>& items, std::span<const DrawItem> others, const Scene& scene) {
+void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const DrawItem> others,
+                                 const Scene& scene) {
     // Compared by geometry and matrix: thousands of parts may share a geometry.
     const auto before = [](const DrawItem* a, const DrawItem* b) {
         if (a->geometry != b->geometry) return a->geometry < b->geometry;
@@ -336,14 +344,14 @@ void mark_hidden_twins(std::vector<DrawItem>& items, std::span<const DrawItem> o
     const auto id = [&](const DrawItem& item) {
         return scene.nodes()[static_cast<std::size_t>(item.node)].id;
     };
-    std::vector<DrawItem*> twins;
-    twins.reserve(items.size());
-    for (DrawItem& item : items) twins.push_back(&item);
-    std::sort(twins.begin(), twins.end(), before);
+    std::vector<DrawItem*> sorted_items;
+    sorted_items.reserve(items.size());
+    for (DrawItem& item : items) sorted_items.push_back(&item);
+    std::sort(sorted_items.begin(), sorted_items.end(), before);
     for (const DrawItem& other : others) {
-        const auto [first, last] = std::equal_range(twins.begin(), twins.end(), &other, before);
-        for (auto twin = first; twin != last; ++twin)
-            if (id(other) > id(**twin)) (*twin)->behind_twin = true;
+        const auto [first, last] = std::equal_range(sorted_items.begin(), sorted_items.end(), &other, before);
+        for (auto match = first; match != last; ++match)
+            if (id(other) > id(**match)) (*match)->occluded_by_coincident = true;
     }
 }
 

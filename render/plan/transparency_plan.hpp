@@ -3,7 +3,7 @@
 #include <span>
 
 #include "plan/frame_plan.hpp"
-#include "plan/glass_shape.hpp"
+#include "plan/transparency_cache.hpp"
 
 namespace vrut {
 
@@ -11,16 +11,17 @@ namespace vrut {
 /// space) sees them. What lies before what is told by a plane between two boxes: the one on the eye's side is
 /// in front. Items that no such plane parts, and rings of items, become an exact group if drawing them in the
 /// wrong order could change a colour by more than 1/255; with Transparency::sorted they are drawn by their
-/// distance. Above kMostPairs pairs that overlap in the width of the screen everything is one exact group,
-/// or, where more than kMostLayers lie over each other on average, drawn by its distance.
+/// distance. Above kMaxOverlappingPairs pairs that overlap in the width of the screen everything is one exact
+/// group, or, where more than kMaxMeanLayers lie over each other on average, drawn by its distance.
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
                                                 const Light& light, Methods::Transparency method,
-                                                GlassShapes& shapes);
+                                                TransparencyCache& shapes);
 
-inline constexpr std::size_t kMostPairs = std::size_t{1} << 20;
-inline constexpr double kMostLayers = 64;
+inline constexpr std::size_t kMaxOverlappingPairs = std::size_t{1} << 20;
+inline constexpr double kMaxMeanLayers = 64;
 
-/// Sets behind_twin of each of `items`.
-void mark_hidden_twins(std::vector<DrawItem>& items, std::span<const DrawItem> others, const Scene& scene);
+/// Sets occluded_by_coincident of each of `items`.
+void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const DrawItem> others,
+                                 const Scene& scene);
 
 }  // namespace vrut

@@ -18,17 +18,17 @@ inline constexpr double kNegligible = 1e-6;
 /// triangles that face away from it are not drawn (Chen et al. 2012, "Depth-Presorted Triangle Lists"). Of n
 /// triangles, number k is triangle k, and n + k the same from its back, if that is drawn too.
 struct TriangleOrder {
-    std::shared_ptr<const std::vector<unsigned>> far_to_near;  ///< null: as in the file
+    std::shared_ptr<const std::vector<unsigned>> back_to_front;  ///< null: as in the file
     /// Those among which no such order exists: which is in front depends on the eye.
-    std::vector<std::vector<unsigned>> rings;  ///< each one after the other in that order
+    std::vector<std::vector<unsigned>> cycles;  ///< each one after the other in that order
 };
 
-/// Takes the square of the number of triangles; above kMostOrdered they are one ring.
-TriangleOrder order_triangles(const Geometry& geometry, Sides sides);
-inline constexpr std::size_t kMostOrdered = 2048;
+/// Takes the square of the number of triangles; above kMaxOrderedTriangles they are one ring.
+TriangleOrder order_triangles(const Geometry& geometry, CullMode cull_mode);
+inline constexpr std::size_t kMaxOrderedTriangles = 2048;
 
 /// A triangle that faces the eye, in view space.
-struct FacingTriangle {
+struct FrontFacingTriangle {
     std::array<glm::dvec3, 3> corners;
     glm::dvec3 normal;  ///< unit, to the eye
     unsigned number = 0;
@@ -37,21 +37,22 @@ struct FacingTriangle {
 
 /// Of an item's triangles those that face the eye and are not degenerate: of all, or of some numbers of a
 /// TriangleOrder.
-std::vector<FacingTriangle> facing_triangles(const DrawItem& item, const Geometry& geometry);
-std::vector<FacingTriangle> facing_triangles(const DrawItem& item, const Geometry& geometry,
-                                             std::span<const unsigned> numbers);
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry);
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry,
+                                                        std::span<const unsigned> numbers);
 
 /// Which of two lies before the other, seen from the origin.
-enum class Order { apart, first_in_front, second_in_front, unknown };
+enum class DepthRelation { apart, first_in_front, second_in_front, unknown };
 
 /// Of two sets of triangles that do not have to be convex: `unknown` where some are before and some behind,
-/// where some cross, and for more than kMostCompared pairs. `tolerance` is a distance.
-Order order_of(std::span<const FacingTriangle> first, std::span<const FacingTriangle> second,
-               double tolerance);
-inline constexpr std::size_t kMostCompared = std::size_t{1} << 18;
+/// where some cross, and for more than kMaxComparedPairs pairs. `tolerance` is a distance.
+DepthRelation depth_relation(std::span<const FrontFacingTriangle> first,
+                             std::span<const FrontFacingTriangle> second, double tolerance);
+inline constexpr std::size_t kMaxComparedPairs = std::size_t{1} << 18;
 
 /// Numbers of triangles from far to near, seen from the origin; none where some cross or lie in a ring, or
-/// where more than 4 kMostCompared pairs come into question.
-std::optional<std::vector<unsigned>> far_to_near(std::vector<FacingTriangle> triangles, double tolerance);
+/// where more than 4 kMaxComparedPairs pairs come into question.
+std::optional<std::vector<unsigned>> back_to_front(std::vector<FrontFacingTriangle> triangles,
+                                                   double tolerance);
 
 }  // namespace vrut

@@ -28,11 +28,11 @@ struct Background {
 };
 
 /// A sign on a surface, in world space, and the name by which clients know it.
-struct Mark {
+struct PlacedMarker {
     glm::dvec3 point{0};
     std::string name = {};
 
-    bool operator==(const Mark&) const = default;
+    bool operator==(const PlacedMarker&) const = default;
 };
 
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
@@ -43,9 +43,9 @@ class DetailLevels;
 /// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
 /// default is the most accurate.
 struct Methods {
-    enum class Light { pixel, vertex };         ///< where Phong's equation is evaluated
+    enum class Lighting { pixel, vertex };      ///< where Phong's equation is evaluated
     enum class Transparency { exact, sorted };  ///< right at each pixel, or part by part from far to near
-    Light light = Light::pixel;
+    Lighting light = Lighting::pixel;
     Transparency transparency = Transparency::exact;
 
     bool operator==(const Methods&) const = default;
@@ -68,7 +68,7 @@ struct View {
     /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
     Index selected = kNone;
     Background background;
-    std::shared_ptr<const std::vector<Mark>> marks;  ///< null: none; views are equal by its address
+    std::shared_ptr<const std::vector<PlacedMarker>> markers;  ///< null: none; views are equal by its address
 
     bool operator==(const View&) const = default;
 };

@@ -12,7 +12,7 @@ double largest_of(const glm::dvec3& v) { return std::max({std::abs(v.x), std::ab
 
 }  // namespace
 
-BoxTree::Line::Line(const glm::dvec3& origin, const glm::dvec3& direction) {
+RayBvh::SlabRay::SlabRay(const glm::dvec3& origin, const glm::dvec3& direction) {
     const double slack = kSlack * largest_of(origin);
     before_ = origin - slack;
     after_ = origin + slack;
@@ -22,17 +22,17 @@ BoxTree::Line::Line(const glm::dvec3& origin, const glm::dvec3& direction) {
                                                                  : direction[axis]);
 }
 
-BoxTree::BoxTree(std::span<const Bounds> boxes) : order_(boxes.size()) {
+RayBvh::RayBvh(std::span<const Bounds> boxes) : order_(boxes.size()) {
     if (boxes.empty()) return;
     std::iota(order_.begin(), order_.end(), 0U);
     const auto count = static_cast<std::uint32_t>(boxes.size());
-    nodes_.push_back({around(0, count, boxes), 0, count});
+    nodes_.push_back({bounds_of(0, count, boxes), 0, count});
     // A node's children come after it.
     for (std::uint32_t node = 0; node < nodes_.size(); ++node)
         if (nodes_[node].count > kLeaf) split(node, boxes);
 }
 
-Bounds BoxTree::around(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const {
+Bounds RayBvh::bounds_of(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const {
     Bounds box;
     for (std::uint32_t i = first; i < first + count; ++i) box.add(boxes[order_[i]]);
     const double slack = kSlack * std::max(largest_of(box.min), largest_of(box.max));
@@ -40,7 +40,7 @@ Bounds BoxTree::around(std::uint32_t first, std::uint32_t count, std::span<const
 }
 
 /// In halves, across the axis along which the boxes' centres are spread most.
-void BoxTree::split(std::uint32_t node, std::span<const Bounds> boxes) {
+void RayBvh::split(std::uint32_t node, std::span<const Bounds> boxes) {
     const std::uint32_t first = nodes_[node].first, count = nodes_[node].count, half = count / 2;
     Bounds centers;
     for (std::uint32_t i = first; i < first + count; ++i) centers.add(boxes[order_[i]].center());
@@ -52,8 +52,8 @@ void BoxTree::split(std::uint32_t node, std::span<const Bounds> boxes) {
     });
     nodes_[node].first = static_cast<std::uint32_t>(nodes_.size());
     nodes_[node].count = 0;
-    nodes_.push_back({around(first, half, boxes), first, half});
-    nodes_.push_back({around(first + half, count - half, boxes), first + half, count - half});
+    nodes_.push_back({bounds_of(first, half, boxes), first, half});
+    nodes_.push_back({bounds_of(first + half, count - half, boxes), first + half, count - half});
 }
 
 }  // namespace vrut::reference

@@ -15,10 +15,10 @@ namespace vrut::reference {
 
 /// A bounding volume hierarchy in double: which of many boxes a ray may meet. Own, for the libraries at hand
 /// (Embree) work in single precision.
-class BoxTree {
+class RayBvh {
 public:
     /// None of the boxes is empty or infinite.
-    explicit BoxTree(std::span<const Bounds> boxes);
+    explicit RayBvh(std::span<const Bounds> boxes);
 
     /// Calls `meet` with the number of each box that the ray may enter up to `farthest`, which `meet` may
     /// lower to pass over what lies behind; roughly nearest first. Never misses a box for rounding.
@@ -26,19 +26,19 @@ public:
     void visit(const glm::dvec3& origin, const glm::dvec3& direction, const double& farthest,
                const Meet& meet) const {
         if (nodes_.empty()) return;
-        const Line line(origin, direction);
+        const SlabRay line(origin, direction);
         // One entry waits for each level of the tree, which halves its boxes at each: 2^32 at most.
-        std::array<Waiting, 64> waiting{};
+        std::array<TraversalEntry, 64> waiting{};
         std::size_t count = 0;
         waiting[count++] = {0, line.entry(nodes_[0].box)};
         while (count > 0) {
-            const Waiting next = waiting[--count];
+            const TraversalEntry next = waiting[--count];
             if (!(next.entry <= farthest)) continue;
-            const Node& node = nodes_[next.node];
+            const RayBvhNode& node = nodes_[next.node];
             for (std::uint32_t i = 0; i < node.count; ++i) meet(order_[node.first + i]);
             if (node.count > 0) continue;
-            Waiting near{node.first, line.entry(nodes_[node.first].box)};
-            Waiting far{node.first + 1, line.entry(nodes_[node.first + 1].box)};
+            TraversalEntry near{node.first, line.entry(nodes_[node.first].box)};
+            TraversalEntry far{node.first + 1, line.entry(nodes_[node.first + 1].box)};
             if (far.entry < near.entry) std::swap(near, far);
             if (far.entry <= farthest) waiting[count++] = far;
             if (near.entry <= farthest) waiting[count++] = near;
@@ -46,21 +46,21 @@ public:
     }
 
 private:
-    struct Node {
+    struct RayBvhNode {
         Bounds box;
         std::uint32_t first = 0;  ///< of a leaf: in `order_`; else of its two children
         std::uint32_t count = 0;  ///< 0: not a leaf
     };
-    struct Waiting {
+    struct TraversalEntry {
         std::uint32_t node = 0;
         double entry = 0;
     };
     /// A part of a coordinate, far above what the test of a triangle rounds off.
     static constexpr double kSlack = 1e-14;
 
-    class Line {
+    class SlabRay {
     public:
-        Line(const glm::dvec3& origin, const glm::dvec3& direction);
+        SlabRay(const glm::dvec3& origin, const glm::dvec3& direction);
         /// Distance at which a box is entered, not below 0; NaN, which no comparison holds for, where
         /// it is passed by.
         double entry(const Bounds& box) const {
@@ -76,9 +76,9 @@ private:
     };
 
     void split(std::uint32_t node, std::span<const Bounds> boxes);
-    Bounds around(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const;
+    Bounds bounds_of(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const;
 
-    std::vector<Node> nodes_;
+    std::vector<RayBvhNode> nodes_;
     std::vector<std::uint32_t> order_;
 };
 

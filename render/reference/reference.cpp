@@ -13,7 +13,7 @@ namespace vrut {
 namespace {
 
 /// The row is counted from the bottom.
-void trace_row(const reference::Tracer& tracer, const View& view, int row, ReferencePicture& picture) {
+void trace_row(const reference::Tracer& tracer, const View& view, int row, ReferenceImage& image) {
     const int y = view.height - 1 - row;
     for (int x = 0; x < view.width; ++x) {
         const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.width) +
@@ -22,30 +22,30 @@ void trace_row(const reference::Tracer& tracer, const View& view, int row, Refer
         glm::dvec3 sum(0);
         for (int i = 0; i < view.samples; ++i)
             sum += tracer.color_at(center + sample_offset(i, view.samples));
-        picture.color[at] = sum / static_cast<double>(view.samples);
-        picture.node[at] = tracer.node_at(center);
+        image.color[at] = sum / static_cast<double>(view.samples);
+        image.node[at] = tracer.node_at(center);
     }
 }
 
 }  // namespace
 
-ReferencePicture trace(const View& view) {
+ReferenceImage trace(const View& view) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
-    ReferencePicture picture{view.width, view.height, std::vector<glm::dvec3>(pixels),
-                             std::vector<Index>(pixels, kNone)};
+    ReferenceImage image{view.width, view.height, std::vector<glm::dvec3>(pixels),
+                         std::vector<Index>(pixels, kNone)};
     const reference::Tracer tracer(view);
     std::atomic<int> next = 0;
     const auto work = [&] {
-        for (int row = next++; row < view.height; row = next++) trace_row(tracer, view, row, picture);
+        for (int row = next++; row < view.height; row = next++) trace_row(tracer, view, row, image);
     };
     std::vector<std::jthread> others(std::max(std::thread::hardware_concurrency(), 1U) - 1);
     for (std::jthread& other : others) other = std::jthread(work);
     work();
     for (std::jthread& other : others) other.join();
-    return picture;
+    return image;
 }
 
-Image image_of(const ReferencePicture& picture) {
+Image image_of(const ReferenceImage& picture) {
     Image image;
     image.resize(picture.width, picture.height);
     for (std::size_t i = 0; i < picture.color.size(); ++i) {

@@ -9,7 +9,7 @@
 namespace vrut {
 
 /// What a view shows, before it is rounded. Rows from the bottom up.
-struct ReferencePicture {
+struct ReferenceImage {
     int width = 0, height = 0;
     std::vector<glm::dvec3> color;  ///< of each pixel, 0 to 1: the mean of its samples
     /// What the ray through each pixel's centre meets first, transparent surfaces included; kNone: nothing.
@@ -19,9 +19,9 @@ struct ReferencePicture {
 /// The picture as the rules of the scene format have it, ray by ray in double: slow, simple, and the judge of
 /// what the GPU draws. Edges, outlines and marks are left out; a wireframe has its background alone. Uses all
 /// of the processor's cores.
-ReferencePicture trace(const View& view);
+ReferenceImage trace(const View& view);
 
 /// Rounded to bytes: floor(255 x + 0.5).
-Image image_of(const ReferencePicture& picture);
+Image image_of(const ReferenceImage& picture);
 
 }  // namespace vrut

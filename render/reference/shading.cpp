@@ -16,8 +16,8 @@ glm::dvec3 unit(const glm::dvec3& v) {
 }
 
 /// Of the corners, as the eye sees them; all are 0 for a triangle without area.
-struct Corners {
-    Corners(const Part& part, std::uint32_t triangle) {
+struct TriangleVertices {
+    TriangleVertices(const TracedInstance& part, std::uint32_t triangle) {
         const glm::uvec3& at = part.geometry->triangles[triangle];
         const auto& given = part.geometry->positions;
         const glm::dvec3 own_face =
@@ -29,23 +29,23 @@ struct Corners {
             normals[k] = unit(part.normal_matrix * (normal == glm::dvec3(0) ? own_face : unit(normal)));
             if (!part.geometry->texcoords.empty()) texcoords[k] = part.geometry->texcoords[corner];
         }
-        sides[0] = part.positions[at.y] - part.positions[at.x];
-        sides[1] = part.positions[at.z] - part.positions[at.x];
-        face = unit(glm::cross(unit(sides[0]), unit(sides[1])));
+        edges[0] = part.positions[at.y] - part.positions[at.x];
+        edges[1] = part.positions[at.z] - part.positions[at.x];
+        face = unit(glm::cross(unit(edges[0]), unit(edges[1])));
     }
 
     glm::dmat3 normals{0};
     glm::dmat3x2 texcoords{0};
-    std::array<glm::dvec3, 2> sides{};  ///< from the first corner to the others
+    std::array<glm::dvec3, 2> edges{};  ///< from the first corner to the others
     glm::dvec3 face{0};                 ///< normal of the plane
 };
 
 /// How the weights of the corners change where the point moves by `move` on their plane.
-glm::dvec3 change_of_weights(const Corners& corners, const glm::dvec3& move) {
-    const glm::dvec3 area = glm::cross(corners.sides[0], corners.sides[1]);
+glm::dvec3 dbarycentrics(const TriangleVertices& corners, const glm::dvec3& move) {
+    const glm::dvec3 area = glm::cross(corners.edges[0], corners.edges[1]);
     const double doubled = glm::dot(area, corners.face);
-    const double v = glm::dot(glm::cross(move, corners.sides[1]), corners.face) / doubled;
-    const double w = glm::dot(glm::cross(corners.sides[0], move), corners.face) / doubled;
+    const double v = glm::dot(glm::cross(move, corners.edges[1]), corners.face) / doubled;
+    const double w = glm::dot(glm::cross(corners.edges[0], move), corners.face) / doubled;
     return {-v - w, v, w};
 }
 
@@ -71,15 +71,15 @@ double in_cone(const Light& light, const glm::dvec3& from_light) {
     return t * t * (3 - 2 * t);
 }
 
-struct Incoming {
+struct IncidentLight {
     glm::dvec3 to_light{0};  ///< unit
     double intensity = 1;
 };
 
-Incoming incoming(const Light& light, const glm::dvec3& eye, const glm::dvec3& point) {
+IncidentLight incident_light(const Light& light, const glm::dvec3& eye, const glm::dvec3& point) {
     if (!light.headlight && light.type == LightData::Type::directional) return {-light.direction, 1};
     const glm::dvec3 way = (light.headlight ? glm::dvec3(0) : light.position - eye) - point;
-    Incoming result{unit(way), attenuated(light, glm::length(way))};
+    IncidentLight result{unit(way), attenuated(light, glm::length(way))};
     if (!light.headlight && light.type == LightData::Type::spot)
         result.intensity *= in_cone(light, -result.to_light);
     return result;
@@ -87,36 +87,37 @@ Incoming incoming(const Light& light, const glm::dvec3& eye, const glm::dvec3& p
 
 }  // namespace
 
-Spot spot_of(const Part& part, const Meeting& meeting, const Sight& ray) {
-    const Corners corners(part, meeting.triangle);
-    Spot spot;
-    spot.point = ray.origin + ray.direction * meeting.distance;
-    spot.texcoord = corners.texcoords * meeting.weights;
-    const glm::dvec3 normal = corners.normals * meeting.weights;
+SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit& hit,
+                                  const RayDifferential& ray) {
+    const TriangleVertices corners(part, hit.triangle);
+    SurfaceInteraction interaction;
+    interaction.point = ray.origin + ray.direction * hit.distance;
+    interaction.texcoord = corners.texcoords * hit.barycentrics;
+    const glm::dvec3 normal = corners.normals * hit.barycentrics;
     const double length = glm::length(normal);
     const bool vanishes = length < 1e-6;  // opposite neighbours
-    spot.normal = vanishes ? corners.face : normal / length;
-    const bool turned = (part.both_sides || vanishes) && glm::dot(spot.normal, ray.direction) > 0;
-    if (turned) spot.normal = -spot.normal;
+    interaction.normal = vanishes ? corners.face : normal / length;
+    const bool turned = (part.two_sided || vanishes) && glm::dot(interaction.normal, ray.direction) > 0;
+    if (turned) interaction.normal = -interaction.normal;
     for (std::size_t i = 0; i < 2; ++i) {
         // The neighbouring pixel's ray, met with the triangle's plane.
-        const glm::dvec3 move = ray.origin_change[i] + ray.direction_change[i] * meeting.distance;
+        const glm::dvec3 move = ray.dorigin_dxy[i] + ray.ddirection_dxy[i] * hit.distance;
         const glm::dvec3 on_plane =
             move - ray.direction * (glm::dot(corners.face, move) / glm::dot(corners.face, ray.direction));
-        const glm::dvec3 weights = change_of_weights(corners, on_plane);
-        spot.texcoord_change[i] = corners.texcoords * weights;
+        const glm::dvec3 barycentrics = dbarycentrics(corners, on_plane);
+        interaction.duv_dxy[i] = corners.texcoords * barycentrics;
         if (vanishes) continue;
-        const glm::dvec3 change = corners.normals * weights * (turned ? -1.0 : 1.0);
-        spot.normal_change[i] = (change - spot.normal * glm::dot(spot.normal, change)) / length;
+        const glm::dvec3 change = corners.normals * barycentrics * (turned ? -1.0 : 1.0);
+        interaction.dn_dxy[i] = (change - interaction.normal * glm::dot(interaction.normal, change)) / length;
     }
-    return spot;
+    return interaction;
 }
 
 glm::dvec3 phong(const Material& material, const glm::dvec3& diffuse, const Light& light,
-                 const glm::dvec3& eye, const Spot& spot, const glm::dvec3& to_viewer) {
-    const auto [to_light, intensity] = incoming(light, eye, spot.point);
-    const double cosine = glm::dot(to_light, spot.normal), lambert = std::max(cosine, 0.0);
-    const glm::dvec3 reflected = spot.normal * (2 * cosine) - to_light;
+                 const glm::dvec3& eye, const SurfaceInteraction& interaction, const glm::dvec3& to_viewer) {
+    const auto [to_light, intensity] = incident_light(light, eye, interaction.point);
+    const double cosine = glm::dot(to_light, interaction.normal), lambert = std::max(cosine, 0.0);
+    const glm::dvec3 reflected = interaction.normal * (2 * cosine) - to_light;
     const double highlight = std::pow(std::max(glm::dot(reflected, to_viewer), 0.0), material.shininess);
     const glm::dvec3 lit = diffuse + glm::dvec3(material.specular) * highlight;
     const glm::dvec3 base = glm::dvec3(material.emission) + glm::dvec3(material.ambient);

@@ -29,9 +29,9 @@ int wrapped(int i, int count, Wrap wrap) {
 }
 
 /// The four texels whose centres surround a place, and how far it lies from the first to the last.
-struct Four {
-    Four(const glm::dvec2& place, int width, int height) {
-        const glm::dvec2 at = place * glm::dvec2(width, height) - 0.5;
+struct BilinearFootprint {
+    BilinearFootprint(const glm::dvec2& uv, int width, int height) {
+        const glm::dvec2 at = uv * glm::dvec2(width, height) - 0.5;
         x = static_cast<int>(std::floor(at.x));
         y = static_cast<int>(std::floor(at.y));
         part = at - glm::dvec2(x, y);
@@ -61,15 +61,15 @@ double longer_side(const std::array<glm::dvec2, 2>& change, const glm::dvec2& si
 }
 
 /// A camera of the cube map: where it looks, what is to its right, and up.
-struct Face {
-    glm::dvec3 view, right, up;
+struct CubeFace {
+    glm::dvec3 forward, right, up;
 };
 
 /// right = view × up.
-constexpr std::array<Face, 6> kFaces{
-    Face{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},  Face{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-    Face{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},  Face{{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
-    Face{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}}, Face{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}};
+constexpr std::array<CubeFace, 6> kFaces{
+    CubeFace{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},  CubeFace{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+    CubeFace{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},  CubeFace{{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+    CubeFace{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}}, CubeFace{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}};
 
 std::size_t face_of(const glm::dvec3& direction) {
     const glm::dvec3 size = glm::abs(direction);
@@ -78,9 +78,9 @@ std::size_t face_of(const glm::dvec3& direction) {
 }
 
 /// On the face's picture, (0, 0) its bottom left and (1, 1) its top right.
-glm::dvec2 place_on(const Face& face, const glm::dvec3& direction) {
+glm::dvec2 uv_on(const CubeFace& face, const glm::dvec3& direction) {
     return glm::dvec2(glm::dot(direction, face.right), glm::dot(direction, face.up)) /
-               (2 * glm::dot(direction, face.view)) +
+               (2 * glm::dot(direction, face.forward)) +
            0.5;
 }
 
@@ -92,7 +92,7 @@ std::array<MipMap, 6> mip_maps(const std::array<const Image*, 6>& images) {
 }  // namespace
 
 MipMap::MipMap(const Image& image) {
-    Level& first = levels_.emplace_back(Level{image.width, image.height, {}});
+    MipLevel& first = levels_.emplace_back(MipLevel{image.width, image.height, {}});
     first.texels.reserve(image.rgba.size() / 4);
     for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4)
         first.texels.push_back(
@@ -100,8 +100,8 @@ MipMap::MipMap(const Image& image) {
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
 }
 
-MipMap::Level MipMap::half_of(const Level& level) {
-    Level half{std::max(1, level.width / 2), std::max(1, level.height / 2), {}};
+MipMap::MipLevel MipMap::half_of(const MipLevel& level) {
+    MipLevel half{std::max(1, level.width / 2), std::max(1, level.height / 2), {}};
     const auto width = static_cast<std::size_t>(level.width),
                half_width = static_cast<std::size_t>(half.width);
     const auto height = static_cast<std::size_t>(level.height);
@@ -115,18 +115,18 @@ MipMap::Level MipMap::half_of(const Level& level) {
 }
 
 const glm::dvec4& MipMap::texel(int level, int x, int y) const {
-    const Level& from = levels_[static_cast<std::size_t>(level)];
+    const MipLevel& from = levels_[static_cast<std::size_t>(level)];
     return from.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(from.width) +
                        static_cast<std::size_t>(x)];
 }
 
-glm::dvec4 MipMap::sample(const glm::dvec2& place, const std::array<glm::dvec2, 2>& change, Wrap wrap) const {
-    glm::dvec2 inside = wrap == Wrap::repeat ? place - glm::floor(place) : glm::clamp(place, 0.0, 1.0);
+glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change, Wrap wrap) const {
+    glm::dvec2 inside = wrap == Wrap::repeat ? uv - glm::floor(uv) : glm::clamp(uv, 0.0, 1.0);
     if (!(std::isfinite(inside.x) && std::isfinite(inside.y))) inside = glm::dvec2(0);
     const double texels = longer_side(change, glm::dvec2(width(0), height(0)));
     return trilinear(texels, levels(), [&](int level) {
         const int w = width(level), h = height(level);
-        return Four(inside, w, h).mix([&](int x, int y) {
+        return BilinearFootprint(inside, w, h).mix([&](int x, int y) {
             return texel(level, wrapped(x, w, wrap), wrapped(y, h, wrap));
         });
     });
@@ -136,22 +136,21 @@ CubeMap::CubeMap(const std::array<const Image*, 6>& images) : faces_(mip_maps(im
 
 glm::dvec3 CubeMap::sample(const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) const {
     const std::size_t number = face_of(direction);
-    const Face& face = kFaces[number];
-    const glm::dvec2 place = place_on(face, direction);
+    const CubeFace& face = kFaces[number];
+    const glm::dvec2 uv = uv_on(face, direction);
     // The quotient's derivative.
-    const auto change_of_place = [&](const glm::dvec3& d) {
+    const auto duv_of = [&](const glm::dvec3& d) {
         const glm::dvec2 across(glm::dot(d, face.right), glm::dot(d, face.up));
-        return (across / 2.0 - (place - 0.5) * glm::dot(d, face.view)) / glm::dot(direction, face.view);
+        return (across / 2.0 - (uv - 0.5) * glm::dot(d, face.forward)) / glm::dot(direction, face.forward);
     };
     const MipMap& map = faces_[number];
-    const double texels =
-        longer_side({change_of_place(change[0]), change_of_place(change[1])}, glm::dvec2(map.width(0)));
-    return trilinear(texels, map.levels(), [&](int level) { return bilinear(number, level, place); });
+    const double texels = longer_side({duv_of(change[0]), duv_of(change[1])}, glm::dvec2(map.width(0)));
+    return trilinear(texels, map.levels(), [&](int level) { return bilinear(number, level, uv); });
 }
 
-glm::dvec4 CubeMap::bilinear(std::size_t face, int level, const glm::dvec2& place) const {
+glm::dvec4 CubeMap::bilinear(std::size_t face, int level, const glm::dvec2& uv) const {
     const int size = faces_[face].width(level);
-    return Four(place, size, size).mix([&](int x, int y) { return texel(face, level, x, y); });
+    return BilinearFootprint(uv, size, size).mix([&](int x, int y) { return texel(face, level, x, y); });
 }
 
 /// One beyond an edge is the neighbouring face's, on the other side of that edge; there is none beyond a
@@ -165,13 +164,13 @@ glm::dvec4 CubeMap::texel(std::size_t face, int level, int x, int y) const {
                 texel(face, level, inside_x, y)) /
                3.0;
     // The cube reaches from -1 to 1. Half a texel around the edge:
-    const Face& from = kFaces[face];
+    const CubeFace& from = kFaces[face];
     const auto across = [&](int i) { return std::clamp((2 * i + 1.0) / size - 1, -1.0, 1.0); };
-    const glm::dvec3 point = from.view * (1 - 1.0 / size) + from.right * across(x) + from.up * across(y);
+    const glm::dvec3 point = from.forward * (1 - 1.0 / size) + from.right * across(x) + from.up * across(y);
     const std::size_t to = face_of(point);
-    const glm::dvec2 place = place_on(kFaces[to], point) * static_cast<double>(size);
-    return faces_[to].texel(level, std::clamp(static_cast<int>(place.x), 0, size - 1),
-                            std::clamp(static_cast<int>(place.y), 0, size - 1));
+    const glm::dvec2 uv = uv_on(kFaces[to], point) * static_cast<double>(size);
+    return faces_[to].texel(level, std::clamp(static_cast<int>(uv.x), 0, size - 1),
+                            std::clamp(static_cast<int>(uv.y), 0, size - 1));
 }
 
 }  // namespace vrut::reference

@@ -26,16 +26,16 @@ public:
     /// how the place changes from a pixel to the next, to the right and upwards: a pixel whose longer side
     /// spans more than a texel takes the levels between which its length lies (trilinear), another four
     /// texels of the first (bilinear).
-    glm::dvec4 sample(const glm::dvec2& place, const std::array<glm::dvec2, 2>& change, Wrap wrap) const;
+    glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change, Wrap wrap) const;
 
 private:
-    struct Level {
+    struct MipLevel {
         int width = 0, height = 0;
         std::vector<glm::dvec4> texels;  // rows from the bottom up
     };
-    static Level half_of(const Level& level);
+    static MipLevel half_of(const MipLevel& level);
 
-    std::vector<Level> levels_;
+    std::vector<MipLevel> levels_;
 };
 
 /// Six square pictures of one size, each what a camera at the world's origin with 90° sees that looks along
@@ -50,7 +50,7 @@ public:
 
 private:
     glm::dvec4 texel(std::size_t face, int level, int x, int y) const;
-    glm::dvec4 bilinear(std::size_t face, int level, const glm::dvec2& place) const;
+    glm::dvec4 bilinear(std::size_t face, int level, const glm::dvec2& uv) const;
 
     std::array<MipMap, 6> faces_;
 };

@@ -5,8 +5,8 @@
 
 #include "plan/view.hpp"
 #include "reference/shading.hpp"
-#include "reference/surfaces.hpp"
 #include "reference/textures.hpp"
+#include "reference/traced_scene.hpp"
 
 namespace vrut::reference {
 
@@ -16,39 +16,39 @@ public:
     explicit Tracer(const View& view);
 
     /// `place` is in pixels from the picture's top left.
-    glm::dvec3 color_at(const glm::dvec2& place) const;
-    Index node_at(const glm::dvec2& place) const;
+    glm::dvec3 color_at(const glm::dvec2& raster) const;
+    Index node_at(const glm::dvec2& raster) const;
 
     /// A surface that a pixel's colour is made of.
-    struct Layer {
-        Meeting meeting;
-        Sight sight;             ///< what met it
+    struct VisibleHit {
+        TriangleHit hit;
+        RayDifferential ray;     ///< what met it
         bool reflected = false;  ///< it is seen in a mirror
     };
     /// All of them: nearest first, and behind a mirror what is seen in it.
-    std::vector<Layer> layers_at(const glm::dvec2& place) const;
-    const std::vector<Part>& parts() const { return surfaces_.parts(); }
-    Sight sight_through(const glm::dvec2& place) const;
+    std::vector<VisibleHit> hits_at(const glm::dvec2& raster) const;
+    const std::vector<TracedInstance>& parts() const { return scene_.parts(); }
+    RayDifferential generate_ray(const glm::dvec2& raster) const;
 
 private:
-    struct Surface {
+    struct ShadedSurface {
         glm::dvec3 color{0};
         double alpha = 1;
     };
     /// A sight, the place of the picture that it belongs to, and the mirror that it comes from.
-    struct Look {
-        Sight sight;
-        glm::dvec2 place;
-        std::uint32_t mirror = Surfaces::kNoPart;
+    struct PathRay {
+        RayDifferential ray;
+        glm::dvec2 raster;
+        std::uint32_t mirror = TracedScene::kNoInstance;
     };
-    glm::dvec3 color_of(const Look& look) const;
-    Surface surface_at(const Look& look, const Meeting& meeting) const;
-    Look reflected(const Look& look, const Meeting& meeting) const;
-    glm::dvec3 environment(const Look& look, const Spot& spot) const;
-    glm::dvec3 background(const Look& look) const;
+    glm::dvec3 radiance(const PathRay& path) const;
+    ShadedSurface surface_at(const PathRay& path, const TriangleHit& hit) const;
+    PathRay reflected(const PathRay& path, const TriangleHit& hit) const;
+    glm::dvec3 environment(const PathRay& path, const SurfaceInteraction& interaction) const;
+    glm::dvec3 background(const PathRay& path) const;
 
     const View& view_;
-    Surfaces surfaces_;
+    TracedScene scene_;
     std::vector<std::optional<MipMap>> textures_;  ///< the scene's; those in use
     std::optional<CubeMap> cube_map_;
 };

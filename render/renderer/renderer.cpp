@@ -11,8 +11,8 @@
 #include "gl/passes/id_pass.hpp"
 #include "gl/sample_drawing.hpp"
 #include "plan/frame_plan.hpp"
-#include "plan/glass_shape.hpp"
 #include "plan/projection.hpp"
+#include "plan/transparency_cache.hpp"
 
 namespace vrut {
 
@@ -63,82 +63,83 @@ struct Renderer::Impl {
     void use_scene(const std::shared_ptr<const Scene>& wanted) {
         if (scene && scene->scene() == wanted) return;
         scene.reset();
-        if (taken && taken->scene() == wanted)
-            scene = std::move(taken);
+        if (staged && staged->scene() == wanted)
+            scene = std::move(staged);
         else
             scene = std::make_unique<GpuScene>(wanted);
-        taken.reset();
+        staged.reset();
         shapes.emplace(*wanted);
     }
 
-    void take(const View& view) {
-        taken.reset();
+    void upload(const View& view) {
+        staged.reset();
         if (scene && scene->scene() == view.scene->scene) return;
         auto next = std::make_unique<GpuScene>(view.scene->scene);
         next->upload_shown(view);
-        taken = std::move(next);
+        staged = std::move(next);
     }
 
     /// Gives back what was drawn with; what is needed comes again.
     void release() {
         scene.reset();
-        taken.reset();
-        begun.clear();
+        staged.reset();
+        in_flight.clear();
         targets.reset();
         pixels = {};
     }
 
     /// What draws the rendering's next sample.
-    SampleDrawing& sample_of(const Rendering& rendering) {
-        const auto is_its = [&](const SampleDrawing& sample) { return sample.is_of(rendering); };
-        if (const auto found = std::ranges::find_if(begun, is_its); found != begun.end()) return *found;
-        for (SampleDrawing& sample : begun)
+    SampleDrawing& sample_of(const RenderJob& job) {
+        const auto is_its = [&](const SampleDrawing& sample) { return sample.belongs_to(job); };
+        if (const auto found = std::ranges::find_if(in_flight, is_its); found != in_flight.end())
+            return *found;
+        for (SampleDrawing& sample : in_flight)
             if (sample.abandoned()) targets = sample.release();
-        std::erase_if(begun, [](const SampleDrawing& sample) { return sample.abandoned(); });
+        std::erase_if(in_flight, [](const SampleDrawing& sample) { return sample.abandoned(); });
         if (!targets) targets = std::make_unique<SampleTargets>();
-        return begun.emplace_back(rendering, std::move(targets));
+        return in_flight.emplace_back(job, std::move(targets));
     }
 
-    void forget_sample_of(const Rendering& rendering) {
-        std::erase_if(begun, [&](const SampleDrawing& sample) { return sample.is_of(rendering); });
+    void forget_sample_of(const RenderJob& job) {
+        std::erase_if(in_flight, [&](const SampleDrawing& sample) { return sample.belongs_to(job); });
     }
 
-    bool step(Rendering& rendering);
-    bool draw(Rendering& rendering);
+    bool step(RenderJob& job);
+    bool draw(RenderJob& job);
 
     GlContext context;  // first: destroyed after everything below
-    std::unique_ptr<GpuScene> scene, taken;
-    std::optional<GlassShapes> shapes;
+    std::unique_ptr<GpuScene> scene, staged;
+    std::optional<TransparencyCache> shapes;
     Passes passes;
-    std::list<SampleDrawing> begun;          // of renderings that wait
+    std::list<SampleDrawing> in_flight;      // of renderings that wait
     std::unique_ptr<SampleTargets> targets;  // of a sample before, for the next
     IdPass ids;
     std::vector<std::uint8_t> pixels;  // of a sample
 };
 
 /// True if a sample is drawn: then `pixels` are its colours.
-bool Renderer::Impl::draw(Rendering& rendering) {
-    const View& view = rendering.view;
-    FrameStats& stats = rendering.stats;
+bool Renderer::Impl::draw(RenderJob& job) {
+    const View& view = job.view;
+    FrameStats& stats = job.stats;
     Clock::time_point start = Clock::now();
     if (view.scene) use_scene(view.scene->scene);
-    StepWork work(context.software());
-    if (!rendering.planner) rendering.planner = std::make_shared<FramePlanner>();
-    if (view.scene && !rendering.planner->step(view, *shapes, work)) {
+    DrawBudget budget(context.software());
+    if (!job.planner) job.planner = std::make_shared<FramePlanner>();
+    if (view.scene && !job.planner->step(view, *shapes, budget)) {
         stats.render_ms += milliseconds_since(start);
         return false;
     }
     const int uploads_before = scene ? scene->uploads() : 0;
-    SampleDrawing& sample = sample_of(rendering);
-    const bool drawn = sample.draw(rendering, scene.get(), passes, work);
+    SampleDrawing& sample = sample_of(job);
+    const bool drawn = sample.draw(job, scene.get(), passes, budget);
     wait_for_gl();
     stats.render_ms += milliseconds_since(start);
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;
     if (!drawn) return false;
 
     start = Clock::now();
-    pixels.resize(rendering.image.rgba.size());
-    sample.picture().read(pixels);
+    pixels.resize(job.image.rgba.size());
+    sample.image_target().read(pixels);
     targets = sample.release();
     ++stats.samples;
     ++stats.readbacks;
@@ -146,19 +147,19 @@ bool Renderer::Impl::draw(Rendering& rendering) {
     return true;
 }
 
-bool Renderer::Impl::step(Rendering& rendering) {
+bool Renderer::Impl::step(RenderJob& job) {
     bool drawn = false;
     try {
-        drawn = draw_or_fail([&] { return draw(rendering); });
+        drawn = draw_or_fail([&] { return draw(job); });
     } catch (...) {
-        forget_sample_of(rendering);
+        forget_sample_of(job);
         throw;
     }
     if (!drawn) return false;
-    forget_sample_of(rendering);
+    forget_sample_of(job);
     const Clock::time_point start = Clock::now();
-    const bool whole = add_sample(rendering, pixels);
-    rendering.stats.readback_ms += milliseconds_since(start);
+    const bool whole = add_sample(job, pixels);
+    job.stats.readback_ms += milliseconds_since(start);
     return whole;
 }
 
@@ -172,27 +173,27 @@ int Renderer::max_size() const { return impl_->context.max_size(); }
 long Renderer::gl_objects() const { return live_gl_objects(); }
 std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
 
-bool Renderer::step(Rendering& rendering) {
+bool Renderer::step(RenderJob& job) {
     try {
-        return impl_->step(rendering);
+        return impl_->step(job);
     } catch (const OutOfMemory&) {
         // Much may be there of pictures before: levels of detail, edges, the targets of larger ones.
         impl_->release();
     }
-    return impl_->step(rendering);
+    return impl_->step(job);
 }
 
 void Renderer::render(const View& view, Image& image, FrameStats& stats) {
-    Rendering rendering(view, std::move(image));
-    while (!step(rendering)) {
+    RenderJob job(view, std::move(image));
+    while (!step(job)) {
     }
-    image = std::move(rendering.image);
-    stats = rendering.stats;
+    image = std::move(job.image);
+    stats = job.stats;
 }
 
-void Renderer::take(const View& view) {
+void Renderer::upload(const View& view) {
     impl_->draw_or_fail([&] {
-        impl_->take(view);
+        impl_->upload(view);
         return true;
     });
 }
@@ -204,7 +205,7 @@ std::vector<Index> Renderer::node_ids(const View& view) {
     return impl_->draw_or_fail([&] {
         impl_->use_scene(view.scene->scene);
         const double near = fit_clip_range(view.camera, view.scene->bounds).near;
-        return impl_->ids.draw(faces_of(view), *impl_->scene, view.width, view.height,
+        return impl_->ids.draw(visible_faces(view), *impl_->scene, view.width, view.height,
                                reversed_clip_from_view(view, near, glm::dvec2(0)));
     });
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/drawing_errors.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "plan/view.hpp"
 #include "scene/image.hpp"
 
@@ -35,13 +35,13 @@ public:
 
     /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
     /// drawn last stays there, too, until then; for good where this throws.
-    void take(const View& view);
+    void upload(const View& view);
 
-    /// Draws the next sample, or a part of it where that is too much for one step (StepWork); first of all it
-    /// may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
+    /// Draws the next sample, or a part of it where that is too much for one step (DrawBudget); first of all
+    /// it may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
     /// this throws, the samples drawn before hold, and what was drawn of the next is drawn again: after
     /// ContextLost a new renderer goes on, or the view is begun anew. The scene drawn last stays on the GPU.
-    bool step(Rendering& rendering);
+    bool step(RenderJob& job);
 
     /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has
     /// nothing else to do meanwhile.

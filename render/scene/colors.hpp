@@ -22,6 +22,6 @@ inline constexpr glm::dvec3 kStylizedEdges{0.55, 0.78, 1};
 inline constexpr glm::dvec3 kSelection{1, 0.6, 0};
 
 /// What markers are: crimson, with a white rim.
-inline constexpr glm::dvec3 kMark{0.8, 0.04, 0.32};
+inline constexpr glm::dvec3 kMarkerColor{0.8, 0.04, 0.32};
 
 }  // namespace vrut

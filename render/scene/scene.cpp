@@ -56,12 +56,12 @@ std::vector<Index> top_down_order(const std::vector<std::vector<Index>>& childre
     return order;
 }
 
-using Places = Scene::Places;
+using IdToIndex = Scene::IdToIndex;
 using PartNodes = std::vector<SceneParts::PartNode>;
 
-Index place_of(const Places& places, Id id) {
-    const auto found = std::lower_bound(places.begin(), places.end(), std::pair(id, Index{0}));
-    return found == places.end() || found->first != id ? kNone : found->second;
+Index index_of(const IdToIndex& index_by_id, Id id) {
+    const auto found = std::lower_bound(index_by_id.begin(), index_by_id.end(), std::pair(id, Index{0}));
+    return found == index_by_id.end() || found->first != id ? kNone : found->second;
 }
 
 Scene::BuildError fault_at(const PartNodes& nodes, std::size_t i, bool twice) {
@@ -72,34 +72,34 @@ Scene::BuildError fault_at(const PartNodes& nodes, std::size_t i, bool twice) {
             i};
 }
 
-tl::expected<Places, Scene::BuildError> places_by_id(const PartNodes& nodes) {
-    Places places;
-    places.reserve(nodes.size());
+tl::expected<IdToIndex, Scene::BuildError> make_index_by_id(const PartNodes& nodes) {
+    IdToIndex index_by_id;
+    index_by_id.reserve(nodes.size());
     std::size_t twice = nodes.size(), root = nodes.size();  // the first at fault
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         const Node& node = nodes[i].node;
-        places.emplace_back(node.id, static_cast<Index>(i));
+        index_by_id.emplace_back(node.id, static_cast<Index>(i));
         if ((node.id == 0) != (node.type == NodeType::root)) root = std::min(root, i);
     }
-    std::sort(places.begin(), places.end());
-    for (std::size_t i = 1; i < places.size(); ++i)
-        if (places[i].first == places[i - 1].first)
-            twice = std::min(twice, static_cast<std::size_t>(places[i].second));
+    std::sort(index_by_id.begin(), index_by_id.end());
+    for (std::size_t i = 1; i < index_by_id.size(); ++i)
+        if (index_by_id[i].first == index_by_id[i - 1].first)
+            twice = std::min(twice, static_cast<std::size_t>(index_by_id[i].second));
     if (const std::size_t first = std::min(twice, root); first < nodes.size())
         return tl::unexpected(fault_at(nodes, first, twice == first));
-    return places;
+    return index_by_id;
 }
 
 /// For each node the places of its children, by rising id.
-tl::expected<std::vector<std::vector<Index>>, Scene::BuildError> children_by_id(const PartNodes& nodes,
-                                                                                const Places& places) {
+tl::expected<std::vector<std::vector<Index>>, Scene::BuildError> children_by_id(
+    const PartNodes& nodes, const IdToIndex& index_by_id) {
     const auto at = [&](Index i) -> const SceneParts::PartNode& {
         return nodes[static_cast<std::size_t>(i)];
     };
     std::vector<std::vector<Index>> children(nodes.size());
-    for (const auto& [id, i] : places) {
+    for (const auto& [id, i] : index_by_id) {
         if (id == 0) continue;
-        const Index parent = place_of(places, at(i).parent_id);
+        const Index parent = index_of(index_by_id, at(i).parent_id);
         if (parent == kNone)
             return tl::unexpected(Scene::BuildError{"expected parent " + std::to_string(at(i).parent_id) +
                                                         " of node " + std::to_string(at(i).node.id) +
@@ -111,7 +111,7 @@ tl::expected<std::vector<std::vector<Index>>, Scene::BuildError> children_by_id(
 }
 
 /// What the root does not reach hangs in a cycle, or below one.
-Scene::BuildError find_cycle(const PartNodes& nodes, const Places& places,
+Scene::BuildError find_cycle(const PartNodes& nodes, const IdToIndex& index_by_id,
                              const std::vector<Index>& reached) {
     std::vector<bool> seen(nodes.size());
     for (Index i : reached) seen[static_cast<std::size_t>(i)] = true;
@@ -119,7 +119,7 @@ Scene::BuildError find_cycle(const PartNodes& nodes, const Places& places,
     auto culprit = static_cast<std::size_t>(std::find(seen.begin(), seen.end(), false) - seen.begin());
     while (!seen[culprit]) {
         seen[culprit] = true;
-        culprit = static_cast<std::size_t>(place_of(places, nodes[culprit].parent_id));
+        culprit = static_cast<std::size_t>(index_of(index_by_id, nodes[culprit].parent_id));
     }
     return {"expected node " + std::to_string(nodes[culprit].node.id) +
                 " below the root, found it among its own ancestors",
@@ -133,12 +133,12 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     const auto is_root = [](const SceneParts::PartNode& part) { return part.node.id == 0; };
     if (std::none_of(in.begin(), in.end(), is_root)) in.push_back({make_root(), 0});
 
-    const auto place = places_by_id(in);
+    const auto place = make_index_by_id(in);
     if (!place) return tl::unexpected(place.error());
     auto linked = children_by_id(in, *place);
     if (!linked) return tl::unexpected(linked.error());
     auto& children = *linked;
-    const std::vector<Index> order = top_down_order(children, place_of(*place, 0));
+    const std::vector<Index> order = top_down_order(children, index_of(*place, 0));
     if (order.size() != in.size()) return tl::unexpected(find_cycle(in, *place, order));
 
     // The same nodes, in that order.
@@ -151,17 +151,17 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     scene.notices_ = std::move(parts.notices);
     scene.planes_.reserve(scene.geometries_.size());
     for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(fitted_plane(geometry));
-    std::vector<Index> new_place(in.size());
+    std::vector<Index> new_index(in.size());
     for (std::size_t i = 0; i < order.size(); ++i)
-        new_place[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
+        new_index[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);
     scene.nodes_.reserve(in.size());
     for (Index old : order) {
         Node& node = scene.nodes_.emplace_back(std::move(in[static_cast<std::size_t>(old)].node));
         node.children = std::move(children[static_cast<std::size_t>(old)]);
-        for (Index& child : node.children) child = new_place[static_cast<std::size_t>(child)];
-        scene.places_.emplace_back(node.id, static_cast<Index>(scene.nodes_.size() - 1));
+        for (Index& child : node.children) child = new_index[static_cast<std::size_t>(child)];
+        scene.index_by_id_.emplace_back(node.id, static_cast<Index>(scene.nodes_.size() - 1));
     }
-    std::sort(scene.places_.begin(), scene.places_.end());
+    std::sort(scene.index_by_id_.begin(), scene.index_by_id_.end());
     for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
         for (Index child : scene.nodes_[i].children)
             scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
@@ -178,7 +178,7 @@ bool Scene::is_transparent(const Material& material) const {
            (material.texture != kNone && textures_[static_cast<std::size_t>(material.texture)].transparent);
 }
 
-Index Scene::find_node(Id id) const { return place_of(places_, id); }
+Index Scene::find_node(Id id) const { return index_of(index_by_id_, id); }
 
 std::uint64_t Scene::triangle_count() const {
     std::uint64_t count = 0;

@@ -149,7 +149,7 @@ public:
     };
 
     /// Where the node of an id stands, by rising id.
-    using Places = std::vector<std::pair<Id, Index>>;
+    using IdToIndex = std::vector<std::pair<Id, Index>>;
 
     /// An empty scene: the root alone.
     Scene();
@@ -186,7 +186,7 @@ private:
     std::vector<std::optional<Plane>> planes_;
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
-    Places places_;
+    IdToIndex index_by_id_;
 };
 
 /// What of a node can change while its scene is shown; it starts as the file says.
@@ -233,7 +233,7 @@ Bounds subtree_bounds(const PlacedScene& placed, Index node);
 
 /// What lies further from the eye is neither drawn nor picked: positions are float on the GPU, and squared
 /// there.
-inline constexpr double kFarthestDrawn = 1e18;
+inline constexpr double kMaxDrawDistance = 1e18;
 
 /// Volume of the matrix's axes over that of a box with the same edges: 0 for a flattened part, ±1 for a rigid
 /// one.

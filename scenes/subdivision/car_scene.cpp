@@ -158,7 +158,7 @@ private:
 };
 
 /// A geometry of the result: of a mesh, or of a panel of one node.
-struct Part {
+struct BodyPart {
     int mesh = kNone;
     const CageNode* panel = nullptr;
     double uses = 0;  // shown nodes that have it
@@ -168,7 +168,7 @@ struct Part {
 /// A skin that is in use, with its panels.
 struct SkinInWork {
     std::vector<CutShape> cuts;
-    std::vector<Part*> panels;
+    std::vector<BodyPart*> panels;
     std::size_t refined = 0;  // its place among the refined
 };
 
@@ -198,14 +198,14 @@ public:
             const double missing = asked_ - refinement.count();
             refine_to(refinement.count() + (asked_ < kFew ? 0.4 * missing + 0.005 * asked_ : missing));
         }
-        for (Part& part : parts_)
+        for (BodyPart& part : parts_)
             if (part.mesh != kNone) {
                 const bool textured = !cages_.meshes[static_cast<std::size_t>(part.mesh)].texcoords.empty();
                 part.geometry = geometry_of(*refined_[part_of_mesh_.at(part.mesh).second].mesh, textured);
             }
         SubdividedScene result;
         result.tolerance = refinement.reached();
-        for (const Part& part : parts_) {
+        for (const BodyPart& part : parts_) {
             result.shown += part.uses * static_cast<double>(part.geometry.triangles.size());
             result.vertices += static_cast<double>(part.geometry.positions.size());
         }
@@ -224,7 +224,7 @@ private:
     void add_use(const CageNode& node) {
         const CageNode* source = source_of(node);
         if (source == nullptr) return;
-        Part& part = source->panel ? panel_part(*source) : mesh_part(source->mesh);
+        BodyPart& part = source->panel ? panel_part(*source) : mesh_part(source->mesh);
         const double use = shown_.at(node.part.node.id) ? 1 : 0;
         part.uses += use;
         if (source->panel) return;
@@ -233,10 +233,10 @@ private:
         if (!node.geometry_of) refined.tolerance = std::min(refined.tolerance, node.tolerance);
     }
 
-    Part& mesh_part(int mesh) {
+    BodyPart& mesh_part(int mesh) {
         const auto found = part_of_mesh_.find(mesh);
         if (found != part_of_mesh_.end()) return *found->second.first;
-        Part& part = parts_.emplace_back();
+        BodyPart& part = parts_.emplace_back();
         part.mesh = mesh;
         part_of_mesh_[mesh] = {&part, refined_.size()};
         meshes_.emplace_back(cages_.meshes[static_cast<std::size_t>(mesh)]);
@@ -244,8 +244,8 @@ private:
         return part;
     }
 
-    Part& panel_part(const CageNode& node) {
-        Part*& part = part_of_panel_[node.part.node.id];
+    BodyPart& panel_part(const CageNode& node) {
+        BodyPart*& part = part_of_panel_[node.part.node.id];
         if (part == nullptr) {
             part = &parts_.emplace_back();
             part->panel = &node;
@@ -260,7 +260,7 @@ private:
         std::vector<bool> kept(skin.cuts.size());
         bool rest_kept = false;
         double margin = 0, tolerance = kAnyTolerance, uses = 0;
-        for (const Part* part : skin.panels) {
+        for (const BodyPart* part : skin.panels) {
             const Panel& panel = *part->panel->panel;
             if (const Node& node = part->panel->part.node; !is_finite(from_car(node)))
                 throw std::runtime_error(name_of(node) + ": its place in the car has no inverse");
@@ -299,13 +299,13 @@ private:
             make_some();
             others.get();
             double count = 0;
-            for (const Part* part : skin.panels)
+            for (const BodyPart* part : skin.panels)
                 count += part->uses * static_cast<double>(part->geometry.triangles.size());
             refined.weight = count / static_cast<double>(refined.mesh->triangles().size());
         }
     }
 
-    void make_panel(Part& part, const SkinInWork& skin, const CuttingTable& table, double tolerance,
+    void make_panel(BodyPart& part, const SkinInWork& skin, const CuttingTable& table, double tolerance,
                     bool textured) const {
         Panel panel = *part.panel->panel;
         if (tolerance > kRoundest * panel.edge) panel.edge = 0;
@@ -329,7 +329,7 @@ private:
     }
 
     /// Of a node that has a geometry.
-    const Part& part_of(const CageNode& node) const {
+    const BodyPart& part_of(const CageNode& node) const {
         const CageNode& source = *source_of(node);
         return source.panel ? *part_of_panel_.at(source.part.node.id) : *part_of_mesh_.at(source.mesh).first;
     }
@@ -337,8 +337,8 @@ private:
     Scene assemble() {
         SceneParts result;
         result.materials = cages_.materials;
-        std::map<const Part*, Index> place;
-        for (Part& part : parts_) {
+        std::map<const BodyPart*, Index> place;
+        for (BodyPart& part : parts_) {
             place[&part] = static_cast<Index>(result.geometries.size());
             result.geometries.push_back(std::move(part.geometry));
             result.geometries.back().id = static_cast<Id>(result.geometries.size());
@@ -363,11 +363,11 @@ private:
     std::map<Id, bool> shown_;
     std::vector<glm::dmat4> world_;
     std::map<Id, const CageNode*> by_id_;
-    std::deque<Part> parts_;
+    std::deque<BodyPart> parts_;
     std::deque<AdaptiveMesh> meshes_;
     std::vector<RefinedPart> refined_;
-    std::map<int, std::pair<Part*, std::size_t>> part_of_mesh_;  // and its place among the refined
-    std::map<Id, Part*> part_of_panel_;
+    std::map<int, std::pair<BodyPart*, std::size_t>> part_of_mesh_;  // and its place among the refined
+    std::map<Id, BodyPart*> part_of_panel_;
     std::map<int, SkinInWork> skins_;
 };
 

@@ -16,7 +16,7 @@ int fail(const std::string& sentence) {
 
 int run(const std::string& cage_file, double triangles, const std::string& output) {
     const auto start = std::chrono::steady_clock::now();
-    if (const auto fault = vrut::file_fault(cage_file)) return fail(cage_file + ": " + *fault);
+    if (const auto fault = vrut::file_error(cage_file)) return fail(cage_file + ": " + *fault);
     const auto text = vrut::read_bytes(cage_file);
     if (!text) return fail(cage_file + ": " + text.error());
     const auto cages = vrut::read_cage_scene(*text);

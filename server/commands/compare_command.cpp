@@ -16,7 +16,7 @@ namespace vrut::server::commands {
 namespace {
 
 Image read(const std::filesystem::path& path) {
-    auto image = read_picture(path);
+    auto image = read_image_file(path);
     if (!image) throw std::runtime_error(path.string() + ": " + image.error());
     return *std::move(image);
 }

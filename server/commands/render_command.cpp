@@ -113,7 +113,7 @@ void write_ids(const RenderArguments& arguments, const View& view, const std::ve
 }
 
 void trace_picture(const RenderArguments& arguments, const View& view) {
-    const ReferencePicture picture = trace(view);
+    const ReferenceImage picture = trace(view);
     if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
     write_picture(arguments, image_of(picture));
     if (!arguments.unrounded.empty())

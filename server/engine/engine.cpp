@@ -36,8 +36,8 @@ FrameRendererFactory gl_renderer(std::optional<int> device) {
         return FrameRenderer{renderer->description(),
                              renderer->software(),
                              renderer->max_size(),
-                             [renderer](const View& view) { renderer->take(view); },
-                             [renderer](Rendering& rendering) { return renderer->step(rendering); },
+                             [renderer](const View& view) { renderer->upload(view); },
+                             [renderer](RenderJob& rendering) { return renderer->step(rendering); },
                              [renderer] { return renderer->gl_objects(); }};
     };
 }
@@ -144,7 +144,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     connect_files(options);
     room_.emplace(with_notices(scene), std::move(options));
     try {
-        if (renderer_.take) renderer_.take(room_->visible());
+        if (renderer_.upload) renderer_.upload(room_->visible());
     } catch (const OutOfMemory& error) {
         throw std::runtime_error(scene.name + ": " + error.what());
     }
@@ -152,7 +152,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     // Drivers compile programs and states when they are first used; better now than under the first finger.
     View small = room_->visible();
     small.width = small.height = 64;
-    Rendering first(std::move(small));
+    RenderJob first(std::move(small));
     while (!renderer_.step(first)) {
     }
     draws_ = true;

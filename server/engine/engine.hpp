@@ -24,7 +24,7 @@
 #include "mesh/detail_levels.hpp"
 #include "observe/live_stats.hpp"
 #include "observe/metrics.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "plan/view.hpp"
 #include "room/room.hpp"
 #include "scenes/library.hpp"
@@ -121,11 +121,11 @@ private:
         protocol::Resize view_size;
         int refined_samples = 0;  ///< 0: an interactive one
         std::size_t level = 0;
-        Rendering rendering;
+        RenderJob rendering;
     };
     struct Snapshot {
         room::PictureOrder order;
-        std::optional<Rendering> rendering = {};  ///< none: not begun
+        std::optional<RenderJob> rendering = {};  ///< none: not begun
         int losses = 0;                           ///< of the context, while it was drawn
     };
     /// The graphics driver is lost, and started again at a time.
@@ -191,7 +191,7 @@ private:
 
     // --- what draws, and what fails in it
     enum class Drawn { part, whole, lost };
-    Drawn draw(Rendering& rendering);
+    Drawn draw(RenderJob& rendering);
     void lose_renderer(const std::string& why);
     void renew_renderer();
     void show_arrived();
@@ -233,13 +233,13 @@ private:
     scenes::SceneLoader loader_;
     FrameRendererFactory factory_;
     FrameRenderer renderer_;
-    std::optional<Renewal> renewal_;             ///< while there is no renderer
-    std::size_t tries_ = 0;                      ///< renderers made since the last whole picture
+    std::optional<Renewal> renewal_;              ///< while there is no renderer
+    std::size_t tries_ = 0;                       ///< renderers made since the last whole picture
     std::optional<scenes::SceneLoaded> arrived_;  ///< to be shown
-    int arrival_losses_ = 0;                     ///< of the context, by what has arrived
-    PictureLimits pixel_budget_;                 ///< of the live picture, as far as is known
-    protocol::Resize budget_for_;                ///< of a view of this size
-    std::optional<Failed> failed_;               ///< what cannot be drawn, even small, or not encoded
+    int arrival_losses_ = 0;                      ///< of the context, by what has arrived
+    PictureLimits pixel_budget_;                  ///< of the live picture, as far as is known
+    protocol::Resize budget_for_;                 ///< of a view of this size
+    std::optional<Failed> failed_;                ///< what cannot be drawn, even small, or not encoded
 
     std::optional<room::Room> room_;
     std::map<std::string, Client> clients_;

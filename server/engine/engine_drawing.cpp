@@ -174,7 +174,7 @@ void Engine::begin_frame(int refined_samples) {
     }
     try {
         frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
-                                     Rendering(std::move(view), encoder_.take_spare())});
+                                     RenderJob(std::move(view), encoder_.take_spare())});
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }

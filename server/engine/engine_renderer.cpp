@@ -21,7 +21,7 @@ constexpr std::int64_t kFewestPixels = 4096;  // of a live picture
 }  // namespace
 
 /// One step.
-Engine::Drawn Engine::draw(Rendering& rendering) {
+Engine::Drawn Engine::draw(RenderJob& rendering) {
     const int samples = rendering.stats.samples;
     const int readbacks = rendering.stats.readbacks;
     try {
@@ -66,10 +66,10 @@ void Engine::show_arrived() {
     std::optional<std::string> rejected;
     if (!arrived_->scene) {
         rejected = arrived_->scene.error();
-    } else if (renderer_.take) {
+    } else if (renderer_.upload) {
         const scenes::LoadedScene& next = *arrived_->scene;
         try {
-            renderer_.take(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
+            renderer_.upload(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
         } catch (const OutOfMemory& error) {
             rejected = next.name + ": " + error.what();
         } catch (const ContextLost& lost) {

@@ -5,7 +5,7 @@
 #include <string>
 
 namespace vrut {
-struct Rendering;
+struct RenderJob;
 struct View;
 }  // namespace vrut
 
@@ -18,9 +18,9 @@ struct FrameRenderer {
     bool software = false;
     int max_size = 16384;
     /// As Renderer::take; empty: there is nothing to be taken.
-    std::function<void(const View&)> take = {};
+    std::function<void(const View&)> upload = {};
     /// As Renderer::step.
-    std::function<bool(Rendering&)> step = {};
+    std::function<bool(RenderJob&)> step = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
 using FrameRendererFactory = std::function<FrameRenderer()>;

@@ -213,7 +213,7 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
          "Ringed: Phong's equation at each pixel. At vertices alone highlights of large triangles are lost.",
          kTime,
          [](const Row& row) {
-             return row.setting.methods.light == Methods::Light::pixel ? "at each pixel" : "at vertices";
+             return row.setting.methods.light == Methods::Lighting::pixel ? "at each pixel" : "at vertices";
          },
          [](const Row& row) { return row.setting.methods == Methods{}; }},
         {"detail", "level of detail",

@@ -163,7 +163,7 @@ Image Studio::picture(const View& view, const Setting& setting) {
     if (const View wanted = view_with(view, setting); wanted != drawn_) draw(wanted);
     if (setting.jpeg_quality == 0) return image_;
     const auto file = jpeg_.encode(image_, setting.jpeg_quality, setting.subsampled);
-    auto decoded = decode_picture({reinterpret_cast<const char*>(file.data()), file.size()});
+    auto decoded = decode_image({reinterpret_cast<const char*>(file.data()), file.size()});
     if (!decoded) throw std::runtime_error("a picture that was encoded cannot be read: " + decoded.error());
     return *std::move(decoded);
 }

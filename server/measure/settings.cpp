@@ -43,7 +43,7 @@ std::string name_of(const Setting& setting) {
     std::string name = "scale " + number(setting.scale) + ", " + std::to_string(setting.samples) +
                        (setting.samples == 1 ? " sample" : " samples");
     if (setting.detail > 0) name += ", detail " + number(setting.detail);
-    if (setting.methods.light == Methods::Light::vertex) name += ", light at vertices";
+    if (setting.methods.light == Methods::Lighting::vertex) name += ", light at vertices";
     if (setting.methods.transparency == Methods::Transparency::sorted) name += ", glass sorted";
     if (setting.jpeg_quality > 0)
         name += ", JPEG " + std::to_string(setting.jpeg_quality) + (setting.subsampled ? " 4:2:0" : " 4:4:4");
@@ -107,7 +107,7 @@ std::vector<Setting> product(bool with_detail) {
         settings.push_back({1, samples, 0, {}, samples == 16 ? 90 : 85, false});
     for (const Setting& setting : encodings()) add(settings, setting);
     Setting vertex, sorted;
-    vertex.methods.light = Methods::Light::vertex;
+    vertex.methods.light = Methods::Lighting::vertex;
     sorted.methods.transparency = Methods::Transparency::sorted;
     settings.push_back(vertex);
     settings.push_back(sorted);
@@ -150,7 +150,7 @@ std::vector<Setting> sample_counts() {
 
 std::vector<Setting> lights() {
     std::vector<Setting> settings(2, not_encoded());
-    settings.front().methods.light = Methods::Light::vertex;
+    settings.front().methods.light = Methods::Lighting::vertex;
     return settings;
 }
 

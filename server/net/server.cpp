@@ -20,7 +20,8 @@ using asio::ip::tcp;
 using namespace std::chrono_literals;
 
 struct Server::Impl {
-    Impl(ServerOptions server_options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer)
+    Impl(ServerOptions server_options, scenes::LoadedScene scene,
+         const engine::FrameRendererFactory& renderer)
         : options(std::move(server_options)),
           acceptor(context),
           accept_pause(context),

@@ -25,7 +25,7 @@ tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const 
 
 /// Finds a scene of a log by its name and SHA-256, or why it cannot be had.
 using SceneFinder = std::function<tl::expected<scenes::LoadedScene, std::string>(const std::string& name,
-                                                                                const std::string& sha256)>;
+                                                                                 const std::string& sha256)>;
 
 /// What a replay reports.
 struct ReplayWatcher {

@@ -62,17 +62,17 @@ bool Room::handle_message(const std::string& client, const protocol::ClientMessa
 }
 
 void Room::update_visible() {
-    auto marks = visible_.marks;
-    if (marked_ != state_.markers || visible_.scene != scene_) {
-        marked_ = state_.markers;
-        std::vector<Mark> changed = marks_of(*marked_, *scene_);
+    auto markers = visible_.markers;
+    if (shown_markers_ != state_.markers || visible_.scene != scene_) {
+        shown_markers_ = state_.markers;
+        std::vector<PlacedMarker> changed = markers_of(*shown_markers_, *scene_);
         if (changed.empty())
-            marks.reset();
-        else if (!marks || *marks != changed)
-            marks = std::make_shared<const std::vector<Mark>>(std::move(changed));
+            markers.reset();
+        else if (!markers || *markers != changed)
+            markers = std::make_shared<const std::vector<PlacedMarker>>(std::move(changed));
     }
     visible_ = view_of(state_, scene_);
-    visible_.marks = std::move(marks);
+    visible_.markers = std::move(markers);
 }
 
 template <class Apply>

@@ -129,7 +129,7 @@ private:
         bool is_input() const { return traits.weight == protocol::Weight::stream && !message.id; }
     };
     struct InFlight {
-        Flight path;
+        CameraPath path;
         std::string client;
         std::int64_t id = 0;  ///< 0: none
         SessionTime start{0};
@@ -249,8 +249,8 @@ private:
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
     View visible_;
-    protocol::SharedMap<protocol::Marker> marked_;  ///< whose marks are in visible_
-    std::deque<Frame> frames_;                      ///< the last kFramesRemembered
+    protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_
+    std::deque<Frame> frames_;                             ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
     std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written

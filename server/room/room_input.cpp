@@ -80,7 +80,7 @@ void Room::apply(const Received& received, const protocol::Key& key) {
         const Bounds selected = subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
         if (!selected.empty()) context.bounds = selected;
     }
-    move_camera(operated(*operation, camera(), camera_of(state_.views->at("home")), context));
+    move_camera(apply_key_operation(*operation, camera(), camera_of(state_.views->at("home")), context));
 }
 
 void Room::apply(const Received& received, const protocol::Pick& pick) {

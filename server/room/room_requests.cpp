@@ -49,9 +49,9 @@ void Room::apply(const Received& received, const protocol::Fit& fit) {
 namespace {
 
 /// The keyframes' cameras: each is laid over the one before, the first over `from`.
-tl::expected<std::vector<Keyframe>, Error> keyframes_of(const protocol::Fly& fly, const Camera& from,
-                                                        const PlacedScene& placed) {
-    std::vector<Keyframe> keyframes;
+tl::expected<std::vector<CameraKeyframe>, Error> keyframes_of(const protocol::Fly& fly, const Camera& from,
+                                                              const PlacedScene& placed) {
+    std::vector<CameraKeyframe> keyframes;
     Camera before = from;
     for (const protocol::Fly::Keyframe& keyframe : fly.keyframes) {
         auto laid = overlaid(before, keyframe.camera, placed,
@@ -97,7 +97,7 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     accepted_ = true;
     if (!received.message.id) return;  // nobody could tell the picture from a frame
     View view = view_of(state, scene_);
-    view.marks = visible_.marks;
+    view.markers = visible_.markers;
     view.width = snapshot.width;
     view.height = snapshot.height;
     PictureOrder order{received.client, view, header_of(state, view, view_size_), snapshot.format,

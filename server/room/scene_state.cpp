@@ -266,9 +266,9 @@ Background background_of(const protocol::BackgroundsState& backgrounds, const Pl
 
 }  // namespace
 
-std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers,
-                           const PlacedScene& placed) {
-    std::vector<Mark> marks;
+std::vector<PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
+                                     const PlacedScene& placed) {
+    std::vector<PlacedMarker> result;
     for (const auto& [name, marker] : markers) {
         glm::dvec3 point = marker.point;
         if (marker.node) {
@@ -277,9 +277,9 @@ std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& marker
             point = glm::dvec3(placed.world[static_cast<std::size_t>(node)] * glm::dvec4(point, 1));
         }
         const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
-        if (finite) marks.push_back({point, name});
+        if (finite) result.push_back({point, name});
     }
-    return marks;
+    return result;
 }
 
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
@@ -311,8 +311,8 @@ protocol::FrameHeader header_of(const protocol::State& state, const View& view,
     header.height = view.height;
     header.view = view_size;
     header.renderer = {state.renderer.mode, state.renderer.wireframe, state.renderer.show_selection};
-    if (view.marks)
-        for (const Mark& mark : *view.marks) header.markers[mark.name] = mark.point;
+    if (view.markers)
+        for (const PlacedMarker& marker : *view.markers) header.markers[marker.name] = marker.point;
     return header;
 }
 

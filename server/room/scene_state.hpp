@@ -39,7 +39,8 @@ tl::expected<std::vector<NodeState>, protocol::Error> node_states(
     const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
 
 /// The signs of `markers`, in world space; of those whose node shows and that lie within the range of double.
-std::vector<Mark> marks_of(const std::map<std::string, protocol::Marker>& markers, const PlacedScene& placed);
+std::vector<PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
+                                     const PlacedScene& placed);
 /// What of the state and the scene is to be seen, but for size, samples and marks. The background is the
 /// active one, if its subtree is active, else the plain colour.
 View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed);

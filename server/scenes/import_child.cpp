@@ -70,7 +70,7 @@ void run_import_process(char** argv) try {
     if (gaps.system_calls) report(kCallsOpen);
     PartsResult parts = read_scene_parts(argv[2], report);
     report(kReady);
-    write_parts(std::move(parts), write_all);
+    serialize_parts(std::move(parts), write_all);
     _exit(0);
 } catch (const std::bad_alloc&) {
     _exit(kOutOfMemory);

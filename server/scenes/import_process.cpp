@@ -177,7 +177,7 @@ public:
     PartsResult read() try {
         const ByteSource source = [this](void* to, std::size_t size) { fill(static_cast<char*>(to), size); };
         for (double report = 0; report != kReady; source(&report, sizeof report)) handle(report);
-        return read_parts(source, limits_.bytes, path_.string());
+        return deserialize_parts(source, limits_.bytes, path_.string());
     } catch (const Fault& fault) {
         return tl::unexpected(path_.string() + ": " + fault.what());
     }

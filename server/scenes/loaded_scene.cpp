@@ -8,7 +8,7 @@ namespace vrut::server::scenes {
 
 std::vector<std::string> all_notices(const Scene& scene) {
     std::vector<std::string> notices = scene.notices();
-    for (std::string& notice : undrawn_features(scene)) notices.push_back(std::move(notice));
+    for (std::string& notice : unsupported_features(scene)) notices.push_back(std::move(notice));
     return notices;
 }
 

@@ -171,7 +171,7 @@ Methods methods_of(std::istream& words) {
     Methods methods;
     for (std::string word; words >> word;) {
         if (word == "sorted") methods.transparency = Methods::Transparency::sorted;
-        if (word == "vertex") methods.light = Methods::Light::vertex;
+        if (word == "vertex") methods.light = Methods::Lighting::vertex;
     }
     return methods;
 }

@@ -29,7 +29,7 @@ const Scene& car(const std::string& level) {
     return found->second;
 }
 
-struct Part {
+struct CarPart {
     std::string path;  ///< of the first node that has it
     const Node* node = nullptr;
     const Geometry* geometry = nullptr;
@@ -38,8 +38,8 @@ struct Part {
 };
 
 /// Each geometry once.
-std::vector<Part> parts_of(const Scene& scene) {
-    std::vector<Part> parts;
+std::vector<CarPart> parts_of(const Scene& scene) {
+    std::vector<CarPart> parts;
     std::set<Index> seen;
     for (std::size_t i = 0; i < scene.nodes().size(); ++i) {
         const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
@@ -82,13 +82,13 @@ bool is_sheet(const std::string& path) {
 
 /// Trim without a back, pipes that end in others, panes of an outer and an inner sheet, lenses: no opening of
 /// theirs is seen (pictures.test.js).
-bool may_be_open(const Scene& scene, const Part& part) {
+bool may_be_open(const Scene& scene, const CarPart& part) {
     return !part.path.starts_with("Body/") || part.path.find("/Trim/") != std::string::npos ||
            scene.is_transparent(*part.material);
 }
 
 /// What closes a panel from behind: "X liner" beside "X", be X a switch of paints. kNone where it has none.
-Index liner_of(const Scene& scene, const Part& part) {
+Index liner_of(const Scene& scene, const CarPart& part) {
     for (std::string path = part.path; !path.empty(); path.resize(path.find_last_of('/'))) {
         if (const Index node = node_at(scene, path + " liner"); node != kNone) return node;
         if (path.find('/') == std::string::npos) break;
@@ -134,7 +134,7 @@ double reach_of(const Scene& scene, Index top, double part, const glm::dvec3& di
 TEST_CASE(
     "every geometry has triangles, none of them without area, twice or with corners that nothing uses") {
     for (const std::string& level : kLevels)
-        for (const Part& part : parts_of(car(level))) {
+        for (const CarPart& part : parts_of(car(level))) {
             CAPTURE(level);
             CAPTURE(part.path);
             const Geometry& geometry = *part.geometry;
@@ -171,7 +171,7 @@ TEST_CASE("every corner's normal is on the front side of its triangles") {
     for (const auto& entry : bounds) {
         const std::string& level = entry.first;
         const double bound = entry.second;
-        for (const Part& part : parts_of(car(level))) {
+        for (const CarPart& part : parts_of(car(level))) {
             CAPTURE(level);
             CAPTURE(part.path);
             const Geometry& geometry = *part.geometry;
@@ -199,7 +199,7 @@ TEST_CASE(
     "the body's parts are closed, all parts are of one piece of sheet, and what is closed has its front "
     "outside") {
     for (const std::string& level : kLevels)
-        for (const Part& part : parts_of(car(level))) {
+        for (const CarPart& part : parts_of(car(level))) {
             if (is_sheet(part.path) || part.path.ends_with(" liner") || part.geometry->triangles.empty())
                 continue;
             CAPTURE(level);
@@ -224,7 +224,7 @@ TEST_CASE("each window is a sheet outside and one inside") {
         CAPTURE(level);
         const Scene& scene = car(level);
         int panes = 0;
-        for (const Part& part : parts_of(scene)) {
+        for (const CarPart& part : parts_of(scene)) {
             if (!part.material->name.starts_with("Glass") || part.path.ends_with(" inside")) continue;
             CAPTURE(part.path);
             const Geometry* inside = geometry_at(scene, node_at(scene, part.path + " inside"));
@@ -243,7 +243,7 @@ TEST_CASE("sheets are flat, and so are the mirrors, and nothing else is a mirror
         CAPTURE(level);
         const Scene& scene = car(level);
         int sheets = 0, mirrors = 0;
-        for (const Part& part : parts_of(scene)) {
+        for (const CarPart& part : parts_of(scene)) {
             CAPTURE(part.path);
             if (is_sheet(part.path)) {
                 ++sheets;

@@ -187,11 +187,11 @@ TEST_CASE("FLIP agrees with the published implementation") {
                                 {"half.png", 0.046839, 0.128349, 0.052044, 0.225426, 0.749618},
                                 {"shifted.png", 0.045424, 0.130251, 0.071056, 0.231551, 0.890076},
                                 {"reference.png", 0, 0, 0, 0, 0}};
-    const auto reference = read_picture(std::filesystem::path(folder) / "reference.png");
+    const auto reference = read_image_file(std::filesystem::path(folder) / "reference.png");
     REQUIRE(reference);
     for (const Known& known : kKnown) {
         CAPTURE(known.name);
-        const auto test = read_picture(std::filesystem::path(folder) / known.name);
+        const auto test = read_image_file(std::filesystem::path(folder) / known.name);
         REQUIRE(test);
         const std::vector<float> errors = flip(*reference, *test);
         const FlipSummary found = summary_of(errors);

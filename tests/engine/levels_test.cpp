@@ -9,7 +9,7 @@
 #include "engine/frame_quality.hpp"
 #include "engine/scheduler.hpp"
 #include "environment_variable.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "scenes/level_store.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
@@ -30,7 +30,7 @@ constexpr const char *kScene = "ab12", *kRenderer = "a renderer that waits";
 FrameRendererFactory renderer_that_waits(const std::atomic<double>& whole_ms) {
     return [&whole_ms] {
         FrameRenderer renderer{kRenderer, false, 16384, {}};
-        renderer.step = [&whole_ms](Rendering& rendering) {
+        renderer.step = [&whole_ms](RenderJob& rendering) {
             const View& view = rendering.view;
             rendering.stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
             std::this_thread::sleep_for(

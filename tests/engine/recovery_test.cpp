@@ -7,7 +7,7 @@
 #include "base/drawing_errors.hpp"
 #include "event_log_file.hpp"
 #include "full_disk.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "room/replay.hpp"
 #include "temporary_folder.hpp"
 #include "test_client.hpp"
@@ -39,7 +39,7 @@ public:
             }
             ++made;
             FrameRenderer renderer = FakeRenderer{.takes = 2ms}.factory()();
-            renderer.step = [this, step = renderer.step](Rendering& rendering) {
+            renderer.step = [this, step = renderer.step](RenderJob& rendering) {
                 const bool whole = step(rendering);
                 const bool second = whole || rendering.samples > 1;
                 if (rendering.view.height == resets_at_height || (second && resets.exchange(false))) {

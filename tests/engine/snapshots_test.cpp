@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -20,7 +20,7 @@ struct Turns {
 FrameRendererFactory renderer_of_turns(Turns& turns) {
     return [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](Rendering& rendering) {
+        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
             const int width = rendering.view.width;
             if (width >= kOther && !turns.small_is_drawn) {
                 turns.begun |= width == kLarge ? 1 : 2;

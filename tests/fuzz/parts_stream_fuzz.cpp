@@ -14,7 +14,7 @@ vrut::PartsResult read(std::string_view bytes) {
         bytes.copy(static_cast<char*>(to), size);
         bytes.remove_prefix(size);
     };
-    return vrut::read_parts(source, 1 << 20, "fuzz.glb");
+    return vrut::deserialize_parts(source, 1 << 20, "fuzz.glb");
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto parts = read({reinterpret_cast<const char*>(data), size});
     if (!parts) return 0;
     std::size_t written = 0;
-    vrut::write_parts(*parts, [&](std::string_view piece) { written += piece.size(); });
+    vrut::serialize_parts(*parts, [&](std::string_view piece) { written += piece.size(); });
     if (written > size) throw std::logic_error("longer than it was");
     if (auto scene = vrut::build_scene(*std::move(parts), "fuzz.glb")) vrut::place(*std::move(scene));
     return 0;

@@ -15,8 +15,8 @@ namespace vrut {
 
 namespace {
 
-using reference::Part;
-using reference::Spot;
+using reference::SurfaceInteraction;
+using reference::TracedInstance;
 using reference::Tracer;
 
 struct Bound {
@@ -24,25 +24,25 @@ struct Bound {
 };
 constexpr double kAny = std::numeric_limits<double>::infinity();
 /// By Kind.
-constexpr std::array<Bound, kKinds> kBounds{{{1, 0.5}, {2, kAny}, {2, kAny}, {3, kAny}, {kAny, 3}}};
+constexpr std::array<Bound, kPixelClasses> kBounds{{{1, 0.5}, {2, kAny}, {2, kAny}, {3, kAny}, {kAny, 3}}};
 /// Of the pixels, so many may be further off than the bound, or show another node.
 constexpr double kShareBeyond = 1e-4;
 
 /// A surface that a pixel shows something of.
-struct Seen {
-    Tracer::Layer layer;
-    Spot spot;
+struct SeenSurface {
+    Tracer::VisibleHit layer;
+    SurfaceInteraction interaction;
     glm::dvec3 face{0};  ///< normal of the triangle's plane
 };
-using Stack = std::vector<Seen>;
+using SurfaceStack = std::vector<SeenSurface>;
 
-Stack stack_at(const Tracer& tracer, const glm::dvec2& place) {
-    Stack stack;
-    for (const Tracer::Layer& layer : tracer.layers_at(place)) {
-        const Part& part = tracer.parts()[layer.meeting.part];
-        const glm::uvec3& at = part.geometry->triangles[layer.meeting.triangle];
+SurfaceStack stack_at(const Tracer& tracer, const glm::dvec2& raster) {
+    SurfaceStack stack;
+    for (const Tracer::VisibleHit& layer : tracer.hits_at(raster)) {
+        const TracedInstance& part = tracer.parts()[layer.hit.part];
+        const glm::uvec3& at = part.geometry->triangles[layer.hit.triangle];
         const glm::dvec3& a = part.positions[at.x];
-        stack.push_back({layer, spot_of(part, layer.meeting, layer.sight),
+        stack.push_back({layer, interaction_of(part, layer.hit, layer.ray),
                          glm::normalize(glm::cross(part.positions[at.y] - a, part.positions[at.z] - a))});
     }
     return stack;
@@ -50,25 +50,26 @@ Stack stack_at(const Tracer& tracer, const glm::dvec2& place) {
 
 /// Whether `there`, seen `dx` pixels to the right and `dy` above, goes on where `here` ends: on the same
 /// sheet, without a crease, and without a seam of the texture.
-bool goes_on(const Seen& here, const Seen& there, double dx, double dy) {
-    if (here.layer.meeting.part != there.layer.meeting.part || here.layer.reflected != there.layer.reflected)
+bool goes_on(const SeenSurface& here, const SeenSurface& there, double dx, double dy) {
+    if (here.layer.hit.part != there.layer.hit.part || here.layer.reflected != there.layer.reflected)
         return false;
-    const auto& sight = here.layer.sight;
-    const double distance = here.layer.meeting.distance;
-    const glm::dvec3 step = (sight.origin_change[0] + sight.direction_change[0] * distance) * dx +
-                            (sight.origin_change[1] + sight.direction_change[1] * distance) * dy;
-    const double off_plane = glm::dot(here.face, there.spot.point - here.spot.point) /
-                             std::abs(glm::dot(here.face, sight.direction));
+    const auto& ray = here.layer.ray;
+    const double distance = here.layer.hit.distance;
+    const glm::dvec3 step = (ray.dorigin_dxy[0] + ray.ddirection_dxy[0] * distance) * dx +
+                            (ray.dorigin_dxy[1] + ray.ddirection_dxy[1] * distance) * dy;
+    const double off_plane = glm::dot(here.face, there.interaction.point - here.interaction.point) /
+                             std::abs(glm::dot(here.face, ray.direction));
     if (!(std::abs(off_plane) < 2 * glm::length(step))) return false;
-    const glm::dvec3 normal_step = here.spot.normal_change[0] * dx + here.spot.normal_change[1] * dy;
-    if (!(glm::distance(there.spot.normal, here.spot.normal + normal_step) < 0.02 + glm::length(normal_step)))
+    const glm::dvec3 normal_step = here.interaction.dn_dxy[0] * dx + here.interaction.dn_dxy[1] * dy;
+    if (!(glm::distance(there.interaction.normal, here.interaction.normal + normal_step) <
+          0.02 + glm::length(normal_step)))
         return false;
-    const glm::dvec2 place_step = here.spot.texcoord_change[0] * dx + here.spot.texcoord_change[1] * dy;
-    return glm::distance(there.spot.texcoord, here.spot.texcoord + place_step) <
-           0.01 + glm::length(place_step);
+    const glm::dvec2 uv_step = here.interaction.duv_dxy[0] * dx + here.interaction.duv_dxy[1] * dy;
+    return glm::distance(there.interaction.texcoord, here.interaction.texcoord + uv_step) <
+           0.01 + glm::length(uv_step);
 }
 
-bool same(const Stack& here, const Stack& there, int dx, int dy) {
+bool same(const SurfaceStack& here, const SurfaceStack& there, int dx, int dy) {
     if (here.size() != there.size()) return false;
     for (std::size_t i = 0; i < here.size(); ++i)
         if (!goes_on(here[i], there[i], dx, dy)) return false;
@@ -76,7 +77,7 @@ bool same(const Stack& here, const Stack& there, int dx, int dy) {
 }
 
 /// `stack` is one of a picture `width` wide, with neighbours on all sides.
-bool is_interior(const Stack* stack, int width) {
+bool is_interior(const SurfaceStack* stack, int width) {
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
             if ((dx != 0 || dy != 0) && !same(*stack, stack[dy * width + dx], dx, dy)) return false;
@@ -114,57 +115,58 @@ double texels(const Image& side, const glm::dvec3& direction, const std::array<g
     return side.width / 2.0 * std::max(glm::length(change[0]), glm::length(change[1])) / (largest * largest);
 }
 
-Kind filtered(double texels) { return texels > 1 ? Kind::minified : Kind::magnified; }
+PixelClass filtered(double texels) { return texels > 1 ? PixelClass::minified : PixelClass::magnified; }
 
 const Image& image_of(const View& view, Index texture) {
     return view.scene->scene->textures()[static_cast<std::size_t>(texture)].image;
 }
 
-Kind kind_of_surface(const View& view, const Part& part, const Seen& seen) {
-    Kind kind = part.transparent ? Kind::glass : Kind::opaque;
-    if (part.mirror || seen.layer.reflected) kind = std::max(kind, Kind::mirror);
+PixelClass kind_of_surface(const View& view, const TracedInstance& part, const SeenSurface& seen) {
+    PixelClass kind = part.transparent ? PixelClass::glass : PixelClass::opaque;
+    if (part.mirror || seen.layer.reflected) kind = std::max(kind, PixelClass::mirror);
     if (part.material->texture != kNone)
         kind = std::max(kind,
-                        filtered(texels(image_of(view, part.material->texture), seen.spot.texcoord_change)));
+                        filtered(texels(image_of(view, part.material->texture), seen.interaction.duv_dxy)));
     if (part.material->reflectivity > 0 && !part.mirror && view.background.cube_map) {
-        const glm::dvec3 &d = seen.layer.sight.direction, &n = seen.spot.normal;
+        const glm::dvec3 &d = seen.layer.ray.direction, &n = seen.interaction.normal;
         std::array<glm::dvec3, 2> change{};
         for (std::size_t i = 0; i < 2; ++i)
-            change[i] = glm::reflect(seen.layer.sight.direction_change[i], n) -
-                        2.0 * (glm::dot(d, seen.spot.normal_change[i]) * n +
-                               glm::dot(d, n) * seen.spot.normal_change[i]);
+            change[i] = glm::reflect(seen.layer.ray.ddirection_dxy[i], n) -
+                        2.0 * (glm::dot(d, seen.interaction.dn_dxy[i]) * n +
+                               glm::dot(d, n) * seen.interaction.dn_dxy[i]);
         const Image& side = image_of(view, view.background.cube_map->front());
         kind = std::max(kind, filtered(texels(side, glm::reflect(d, n), change)));
     }
     return kind;
 }
 
-Kind kind_of_background(const View& view, const Tracer& tracer, const glm::dvec2& place) {
-    if (!view.scene) return Kind::opaque;
+PixelClass kind_of_background(const View& view, const Tracer& tracer, const glm::dvec2& raster) {
+    if (!view.scene) return PixelClass::opaque;
     if (view.background.cube_map) {
-        const auto sight = tracer.sight_through(place);
-        return filtered(texels(image_of(view, view.background.cube_map->front()), sight.direction,
-                               sight.direction_change));
+        const auto ray = tracer.generate_ray(raster);
+        return filtered(
+            texels(image_of(view, view.background.cube_map->front()), ray.direction, ray.ddirection_dxy));
     }
-    if (view.background.texture == kNone) return Kind::opaque;
+    if (view.background.texture == kNone) return PixelClass::opaque;
     return filtered(texels(image_of(view, view.background.texture),
                            {glm::dvec2(1.0 / view.width, 0), glm::dvec2(0, 1.0 / view.height)}));
 }
 
-Kind kind_of(const View& view, const Tracer& tracer, const glm::dvec2& place, const Stack& stack) {
-    const auto opaque = [&](const Seen& seen) {
-        const Part& part = tracer.parts()[seen.layer.meeting.part];
+PixelClass kind_of(const View& view, const Tracer& tracer, const glm::dvec2& raster,
+                   const SurfaceStack& stack) {
+    const auto opaque = [&](const SeenSurface& seen) {
+        const TracedInstance& part = tracer.parts()[seen.layer.hit.part];
         return !part.transparent && !(part.mirror && !seen.layer.reflected);
     };
     const bool to_the_background = std::none_of(stack.begin(), stack.end(), opaque);
-    Kind kind = to_the_background ? kind_of_background(view, tracer, place) : Kind::opaque;
-    for (const Seen& seen : stack)
-        kind = std::max(kind, kind_of_surface(view, tracer.parts()[seen.layer.meeting.part], seen));
+    PixelClass kind = to_the_background ? kind_of_background(view, tracer, raster) : PixelClass::opaque;
+    for (const SeenSurface& seen : stack)
+        kind = std::max(kind, kind_of_surface(view, tracer.parts()[seen.layer.hit.part], seen));
     return kind;
 }
 
 /// How far the pixel drawn at `at` is off, of 255.
-glm::dvec3 off_at(const Judge& judge, const Image& drawn, std::size_t at) {
+glm::dvec3 off_at(const JudgedReference& judge, const Image& drawn, std::size_t at) {
     const std::uint8_t* rgba = &drawn.rgba[4 * at];
     return glm::dvec3(rgba[0], rgba[1], rgba[2]) - 255.0 * judge.picture.color[at];
 }
@@ -173,7 +175,7 @@ double largest(const glm::dvec3& off) {
     return std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)});
 }
 
-std::string describe(const Judge& judge, const Image& drawn, std::size_t at) {
+std::string describe(const JudgedReference& judge, const Image& drawn, std::size_t at) {
     const int x = static_cast<int>(at) % drawn.width, row = static_cast<int>(at) / drawn.width;
     const glm::dvec3 expected = 255.0 * judge.picture.color[at];
     const std::uint8_t* rgba = &drawn.rgba[4 * at];
@@ -185,25 +187,26 @@ std::string describe(const Judge& judge, const Image& drawn, std::size_t at) {
 
 }  // namespace
 
-std::string name_of(Kind kind) {
-    constexpr std::array<const char*, kKinds> names{"opaque", "magnified", "mirror", "glass", "minified"};
+std::string name_of(PixelClass kind) {
+    constexpr std::array<const char*, kPixelClasses> names{"opaque", "magnified", "mirror", "glass",
+                                                           "minified"};
     return names[static_cast<std::size_t>(kind)];
 }
 
-Judge judge_of(const View& view) {
-    Judge judge{trace(view), {}, {}, {}};
+JudgedReference judge_of(const View& view) {
+    JudgedReference judge{trace(view), {}, {}, {}};
     const Tracer tracer(view);
     const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
-    std::vector<Stack> stacks(width * height);
+    std::vector<SurfaceStack> stacks(width * height);
     judge.kind.resize(stacks.size());
     judge.interior.resize(stacks.size());
     judge.one_node.resize(stacks.size());
     for_each_row(view.height, [&](int y) {
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t at = static_cast<std::size_t>(y) * width + x;
-            const glm::dvec2 place(static_cast<double>(x) + 0.5, view.height - y - 0.5);
-            stacks[at] = stack_at(tracer, place);
-            judge.kind[at] = kind_of(view, tracer, place, stacks[at]);
+            const glm::dvec2 raster(static_cast<double>(x) + 0.5, view.height - y - 0.5);
+            stacks[at] = stack_at(tracer, raster);
+            judge.kind[at] = kind_of(view, tracer, raster, stacks[at]);
         }
     });
     for (std::size_t y = 1; y + 1 < height; ++y)
@@ -215,7 +218,7 @@ Judge judge_of(const View& view) {
     return judge;
 }
 
-double interior_share(const Judge& judge) {
+double interior_share(const JudgedReference& judge) {
     double surfaces = 0, interior = 0;
     for (std::size_t i = 0; i < judge.picture.node.size(); ++i) {
         if (judge.picture.node[i] == kNone) continue;
@@ -225,7 +228,7 @@ double interior_share(const Judge& judge) {
     return interior / surfaces;
 }
 
-Agreement agreement(const Judge& judge, const Image& drawn, const std::vector<bool>& hidden,
+Agreement agreement(const JudgedReference& judge, const Image& drawn, const std::vector<bool>& hidden,
                     const std::vector<Id>& nodes, const std::vector<Id>& expected) {
     Agreement result;
     result.pixels = static_cast<int>(judge.picture.color.size());
@@ -238,7 +241,7 @@ Agreement agreement(const Judge& judge, const Image& drawn, const std::vector<bo
         ++result.one_node;
         result.one_node_beyond += beyond;
         if (!judge.interior[i]) continue;
-        Tally& tally = result.tallies[kind];
+        ErrorTally& tally = result.tallies[kind];
         ++tally.pixels;
         tally.beyond += beyond;
         tally.rms += glm::dot(off, off) / 3;
@@ -246,7 +249,7 @@ Agreement agreement(const Judge& judge, const Image& drawn, const std::vector<bo
         tally.worst = largest(off);
         tally.where = describe(judge, drawn, i);
     }
-    for (Tally& tally : result.tallies)
+    for (ErrorTally& tally : result.tallies)
         if (tally.pixels > 0) tally.rms = std::sqrt(tally.rms / tally.pixels);
     return result;
 }
@@ -257,10 +260,10 @@ std::string violations(const Agreement& agreement) {
         text += "other nodes at " + std::to_string(agreement.other_nodes) + " pixels; ";
     if (agreement.one_node_beyond > kShareBeyond * agreement.one_node)
         text += "off at " + std::to_string(agreement.one_node_beyond) + " pixels of one node; ";
-    for (std::size_t kind = 0; kind < kKinds; ++kind) {
-        const Tally& tally = agreement.tallies[kind];
+    for (std::size_t kind = 0; kind < kPixelClasses; ++kind) {
+        const ErrorTally& tally = agreement.tallies[kind];
         if (tally.beyond > kShareBeyond * tally.pixels || tally.rms > kBounds[kind].rms)
-            text += name_of(static_cast<Kind>(kind)) + " off, worst at " + tally.where + "; ";
+            text += name_of(static_cast<PixelClass>(kind)) + " off, worst at " + tally.where + "; ";
     }
     return text;
 }
@@ -269,12 +272,12 @@ std::string line_of(const Agreement& agreement) {
     std::string text = "nodes " + std::to_string(agreement.other_nodes) + "  one node " +
                        std::to_string(agreement.one_node) + " px beyond " +
                        std::to_string(agreement.one_node_beyond);
-    for (std::size_t kind = 0; kind < kKinds; ++kind) {
-        const Tally& tally = agreement.tallies[kind];
+    for (std::size_t kind = 0; kind < kPixelClasses; ++kind) {
+        const ErrorTally& tally = agreement.tallies[kind];
         if (tally.pixels == 0) continue;
         std::array<char, 128> numbers{};
         std::snprintf(numbers.data(), numbers.size(), "  %s %d px rms %.3f max %.2f beyond %d",
-                      name_of(static_cast<Kind>(kind)).c_str(), tally.pixels, tally.rms, tally.worst,
+                      name_of(static_cast<PixelClass>(kind)).c_str(), tally.pixels, tally.rms, tally.worst,
                       tally.beyond);
         text += numbers.data();
     }

@@ -8,8 +8,8 @@
 
 #include "io/read_scene.hpp"
 #include "navigation/camera_moves.hpp"
+#include "renderer_fixture.hpp"
 #include "scene_variants.hpp"
-#include "studio.hpp"
 
 using namespace vrut;
 
@@ -62,7 +62,7 @@ std::vector<Id> ids_of(const View& view, const std::vector<Index>& nodes, Id div
 }
 
 /// Where the stylized drawing may have edges, which the reference leaves out.
-std::vector<bool> edges_of(Studio& studio, View view) {
+std::vector<bool> edges_of(RendererFixture& studio, View view) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     std::vector<bool> edges(pixels);
     if (view.mode == DrawMode::realistic) return edges;
@@ -76,8 +76,8 @@ std::vector<bool> edges_of(Studio& studio, View view) {
 }
 
 /// Draws a variant of the scene that is judged. All numbers are printed where VRUT_AGREEMENT is set.
-void check_drawing(Studio& studio, const std::string& what, const Variant& variant, const Judge& judge,
-                   const std::vector<Id>& expected) {
+void check_drawing(RendererFixture& studio, const std::string& what, const SceneVariant& variant,
+                   const JudgedReference& judge, const std::vector<Id>& expected) {
     const std::vector<Index> nodes = studio.renderer().node_ids(variant.view);
     const Agreement result =
         agreement(judge, studio.draw(variant.view.scene, variant.view), edges_of(studio, variant.view),
@@ -88,15 +88,15 @@ void check_drawing(Studio& studio, const std::string& what, const Variant& varia
 }
 
 /// Draws the scene as it is and in all its variants, each in both modes, against one reference.
-void check_agreement(Studio& studio, const std::string& name, View view) {
+void check_agreement(RendererFixture& studio, const std::string& name, View view) {
     for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
         view.mode = mode;
-        const Judge judge = judge_of(view);
+        const JudgedReference judge = judge_of(view);
         CHECK_MESSAGE(interior_share(judge) > kLeastInterior, name);
         const std::vector<Id> expected = ids_of(view, judge.picture.node, 1);
-        std::vector<Variant> variants = variants_of(view);
+        std::vector<SceneVariant> variants = variants_of(view);
         variants.insert(variants.begin(), {"as it is", view});
-        for (const Variant& variant : variants)
+        for (const SceneVariant& variant : variants)
             check_drawing(studio, name + (mode == DrawMode::stylized ? ", stylized, " : ", ") + variant.name,
                           variant, judge, expected);
     }
@@ -106,7 +106,7 @@ void check_agreement(Studio& studio, const std::string& name, View view) {
 
 TEST_CASE("a drawing that is off is told") {
     const View view = view_of_file(VRUT_SCENES "/teaching/materials.vrut", 160, 120);
-    const Judge judge = judge_of(view);
+    const JudgedReference judge = judge_of(view);
     const std::vector<Id> ids = ids_of(view, judge.picture.node, 1);
     const std::vector<bool> nothing(ids.size());
     const Image right = image_of(judge.picture);
@@ -126,7 +126,7 @@ TEST_CASE("a drawing that is off is told") {
 }
 
 TEST_CASE("teaching scenes are drawn as the reference has them, whatever their size, place and parts") {
-    Studio studio;
+    RendererFixture studio;
     const std::vector<fs::path> scenes = teaching_scenes();
     CHECK(scenes.size() > 30);
     for (const fs::path& scene : scenes)
@@ -134,7 +134,7 @@ TEST_CASE("teaching scenes are drawn as the reference has them, whatever their s
 }
 
 TEST_CASE("the car is drawn as the reference has it") {
-    Studio studio;
+    RendererFixture studio;
     check_agreement(studio, "car", view_of_file(VRUT_CARS "/car.vrut", 640, 400));
 }
 
@@ -144,13 +144,13 @@ TEST_CASE("models of other programs are drawn as the reference has them") {
         MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
         return;
     }
-    Studio studio;
+    RendererFixture studio;
     for (const char* file :
          {"bmw_m6/bmw_m6.glb", "hatchback/hatchback/meshes/hatchback.obj", "jeep/2013_ASCII/jeep1.fbx",
           "jeep/2013_BINARY/jeep1.fbx", "racing/vehicle-motorcycle.glb", "racing/vehicle-truck-green.glb",
           "racing/vehicle-truck-red.glb"}) {
         const View view = view_of_file(fs::path(models) / file, 640, 400);
-        const Judge judge = judge_of(view);
+        const JudgedReference judge = judge_of(view);
         check_drawing(studio, file, {"as it is", view}, judge, ids_of(view, judge.picture.node, 1));
     }
 }

@@ -1,5 +1,5 @@
 #include "expected_texture.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -39,7 +39,7 @@ View in_panorama(View view) {
 
 std::vector<Image> listed(const std::array<Image, 6>& images) { return {images.begin(), images.end()}; }
 
-Deviation check_picture(const Image& image, const View& view, Studio& studio) {
+TextureMismatch check_picture(const Image& image, const View& view, RendererFixture& studio) {
     const ExpectedTexture texture(image);
     const double w = view.width, h = view.height;
     return deviation(studio.draw(scene_with({image}), before_picture(view)), [&](double x, double y) {
@@ -47,8 +47,9 @@ Deviation check_picture(const Image& image, const View& view, Studio& studio) {
     });
 }
 
-Deviation check_panorama(const std::array<Image, 6>& images, const View& view, Studio& studio) {
-    const ExpectedPanorama panorama(images);
+TextureMismatch check_environment(const std::array<Image, 6>& images, const View& view,
+                                  RendererFixture& studio) {
+    const ExpectedEnvironment panorama(images);
     return deviation(studio.draw(scene_with(listed(images)), in_panorama(view)), [&](double x, double y) {
         const glm::dvec3 ray = ray_through(view, x, y);
         return std::optional(
@@ -71,7 +72,7 @@ View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int 
 }  // namespace
 
 TEST_CASE("a background picture fills the view, upright") {
-    Studio studio;
+    RendererFixture studio;
     const Image image = noise(48, 32);
     View view = view_from({1, 2, 3});
     view.width = image.width;
@@ -80,7 +81,7 @@ TEST_CASE("a background picture fills the view, upright") {
 }
 
 TEST_CASE("a background picture is stretched, its edges clamped, and filtered") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::ivec2 size :
          {glm::ivec2(1, 1), {2, 2}, {5, 3}, {37, 19}, {96, 64}, {300, 170}, {16384, 16}})
         for (const glm::ivec2 picture : {glm::ivec2(96, 64), {31, 77}, {1, 500}, {5, 3}}) {
@@ -90,17 +91,17 @@ TEST_CASE("a background picture is stretched, its edges clamped, and filtered") 
             View view = view_from({1, 2, 3});
             view.width = picture.x;
             view.height = picture.y;
-            const Deviation off = check_picture(noise(size.x, size.y), view, studio);
+            const TextureMismatch off = check_picture(noise(size.x, size.y), view, studio);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
 }
 
 TEST_CASE("each picture of a panorama is what a camera with 90 degrees sees") {
-    Studio studio;
+    RendererFixture studio;
     const std::array<Image, 6> images = six(32);
     for (std::size_t i = 0; i < 6; ++i) {
         CAPTURE(i);
-        const auto& [view, up] = ExpectedPanorama::kFaces[i];
+        const auto& [view, up] = ExpectedEnvironment::kFaces[i];
         const Image found =
             studio.draw(scene_with(listed(images)), in_panorama(looking(view, up, 90, 32, 32)));
         CHECK(deviation(found, [&](double x, double y) {
@@ -110,7 +111,7 @@ TEST_CASE("each picture of a panorama is what a camera with 90 degrees sees") {
 }
 
 TEST_CASE("a panorama is filtered across its edges and corners") {
-    Studio studio;
+    RendererFixture studio;
     for (const int size : {1, 2, 3, 8})
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
@@ -121,13 +122,13 @@ TEST_CASE("a panorama is filtered across its edges and corners") {
                     CAPTURE(y);
                     CAPTURE(z);
                     const View view = looking({x, y, z}, {0.1, 1, 0.2}, 40, 48, 48);
-                    const Deviation off = check_panorama(six(size), view, studio);
+                    const TextureMismatch off = check_environment(six(size), view, studio);
                     CHECK_MESSAGE(off.worst <= 2, off.where);
                 }
 }
 
 TEST_CASE("a panorama is minified by the pixel's longer side, in any direction") {
-    Studio studio;
+    RendererFixture studio;
     for (const int size : {64, 100, 255})
         for (const double fov : {60.0, 120.0, 165.0})
             for (const glm::dvec3& direction : {glm::dvec3(0.01, 0.02, -1),
@@ -139,14 +140,14 @@ TEST_CASE("a panorama is minified by the pixel's longer side, in any direction")
                 CAPTURE(fov);
                 CAPTURE(direction.x);
                 const View view = looking(direction, {0.1, 1, 0.2}, fov, 96, 64);
-                const Deviation off = check_panorama(six(size), view, studio);
+                const TextureMismatch off = check_environment(six(size), view, studio);
                 CHECK(off.rms <= 1);
                 CHECK_MESSAGE(off.worst <= 3, off.where);
             }
 }
 
 TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
-    Studio studio;
+    RendererFixture studio;
     View view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 60, 96, 64));
     const auto scene = scene_with(listed(six(16, cloudy)));
     const Image at_origin = studio.draw(scene, view);
@@ -160,7 +161,7 @@ TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
 }
 
 TEST_CASE("the samples of a pixel see the background where they see what stands before it") {
-    Studio studio;
+    RendererFixture studio;
     const Image image = noise(48, 32);
     View view = pixel_view(96, 64);
     view.light.headlight = false;
@@ -180,7 +181,7 @@ TEST_CASE("the samples of a pixel see the background where they see what stands 
         view.samples = samples;
         const Image wanted = studio.draw(board, view),
                     found = studio.draw(scene_with({image}), before_picture(view));
-        const Deviation off = deviation(found, [&](double x, double y) -> std::optional<glm::dvec3> {
+        const TextureMismatch off = deviation(found, [&](double x, double y) -> std::optional<glm::dvec3> {
             if (x < 2 || x > 94 || y < 2 || y > 62) return std::nullopt;  // clamped there, not repeated
             return glm::dvec3(pixel_of(wanted, static_cast<int>(x), static_cast<int>(y))) / 255.0;
         });
@@ -193,7 +194,7 @@ TEST_CASE("the samples of a pixel see the background where they see what stands 
     fine.width = fine.height = 32 * 8;
     const Image finer = studio.draw(scene, fine);
     view.samples = 64;
-    const Deviation off = deviation(studio.draw(scene, view), [&](double x, double y) {
+    const TextureMismatch off = deviation(studio.draw(scene, view), [&](double x, double y) {
         glm::dvec3 sum(0);
         for (int dy = 0; dy < 8; ++dy)
             for (int dx = 0; dx < 8; ++dx)
@@ -205,7 +206,7 @@ TEST_CASE("the samples of a pixel see the background where they see what stands 
 }
 
 TEST_CASE("backgrounds stand behind everything and cost one pass where they are no plain colour") {
-    Studio studio;
+    RendererFixture studio;
     const std::vector<Part> parts{{1, quad(0.01), material_of({0.5, 0.6, 0.7}), moved_by({0, 0, 4.9})},
                                   {2, quad(400), material_of({0.9, 0.2, 0.1}), moved_by({2000, 0, -5000})}};
     const View plain = view_from({0, 0, 5});
@@ -242,7 +243,7 @@ TEST_CASE("backgrounds stand behind everything and cost one pass where they are 
 }
 
 TEST_CASE("the stylized drawing and the wireframe have the background, too") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_with({noise(96, 64)}, {{1, quad(1), Material(), glm::dmat4(1)}});
     for (const bool wireframe : {false, true}) {
         View view = before_picture(view_from({0, 0, 5}));

@@ -1,5 +1,5 @@
 #include "random_parts.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -10,7 +10,7 @@ const Material kPaint = material_of({0.7, 0.5, 0.3});
 }  // namespace
 
 TEST_CASE("edges and the selection are left out with their faces, and nothing is drawn for them") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 5});
     view.selected = 1;
     const auto scene =
@@ -27,7 +27,7 @@ TEST_CASE("edges and the selection are left out with their faces, and nothing is
 }
 
 TEST_CASE("the picture is the same from within a crowd, at the sizes that a scene can have") {
-    Studio studio;
+    RendererFixture studio;
     Dice dice(11);
     for (const double scale : {1e-6, 1.0, 1e6}) {
         CAPTURE(scale);

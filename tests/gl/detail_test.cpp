@@ -222,7 +222,7 @@ TEST_CASE("no step in a part is seen longer than is said of it") {
     View view = view_from({0, 0, 0}, {0, 0, -1});
     const Bounds box{{2, -1, -1}, {4, 1, 1}};
     const glm::dmat4 matrix = moved_by({0, 0, -6}) * turned_by(20, {0, 1, 0}) * scaled_by({1, 2, 0.5});
-    const double most = most_pixels(matrix, box, view);
+    const double most = max_screen_space_scale(matrix, box, view);
     const glm::dmat4 clip = reversed_clip_from_view(view, 0.1);
     const auto pixel = [&](const glm::dvec3& at) {
         const glm::dvec4 p = clip * matrix * glm::dvec4(at, 1);
@@ -237,7 +237,7 @@ TEST_CASE("no step in a part is seen longer than is said of it") {
         }
     CHECK(longest <= most * 1.001);
     CHECK(longest > most / 3);
-    CHECK(std::isinf(most_pixels(glm::dmat4(1), {glm::dvec3(-1), glm::dvec3(1)}, view)));
+    CHECK(std::isinf(max_screen_space_scale(glm::dmat4(1), {glm::dvec3(-1), glm::dvec3(1)}, view)));
 }
 
 namespace {
@@ -263,22 +263,22 @@ FramePlan check_backs(View view, const std::shared_ptr<const PlacedScene>& scene
 }  // namespace
 
 TEST_CASE("backs of closed parts are left out where they are hidden") {
-    const auto sides = [](const FramePlan& plan) { return plan.scene.opaque.at(0).sides; };
+    const auto cull_mode = [](const FramePlan& plan) { return plan.scene.opaque.at(0).cull_mode; };
     const Geometry whole = welded(sphere(1, 12));
     const auto ball = scene_of({{1, whole, two_sided(kPaint), glm::dmat4(1)}});
-    CHECK(sides(check_backs(view_from({1, 2, 5}), ball)) == Sides::closed);
-    CHECK(sides(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == Sides::both);
-    CHECK(sides(check_backs(view_from({0, 0, 1 + 1e-7}), ball)) == Sides::both);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), ball)) == CullMode::hidden_back);
+    CHECK(cull_mode(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == CullMode::none);
+    CHECK(cull_mode(check_backs(view_from({0, 0, 1 + 1e-7}), ball)) == CullMode::none);
     const auto plain = scene_of({{1, whole, kPaint, glm::dmat4(1)}});
-    CHECK(sides(check_backs(view_from({1, 2, 5}), plain)) == Sides::front);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), plain)) == CullMode::back);
     const auto turned = scene_of({{1, turned_inside_out(whole), two_sided(kPaint), glm::dmat4(1)}});
-    CHECK(sides(check_backs(view_from({1, 2, 5}), turned)) == Sides::both);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), turned)) == CullMode::none);
     const auto flat = scene_of({{1, whole, two_sided(kPaint), scaled_by({1, 1, 0})}});
-    CHECK(sides(check_backs(view_from({1, 2, 5}), flat)) == Sides::both);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), flat)) == CullMode::none);
     Geometry dark = whole;  // the normals face inwards, and are turned to the viewer
     for (glm::vec3& normal : dark.normals) normal = -normal;
     const auto other = scene_of({{1, dark, two_sided(kPaint), scaled_by({-1, 1, 2})}});
-    CHECK(sides(check_backs(view_from({1, 2, 5}), other)) == Sides::closed);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), other)) == CullMode::hidden_back);
 }
 
 TEST_CASE("what a mirror cuts is drawn from both sides in it") {
@@ -289,6 +289,6 @@ TEST_CASE("what a mirror cuts is drawn from both sides in it") {
     REQUIRE(plan.scene.mirrors.size() == 1);
     const auto& reflected = plan.scene.mirrors[0].reflected.opaque;
     REQUIRE(reflected.size() == 2);
-    CHECK(reflected[0].sides == Sides::closed);
-    CHECK(reflected[1].sides == Sides::both);
+    CHECK(reflected[0].cull_mode == CullMode::hidden_back);
+    CHECK(reflected[1].cull_mode == CullMode::none);
 }

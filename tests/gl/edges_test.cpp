@@ -4,7 +4,7 @@
 
 #include "io/read_scene.hpp"
 #include "plan/frame_plan.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -83,7 +83,7 @@ View wire_from(const glm::dvec3& eye) {
 }  // namespace
 
 TEST_CASE("each edge is drawn once, however many triangles share it") {
-    Studio studio;
+    RendererFixture studio;
     const View view = wire_from({1, 2, 5});
     const auto edges = [&](const Geometry& geometry) {
         studio.draw(scene_of({{1, geometry, material_of({1, 0, 0}), glm::dmat4(1)}}), view);
@@ -108,7 +108,7 @@ TEST_CASE("each edge is drawn once, however many triangles share it") {
 }
 
 TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
-    Studio studio;
+    RendererFixture studio;
     const Geometry geometry = box({1, 0.7, 0.9});
     const auto scene = scene_of({{1, geometry, material_of({0.5, 0.2, 0.1}), glm::dmat4(1)}});
     for (const glm::dvec3& eye : {glm::dvec3(2, 1.5, 4), glm::dvec3(-3, 2, 1), glm::dvec3(0.1, -4, 0.3)}) {
@@ -117,10 +117,10 @@ TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
             return pixel != bytes_of(kDefaultBackground);
         });
         CHECK(drawn.size() > 200);
-        struct Line {
+        struct ExpectedLine {
             glm::dvec2 a, b;
         };
-        std::vector<Line> lines;
+        std::vector<ExpectedLine> lines;
         for (const glm::uvec3& triangle : geometry.triangles)
             for (int k = 0; k < 3; ++k)
                 lines.push_back({seen(view, geometry.positions[triangle[k]]),
@@ -128,11 +128,11 @@ TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
         int astray = 0, missing = 0;
         for (const auto& [x, y] : drawn) {
             double nearest = 1e9;
-            for (const Line& line : lines)
+            for (const ExpectedLine& line : lines)
                 nearest = std::min(nearest, distance({x + 0.5, y + 0.5}, line.a, line.b));
             astray += nearest > 0.8;
         }
-        for (const Line& line : lines)
+        for (const ExpectedLine& line : lines)
             for (int part = 1; part < 50; ++part) {
                 const glm::dvec2 point = line.a + (line.b - line.a) * (part / 50.0);
                 if (point.x < 1 || point.y < 1 || point.x > view.width - 1 || point.y > view.height - 1)
@@ -152,7 +152,7 @@ TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
 }
 
 TEST_CASE("realistic edges have their material's colour under the light, from both sides") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(1.5), material_of({0.8, 0.4, 0.2}), glm::dmat4(1)}});
     View view = wire_from({1, 0.5, 4});
     view.light = slanted();
@@ -178,7 +178,7 @@ TEST_CASE("realistic edges have their material's colour under the light, from bo
 }
 
 TEST_CASE("of edges at equal depth those of the higher id are in front") {
-    Studio studio;
+    RendererFixture studio;
     const View view = wire_from({1, 0.5, 4});
     Material red = material_of({0, 0, 0}), green = red;
     red.emission = {1, 0, 0, 1};
@@ -194,7 +194,7 @@ TEST_CASE("of edges at equal depth those of the higher id are in front") {
 }
 
 TEST_CASE("stylized: dark blue faces under the light, light blue edges, whatever the material") {
-    Studio studio;
+    RendererFixture studio;
     Material loud = material_of({1, 0, 0}, {1, 1, 1}, 3);
     loud.emission = {0.5, 0, 0, 1};
     const auto scene = scene_of({{1, quad(1.5), loud, glm::dmat4(1)}});
@@ -225,7 +225,7 @@ TEST_CASE("stylized: dark blue faces under the light, light blue edges, whatever
 }
 
 TEST_CASE("edges do not fight with their faces, at any tilt and distance") {
-    Studio studio;
+    RendererFixture studio;
     for (const double tilt : {0.0, 20.0, 50.0, 75.0, 85.0})
         for (const double away : {1.0, 1000.0, 1e6}) {
             CAPTURE(tilt);
@@ -247,7 +247,7 @@ TEST_CASE("edges do not fight with their faces, at any tilt and distance") {
 }
 
 TEST_CASE("stylized faces hide the edges behind them") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0.3, 0.2, 4});
     view.mode = DrawMode::stylized;
     const auto edges = [&](const std::vector<Part>& parts) {
@@ -264,7 +264,7 @@ TEST_CASE("stylized faces hide the edges behind them") {
 }
 
 TEST_CASE("what is selected in a wireframe has its edges in the mark's colour, over everything") {
-    Studio studio;
+    RendererFixture studio;
     View view = wire_from({0, 0, 5});
     Material black = material_of({0, 0, 0});
     const auto scene = scene_of({{1, quad(1), black, glm::dmat4(1)},
@@ -311,16 +311,16 @@ std::shared_ptr<const PlacedScene> shown_parts(const std::shared_ptr<const Scene
 
 TEST_CASE("a car's opaque parts take one pass, and what is not wanted costs nothing") {
     const auto car = shown_parts(car_scene(), false);
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({3, 2, 5}, {0, 0.7, 0});
     studio.draw(car, view);
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.edges == 0);
     View planned = view;
     planned.scene = car;
-    const Layers layers = plan_frame(planned).scene;
-    CHECK(layers.transparent.empty());  // nothing is blended
-    CHECK(layers.mirrors.empty());      // nor drawn into another target
+    const DrawLists lists = plan_frame(planned).scene;
+    CHECK(lists.transparent.empty());  // nothing is blended
+    CHECK(lists.mirrors.empty());      // nor drawn into another target
     const int draws = studio.stats.draws;
     const std::uint64_t triangles = studio.stats.triangles;
     std::uint64_t shown = 0;
@@ -349,7 +349,7 @@ TEST_CASE("a car's opaque parts take one pass, and what is not wanted costs noth
 
 TEST_CASE("a car's windows cost one pass, and a draw each") {
     const auto scene = car_scene();
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({3, 2, 5}, {0, 0.7, 0});
     studio.draw(shown_parts(scene, false), view);
     const int draws = studio.stats.draws;

@@ -1,6 +1,6 @@
 #include "expected_texture.hpp"
 #include "reference/reference.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -24,11 +24,11 @@ std::shared_ptr<const PlacedScene> scene_of(const Part& part, const std::array<I
 }
 
 /// What a triangle of the part shows at the place where rays meet its plane.
-struct Facet {
+struct SphereFacet {
     glm::dvec3 corners[3]{}, normals[3]{};
     double front = 1;  ///< -1 where the matrix turns triangles round
 
-    Facet(const Part& part, const glm::uvec3& triangle) {
+    SphereFacet(const Part& part, const glm::uvec3& triangle) {
         const glm::dmat3 normal_matrix = glm::transpose(glm::inverse(glm::dmat3(part.matrix)));
         if (glm::determinant(glm::dmat3(part.matrix)) < 0) front = -1;
         const auto& positions = part.geometry.positions;
@@ -42,12 +42,12 @@ struct Facet {
         }
     }
 
-    struct Meeting {
+    struct SphereHit {
         double t = 0;
         bool inside = false;
         glm::dvec3 point{0}, normal{0};
     };
-    Meeting meet(const glm::dvec3& eye, const glm::dvec3& ray) const {
+    SphereHit meet(const glm::dvec3& eye, const glm::dvec3& ray) const {
         const glm::dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0];
         const glm::dvec3 p = glm::cross(ray, ac), from_a = eye - corners[0], q = glm::cross(from_a, ab);
         const double determinant = glm::dot(ab, p);
@@ -67,14 +67,14 @@ public:
 
     /// None where a corner of the pixel misses the part, or meets another face of it than the centre does.
     std::optional<glm::dvec3> at(double x, double y) const {
-        const Facet* facet = nearest(x, y);
+        const SphereFacet* facet = nearest(x, y);
         for (const double dx : {-0.49, 0.49})
             for (const double dy : {-0.49, 0.49}) {
-                const Facet* other = nearest(x + dx, y + dy);
+                const SphereFacet* other = nearest(x + dx, y + dy);
                 if (!facet || !other) return std::nullopt;
                 if (glm::dot(facet->normals[0], other->normals[0]) < 0.1) return std::nullopt;
             }
-        const Facet::Meeting met = facet->meet(view_.camera.eye, ray_through(view_, x, y));
+        const SphereFacet::SphereHit met = facet->meet(view_.camera.eye, ray_through(view_, x, y));
         const glm::dvec3 own = phong(material_, view_.light, view_.camera.eye, met.point, met.normal);
         constexpr double kStep = 1e-4;
         const auto change = [&](double dx, double dy) {
@@ -85,26 +85,26 @@ public:
     }
 
 private:
-    const Facet* nearest(double x, double y) const {
-        const Facet* found = nullptr;
+    const SphereFacet* nearest(double x, double y) const {
+        const SphereFacet* found = nullptr;
         double t = std::numeric_limits<double>::infinity();
-        for (const Facet& facet : facets_) {
-            const Facet::Meeting met = facet.meet(view_.camera.eye, ray_through(view_, x, y));
+        for (const SphereFacet& facet : facets_) {
+            const SphereFacet::SphereHit met = facet.meet(view_.camera.eye, ray_through(view_, x, y));
             if (!met.inside || met.t >= t) continue;
             t = met.t;
             found = &facet;
         }
         return found;
     }
-    glm::dvec3 reflected(const Facet& facet, double x, double y) const {
+    glm::dvec3 reflected(const SphereFacet& facet, double x, double y) const {
         const glm::dvec3 ray = ray_through(view_, x, y);
         return glm::normalize(glm::reflect(ray, facet.meet(view_.camera.eye, ray).normal));
     }
 
-    ExpectedPanorama panorama_;
+    ExpectedEnvironment panorama_;
     View view_;
     Material material_;
-    std::vector<Facet> facets_;
+    std::vector<SphereFacet> facets_;
 };
 
 Material chrome(double reflectivity) {
@@ -118,7 +118,8 @@ View in_panorama(View view) {
     return view;
 }
 
-Deviation check(const Part& part, const std::array<Image, 6>& images, const View& view, Studio& studio) {
+TextureMismatch check(const Part& part, const std::array<Image, 6>& images, const View& view,
+                      RendererFixture& studio) {
     const Chrome expected(part, images, view);
     const Image image = studio.draw(scene_of(part, images), in_panorama(view));
     return deviation(image, [&](double x, double y) { return expected.at(x, y); });
@@ -127,7 +128,7 @@ Deviation check(const Part& part, const std::array<Image, 6>& images, const View
 }  // namespace
 
 TEST_CASE("a chrome ball reflects the panorama") {
-    Studio studio;
+    RendererFixture studio;
     for (const int size : {1, 4, 64, 512})
         for (const double reflectivity : {0.25, 1.0}) {
             CAPTURE(size);
@@ -135,25 +136,25 @@ TEST_CASE("a chrome ball reflects the panorama") {
             const Part ball{1, sphere(1, 12), chrome(reflectivity),
                             moved_by({1, -0.5, 0.3}) * turned_by(40, {0, 1, 0})};
             View view = view_from({2.5, 1.5, 3.5}, {1, -0.5, 0.3});
-            const Deviation off = check(ball, six(size), view, studio);
+            const TextureMismatch off = check(ball, six(size), view, studio);
             CHECK(off.pixels > 500);
             CHECK(off.rms <= 1);
         }
 }
 
 TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirrored as it may be") {
-    Studio studio;
+    RendererFixture studio;
     const std::array<Image, 6> images = six(32, noise);
     for (const double x : {1.0, -1.0}) {
         const Part part{1, box({1, 0.7, 0.8}), chrome(0.6), turned_by(30, {0, 1, 0}) * scaled_by({x, 1, 1})};
-        const Deviation off = check(part, images, view_from({2, 1.5, 3}), studio);
+        const TextureMismatch off = check(part, images, view_from({2, 1.5, 3}), studio);
         CHECK(off.pixels > 500);
         CHECK_MESSAGE(off.worst <= 3, off.where);
     }
 }
 
 TEST_CASE("a surface's own colour is clamped before the panorama is mixed in") {
-    Studio studio;
+    RendererFixture studio;
     Material bright = chrome(0.5);
     bright.emission = {3, 3, 3, 1};
     Image grey;
@@ -167,7 +168,7 @@ TEST_CASE("a surface's own colour is clamped before the panorama is mixed in") {
 }
 
 TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
-    Studio studio;
+    RendererFixture studio;
     const std::array<Image, 6> images = six(8);
     const View plain = view_from({1, 1, 4});
     const auto picture = [&](const Geometry& geometry, double reflectivity, const View& view) {
@@ -188,7 +189,7 @@ TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
 }
 
 TEST_CASE("the reference renderer sees the same textures, backgrounds and reflections") {
-    Studio studio;
+    RendererFixture studio;
     SceneParts parts;
     for (const Image& image : six(128)) parts.textures.push_back({"face.png", image, false});
     parts.textures.push_back({"board.png", cloudy(200, 133), false});
@@ -220,12 +221,12 @@ TEST_CASE("the reference renderer sees the same textures, backgrounds and reflec
             view.background.cube_map = {0, 1, 2, 3, 4, 5};
         else
             view.background.texture = 6;
-        const ReferencePicture reference = trace(view);
+        const ReferenceImage reference = trace(view);
         const auto at = [&](int x, int y) {
             return static_cast<std::size_t>(view.height - 1 - y) * static_cast<std::size_t>(view.width) +
                    static_cast<std::size_t>(x);
         };
-        const Deviation off =
+        const TextureMismatch off =
             deviation(studio.draw(view.scene, view), [&](double px, double py) -> std::optional<glm::dvec3> {
                 const int x = static_cast<int>(px), y = static_cast<int>(py);
                 if (x == 0 || y == 0 || x == view.width - 1 || y == view.height - 1) return std::nullopt;

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <random>
 
-#include "expected_picture.hpp"
+#include "expected_image.hpp"
 
 namespace vrut {
 
@@ -25,13 +25,13 @@ int wrapped(int i, int count, bool repeat) {
 }  // namespace
 
 ExpectedTexture::ExpectedTexture(const Image& image) {
-    Level first{{image.width, image.height}, {}};
+    ExpectedMipLevel first{{image.width, image.height}, {}};
     for (std::size_t i = 0; i < image.rgba.size(); i += 4)
         first.texels.push_back(glm::dvec3(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]) / 255.0);
     levels_.push_back(std::move(first));
     while (levels_.back().size != glm::ivec2(1)) {
         const glm::ivec2 old = levels_.back().size, size = glm::max(old / 2, 1);
-        Level level{size, {}};
+        ExpectedMipLevel level{size, {}};
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) {
                 glm::dvec3 sum(0);
@@ -47,14 +47,14 @@ ExpectedTexture::ExpectedTexture(const Image& image) {
 }
 
 const glm::dvec3& ExpectedTexture::texel(int level, int x, int y) const {
-    const Level& from = levels_[static_cast<std::size_t>(level)];
+    const ExpectedMipLevel& from = levels_[static_cast<std::size_t>(level)];
     return from.texels[static_cast<std::size_t>(y) * static_cast<std::size_t>(from.size.x) +
                        static_cast<std::size_t>(x)];
 }
 
-glm::dvec3 ExpectedTexture::bilinear(int level, const glm::dvec2& place, bool repeat) const {
+glm::dvec3 ExpectedTexture::bilinear(int level, const glm::dvec2& uv, bool repeat) const {
     const glm::ivec2 count = size(level);
-    const glm::dvec2 at = place * glm::dvec2(count) - 0.5, low = glm::floor(at), part = at - low;
+    const glm::dvec2 at = uv * glm::dvec2(count) - 0.5, low = glm::floor(at), part = at - low;
     const auto corner = [&](int dx, int dy) {
         return texel(level, wrapped(static_cast<int>(low.x) + dx, count.x, repeat),
                      wrapped(static_cast<int>(low.y) + dy, count.y, repeat));
@@ -63,23 +63,26 @@ glm::dvec3 ExpectedTexture::bilinear(int level, const glm::dvec2& place, bool re
                     glm::mix(corner(0, 1), corner(1, 1), part.x), part.y);
 }
 
-glm::dvec3 ExpectedTexture::at(const glm::dvec2& place, const glm::dvec2& across, const glm::dvec2& up,
+glm::dvec3 ExpectedTexture::at(const glm::dvec2& uv, const glm::dvec2& across, const glm::dvec2& up,
                                bool repeat) const {
     const glm::dvec2 count(size(0));
     const double level = std::min<double>(expected_level(across * count, up * count), levels() - 1);
     const int finer = static_cast<int>(level), coarser = std::min(finer + 1, levels() - 1);
-    return glm::mix(bilinear(finer, place, repeat), bilinear(coarser, place, repeat), level - finer);
+    return glm::mix(bilinear(finer, uv, repeat), bilinear(coarser, uv, repeat), level - finer);
 }
 
-const std::array<ExpectedPanorama::Face, 6> ExpectedPanorama::kFaces{
-    Face{{1, 0, 0}, {0, 1, 0}},   Face{{-1, 0, 0}, {0, 1, 0}}, Face{{0, 1, 0}, {0, 0, 1}},
-    Face{{0, -1, 0}, {0, 0, -1}}, Face{{0, 0, 1}, {0, 1, 0}},  Face{{0, 0, -1}, {0, 1, 0}}};
+const std::array<ExpectedEnvironment::ExpectedFace, 6> ExpectedEnvironment::kFaces{
+    ExpectedFace{{1, 0, 0}, {0, 1, 0}}, ExpectedFace{{-1, 0, 0}, {0, 1, 0}},
+    ExpectedFace{{0, 1, 0}, {0, 0, 1}}, ExpectedFace{{0, -1, 0}, {0, 0, -1}},
+    ExpectedFace{{0, 0, 1}, {0, 1, 0}}, ExpectedFace{{0, 0, -1}, {0, 1, 0}}};
 
 namespace {
 
 std::size_t face_towards(const glm::dvec3& direction) {
-    const auto ahead = [&](const ExpectedPanorama::Face& face) { return glm::dot(face.view, direction); };
-    const auto& faces = ExpectedPanorama::kFaces;
+    const auto ahead = [&](const ExpectedEnvironment::ExpectedFace& face) {
+        return glm::dot(face.view, direction);
+    };
+    const auto& faces = ExpectedEnvironment::kFaces;
     return static_cast<std::size_t>(
         std::max_element(faces.begin(), faces.end(),
                          [&](const auto& a, const auto& b) { return ahead(a) < ahead(b); }) -
@@ -87,7 +90,7 @@ std::size_t face_towards(const glm::dvec3& direction) {
 }
 
 /// Where a direction meets a face's picture, (0, 0) to (1, 1).
-glm::dvec2 place_on(const ExpectedPanorama::Face& face, const glm::dvec3& direction) {
+glm::dvec2 uv_on(const ExpectedEnvironment::ExpectedFace& face, const glm::dvec3& direction) {
     return glm::dvec2(glm::dot(direction, face.right()), glm::dot(direction, face.up)) /
                glm::dot(direction, face.view) / 2.0 +
            0.5;
@@ -95,10 +98,10 @@ glm::dvec2 place_on(const ExpectedPanorama::Face& face, const glm::dvec3& direct
 
 }  // namespace
 
-ExpectedPanorama::ExpectedPanorama(const std::array<Image, 6>& images)
+ExpectedEnvironment::ExpectedEnvironment(const std::array<Image, 6>& images)
     : faces_(images.begin(), images.end()) {}
 
-glm::dvec3 ExpectedPanorama::texel(std::size_t face, int level, const glm::ivec2& at) const {
+glm::dvec3 ExpectedEnvironment::texel(std::size_t face, int level, const glm::ivec2& at) const {
     const int size = faces_[face].size(level).x;
     const glm::ivec2 inside = glm::clamp(at, 0, size - 1);
     if (at == inside) return faces_[face].texel(level, at.x, at.y);
@@ -107,18 +110,18 @@ glm::dvec3 ExpectedPanorama::texel(std::size_t face, int level, const glm::ivec2
                 texel(face, level, {inside.x, at.y})) /
                3.0;
     // Half a texel beyond the edge, on the face that begins there.
-    const Face& from = kFaces[face];
+    const ExpectedFace& from = kFaces[face];
     const glm::dvec2 on_face =
         glm::clamp((glm::dvec2(at) + 0.5) * 2.0 / static_cast<double>(size) - 1.0, -1.0, 1.0);
     const glm::dvec3 there = from.view * (1 - 1.0 / size) + from.right() * on_face.x + from.up * on_face.y;
     const std::size_t to = face_towards(there);
-    const glm::ivec2 texel_there(place_on(kFaces[to], there) * static_cast<double>(size));
+    const glm::ivec2 texel_there(uv_on(kFaces[to], there) * static_cast<double>(size));
     return faces_[to].texel(level, std::clamp(texel_there.x, 0, size - 1),
                             std::clamp(texel_there.y, 0, size - 1));
 }
 
-glm::dvec3 ExpectedPanorama::bilinear(std::size_t face, int level, const glm::dvec2& place) const {
-    const glm::dvec2 at = place * glm::dvec2(faces_[face].size(level)) - 0.5, low = glm::floor(at),
+glm::dvec3 ExpectedEnvironment::bilinear(std::size_t face, int level, const glm::dvec2& uv) const {
+    const glm::dvec2 at = uv * glm::dvec2(faces_[face].size(level)) - 0.5, low = glm::floor(at),
                      part = at - low;
     const auto corner = [&](int dx, int dy) {
         return texel(face, level, glm::ivec2(low) + glm::ivec2(dx, dy));
@@ -127,20 +130,19 @@ glm::dvec3 ExpectedPanorama::bilinear(std::size_t face, int level, const glm::dv
                     glm::mix(corner(0, 1), corner(1, 1), part.x), part.y);
 }
 
-glm::dvec3 ExpectedPanorama::at(const glm::dvec3& direction, const glm::dvec3& across,
-                                const glm::dvec3& up) const {
+glm::dvec3 ExpectedEnvironment::at(const glm::dvec3& direction, const glm::dvec3& across,
+                                   const glm::dvec3& up) const {
     const std::size_t face = face_towards(direction);
     const auto change = [&](const glm::dvec3& by) {
         constexpr double kStep = 1e-5;
-        return (place_on(kFaces[face], direction + by * kStep) -
-                place_on(kFaces[face], direction - by * kStep)) /
+        return (uv_on(kFaces[face], direction + by * kStep) - uv_on(kFaces[face], direction - by * kStep)) /
                (2 * kStep) * glm::dvec2(faces_[face].size(0));
     };
     const int last = faces_[face].levels() - 1;
     const double level = std::min<double>(expected_level(change(across), change(up)), last);
     const int finer = static_cast<int>(level), coarser = std::min(finer + 1, last);
-    const glm::dvec2 place = place_on(kFaces[face], direction);
-    return glm::mix(bilinear(face, finer, place), bilinear(face, coarser, place), level - finer);
+    const glm::dvec2 uv = uv_on(kFaces[face], direction);
+    return glm::mix(bilinear(face, finer, uv), bilinear(face, coarser, uv), level - finer);
 }
 
 double expected_level(const glm::dvec2& across, const glm::dvec2& up) {
@@ -174,9 +176,9 @@ Image cloudy(int width, int height, unsigned seed) {
     return image;
 }
 
-Deviation deviation(const Image& image,
-                    const std::function<std::optional<glm::dvec3>(double x, double y)>& expected) {
-    Deviation result;
+TextureMismatch deviation(const Image& image,
+                          const std::function<std::optional<glm::dvec3>(double x, double y)>& expected) {
+    TextureMismatch result;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const auto should = expected(x + 0.5, y + 0.5);

@@ -17,7 +17,7 @@ public:
 
     /// RGB, 0 to 1. The pixel reaches from `place` by `across` and by `up`; (0, 0) is the bottom left, (1, 1)
     /// the top right.
-    glm::dvec3 at(const glm::dvec2& place, const glm::dvec2& across, const glm::dvec2& up,
+    glm::dvec3 at(const glm::dvec2& uv, const glm::dvec2& across, const glm::dvec2& up,
                   bool repeat = true) const;
     int levels() const { return static_cast<int>(levels_.size()); }
     /// A texel of a level; rows from the bottom.
@@ -25,31 +25,31 @@ public:
     glm::ivec2 size(int level) const { return levels_[static_cast<std::size_t>(level)].size; }
 
 private:
-    struct Level {
+    struct ExpectedMipLevel {
         glm::ivec2 size{0};
         std::vector<glm::dvec3> texels;
     };
-    glm::dvec3 bilinear(int level, const glm::dvec2& place, bool repeat) const;
-    std::vector<Level> levels_;
+    glm::dvec3 bilinear(int level, const glm::dvec2& uv, bool repeat) const;
+    std::vector<ExpectedMipLevel> levels_;
 };
 
 /// A panorama of six pictures px nx py ny pz nz, each seen by a camera with 90° at the origin.
-class ExpectedPanorama {
+class ExpectedEnvironment {
 public:
-    explicit ExpectedPanorama(const std::array<Image, 6>& images);
+    explicit ExpectedEnvironment(const std::array<Image, 6>& images);
 
     /// RGB, 0 to 1, in a direction of any length, which changes by `across` and `up` over the pixel.
     glm::dvec3 at(const glm::dvec3& direction, const glm::dvec3& across, const glm::dvec3& up) const;
 
     /// How the pictures were taken.
-    struct Face {
+    struct ExpectedFace {
         glm::dvec3 view, up;
         glm::dvec3 right() const { return glm::cross(view, up); }
     };
-    static const std::array<Face, 6> kFaces;
+    static const std::array<ExpectedFace, 6> kFaces;
 
 private:
-    glm::dvec3 bilinear(std::size_t face, int level, const glm::dvec2& place) const;
+    glm::dvec3 bilinear(std::size_t face, int level, const glm::dvec2& uv) const;
     glm::dvec3 texel(std::size_t face, int level, const glm::ivec2& at) const;
     std::vector<ExpectedTexture> faces_;
 };
@@ -63,14 +63,14 @@ Image noise(int width, int height, unsigned seed = 1);
 Image cloudy(int width, int height, unsigned seed = 1);
 
 /// Of 255: the largest difference of a channel, and the root of the mean square.
-struct Deviation {
+struct TextureMismatch {
     double worst = 0, rms = 0;
     std::string where;
     int pixels = 0;
 };
 /// Compares each pixel for which something is expected; x and y from the top left, centres at halves.
-Deviation deviation(const Image& image,
-                    const std::function<std::optional<glm::dvec3>(double x, double y)>& expected);
+TextureMismatch deviation(const Image& image,
+                          const std::function<std::optional<glm::dvec3>(double x, double y)>& expected);
 
 /// World space direction, not unit, from the eye through a place of the picture in pixels from its top left.
 glm::dvec3 ray_through(const View& view, double x, double y);

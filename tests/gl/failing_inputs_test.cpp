@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "io/vrut/text_reader.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -38,7 +38,7 @@ glm::ivec3 middle(const Image& image) { return pixel_of(image, image.width / 2, 
 }  // namespace
 
 TEST_CASE("an empty scene is its background, in every mode and with anything selected") {
-    Studio studio;
+    RendererFixture studio;
     for (const bool only_groups : {false, true}) {
         SceneParts parts;
         if (only_groups)
@@ -61,7 +61,7 @@ TEST_CASE("a chain of a million nodes is read, drawn in every mode, selected and
     };
     for (int id = 1; id < kCount; ++id) node(id, "assembly");
     node(kCount, "geometry geometry 1");
-    Studio studio;
+    RendererFixture studio;
     auto scene = read(text);
     CHECK(scene->nodes.size() == std::size_t{kCount} + 1);
     in_all_modes(view_from({0, 0, 5}), scene->scene->find_node(1), [&](const View& view) {
@@ -70,14 +70,14 @@ TEST_CASE("a chain of a million nodes is read, drawn in every mode, selected and
         CHECK((middle(image) == bytes_of(kDefaultBackground)) == view.wireframe);
     });
     View view = view_from({0, 0, 5});
-    view.marks = marks_at({{0, 0, 0}});
+    view.markers = markers_at({{0, 0, 0}});
     CHECK(middle(studio.draw(scene, view)) == glm::ivec3(204, 10, 82));
     studio.draw(scene_of({}), view);  // another scene: the chain goes
     scene.reset();
 }
 
 TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and rows of wide ones") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene =
         scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}, {2, quad(40), kPaint, moved_by({0, 0, -2})}});
     for (const int width : {1, 8192}) {
@@ -86,18 +86,18 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
         View view = view_from({0.5, 0.4, 5});
         view.width = width;
         view.height = height;
-        view.marks = marks_at({{0, 0, 0}});
+        view.markers = markers_at({{0, 0, 0}});
         in_all_modes(view, 1, [&](const View& shown) {
             const Image image = studio.draw(scene, shown);
             CHECK(image.rgba.size() == std::size_t{8192} * 4);
             CHECK(studio.stats.passes >= 2);
         });
-        view.marks.reset();
+        view.markers.reset();
         view.samples = 3;
         studio.draw(scene, view);
         view.samples = 1;
         const Image image = studio.draw(scene, view);
-        const ExpectedPicture expected(*scene, view);
+        const ExpectedImage expected(*scene, view);
         int compared = 0;
         for (int i = 0; i < 8192; i += 97) {
             const int x = width > 1 ? i : 0, y = width > 1 ? 0 : i;
@@ -112,7 +112,7 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
 }
 
 TEST_CASE("from inside a body its own faces do not show, and what is in it does") {
-    Studio studio;
+    RendererFixture studio;
     const Part within{2, sphere(0.3, 8), kPaint, moved_by({0, 0, -1})};
     const View view = view_from({0, 0, 0.5}, {0, 0, -1});
     for (const Geometry& body : {box({2, 2, 2}), sphere(2, 8)}) {
@@ -122,7 +122,7 @@ TEST_CASE("from inside a body its own faces do not show, and what is in it does"
         // Turned inside out, it is a room around the same thing.
         const auto room =
             scene_of({{1, turned_inside_out(body), material_of({1, 0, 0}), glm::dmat4(1)}, within});
-        const Difference result = studio.check(room, view);
+        const ImageMismatch result = studio.check(room, view);
         CHECK(result.surfaces == result.compared);
         View marked = view;
         marked.selected = 1;
@@ -131,7 +131,7 @@ TEST_CASE("from inside a body its own faces do not show, and what is in it does"
 }
 
 TEST_CASE("near and far a million apart: at every distance between, the nearer of two hides the other") {
-    Studio studio;
+    RendererFixture studio;
     const Material red = material_of({1, 0, 0}), green = material_of({0, 1, 0});
     View view = view_from({0, 0, 0}, {0, 0, -1});
     for (const double distance : {1.5, 10.0, 1e3, 1e5, 9e5}) {
@@ -151,7 +151,7 @@ TEST_CASE("near and far a million apart: at every distance between, the nearer o
 }
 
 TEST_CASE("the narrowest and the widest field of view") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}});
     for (const double fov : {1.0, 170.0}) {
         CAPTURE(fov);
@@ -162,7 +162,7 @@ TEST_CASE("the narrowest and the widest field of view") {
 }
 
 TEST_CASE("positions beyond all that is drawn, and matrices that go there, harm nothing else") {
-    Studio studio;
+    RendererFixture studio;
     const std::string good = R"(vrut-text 1
 geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
 node 1 "Plain" geometry geometry 1 end
@@ -207,7 +207,7 @@ node 1 "Plain" geometry geometry 1 end
 }
 
 TEST_CASE("what a driver complains of fails a test" * doctest::should_fail()) {
-    Studio studio;
+    RendererFixture studio;
     glEnable(GL_TEXTURE_WRAP_S);  // no capability
 }
 
@@ -216,11 +216,11 @@ TEST_CASE("a GL object that is not given back fails a test" * doctest::should_fa
         Leak() { detail::count_gl_object(1); }
         ~Leak() { detail::count_gl_object(-1); }
     } const leak;
-    const Studio studio;
+    const RendererFixture studio;
 }
 
 TEST_CASE("GL objects of every kind are counted, moved and not copied") {
-    const Studio studio;
+    const RendererFixture studio;
     const long before = live_gl_objects();
     const auto lives_once = [&](auto handle) {
         using Handle = decltype(handle);
@@ -234,7 +234,7 @@ TEST_CASE("GL objects of every kind are counted, moved and not copied") {
         CHECK(live_gl_objects() == before);
     };
     lives_once(make_buffer("numbers", &before, sizeof before));
-    lives_once(make_changing_buffer("numbers", 16));
+    lives_once(make_dynamic_buffer("numbers", 16));
     lives_once(make_vertex_array());
     lives_once(make_renderbuffer(GL_RGBA8, 2, 2));
     lives_once(make_texture(GL_RGBA8, 2, 2));

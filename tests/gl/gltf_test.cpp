@@ -2,7 +2,7 @@
 #include <cstdlib>
 
 #include "io/read_scene.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -17,7 +17,7 @@ std::shared_ptr<const PlacedScene> placed(const std::string& file) {
 }  // namespace
 
 TEST_CASE("a scene in glTF is drawn as the same scene in scene text") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0, 0.5, 6.4});
     const Image text = studio.draw(placed(VRUT_SCENES "/teaching/texture.vrut"), view);
     const Image gltf = studio.draw(placed(VRUT_TEST_DATA "/texture.gltf"), view);

@@ -1,14 +1,14 @@
 #include <algorithm>
 
 #include "reference/reference.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
 namespace {
 
 /// Pixels whose node is another than the reference's.
-long off(Studio& studio, const std::shared_ptr<const PlacedScene>& scene, View view) {
+long off(RendererFixture& studio, const std::shared_ptr<const PlacedScene>& scene, View view) {
     view.scene = scene;
     const std::vector<Index> drawn = studio.renderer().node_ids(view), should = trace(view).node;
     REQUIRE(drawn.size() == should.size());
@@ -20,7 +20,7 @@ long off(Studio& studio, const std::shared_ptr<const PlacedScene>& scene, View v
 }  // namespace
 
 TEST_CASE("the node at each pixel is the reference's") {
-    Studio studio;
+    RendererFixture studio;
     Material glass = material_of({0.1, 0.2, 0.3});
     glass.diffuse.a = 0.5;
     const std::vector<Part> parts{{70000, sphere(1, 20), material_of({1, 0, 0}), glm::dmat4(1)},

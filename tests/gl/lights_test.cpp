@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -48,7 +48,7 @@ void check_color(const glm::ivec3& is, const glm::ivec3& should) {
 }  // namespace
 
 TEST_CASE("lights of each kind, computed and drawn") {
-    Studio studio;
+    RendererFixture studio;
     for (const LightData::Type type : {kPoint, kDirectional, kSpot})
         for (const double shininess : {0.0, 1.0, 40.0}) {
             CAPTURE(static_cast<int>(type));
@@ -68,7 +68,7 @@ TEST_CASE("lights of each kind, computed and drawn") {
 }
 
 TEST_CASE("a point light: by hand") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({1, 2, 5});
     view.light = light_at(kPoint, {0, 0, 2});
     view.light.attenuation = {0, 0, 0.5};  // 1 / (0.5 * 4) straight below
@@ -82,7 +82,7 @@ TEST_CASE("a point light: by hand") {
 }
 
 TEST_CASE("a directional light shines alike everywhere, whatever its attenuation and place") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({1, 2, 5});
     view.light = light_at(kDirectional, {0, std::sqrt(3.0), 1});  // 60 degrees off the normal
     const Image image = studio.draw(plate(), view);
@@ -95,7 +95,7 @@ TEST_CASE("a directional light shines alike everywhere, whatever its attenuation
 }
 
 TEST_CASE("a spot's edge is the smoothstep between nine tenths of its cone and the cone") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 12});
     view.camera.fov = 25;
     view.width = 960;
@@ -122,14 +122,14 @@ TEST_CASE("a spot's edge is the smoothstep between nine tenths of its cone and t
 }
 
 TEST_CASE("spots as narrow and as wide as can be") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 12});
     view.light = light_at(kSpot, {0, 0, 4});
     // A tenth of a degree, looked at where it ends: 3.1 to 3.5 thousandths beside its middle.
     view.camera.eye.x = view.camera.focus.x = 0.0033;
     view.camera.fov = 0.004;
     view.light.angle = 0.1;
-    const Difference narrow = studio.check(plate(), view);
+    const ImageMismatch narrow = studio.check(plate(), view);
     CHECK(narrow.surfaces == view.width * view.height);
     const Image image = studio.draw(plate(), view);
     int steps = 0;
@@ -148,7 +148,7 @@ TEST_CASE("spots as narrow and as wide as can be") {
 }
 
 TEST_CASE("lights at odd places") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({1, 2, 5});
     // On the surface itself, and beyond what float can square.
     view.light = light_at(kPoint, {0, 0, 0}, {0, 0, 1});

@@ -1,6 +1,6 @@
 // The driver resets itself: what was drawn is lost, and what draws is made anew.
 #include "gl_faults.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -56,7 +56,7 @@ TEST_CASE("what was begun before the driver reset itself goes on in a new render
     const View view = view_of(two_parts());
     Image expected;
     FrameStats stats;
-    Rendering rendering(view);
+    RenderJob rendering(view);
     {
         Renderer renderer;
         renderer.render(view, expected, stats);
@@ -69,7 +69,7 @@ TEST_CASE("what was begun before the driver reset itself goes on in a new render
     CHECK(live_gl_objects() == 0);
     gl_faults::heal();
     Renderer renderer;
-    Rendering anew(view, std::move(rendering.image));
+    RenderJob anew(view, std::move(rendering.image));
     rendering.image.resize(view.width, view.height);
     while (!renderer.step(anew)) CHECK(anew.samples < view.samples);
     CHECK(anew.image.rgba == expected.rgba);
@@ -89,7 +89,7 @@ TEST_CASE("a sample of which a part is drawn is lost with the driver, and drawn 
     view.samples = 2;
     Image expected;
     FrameStats stats;
-    Rendering rendering(view);
+    RenderJob rendering(view);
     {
         Renderer renderer;
         renderer.render(view, expected, stats);

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -27,7 +27,7 @@ double share_off(const Image& a, const Image& b) {
 }
 
 View lit_at_vertices(View view) {
-    view.methods.light = Methods::Light::vertex;
+    view.methods.light = Methods::Lighting::vertex;
     return view;
 }
 
@@ -58,11 +58,11 @@ Material glass(const glm::dvec3& color, double alpha) {
 }  // namespace
 
 TEST_CASE("by default nothing is spared") {
-    CHECK(View().methods == Methods{Methods::Light::pixel, Methods::Transparency::exact});
+    CHECK(View().methods == Methods{Methods::Lighting::pixel, Methods::Transparency::exact});
 }
 
 TEST_CASE("light at the vertices comes close to light at the pixels where triangles are small") {
-    Studio studio;
+    RendererFixture studio;
     Material both_sides = shiny();
     both_sides.two_sided = true;
     const View view = view_from({0, 1, 4});
@@ -83,7 +83,7 @@ TEST_CASE("light at the vertices comes close to light at the pixels where triang
 }
 
 TEST_CASE("light at the vertices of a large triangle misses what shines between them") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(4), material_of({0.9, 0.9, 0.9}), glm::dmat4(1)}});
     View view = lit_by(LightData::Type::point, view_from({0, 0, 5}));
     view.light.position = {0, 0, 0.5};
@@ -95,7 +95,7 @@ TEST_CASE("light at the vertices of a large triangle misses what shines between 
 }
 
 TEST_CASE("light at the vertices leaves pictures, panoramas, mirrors and glass as they are") {
-    Studio studio;
+    RendererFixture studio;
     // Under parallel light, without highlights, every vertex of a face is lit as its pixels are.
     Texture checks{"checks", {}};
     checks.image.resize(8, 8);
@@ -132,7 +132,7 @@ TEST_CASE("light at the vertices leaves pictures, panoramas, mirrors and glass a
 }
 
 TEST_CASE("sorted transparency is exact where parts have an order") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts;
     for (int i = 0; i < 5; ++i)
         parts.push_back({1 + i * 3 % 5, quad(1), glass({i / 4.0, 0.5, 1 - i / 4.0}, 0.4),
@@ -147,7 +147,7 @@ TEST_CASE("sorted transparency is exact where parts have an order") {
 }
 
 TEST_CASE("sorted transparency draws panes that cross one after the other, each once") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(1), glass({0.9, 0.1, 0.1}, 0.6), turned_by(40, {0, 1, 0})},
                                  {2, quad(1), glass({0.1, 0.2, 0.9}, 0.6), turned_by(-40, {0, 1, 0})},
                                  // It shows itself through itself, too.

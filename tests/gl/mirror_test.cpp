@@ -2,7 +2,7 @@
 
 #include "plan/frame_plan.hpp"
 #include "plan/mirror_plan.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -48,14 +48,15 @@ std::size_t mirrors_in(const std::vector<Part>& parts, View view) {
 }
 
 /// Checks, and tells how many pixels were compared that show a surface.
-void check_mirror(Studio& studio, const std::vector<Part>& parts, const View& view, int surfaces = 400) {
+void check_mirror(RendererFixture& studio, const std::vector<Part>& parts, const View& view,
+                  int surfaces = 400) {
     CHECK(studio.check(scene_of(parts), view).surfaces > surfaces);
 }
 
 }  // namespace
 
 TEST_CASE("a mirror at any angle shows what lies before it") {
-    Studio studio;
+    RendererFixture studio;
     for (const double degrees : {0.0, 45.0, 77.0, -30.0})
         for (const double lean : {0.0, -20.0}) {
             CAPTURE(degrees);
@@ -70,7 +71,7 @@ TEST_CASE("a mirror at any angle shows what lies before it") {
 }
 
 TEST_CASE("a mirror from behind, under a mirroring matrix, and flattened") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     for (const glm::dmat4& matrix : {turned_by(170, {0, 1, 0}), scaled_by({-1, 1, 1}), scaled_by({1, 1, -1}),
                                      turned_by(10, {0, 1, 0}) * scaled_by({2, 1, 1e-9}),
@@ -91,7 +92,7 @@ TEST_CASE("a mirror from behind, under a mirroring matrix, and flattened") {
 }
 
 TEST_CASE("a mirror's own colour has the part that its reflectivity leaves") {
-    Studio studio;
+    RendererFixture studio;
     for (const double reflectivity : {0.01, 0.3, 0.9, 1.0}) {
         CAPTURE(reflectivity);
         View view = view_from({0.5, 2, 5}, {0, 0.6, 0});
@@ -107,7 +108,7 @@ TEST_CASE("a mirror's own colour has the part that its reflectivity leaves") {
 }
 
 TEST_CASE("several mirrors: the nearer one hides the farther, each has its own image, one bounce") {
-    Studio studio;
+    RendererFixture studio;
     const Part back = mirror_at(1, moved_by({0, 0.8, -1.7}) * turned_by(8, {0, 1, 0}), 2);
     const Part side = mirror_at(2, moved_by({-1.5, 0.8, 0}) * turned_by(80, {0, 1, 0}), 1.2);
     const Part front = mirror_at(3, moved_by({0.5, 0.4, 1.2}) * turned_by(-20, {0, 1, 0}), 0.6, 0.8);
@@ -128,7 +129,7 @@ TEST_CASE("several mirrors: the nearer one hides the farther, each has its own i
 }
 
 TEST_CASE("what lies behind a mirror's plane is not seen in it, and what goes through it is cut off") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0.5, 2, 5}, {0, 0, 0});
     for (const double height : {-3.0, -0.7, -0.3, 0.0, 0.2, 0.61, 1.0}) {
         CAPTURE(height);
@@ -150,7 +151,7 @@ TEST_CASE("what lies behind a mirror's plane is not seen in it, and what goes th
 }
 
 TEST_CASE("lights of all kinds stay at their places in a mirror") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const auto parts = with(things(), {mirror_at(1, moved_by({0, 0.8, -1.7}) * turned_by(15, {0, 1, 0})),
                                        mirror_at(2, floor_turn(), 2, 0.6)});
@@ -168,7 +169,7 @@ TEST_CASE("lights of all kinds stay at their places in a mirror") {
 }
 
 TEST_CASE("what a mirror shows is drawn only where the mirror is seen") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const Part mirror = mirror_at(1, moved_by({0, 0.8, -1.7}));
     check_mirror(studio, with(things(), {mirror}), view);

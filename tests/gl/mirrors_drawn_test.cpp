@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "mirror_scenes.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 using namespace vrut::mirror_scenes;
@@ -50,7 +50,7 @@ void check_middle(const Image& image, const glm::dvec3& color) {
 }  // namespace
 
 TEST_CASE("glass before a mirror and in it, composited by hand") {
-    Studio studio;
+    RendererFixture studio;
     const glm::dvec3 wall{0.9, 0.5, 0}, inside{0, 0.4, 1}, before{0.2, 1, 0.6}, own{0.3, 0.2, 0.1};
     const std::vector<Part> parts{
         {1, quad(2), paint(wall), moved_by({3, 0, 0}) * turned_by(90, {0, 1, 0})},
@@ -70,7 +70,7 @@ TEST_CASE("glass before a mirror and in it, composited by hand") {
 }
 
 TEST_CASE("of a mirror and its twins the highest id is in front, and no twin is seen in the mirror") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0, 0, 5});
     Geometry uneven = quad(1);  // flat enough
     uneven.positions[0].z += 6e-5;
@@ -90,7 +90,7 @@ TEST_CASE("of a mirror and its twins the highest id is in front, and no twin is 
 }
 
 TEST_CASE("a mirror that is not seen costs nothing, and its target goes with it") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const Part ball{2, sphere(0.6, 8), kRed, moved_by({0, 0.8, 0})};
     const auto place = [&](const glm::dvec3& at) {
@@ -119,7 +119,7 @@ TEST_CASE("a mirror that is not seen costs nothing, and its target goes with it"
 }
 
 TEST_CASE("a mirror seen along its plane does not flicker") {
-    Studio studio;
+    RendererFixture studio;
     const Part ball{2, sphere(0.6, 8), kRed, moved_by({0, 0.3, 0})};
     const auto scene = scene_of({floor_mirror(1), ball});
     View view = view_from({0, 0, 5});
@@ -147,7 +147,7 @@ TEST_CASE("a mirror seen along its plane does not flicker") {
 }
 
 TEST_CASE("mirrors of any size and far away") {
-    Studio studio;
+    RendererFixture studio;
     for (const double scale : {1.0, 1e-6, 1e6})
         for (const double far : {0.0, 1e7}) {
             CAPTURE(scale);
@@ -163,7 +163,7 @@ TEST_CASE("mirrors of any size and far away") {
 }
 
 TEST_CASE("a curved reflective part is drawn like one that does not reflect") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 1, 5});
     const auto ball = [](double reflectivity) {
         return std::vector<Part>{{1, sphere(1, 8), mirror_of(reflectivity), glm::dmat4(1)},
@@ -173,7 +173,7 @@ TEST_CASE("a curved reflective part is drawn like one that does not reflect") {
 }
 
 TEST_CASE("of a hundred mirrors no more are drawn than a picture may have") {
-    Studio studio;
+    RendererFixture studio;
     studio.draw(scene_of(hundred_mirrors()), view_from({0, 0, 12}));
-    CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(kMostMirrors));
+    CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(kMaxMirrors));
 }

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -36,11 +36,11 @@ int faults(const Image& image, const Image& plain, int width, const Covers& cove
 }  // namespace
 
 TEST_CASE("an outline is as wide in pixels everywhere: two at a megapixel, more in larger pictures") {
-    Studio studio;
-    struct Case {
+    RendererFixture studio;
+    struct OutlineCase {
         int height, width;
     };
-    for (const Case& c : {Case{64, 1}, {432, 1}, {640, 2}, {864, 2}, {865, 3}, {1728, 4}}) {
+    for (const OutlineCase& c : {OutlineCase{64, 1}, {432, 1}, {640, 2}, {864, 2}, {865, 3}, {1728, 4}}) {
         CAPTURE(c.height);
         View view = pixel_view(60, c.height);
         const auto scene = scene_of({{1, rectangle(20, 30, 41, 50, view), kPaint, glm::dmat4(1)}});
@@ -58,7 +58,7 @@ TEST_CASE("an outline is as wide in pixels everywhere: two at a megapixel, more 
 }
 
 TEST_CASE("an outline lies over everything, around all of a subtree together") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     SceneParts parts;
     parts.materials = {kPaint};
@@ -112,7 +112,7 @@ TEST_CASE("an outline lies over everything, around all of a subtree together") {
 }
 
 TEST_CASE("what is selected shows through what stands before it, as if that were not there") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     const Material red = material_of({0.9, 0, 0}), green = material_of({0, 0.9, 0}),
                    blue = material_of({0, 0, 0.9});
@@ -155,14 +155,14 @@ TEST_CASE("what is selected shows through what stands before it, as if that were
     // Where depth is judged after it, what is seen counts: a marker on the selection is whole, one that the
     // curtain covers is not.
     view.mode = DrawMode::realistic;
-    view.marks = marks_at({{-20, 10, 0.01}, {20, -10, -40}});
+    view.markers = markers_at({{-20, 10, 0.01}, {20, -10, -40}});
     const Image marked = studio.draw(scene, view);
     CHECK(pixel_of(marked, 20, 20) == glm::ivec3(204, 10, 82));
     CHECK(pixel_of(marked, 57, 38) != glm::ivec3(204, 10, 82));
 }
 
 TEST_CASE("glass that is selected is blended once, and shows through what stands before it") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     Material glass = material_of({0, 0.9, 0});
     glass.diffuse.a = 0.5;
@@ -181,7 +181,7 @@ TEST_CASE("glass that is selected is blended once, and shows through what stands
 }
 
 TEST_CASE("outlines at the picture's border, before and behind the eye, and of what is as small as a speck") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     view.selected = 1;
     const auto draw = [&](const Geometry& geometry, const glm::dmat4& matrix = glm::dmat4(1)) {
@@ -209,7 +209,7 @@ TEST_CASE("outlines at the picture's border, before and behind the eye, and of w
 }
 
 TEST_CASE("an outline owes nothing to the one before") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     const auto scene = scene_of({{1, rectangle(10, 10, 30, 30, view), kPaint, glm::dmat4(1)},
                                  {2, rectangle(33, 12, 60, 28, view), kPaint, glm::dmat4(1)}});
@@ -229,7 +229,7 @@ TEST_CASE("an outline owes nothing to the one before") {
 }
 
 TEST_CASE("an outline in the stylized drawing, around what faces away too, and finer with more samples") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(80, 60);
     view.mode = DrawMode::stylized;
     view.selected = 1;

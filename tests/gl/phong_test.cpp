@@ -1,4 +1,4 @@
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -15,12 +15,12 @@ Material rich(double shininess) {
 }  // namespace
 
 TEST_CASE("a plane under the headlight") {
-    Studio studio;
+    RendererFixture studio;
     for (const double shininess : {0.0, 1.0, 7.5, 64.0, 1000.0, 10000.0}) {
         CAPTURE(shininess);
         const auto scene = scene_of({{1, quad(2), rich(shininess), glm::dmat4(1)}});
         for (const glm::dvec3& eye : {glm::dvec3(0, 0, 5), glm::dvec3(1, 2, 4), glm::dvec3(4, 0.5, 0.6)}) {
-            const Difference result = studio.check(scene, view_from(eye));
+            const ImageMismatch result = studio.check(scene, view_from(eye));
             CHECK(result.surfaces > 400);
             CHECK(result.compared > 96 * 64 * 8 / 10);
         }
@@ -28,7 +28,7 @@ TEST_CASE("a plane under the headlight") {
 }
 
 TEST_CASE("a ball: normals are interpolated in space and made unit at the pixel") {
-    Studio studio;
+    RendererFixture studio;
     for (const double shininess : {0.0, 64.0, 10000.0}) {
         CAPTURE(shininess);
         const auto scene = scene_of({{1, sphere(1.5, 8), rich(shininess), turned_by(20, {1, 0, 0})}});
@@ -40,7 +40,7 @@ TEST_CASE("a ball: normals are interpolated in space and made unit at the pixel"
 }
 
 TEST_CASE("a box without normals has flat faces") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene =
         scene_of({{1, box({1, 0.7, 1.3}), rich(20), turned_by(30, glm::normalize(glm::dvec3(1, 2, 3)))}});
     for (const glm::dvec3& eye : {glm::dvec3(0, 0, 6), glm::dvec3(4, 3, 2), glm::dvec3(-3, -4, -2)})
@@ -48,13 +48,13 @@ TEST_CASE("a box without normals has flat faces") {
 }
 
 TEST_CASE("a ball without normals has flat faces too, and each keeps its own") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, sphere(1.8, 5, false), rich(30), glm::dmat4(1)}});
     CHECK(studio.check(scene, view_from({1, 1, 5})).surfaces > 400);
 }
 
 TEST_CASE("zero normals take the face's, corner by corner") {
-    Studio studio;
+    RendererFixture studio;
     Geometry mixed = quad(2);
     mixed.normals = {{0, 0, 0}, {0, 1, 1}, {0, 0, 0}, {-1, 0, 0.5}};
     CHECK(studio.check(scene_of({{1, mixed, rich(10), turned_by(40, {0, 1, 0})}}), view_from({0, 0, 5}))
@@ -64,7 +64,7 @@ TEST_CASE("zero normals take the face's, corner by corner") {
 }
 
 TEST_CASE("normals of any length are directions") {
-    Studio studio;
+    RendererFixture studio;
     for (const float length : {1e-25f, 1e-3f, 7.f, 1e15f}) {
         CAPTURE(length);
         Geometry geometry = quad(2);
@@ -74,7 +74,7 @@ TEST_CASE("normals of any length are directions") {
 }
 
 TEST_CASE("normals under stretching, shearing and mirroring matrices") {
-    Studio studio;
+    RendererFixture studio;
     glm::dmat4 shear(1);
     shear[1][0] = 0.8;
     shear[2][1] = -0.6;
@@ -90,7 +90,7 @@ TEST_CASE("normals under stretching, shearing and mirroring matrices") {
 }
 
 TEST_CASE("the headlight's colour and attenuation") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(3), rich(20), glm::dmat4(1)}});
     View view = view_from({1, 1, 3});
     view.light.color = {0.9, 0.5, 0.2, 0.1};  // its alpha means nothing
@@ -112,7 +112,7 @@ TEST_CASE("the headlight's colour and attenuation") {
 }
 
 TEST_CASE("colours are clamped, not wrapped") {
-    Studio studio;
+    RendererFixture studio;
     Material bright = material_of({3, 0.5, 0}, {0, 4, 0.5}, 2);
     bright.emission = {0, 0, 0.7, 1};
     bright.ambient = {0, 0, 0.6, 1};
@@ -124,7 +124,7 @@ TEST_CASE("colours are clamped, not wrapped") {
 }
 
 TEST_CASE("what no light falls on has its ambient and emission") {
-    Studio studio;
+    RendererFixture studio;
     Geometry away = quad(2);
     away.normals.assign(4, glm::vec3(0, 0, -1));
     Image image = studio.draw(scene_of({{1, away, rich(5), glm::dmat4(1)}}), view_from({0, 0, 4}));
@@ -134,7 +134,7 @@ TEST_CASE("what no light falls on has its ambient and emission") {
 }
 
 TEST_CASE("the background's bytes") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 4});
     const auto all = [&](const glm::ivec3& bytes) {
         const Image image = studio.draw(scene_of({}), view);

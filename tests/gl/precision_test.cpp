@@ -1,4 +1,4 @@
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -30,7 +30,7 @@ std::shared_ptr<const PlacedScene> things(double scale, const glm::dvec3& offset
 }  // namespace
 
 TEST_CASE("size and place of a scene do not change its picture") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 1.5, 6});
     CHECK(studio.check(things(1, {0, 0, 0}, true), view).surfaces > 2000);
     const glm::dvec3 far{1e7, -1e7, 1e7};
@@ -46,14 +46,14 @@ TEST_CASE("size and place of a scene do not change its picture") {
 }
 
 TEST_CASE("a flattened part of any size is lit") {
-    Studio studio;
+    RendererFixture studio;
     Geometry sideways = quad(1);
     sideways.normals.assign(4, glm::vec3(1, 0, 0));
     for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
         CAPTURE(scale);
         View view = moved(view_from({0.5, 0.3, 5}), scale, {0, 0, 0});
-        const ExpectedPicture picture(*scene_of({{1, quad(scale), kRed, glm::dmat4(1)}}), view);
-        const Difference result = difference(
+        const ExpectedImage picture(*scene_of({{1, quad(scale), kRed, glm::dmat4(1)}}), view);
+        const ImageMismatch result = difference(
             picture, studio.draw(scene_of({{1, sideways, kRed, scaled_by({scale, scale, 0})}}), view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         CHECK(result.surfaces > 300);
@@ -61,7 +61,7 @@ TEST_CASE("a flattened part of any size is lit") {
 }
 
 TEST_CASE("depth tells a millimetre at a kilometre, with something before the eye") {
-    Studio studio;
+    RendererFixture studio;
     for (const double tilt : {0.0, 30.0, 75.0}) {
         CAPTURE(tilt);
         const glm::dmat4 there = moved_by({0, 0, -1000}) * turned_by(tilt, {1, 0, 0});
@@ -85,11 +85,11 @@ TEST_CASE("depth tells a millimetre at a kilometre, with something before the ey
 }
 
 TEST_CASE("near and far cut nothing off") {
-    Studio studio;
+    RendererFixture studio;
     // A wall before the eye and one at the horizon, in one view.
     const auto scene = scene_of({{1, quad(0.002), kRed, moved_by({-0.002, 0, -0.01})},
                                  {2, quad(5000), kGreen, moved_by({0, 0, -5000})}});
-    const Difference result = studio.check(scene, view_from({0, 0, 0}, {0, 0, -1}));
+    const ImageMismatch result = studio.check(scene, view_from({0, 0, 0}, {0, 0, -1}));
     CHECK(result.surfaces == result.compared);
     // A floor that goes on behind the eye.
     const auto floor = scene_of({{1, quad(100), kRed, turned_by(-90, {1, 0, 0})}});
@@ -97,7 +97,7 @@ TEST_CASE("near and far cut nothing off") {
 }
 
 TEST_CASE("something very far away hides nothing") {
-    Studio studio;
+    RendererFixture studio;
     for (const double far : {1e5, 1e9, 1e15}) {
         CAPTURE(far);
         const auto scene = scene_of({{1, sphere(1, 8), kRed, glm::dmat4(1)},
@@ -108,7 +108,7 @@ TEST_CASE("something very far away hides nothing") {
 }
 
 TEST_CASE("of equal depth the higher id is in front") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 2, 5});
     const glm::dmat4 matrix = turned_by(33, glm::normalize(glm::dvec3(1, 1, 0.2))) * scaled_by({1, 1.3, 0.9});
     for (const Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)}) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <random>
 
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -32,7 +32,7 @@ double average(const Image& image) {
 }  // namespace
 
 TEST_CASE("pictures of any size") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene =
         scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}, {2, quad(4), kPaint, moved_by({0, 0, -2})}});
     View view = view_from({0.5, 0.4, 5});
@@ -49,7 +49,7 @@ TEST_CASE("pictures of any size") {
         CHECK(image.height == size.height);
         CHECK(image.rgba.size() == static_cast<std::size_t>(size.width * size.height * 4));
         if (size.width * size.height > 10000) continue;
-        const Difference result = difference(ExpectedPicture(*scene, view), image);
+        const ImageMismatch result = difference(ExpectedImage(*scene, view), image);
         CHECK_MESSAGE(result.worst <= 1, result.where);
     }
     CHECK(studio.renderer().max_size() >= 2048);
@@ -63,7 +63,7 @@ TEST_CASE("pictures of any size") {
 }
 
 TEST_CASE("one sample is the pixel's centre") {
-    Studio studio;
+    RendererFixture studio;
     const View view = pixel_view(8, 6);
     const auto dark = [&](double left, double top, double right, double bottom) {
         const Image image = studio.draw(
@@ -75,15 +75,15 @@ TEST_CASE("one sample is the pixel's centre") {
                 if (pixel_of(image, x, y) == glm::ivec3(0)) pixels.emplace_back(x, y);
         return pixels;
     };
-    using Pixels = std::vector<std::pair<int, int>>;
-    CHECK(dark(2.45, 1.45, 2.55, 1.55) == Pixels{{2, 1}});
+    using ImageBytes = std::vector<std::pair<int, int>>;
+    CHECK(dark(2.45, 1.45, 2.55, 1.55) == ImageBytes{{2, 1}});
     CHECK(dark(2.55, 1.45, 3.45, 1.55).empty());
     CHECK(dark(2.45, 1.55, 2.55, 2.45).empty());
-    CHECK(dark(0.4, 4.4, 1.6, 5.6) == Pixels{{0, 4}, {1, 4}, {0, 5}, {1, 5}});
+    CHECK(dark(0.4, 4.4, 1.6, 5.6) == ImageBytes{{0, 4}, {1, 4}, {0, 5}, {1, 5}});
 }
 
 TEST_CASE("many samples: what an edge covers is told to one part in their number") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(8, 6);
     for (const int samples : {2, 3, 4, 5, 16, 64})
         for (int ninth = 0; ninth < 9; ++ninth) {
@@ -110,7 +110,7 @@ TEST_CASE("many samples: what an edge covers is told to one part in their number
 }
 
 TEST_CASE("many samples: the average of a finer picture") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of(some_parts());
     View view = view_from({1, 2, 5});
     View fine = view;
@@ -148,7 +148,7 @@ TEST_CASE("many samples: the average of a finer picture") {
 }
 
 TEST_CASE("many samples of one colour are that colour") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 5});
     for (const int samples : {1, 2, 3, 7, 16, 61}) {
         view.samples = samples;
@@ -162,7 +162,7 @@ TEST_CASE("many samples of one colour are that colour") {
 }
 
 TEST_CASE("a view without a scene shows the background, with its samples or without") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({0, 0, 5});
     view.background.color = {1, 0.5, 0};
     for (const int samples : {1, 3}) {
@@ -175,7 +175,7 @@ TEST_CASE("a view without a scene shows the background, with its samples or with
 }
 
 TEST_CASE("other states of the same scene change the picture and upload nothing") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({0, 0, 5});
     const auto first =
         scene_of({{1, quad(1), kPaint, glm::dmat4(1)}, {2, box({1, 1, 1}), kPaint, moved_by({0, 1.5, 0})}});
@@ -206,7 +206,7 @@ TEST_CASE("other states of the same scene change the picture and upload nothing"
 }
 
 TEST_CASE("what a picture took") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({1, 2, 5});
     studio.draw(scene_of({}), view);
     CHECK(studio.stats.passes == 0);
@@ -228,7 +228,7 @@ TEST_CASE("what a picture took") {
 }
 
 TEST_CASE("what does not show is not drawn") {
-    Studio studio;
+    RendererFixture studio;
     const auto draws = [&](const std::shared_ptr<PlacedScene>& placed, double distance) {
         studio.draw(placed, view_from({0, 0, distance}));
         return studio.stats.draws;
@@ -252,7 +252,7 @@ TEST_CASE("what does not show is not drawn") {
 }
 
 TEST_CASE("a part at no finite place is left out, and the others are drawn") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 2, 5});
     std::vector<Part> parts = some_parts();
     const Image without = studio.draw(scene_of(parts), view);
@@ -275,14 +275,14 @@ TEST_CASE("a chain of a million nodes is drawn") {
         {Node{kCount, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, kNone}},
          kCount - 1});
     const auto placed = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
-    Studio studio;
+    RendererFixture studio;
     const double x = static_cast<double>(kCount - 1);
     CHECK(studio.check(placed, view_from({x, 0, 4}, {x, 0, 0})).surfaces > 300);
     CHECK(studio.stats.draws == 1);
 }
 
 TEST_CASE("the order in the file does not change a byte") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts = some_parts();
     parts.push_back({500, parts[3].geometry, material_of({0, 0, 1}), parts[3].matrix});  // a tie
     parts.push_back({5, parts[4].geometry, material_of({0, 0, 1}), parts[4].matrix});
@@ -297,7 +297,7 @@ TEST_CASE("the order in the file does not change a byte") {
 }
 
 TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of(some_parts());
     const View view = view_from({1, 2, 5});
     const Image first = studio.draw(scene, view);
@@ -309,7 +309,7 @@ TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
 }
 
 TEST_CASE("scenes come and go without leaving anything on the GPU") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 2, 5});
     studio.draw(scene_of(some_parts()), view);
     const long before = live_gl_objects();

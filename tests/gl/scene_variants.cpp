@@ -157,7 +157,7 @@ View split(const View& view) {
 
 }  // namespace
 
-std::vector<Variant> variants_of(const View& view) {
+std::vector<SceneVariant> variants_of(const View& view) {
     return {{"a millionth of its size", scaled(view, 1e-6)},
             {"a million times its size", scaled(view, 1e6)},
             {"ten million away", moved(view, {1e7, -1e7, 1e7})},

@@ -9,7 +9,7 @@
 namespace vrut {
 
 /// The same picture from another scene.
-struct Variant {
+struct SceneVariant {
     std::string name;
     View view;
     Id ids = 1;  ///< by this its nodes' ids are divided to get those of the scene that it was made from
@@ -17,6 +17,6 @@ struct Variant {
 
 /// The view's scene at other sizes and places, mirrored twice, turned once around, in another order, and with
 /// each mesh split in two. The scene stands as its file says.
-std::vector<Variant> variants_of(const View& view);
+std::vector<SceneVariant> variants_of(const View& view);
 
 }  // namespace vrut

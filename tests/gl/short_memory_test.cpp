@@ -1,13 +1,13 @@
 // The driver's memory is short: what fits is drawn as ever, and what does not is told.
 #include "gl_faults.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
 namespace {
 
-struct Healed {
-    ~Healed() { gl_faults::heal(); }
+struct HealedMemory {
+    ~HealedMemory() { gl_faults::heal(); }
 };
 
 Material glass() {
@@ -34,14 +34,14 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene) {
     View view = view_from({0, 1, 5});
     view.scene = scene;
     view.selected = 1;
-    view.marks = marks_at({{0, 0, 1}});
+    view.markers = markers_at({{0, 0, 1}});
     return view;
 }
 
 }  // namespace
 
 TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the next one is whole") {
-    const Healed healed;
+    const HealedMemory healed;
     const View view = view_of(everything());
     Image expected, image;
     FrameStats stats;
@@ -77,18 +77,18 @@ TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the 
 
 TEST_CASE(
     "a scene that does not fit beside the one shown is refused, and that one is drawn from what is there") {
-    const Healed healed;
+    const HealedMemory healed;
     const View shown = view_of(everything());
     View large = view_from({0, 0, 5});
     large.scene = scene_of({{1, sphere(1, 200), material_of({1, 0, 0}), glm::dmat4(1)}});
     Image expected, image;
     FrameStats stats;
     Renderer renderer;
-    renderer.take(shown);
+    renderer.upload(shown);
     renderer.render(shown, expected, stats);
     const long objects = live_gl_objects();
     gl_faults::limit_memory(gl_faults::memory_used() + 500'000);
-    CHECK_THROWS_WITH_AS(renderer.take(large),
+    CHECK_THROWS_WITH_AS(renderer.upload(large),
                          doctest::Contains("the graphics driver has no memory for 1.8 MiB of vertices"),
                          OutOfMemory);
     CHECK(live_gl_objects() == objects);
@@ -96,7 +96,7 @@ TEST_CASE(
     CHECK(stats.uploads == 0);
     CHECK(image.rgba == expected.rgba);
     gl_faults::heal();
-    renderer.take(large);
+    renderer.upload(large);
     renderer.render(shown, image, stats);
     CHECK(stats.uploads == 0);
     renderer.render(large, image, stats);
@@ -104,7 +104,7 @@ TEST_CASE(
 }
 
 TEST_CASE("what earlier pictures left on the GPU makes room for the next") {
-    const Healed healed;
+    const HealedMemory healed;
     View view = view_of(everything());
     Image expected, image;
     FrameStats stats;
@@ -123,7 +123,7 @@ TEST_CASE("what earlier pictures left on the GPU makes room for the next") {
 }
 
 TEST_CASE("a picture larger than the driver holds is refused in a sentence") {
-    const Healed healed;
+    const HealedMemory healed;
     View view = view_of(everything());
     Image image;
     FrameStats stats;

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -24,7 +24,7 @@ int covered(const Image& image) {
 }  // namespace
 
 TEST_CASE("back faces are not drawn") {
-    Studio studio;
+    RendererFixture studio;
     CHECK(covered(studio.draw(scene_of({{1, quad(1), kPlain, glm::dmat4(1)}}), view_from({0, 0, 5}))) > 300);
     CHECK(covered(studio.draw(scene_of({{1, quad(1), kPlain, glm::dmat4(1)}}), view_from({0, 0, -5}))) == 0);
     // Inside out, the far side of a ball is seen from within.
@@ -36,7 +36,7 @@ TEST_CASE("back faces are not drawn") {
 }
 
 TEST_CASE("a mirroring matrix does not turn a part inside out") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::dvec3& factors : {glm::dvec3(-1, 1, 1), glm::dvec3(1, -1, 1), glm::dvec3(1, 1, -1),
                                       glm::dvec3(-2, -1, -0.5), glm::dvec3(-1, -1, 1)}) {
         CAPTURE(factors.x);
@@ -53,7 +53,7 @@ TEST_CASE("a mirroring matrix does not turn a part inside out") {
 }
 
 TEST_CASE("two-sided parts are lit from both sides") {
-    Studio studio;
+    RendererFixture studio;
     for (const bool normals : {true, false}) {
         const auto plate = scene_of({{1, quad(1, normals), two_sided(kPlain), glm::dmat4(1)}});
         CHECK(studio.check(plate, view_from({1, 0, 4})).surfaces > 300);
@@ -68,7 +68,7 @@ TEST_CASE("two-sided parts are lit from both sides") {
 }
 
 TEST_CASE("of two-sided parts the normal faces the viewer, whatever the triangle does") {
-    Studio studio;
+    RendererFixture studio;
     // The triangles face the viewer, their normals do not: a file from a modeller that turned one of the two.
     Geometry away = quad(1);
     away.normals.assign(4, glm::vec3(0.3f, 0, -1));
@@ -88,7 +88,7 @@ TEST_CASE("of two-sided parts the normal faces the viewer, whatever the triangle
 }
 
 TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is gone") {
-    Studio studio;
+    RendererFixture studio;
     for (const double degrees : {0.0, 20.0, 50.0}) {
         CAPTURE(degrees);
         const glm::dmat4 turn = turned_by(degrees, glm::normalize(glm::dvec3(1, 2, 3)));
@@ -99,23 +99,23 @@ TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is
             CAPTURE(side);
             const View view = view_from({0.5, 0.3, 5 * side});
             // A plate has the same faces.
-            const ExpectedPicture picture(*scene_of({{1, quad(1), two_sided(kPlain), turn}}), view);
+            const ExpectedImage picture(*scene_of({{1, quad(1), two_sided(kPlain), turn}}), view);
             for (const Geometry& geometry : {box({1, 1, 1}), quad(1), quad(1, false)}) {
-                const Difference result = difference(picture, studio.draw(flattened(geometry), view));
+                const ImageMismatch result = difference(picture, studio.draw(flattened(geometry), view));
                 CHECK_MESSAGE(result.worst <= 1, result.where);
                 CHECK(result.surfaces > 200);
             }
             // Flattened along none of its own axes, it has columns that are all there, and a determinant of
             // noise.
             const glm::dmat4 tilt = turned_by(30, {1, 0, 0});
-            const ExpectedPicture shortened(
+            const ExpectedImage shortened(
                 *scene_of({{1, quad(1), two_sided(kPlain),
                             turn * scaled_by({1, std::cos(glm::radians(30.0)), 1})}}),
                 view);
             for (const bool normals : {true, false}) {
                 const auto plate =
                     scene_of({{1, quad(1, normals), kPlain, turn * scaled_by({1, 1, 0}) * tilt}});
-                const Difference result = difference(shortened, studio.draw(plate, view));
+                const ImageMismatch result = difference(shortened, studio.draw(plate, view));
                 CHECK_MESSAGE(result.worst <= 1, result.where);
                 CHECK(result.surfaces > 200);
             }
@@ -135,7 +135,7 @@ TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is
 }
 
 TEST_CASE("a part that is only thin is not flat") {
-    Studio studio;
+    RendererFixture studio;
     for (const double thickness : {1e-3, 1e-9}) {
         const auto thin =
             scene_of({{1, sphere(1, 8), kPlain, turned_by(30, {0, 1, 0}) * scaled_by({1, 1, thickness})}});
@@ -146,19 +146,19 @@ TEST_CASE("a part that is only thin is not flat") {
 }
 
 TEST_CASE("normals that a flattening matrix wipes out take the face's") {
-    Studio studio;
+    RendererFixture studio;
     Geometry sideways = quad(1);
     sideways.normals.assign(4, glm::vec3(1, 0, 0));
     const View view = view_from({0.5, 0.3, 5});
-    const ExpectedPicture picture(*scene_of({{1, quad(1), kPlain, glm::dmat4(1)}}), view);
-    const Difference result =
+    const ExpectedImage picture(*scene_of({{1, quad(1), kPlain, glm::dmat4(1)}}), view);
+    const ImageMismatch result =
         difference(picture, studio.draw(scene_of({{1, sideways, kPlain, scaled_by({1, 1, 0})}}), view));
     CHECK_MESSAGE(result.worst <= 1, result.where);
     CHECK(result.surfaces > 300);
 }
 
 TEST_CASE("parts flattened to a line or a point leave no trace") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::dvec3& factors : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 0)}) {
         const auto scene = scene_of(
             {{1, sphere(1, 6), kPlain, scaled_by(factors)}, {2, quad(1), kPlain, scaled_by(factors)}});

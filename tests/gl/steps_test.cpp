@@ -1,8 +1,8 @@
 // Images are drawn in steps: they may take turns, and no step does more than so much.
 #include "plan/draw_budget.hpp"
 #include "plan/frame_plan.hpp"
-#include "plan/glass_shape.hpp"
-#include "studio.hpp"
+#include "plan/transparency_cache.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -41,12 +41,12 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& 
 }  // namespace
 
 TEST_CASE("an ordinary image takes a step for each sample") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_from({1, 2, 5});
     view.scene = scene_of({{1, sphere(1, 12), material_of({0.7, 0.5, 0.3}), glm::dmat4(1)}});
     view.samples = 4;
     const Image expected = studio.draw(view.scene, view);
-    Rendering rendering(view);
+    RenderJob rendering(view);
     for (int sample = 1; sample <= 4; ++sample) {
         CHECK(studio.renderer().step(rendering) == (sample == 4));
         CHECK(rendering.samples == sample);
@@ -57,16 +57,16 @@ TEST_CASE("an ordinary image takes a step for each sample") {
 }
 
 TEST_CASE("images that are drawn in turns are those that are drawn alone, and no sample is drawn twice") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = much_glass(0.1), other = much_glass(0.8);
     View selected = view_of(scene, {2, 1, 4});
     selected.selected = 1;
-    selected.marks = marks_at({{0, 0, 1}});
+    selected.markers = markers_at({{0, 0, 1}});
     View lines = view_of(other, {-2, 1, 4});
     lines.mode = DrawMode::stylized;
     lines.width = 100;
     const std::vector<View> views{view_of(scene, {1, 2, 5}), selected, view_of(other, {1, 2, 5}), lines};
-    std::vector<Rendering> renderings;
+    std::vector<RenderJob> renderings;
     std::vector<Image> expected;
     std::vector<FrameStats> alone;
     for (const View& view : views) {
@@ -77,7 +77,7 @@ TEST_CASE("images that are drawn in turns are those that are drawn alone, and no
     int steps = 0, between = 0;
     for (bool all = false; !all; ++steps) {
         all = true;
-        for (Rendering& rendering : renderings) {
+        for (RenderJob& rendering : renderings) {
             if (rendering.samples == 2) continue;
             const int before = rendering.samples;
             const bool whole = studio.renderer().step(rendering);
@@ -98,12 +98,12 @@ TEST_CASE("images that are drawn in turns are those that are drawn alone, and no
 }
 
 TEST_CASE("what is given up in the midst of a sample leaves nothing behind") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_of(much_glass(0.1), {1, 2, 5});
     const Image expected = studio.draw(view.scene, view);
     const long objects = live_gl_objects();
     for (int i = 0; i < 5; ++i) {
-        Rendering rendering(view);
+        RenderJob rendering(view);
         CHECK_FALSE(studio.renderer().step(rendering));
         CHECK(rendering.samples == 0);
     }
@@ -112,19 +112,19 @@ TEST_CASE("what is given up in the midst of a sample leaves nothing behind") {
 }
 
 TEST_CASE("no step of a scene of many panes in one place does more than so much") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts;
     constexpr int kPanes = 30'000;
     for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
     View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
     const Image expected = studio.draw(view.scene, view);
-    Rendering rendering(view);
+    RenderJob rendering(view);
     int steps = 0, draws = 0;
     for (bool whole = false; !whole; ++steps) {
         whole = studio.renderer().step(rendering);
         // Each covers more than 100 pixels, and takes at least that much.
-        CHECK(rendering.stats.draws - draws <= StepWork::kMost / 100);
+        CHECK(rendering.stats.draws - draws <= DrawBudget::kMost / 100);
         draws = rendering.stats.draws;
     }
     CHECK(draws == kPanes);
@@ -138,11 +138,11 @@ TEST_CASE("planning many panes takes steps, each of which looks at so many") {
     for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
     View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
-    GlassShapes shapes(*view.scene->scene);
+    TransparencyCache shapes(*view.scene->scene);
     const auto steps = [&] {
         FramePlanner planner;
         int count = 1;
-        for (StepWork work(true); !planner.step(view, shapes, work); ++count) work = StepWork(true);
+        for (DrawBudget work(true); !planner.step(view, shapes, work); ++count) work = DrawBudget(true);
         REQUIRE(planner.plan().scene.transparent.size() == 1);
         CHECK(planner.plan().scene.transparent[0].items.size() == kPanes);
         return count;

@@ -1,6 +1,6 @@
 #include "expected_texture.hpp"
 #include "gl/mipmaps.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -36,7 +36,7 @@ View plainly_lit(View view, const glm::dvec3& normal) {
 }
 
 /// The board's picture as the view should show it.
-Deviation check(const Board& board, View view, Studio& studio) {
+TextureMismatch check(const Board& board, View view, RendererFixture& studio) {
     view = plainly_lit(view, glm::normalize(glm::dvec3(board.matrix[2])));
     const ExpectedTexture texture(board.image);
     const glm::dmat4 inverse = glm::inverse(board.matrix);
@@ -90,7 +90,7 @@ TEST_CASE("levels are means of what they cover, by area") {
 }
 
 TEST_CASE("a picture lies upright on a surface, and its first row is the bottom one") {
-    Studio studio;
+    RendererFixture studio;
     Image image;
     image.resize(2, 2);
     image.rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 0, 255};
@@ -104,20 +104,20 @@ TEST_CASE("a picture lies upright on a surface, and its first row is the bottom 
 }
 
 TEST_CASE("magnified: bilinear, repeated in both directions") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::ivec2 size : kSizes)
         for (const double texel : {1.0, 1.7, 8.0, 33.3}) {
             CAPTURE(size.x);
             CAPTURE(size.y);
             CAPTURE(texel);
             const Board board{noise(size.x, size.y), 1.0 / (glm::dvec2(size) * texel), {0.3, -7.9}};
-            const Deviation off = check(board, pixel_view(96, 64), studio);
+            const TextureMismatch off = check(board, pixel_view(96, 64), studio);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
 }
 
 TEST_CASE("minified: trilinear at the level of the pixel's longer side") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::ivec2 size : kSizes)
         for (const glm::dvec2 texels :
              {glm::dvec2(1.3), {2, 2}, {1, 3.7}, {5, 0.2}, {4, 4}, {11.3, 7}, {200, 3}}) {
@@ -126,14 +126,14 @@ TEST_CASE("minified: trilinear at the level of the pixel's longer side") {
             CAPTURE(texels.x);
             CAPTURE(texels.y);
             const Board board{noise(size.x, size.y), texels / glm::dvec2(size), {0.3, -7.9}};
-            const Deviation off = check(board, pixel_view(96, 64), studio);
+            const TextureMismatch off = check(board, pixel_view(96, 64), studio);
             CHECK(off.rms <= 1);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
 }
 
 TEST_CASE("minified on a tilted plane, up to its horizon") {
-    Studio studio;
+    RendererFixture studio;
     for (const double tilt : {20.0, 60.0, 80.0})
         for (const Image& image : {noise(128, 128), cloudy(300, 170), noise(37, 19)}) {
             CAPTURE(tilt);
@@ -142,28 +142,28 @@ TEST_CASE("minified on a tilted plane, up to its horizon") {
             View view = view_from({0, 0, 3});
             view.width = 240;
             view.height = 160;
-            const Deviation off = check({image, {0.35, 0.5}, {0.1, 0.2}, tilted}, view, studio);
+            const TextureMismatch off = check({image, {0.35, 0.5}, {0.1, 0.2}, tilted}, view, studio);
             CHECK(off.pixels > 20000);
             CHECK(off.rms <= 1);
         }
 }
 
 TEST_CASE("pictures of extreme sizes") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::ivec2 size : {glm::ivec2(16384, 16), {3, 16384}, {20001, 5}})
         for (const double texels : {0.1, 1.0, 2.5, 300.0}) {
             CAPTURE(size.x);
             CAPTURE(texels);
             // One that is larger than the driver takes lacks its finest level, or two.
             if (size.x > 16384 && texels < 2) continue;
-            const Deviation off = check({cloudy(size.x, size.y), texels / glm::dvec2(size), {0.3, 0.4}},
-                                        pixel_view(96, 64), studio);
+            const TextureMismatch off = check({cloudy(size.x, size.y), texels / glm::dvec2(size), {0.3, 0.4}},
+                                              pixel_view(96, 64), studio);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
 }
 
 TEST_CASE("texture coordinates far from zero show the same") {
-    Studio studio;
+    RendererFixture studio;
     const Image image = noise(32, 32);
     const View view = plainly_lit(pixel_view(64, 64), {0, 0, 1});
     // The corners' own coordinates are exact in float.
@@ -175,7 +175,7 @@ TEST_CASE("texture coordinates far from zero show the same") {
 }
 
 TEST_CASE("a texture takes the place of the diffuse colour and of nothing else") {
-    Studio studio;
+    RendererFixture studio;
     Image image;
     image.resize(1, 1);
     image.rgba = {51, 102, 204, 255};
@@ -187,8 +187,8 @@ TEST_CASE("a texture takes the place of the diffuse colour and of nothing else")
     const Image found = studio.draw(textured, view);
     Material painted = material;
     painted.diffuse = {51.0 / 255, 102.0 / 255, 204.0 / 255, 1};
-    const Difference off =
-        difference(ExpectedPicture(*vrut::scene_of({{1, quad(2), painted, glm::dmat4(1)}}), view), found);
+    const ImageMismatch off =
+        difference(ExpectedImage(*vrut::scene_of({{1, quad(2), painted, glm::dmat4(1)}}), view), found);
     CHECK_MESSAGE(off.worst <= 1, off.where);
     CHECK(off.surfaces > 400);
 
@@ -203,7 +203,7 @@ TEST_CASE("a texture takes the place of the diffuse colour and of nothing else")
 }
 
 TEST_CASE("geometry without texture coordinates shows no texture, and flat corners keep theirs") {
-    Studio studio;
+    RendererFixture studio;
     const View view = view_from({1, 2, 4});
     const Board board{noise(8, 8), glm::dvec2(0.4), glm::dvec2(0.5), glm::dmat4(1), 2};
     const auto with = scene_of(board);
@@ -225,7 +225,7 @@ TEST_CASE("geometry without texture coordinates shows no texture, and flat corne
 }
 
 TEST_CASE("a texture is uploaded once, when it is first drawn, and only then is its program made") {
-    Studio studio;
+    RendererFixture studio;
     SceneParts parts;
     parts.textures = {
         {"a.png", noise(4, 4), false}, {"b.png", noise(9, 4), false}, {"c.png", noise(4, 4), false}};

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "reference/reference.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -48,7 +48,7 @@ void check_middle(const Image& image, const glm::dvec3& expected, int tolerance 
 }  // namespace
 
 TEST_CASE("layers of glass are composited from far to near, in any order of nodes, from both sides") {
-    Studio studio;
+    RendererFixture studio;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
     int worst = 0;
@@ -79,7 +79,7 @@ TEST_CASE("layers of glass are composited from far to near, in any order of node
 }
 
 TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emission too") {
-    Studio studio;
+    RendererFixture studio;
     Material material = material_of({0.5, 0.3, 0.2}, {0.6, 0.7, 0.8}, 20);
     material.emission = {0.1, 0.05, 0, 1};
     for (const double alpha : {0.0, 0.02, 0.5, 0.98, 0.9999}) {
@@ -98,7 +98,7 @@ TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emiss
 }
 
 TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
-    Studio studio;
+    RendererFixture studio;
     const glm::dvec3 red(0.8, 0.1, 0.1), green(0.1, 0.7, 0.2);
     const auto scene = scene_of({{1, quad(1), glass(green, 0.4, true), moved_by({0, 0, 1})},
                                  {2, quad(1), paint(red), glm::dmat4(1)},
@@ -117,7 +117,7 @@ TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
 }
 
 TEST_CASE("of the same geometry in the same place the higher id is in front, whichever is glass") {
-    Studio studio;
+    RendererFixture studio;
     const glm::dvec3 red(0.8, 0.1, 0.1), green(0.1, 0.7, 0.2);
     const Material pane = glass(green, 0.4, true), other = glass(red, 0.3, true);
     Material solid = paint(red);
@@ -151,7 +151,7 @@ TEST_CASE("of the same geometry in the same place the higher id is in front, whi
 }
 
 TEST_CASE("glass around the eye is in front of glass outside") {
-    Studio studio;
+    RendererFixture studio;
     const Material around = glass({0.2, 0.3, 0.9}, 0.5, true), outside = glass({0.9, 0.2, 0.1}, 0.5, true);
     for (const bool around_first : {true, false}) {
         const auto scene = scene_of({{around_first ? 1 : 2, sphere(1, 12), around},
@@ -162,7 +162,7 @@ TEST_CASE("glass around the eye is in front of glass outside") {
 }
 
 TEST_CASE("a thousand panes") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts;
     glm::dvec3 expected = kDefaultBackground;
     for (int i = 0; i < 1000; ++i) {
@@ -198,7 +198,7 @@ const std::array<glm::dvec3, 6> kEyes{
 }  // namespace
 
 TEST_CASE("panes that cross are right on both sides of the line in which they do") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(1), glass({0.9, 0.1, 0.1}, 0.5, true), turned_by(40, {0, 1, 0})},
                                  {2, quad(1), glass({0.1, 0.2, 0.9}, 0.6, true), turned_by(-30, {0, 1, 0})},
                                  {3, quad(2), paint({0.7, 0.8, 0.3}), moved_by({0, 0, -2})}});
@@ -210,7 +210,7 @@ TEST_CASE("panes that cross are right on both sides of the line in which they do
 }
 
 TEST_CASE("a ring of three panes") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::dvec3& eye : kEyes) {
         CAPTURE(eye.x);
         CHECK(studio.check(scene_of(ring_of_three()), view_from(eye)).surfaces > 400);
@@ -250,7 +250,7 @@ const Part kBackdrop{1, quad(2), paint({0.7, 0.8, 0.3}), moved_by({0, 0, -3})};
 }  // namespace
 
 TEST_CASE("a closed glass ball, drawn from both sides, is sorted") {
-    Studio studio;
+    RendererFixture studio;
     for (const bool mirrored : {false, true}) {
         const glm::dmat4 matrix = scaled_by({mirrored ? -1 : 1, 1, 1});
         const auto scene = scene_of({{2, sphere(1, 16), lit_glass(0.5, true), matrix}, kBackdrop});
@@ -264,7 +264,7 @@ TEST_CASE("a closed glass ball, drawn from both sides, is sorted") {
 }
 
 TEST_CASE("glass of more triangles than can be ordered once for all eyes") {
-    Studio studio;
+    RendererFixture studio;
     for (const bool two_sided : {false, true}) {
         const auto scene =
             scene_of({{2, sphere(1, 40), lit_glass(0.3, two_sided), glm::dmat4(1)}, kBackdrop});
@@ -275,7 +275,7 @@ TEST_CASE("glass of more triangles than can be ordered once for all eyes") {
 }
 
 TEST_CASE("glass that is hollow, and glass with a bay, is right from all around") {
-    Studio studio;
+    RendererFixture studio;
     const Geometry tank = joined(box({1, 0.6, 0.8}), turned_inside_out(box({0.9, 0.5, 0.7})));
     const Geometry hooks = joined(mapped(box({1, 0.2, 0.2}), 1, {0, -0.5, 0}),
                                   joined(mapped(box({0.2, 0.2, 0.9}), 1, {0.8, 0.1, 0}),
@@ -292,7 +292,7 @@ TEST_CASE("glass that is hollow, and glass with a bay, is right from all around"
 }
 
 TEST_CASE("glass with a film on it, whichever comes first in the file") {
-    Studio studio;
+    RendererFixture studio;
     for (const double gap : {1e-3, 1e-4, 1e-5})
         for (const Id outer : {1, 3})
             for (const double side : {1.0, -1.0}) {
@@ -307,7 +307,7 @@ TEST_CASE("glass with a film on it, whichever comes first in the file") {
 }
 
 TEST_CASE("glass that crosses itself") {
-    Studio studio;
+    RendererFixture studio;
     Geometry across = quad(1, false);
     for (glm::dvec3& position : across.positions) position = {position.z, position.y, -position.x};
     const auto scene = scene_of({{2, joined(quad(1, false), across), lit_glass(0.5, true), glm::dmat4(1)}});
@@ -321,7 +321,7 @@ TEST_CASE("glass that crosses itself") {
 }
 
 TEST_CASE("layers that do not fit into the budget are made in parts of the picture") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts;
     parts.reserve(24);
     for (int i = 0; i < 24; ++i)
@@ -339,7 +339,7 @@ TEST_CASE("layers that do not fit into the budget are made in parts of the pictu
 }
 
 TEST_CASE("room for layers stays while panes cross in some pictures and not in others, and is given back") {
-    Studio studio;
+    RendererFixture studio;
     const auto crossing = scene_of({{1, quad(2), glass({1, 0, 0}, 0.5, true), turned_by(20, {0, 1, 0})},
                                     {2, quad(2), glass({0, 0, 1}, 0.5, true), turned_by(-20, {0, 1, 0})}});
     const View towards = odd_view({0, 0.3, 6}), away = odd_view({0, 0.3, 6}, {0, 0.3, 12});
@@ -358,7 +358,7 @@ TEST_CASE("room for layers stays while panes cross in some pictures and not in o
 }
 
 TEST_CASE("the reference sees the same in rings and bodies of glass") {
-    Studio studio;
+    RendererFixture studio;
     std::vector<Part> parts = ring_of_three();
     parts.push_back({7, sphere(0.7, 12), lit_glass(0.4, true), moved_by({0.3, 0.2, -0.4})});
     parts.push_back({8, box({0.5, 0.5, 0.5}), lit_glass(0.3, false), turned_by(30, {1, 1, 0})});

@@ -27,13 +27,13 @@ Pixel pixel(const Image& image, int x, int y) {
 }
 
 Image decode_well(const std::string& bytes) {
-    auto image = decode_picture(bytes);
+    auto image = decode_image(bytes);
     REQUIRE_MESSAGE(image, image.error());
     return *std::move(image);
 }
 
 std::string refusal(const std::string& bytes) {
-    const auto image = decode_picture(bytes);
+    const auto image = decode_image(bytes);
     REQUIRE_FALSE(image);
     return image.error();
 }
@@ -293,7 +293,7 @@ TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a
 }
 
 TEST_CASE("the size is judged from the header") {
-    CHECK(decode_picture(flat_png(16384, 16, {9, 8, 7, 6})));
+    CHECK(decode_image(flat_png(16384, 16, {9, 8, 7, 6})));
     for (const auto& [width, height] : {std::pair{16385U, 1U}, {1U, 16385U}, {900000U, 900000U}}) {
         const std::string why = refusal(claiming_png(width, height));
         CHECK_MESSAGE(contains(why, std::to_string(width) + " x " + std::to_string(height)), why);
@@ -302,10 +302,10 @@ TEST_CASE("the size is judged from the header") {
     const std::string many = refusal(claiming_png(16384, 4097));
     CHECK_MESSAGE(contains(many, "67108864"), many);
     CHECK_FALSE(contains(refusal(claiming_png(16384, 4096)), "67108864"));
-    const auto limited = decode_picture(flat_png(4, 4, {1, 2, 3, 4}), 15);
+    const auto limited = decode_image(flat_png(4, 4, {1, 2, 3, 4}), 15);
     REQUIRE_FALSE(limited);
     CHECK(contains(limited.error(), "15"));
-    CHECK(decode_picture(flat_png(4, 4, {1, 2, 3, 4}), 16));
+    CHECK(decode_image(flat_png(4, 4, {1, 2, 3, 4}), 16));
 
     std::string jpeg = jpeg_bytes(8, 8, std::vector<std::uint8_t>(192, 100));
     const std::size_t frame = jpeg.find("\xFF\xC0");
@@ -331,7 +331,7 @@ TEST_CASE("files that are cut short are refused, and changed ones do no harm") {
             CHECK_FALSE(refusal(file.substr(0, at)).empty());
             std::string changed = file;
             changed[at] = static_cast<char>(~changed[at]);
-            (void)decode_picture(changed);
+            (void)decode_image(changed);
         }
     CHECK(contains(refusal(files[0].substr(0, files[0].size() - 1)), "too early"));
 }
@@ -339,9 +339,9 @@ TEST_CASE("files that are cut short are refused, and changed ones do no harm") {
 TEST_CASE("a picture is read from a file whatever its ending") {
     const TemporaryFolder folder;
     const auto path = folder.write("picture.jpg", flat_png(2, 1, {1, 2, 3, 4}));
-    const auto image = read_picture(path);
+    const auto image = read_image_file(path);
     REQUIRE(image);
     CHECK(image->rgba == std::vector<std::uint8_t>{1, 2, 3, 4, 1, 2, 3, 4});
-    CHECK(read_picture(folder.path() / "none.png").error() == "there is no such file");
-    CHECK(read_picture(folder.path()).error() == "it is not a file");
+    CHECK(read_image_file(folder.path() / "none.png").error() == "there is no such file");
+    CHECK(read_image_file(folder.path()).error() == "it is not a file");
 }

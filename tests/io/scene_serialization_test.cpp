@@ -46,7 +46,7 @@ SceneParts full_parts() {
 
 std::string bytes_of(PartsResult parts) {
     std::string bytes;
-    write_parts(std::move(parts), [&](std::string_view piece) { bytes += piece; });
+    serialize_parts(std::move(parts), [&](std::string_view piece) { bytes += piece; });
     return bytes;
 }
 
@@ -58,7 +58,7 @@ PartsResult read(std::string_view bytes, const std::string& file = "car.glb", st
         bytes.copy(static_cast<char*>(to), size);
         bytes.remove_prefix(size);
     };
-    return read_parts(source, most, file);
+    return deserialize_parts(source, most, file);
 }
 
 void put(std::string& bytes, std::size_t at, std::uint64_t word) {

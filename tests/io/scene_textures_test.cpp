@@ -152,7 +152,7 @@ TEST_CASE("the pictures of a scene are limited together") {
         parts.materials[i].id = static_cast<Id>(i);
         parts.materials[i].image = names[i];
     }
-    read_pictures(parts, folder.path() / "car.vrut", {}, 150);
+    read_textures(parts, folder.path() / "car.vrut", {}, 150);
     const Index wanted[] = {0, kNone, 1, 0};
     for (std::size_t i = 0; i < 4; ++i) CHECK(parts.materials[i].texture == wanted[i]);
     REQUIRE(parts.notices.size() == 1);
@@ -172,5 +172,5 @@ TEST_CASE("notices of pictures are few; reading can be given up between pictures
     parts.materials.resize(1);
     parts.materials[0].image = "a.png";
     struct Stop {};
-    CHECK_THROWS_AS(read_pictures(parts, path, [](double) { throw Stop(); }), Stop);
+    CHECK_THROWS_AS(read_textures(parts, path, [](double) { throw Stop(); }), Stop);
 }

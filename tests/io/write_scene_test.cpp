@@ -292,21 +292,21 @@ TEST_CASE("what the reader's rule made of glTF's materials becomes them again") 
                 CAPTURE(c.r);
                 CAPTURE(metallic);
                 CAPTURE(roughness);
-                Losses losses;
+                ConversionWarnings warnings;
                 const Material phong = phong_of(c, metallic, roughness);
-                const GltfMaterial made = gltf_material(none, phong, losses);
+                const GltfMaterial made = gltf_material(none, phong, warnings);
                 CHECK_FALSE(made.specular);
                 CHECK(transfer(made.base.r) == doctest::Approx(c.r).epsilon(1e-6));
                 const Material again = phong_of(c, made.metallic, made.roughness);
                 CHECK(glm::distance(again.specular, phong.specular) < 0.5 / 255);
                 CHECK(again.shininess == doctest::Approx(phong.shininess).epsilon(1e-6));
                 std::vector<std::string> told;
-                losses.append_to(told, "x");
+                warnings.append_to(told, "x");
                 CHECK(told.empty());
             }
     SUBCASE("where the exponent tells it, the same metal and roughness") {
-        Losses losses;
-        const GltfMaterial made = gltf_material(none, phong_of({0.9, 0.5, 0.1}, 0.3, 0.35), losses);
+        ConversionWarnings warnings;
+        const GltfMaterial made = gltf_material(none, phong_of({0.9, 0.5, 0.1}, 0.3, 0.35), warnings);
         CHECK(made.metallic == doctest::Approx(0.3).epsilon(1e-6));
         CHECK(made.roughness == doctest::Approx(0.35).epsilon(1e-6));
     }
@@ -340,7 +340,7 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
     CHECK(lines_of(mtl.substr(mtl.find("newmtl Paint__red_")), "Ke")[0] == "0.1 0.2 0.3");
     const auto pictures = lines_of(mtl, "map_Kd");
     REQUIRE(pictures.size() == 1);
-    const auto picture = read_picture(folder.path() / pictures[0]);
+    const auto picture = read_image_file(folder.path() / pictures[0]);
     REQUIRE_MESSAGE(picture, picture.error());
     CHECK(picture->rgba == scene.textures()[0].image.rgba);
     for (const char* told :
@@ -496,7 +496,7 @@ TEST_CASE("what cannot be written is told, and leaves what was there") {
                                         out << "new";
                                         out.setstate(std::ios::badbit);
                                     }),
-                        WriteFault);
+                        WriteError);
     }
     CHECK(folder.read("car.stl") == "old");
     for (const auto& entry : fs::directory_iterator(folder.path()))

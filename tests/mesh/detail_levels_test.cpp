@@ -260,10 +260,10 @@ TEST_CASE("what cannot be simplified has no levels") {
 
 TEST_CASE("triangles in a bad order get a better one, and only those") {
     const Geometry good = with_normals(torus(80, 40));
-    CHECK_FALSE(cache_ordered(good));
+    CHECK_FALSE(optimize_vertex_cache(good));
     Geometry bad = good;
     std::shuffle(bad.triangles.begin(), bad.triangles.end(), std::mt19937(1));
-    const auto level = cache_ordered(bad);
+    const auto level = optimize_vertex_cache(bad);
     REQUIRE(level);
     CHECK(level->number == 0);
     CHECK(level->error == 0);
@@ -274,9 +274,9 @@ TEST_CASE("triangles in a bad order get a better one, and only those") {
         return triangles;
     };
     CHECK(sorted(level->triangles) == sorted(good.triangles));
-    CHECK_FALSE(cache_ordered(geometry_of(bad, *level)));
+    CHECK_FALSE(optimize_vertex_cache(geometry_of(bad, *level)));
     bad.normals.clear();
-    CHECK_FALSE(cache_ordered(bad));  // its triangles share no vertices
+    CHECK_FALSE(optimize_vertex_cache(bad));  // its triangles share no vertices
 
     const DetailLevels levels(scene_with({with_normals(bad)}));
     levels.wait();

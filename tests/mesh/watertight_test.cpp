@@ -22,7 +22,7 @@ Geometry inside_out(Geometry geometry) {
     return geometry;
 }
 
-bool closed(const Geometry& geometry) { return is_closed(geometry, kGoOn); }
+bool closed(const Geometry& geometry) { return is_watertight(geometry, kGoOn); }
 
 /// As seen from outside, whichever way the grid runs.
 Geometry solid_ball() {
@@ -52,7 +52,7 @@ TEST_CASE("a surface is closed where it has an inside and all triangles face awa
     std::swap(sheet.triangles[1].x, sheet.triangles[1].y);
     CHECK_FALSE(closed(sheet));  // no volume
     const std::atomic<bool> stop{true};
-    CHECK_FALSE(is_closed(whole, stop));
+    CHECK_FALSE(is_watertight(whole, stop));
 }
 
 TEST_CASE("every piece of a closed surface is") {

@@ -48,7 +48,7 @@ private:
 
 TEST_CASE("half of a quarter orbit lies at 45 degrees, at the same radius") {
     for (const Easing easing : {Easing::smooth, Easing::linear}) {
-        const Flight flight(around(0), {{1000, around(90)}}, easing);
+        const CameraPath flight(around(0), {{1000, around(90)}}, easing);
         CHECK(flight.duration() == 1000);
         const Camera half = flight.at(500);
         CHECK(near(half.eye, {5 / std::sqrt(2.0), 0, 5 / std::sqrt(2.0)}));
@@ -58,12 +58,12 @@ TEST_CASE("half of a quarter orbit lies at 45 degrees, at the same radius") {
 }
 
 TEST_CASE("one way is a smoothstep, or straight") {
-    const Flight smooth(around(0), {{1000, around(64)}}, Easing::smooth);
+    const CameraPath smooth(around(0), {{1000, around(64)}}, Easing::smooth);
     CHECK(azimuth_of(smooth.at(250)) == doctest::Approx(10).epsilon(1e-12));  // 3/16 - 2/64 = 10/64
     CHECK(azimuth_of(smooth.at(750)) == doctest::Approx(54).epsilon(1e-12));
     CHECK(azimuth_of(smooth.at(1)) < 64 * 3e-6);  // starts softly
     CHECK(azimuth_of(smooth.at(999)) > 64 * (1 - 3e-6));
-    const Flight linear(around(0), {{1000, around(64)}}, Easing::linear);
+    const CameraPath linear(around(0), {{1000, around(64)}}, Easing::linear);
     CHECK(azimuth_of(linear.at(250)) == doctest::Approx(16).epsilon(1e-12));
     CHECK(azimuth_of(linear.at(1)) == doctest::Approx(0.064).epsilon(1e-12));
 }
@@ -73,7 +73,7 @@ TEST_CASE("the distance goes by equal factors, focus, centre and fov go straight
     to.center = {1, 2, 3};
     from.fov = 20;
     to.fov = 60;
-    const Flight flight(from, {{1000, to}}, Easing::linear);
+    const CameraPath flight(from, {{1000, to}}, Easing::linear);
     CHECK(focus_distance(flight.at(500)) == doctest::Approx(2).epsilon(1e-13));
     CHECK(focus_distance(flight.at(250)) == doctest::Approx(std::sqrt(2.0)).epsilon(1e-13));
     CHECK(near(flight.at(250).focus, {1, 2, -3}));
@@ -84,7 +84,7 @@ TEST_CASE("the distance goes by equal factors, focus, centre and fov go straight
 
 TEST_CASE("keyframes are passed exactly, and the ends stay") {
     Random random(3);
-    std::vector<Keyframe> keyframes;
+    std::vector<CameraKeyframe> keyframes;
     for (const double at : {0.1, 7.0, 1000 / 3.0, 1e6}) {
         Camera camera;
         camera.eye = random.vector(10);
@@ -96,11 +96,11 @@ TEST_CASE("keyframes are passed exactly, and the ends stay") {
     }
     const Camera from = around(20, 30);
     for (const Easing easing : {Easing::smooth, Easing::linear}) {
-        const Flight flight(from, keyframes, easing);
+        const CameraPath flight(from, keyframes, easing);
         CHECK(flight.duration() == 1e6);
         CHECK(flight.at(-1) == from);
         CHECK(flight.at(0) == from);
-        for (const Keyframe& key : keyframes) {
+        for (const CameraKeyframe& key : keyframes) {
             CHECK(flight.at(key.at) == key.camera);
             // Nor does it jump there.
             CHECK(near(flight.at(key.at * (1 - 1e-13)).eye, key.camera.eye, 1e-9));
@@ -116,22 +116,22 @@ TEST_CASE("keyframes are passed exactly, and the ends stay") {
 
 TEST_CASE("a keyframe at the start is a jump; without keyframes there is no way") {
     const Camera from = around(0), first = around(40), last = around(80);
-    const Flight flight(from, {{0, first}, {100, last}}, Easing::linear);
+    const CameraPath flight(from, {{0, first}, {100, last}}, Easing::linear);
     CHECK(flight.at(-1) == first);
     CHECK(flight.at(0) == first);
     CHECK(azimuth_of(flight.at(50)) == doctest::Approx(60).epsilon(1e-12));
-    const Flight jump(from, {{0, first}}, Easing::smooth);
+    const CameraPath jump(from, {{0, first}}, Easing::smooth);
     CHECK(jump.duration() == 0);
     CHECK(jump.at(0) == first);
     CHECK(jump.at(1) == first);
-    const Flight none(from, {}, Easing::smooth);
+    const CameraPath none(from, {}, Easing::smooth);
     CHECK(none.duration() == 0);
     CHECK(none.at(5) == from);
 }
 
 TEST_CASE("smooth passes a keyframe between without a stop") {
     SUBCASE("equal times") {
-        const Flight flight(around(0), {{1000, around(64)}, {2000, around(128)}}, Easing::smooth);
+        const CameraPath flight(around(0), {{1000, around(64)}, {2000, around(128)}}, Easing::smooth);
         // The slope there is one keyframe in 1000 ms: 1/2 - 1/8 and 1 + 1/2 + 1/8.
         CHECK(azimuth_of(flight.at(500)) == doctest::Approx(24).epsilon(1e-12));
         CHECK(azimuth_of(flight.at(1500)) == doctest::Approx(104).epsilon(1e-12));
@@ -139,7 +139,7 @@ TEST_CASE("smooth passes a keyframe between without a stop") {
               doctest::Approx(0.128127872).epsilon(1e-9));  // 2t² - t³
     }
     SUBCASE("unequal times") {
-        const Flight flight(around(0), {{1000, around(64)}, {4000, around(128)}}, Easing::smooth);
+        const CameraPath flight(around(0), {{1000, around(64)}, {4000, around(128)}}, Easing::smooth);
         // The harmonic mean of 1/1000 and 1/3000 is 1/2000: 1/2 - 1/16 and 1 + 1/2 + 3/16.
         CHECK(azimuth_of(flight.at(500)) == doctest::Approx(28).epsilon(1e-12));
         CHECK(azimuth_of(flight.at(2500)) == doctest::Approx(108).epsilon(1e-12));
@@ -149,7 +149,7 @@ TEST_CASE("smooth passes a keyframe between without a stop") {
               doctest::Approx(0.032).epsilon(1e-2));
     }
     SUBCASE("linear") {
-        const Flight flight(around(0), {{1000, around(64)}, {4000, around(128)}}, Easing::linear);
+        const CameraPath flight(around(0), {{1000, around(64)}, {4000, around(128)}}, Easing::linear);
         CHECK(azimuth_of(flight.at(500)) == doctest::Approx(32).epsilon(1e-12));
         CHECK(azimuth_of(flight.at(2500)) == doctest::Approx(96).epsilon(1e-12));
     }
@@ -158,14 +158,14 @@ TEST_CASE("smooth passes a keyframe between without a stop") {
 TEST_CASE("nothing turns back on the way") {
     Random random(4);
     for (int round = 0; round < 100; ++round) {
-        std::vector<Keyframe> keyframes;
+        std::vector<CameraKeyframe> keyframes;
         double at = 0, azimuth = -170;
         for (int i = 0; i < 6; ++i) {
             at += std::pow(10, random.number(0, 4));
             azimuth += random.number(1, 50);
             keyframes.push_back({at, around(azimuth)});
         }
-        const Flight flight(around(-170), keyframes, round % 2 == 0 ? Easing::smooth : Easing::linear);
+        const CameraPath flight(around(-170), keyframes, round % 2 == 0 ? Easing::smooth : Easing::linear);
         double last = -170;
         for (int i = 1; i < 500; ++i) {
             const double now = azimuth_of(flight.at(at * i / 500));
@@ -177,7 +177,7 @@ TEST_CASE("nothing turns back on the way") {
 
 TEST_CASE("level cameras turn by azimuth, the shorter way, and elevation; the horizon stays level") {
     const auto half = [](const Camera& from, const Camera& to) {
-        return Flight(from, {{1000, to}}, Easing::smooth).at(500);
+        return CameraPath(from, {{1000, to}}, Easing::smooth).at(500);
     };
     CHECK(near(half(around(170), around(-170)).eye, {0, 0, -5}));
     CHECK(near(half(around(-10), around(10)).eye, {0, 0, 5}));
@@ -196,7 +196,7 @@ TEST_CASE("level cameras turn by azimuth, the shorter way, and elevation; the ho
     for (int round = 0; round < 200; ++round) {
         const Camera from = around(random.number(-180, 180), random.number(-90, 90), random.number(1, 9));
         const Camera to = around(random.number(-180, 180), random.number(-90, 90), random.number(1, 9));
-        const Flight flight(from, {{1000, to}}, Easing::smooth);
+        const CameraPath flight(from, {{1000, to}}, Easing::smooth);
         for (const double at : {1.0, 100.0, 400.0, 600.0, 999.0}) {
             const Camera camera = flight.at(at);
             CHECK(std::abs(right_direction(camera).y) < 1e-12);
@@ -209,7 +209,7 @@ TEST_CASE("level cameras turn by azimuth, the shorter way, and elevation; the ho
 
 TEST_CASE("a camera that is not level turns as a whole") {
     const auto half = [](const Camera& from, const Camera& to) {
-        return Flight(from, {{1000, to}}, Easing::smooth).at(500);
+        return CameraPath(from, {{1000, to}}, Easing::smooth).at(500);
     };
     Camera rolled = around(0);
     rolled.up = {1, 0, 0};
@@ -256,7 +256,7 @@ TEST_CASE("every pose on the way is valid, however extreme the ends") {
     };
     for (int round = 0; round < 3000; ++round) {
         const Camera from = extreme(), to = extreme();
-        const Flight flight(from, {{1000, to}}, round % 2 == 0 ? Easing::smooth : Easing::linear);
+        const CameraPath flight(from, {{1000, to}}, round % 2 == 0 ? Easing::smooth : Easing::linear);
         for (const double at : {1e-9, 0.5, 250.0, 500.0, 700.0, 999.999999}) {
             const Camera camera = flight.at(at);
             REQUIRE(is_valid_pose(camera, 0));
@@ -267,7 +267,7 @@ TEST_CASE("every pose on the way is valid, however extreme the ends") {
         }
     }
     // A hair's breadth from something here to something very far away.
-    const Flight flight(around(0, 0, 1e-14), {{1000, around(90, 0, 1e-3, {1e12, 1e12, 1e12})}},
-                        Easing::linear);
+    const CameraPath flight(around(0, 0, 1e-14), {{1000, around(90, 0, 1e-3, {1e12, 1e12, 1e12})}},
+                            Easing::linear);
     for (int at = 0; at <= 1000; ++at) CHECK(is_valid_pose(flight.at(at), 0));
 }

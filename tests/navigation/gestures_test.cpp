@@ -732,7 +732,7 @@ std::vector<Event> random_events(unsigned seed) {
         if (input.action == Action::move)
             input.buttons = number(0, 5) == 0 ? static_cast<unsigned>(number(0, 7)) : input.buttons;
         else
-            input.buttons = input.action == Action::down ? bit_of(input.button) : 0;
+            input.buttons = input.action == Action::down ? button_mask(input.button) : 0;
         time += number(0, 12) * 10.1;
         events.push_back(
             {input, {time, std::chrono::microseconds(std::llround(time * 1000) + number(0, 50000))}});
@@ -890,7 +890,7 @@ TEST_CASE("keys") {
     home.eye = {9, 9, 9};
     const auto pressed = [&](const std::string& key, bool shift = false) {
         const std::optional<KeyOperation> operation = key_operation({key, shift, ""});
-        return operation ? operated(*operation, hands.camera, home, hands.context) : hands.camera;
+        return operation ? apply_key_operation(*operation, hands.camera, home, hands.context) : hands.camera;
     };
     const double s = 5 * std::sin(5 * std::numbers::pi / 180), c = 5 * std::cos(5 * std::numbers::pi / 180);
     CHECK(near(pressed("ArrowRight").eye, {-s, 0, c}));

@@ -14,7 +14,7 @@
 #include "base/drawing_errors.hpp"
 #include "engine/encoder.hpp"
 #include "exposition.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "test_client.hpp"
 
 using namespace vrut;
@@ -61,7 +61,7 @@ struct Stoppable {
     FrameRendererFactory factory(const FakeRenderer& of = {}) const {
         return [stop = stopped, inner = of.factory()] {
             FrameRenderer renderer = inner();
-            renderer.step = [stop, step = renderer.step](Rendering& rendering) {
+            renderer.step = [stop, step = renderer.step](RenderJob& rendering) {
                 while (*stop) std::this_thread::sleep_for(1ms);
                 return step(rendering);
             };
@@ -255,7 +255,7 @@ TEST_CASE("while a driver that was lost is started again nothing is ready") {
     const auto factory = [&] {
         if (lost) throw std::runtime_error("the driver is not there yet");
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](Rendering& rendering) {
+        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
             if (lost) throw ContextLost("the driver was reset");
             return step(rendering);
         };

@@ -45,7 +45,7 @@ TEST_CASE("a plan holds what the view needs and no more") {
     view.scene = std::make_shared<const PlacedScene>(std::move(placed));
     const auto sizes = [&] {
         const FramePlan plan = plan_frame(view);
-        return std::array{plan.scene.opaque.size(), plan.edges.size(), plan.over.opaque.size(),
+        return std::array{plan.scene.opaque.size(), plan.edges.size(), plan.overlay.opaque.size(),
                           plan.selected.size()};
     };
     using Sizes = std::array<std::size_t, 4>;
@@ -87,9 +87,9 @@ TEST_CASE("textures and the panorama are planned for surfaces that show them") {
     View view = view_from({0, 0, 5});
     view.scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
     const auto ids = [&](const auto& chosen) {
-        const Layers layers = plan_frame(view).scene;
-        std::vector<DrawItem> items = layers.opaque;
-        for (const TransparentGroup& group : layers.transparent)
+        const DrawLists lists = plan_frame(view).scene;
+        std::vector<DrawItem> items = lists.opaque;
+        for (const TransparentGroup& group : lists.transparent)
             items.insert(items.end(), group.items.begin(), group.items.end());
         std::vector<Id> result;
         for (const DrawItem& item : items)
@@ -111,7 +111,7 @@ TEST_CASE("textures and the panorama are planned for surfaces that show them") {
 }
 
 TEST_CASE("what is not drawn is told, and lights are drawn") {
-    const auto notices = undrawn_features(*showroom().scene);
+    const auto notices = unsupported_features(*showroom().scene);
     CHECK(notices == std::vector<std::string>{"1 curved or transparent reflective parts have no cube map to "
                                               "reflect"});
     SceneParts parts;
@@ -120,9 +120,9 @@ TEST_CASE("what is not drawn is told, and lights are drawn") {
     parts.materials[0].reflectivity = 1;
     parts.nodes = {{Node{1, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0},
                    {Node{2, {}, NodeType::background, kNone, {}, true, glm::dmat4(1), BackgroundData{}}, 0}};
-    CHECK(undrawn_features(*Scene::build(parts)).size() == 1);
+    CHECK(unsupported_features(*Scene::build(parts)).size() == 1);
     std::get<BackgroundData>(parts.nodes[1].node.data).cube_textures.emplace();
-    CHECK(undrawn_features(*Scene::build(parts)).empty());
+    CHECK(unsupported_features(*Scene::build(parts)).empty());
 
     parts.geometries = {quad(1)};
     const auto hang = [&](Id mirrors) {
@@ -130,7 +130,7 @@ TEST_CASE("what is not drawn is told, and lights are drawn") {
         for (Id id = 1; id <= mirrors; ++id)
             parts.nodes.push_back(
                 {Node{id, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0});
-        return undrawn_features(*Scene::build(parts));
+        return unsupported_features(*Scene::build(parts));
     };
     CHECK(hang(16).empty());
     CHECK(hang(17) ==

@@ -82,16 +82,16 @@ TEST_CASE("what lies more than a pixel beside the picture, or behind the eye, is
 TEST_CASE("an area of the picture sees what shows there and no more") {
     const View view = pixel_view(80, 60);
     const glm::dmat4 from_world = view_from_world(view.camera);
-    const auto sees = [&](const PictureArea& area, double left, double right) {
-        return !lies_outside(frustum_of(view.camera, 80.0 / 60, area), from_world,
-                             rectangle(left, 20, right, 30, view).bounds);
+    const auto sees = [&](const NdcRect& area, double left, double right) {
+        return !is_outside(frustum_of(view.camera, 80.0 / 60, area), from_world,
+                           rectangle(left, 20, right, 30, view).bounds);
     };
-    const PictureArea quarter{{0.5, -1}, {1, 1}};  // from pixel 60
+    const NdcRect quarter{{0.5, -1}, {1, 1}};  // from pixel 60
     CHECK(sees(quarter, 50, 61));
     CHECK_FALSE(sees(quarter, 50, 59.9));
     CHECK(sees(quarter, 79, 90));
     CHECK_FALSE(sees(quarter, 80.1, 90));
-    const PictureArea strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
+    const NdcRect strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
     CHECK(sees(strip, 31.9, 40));
     CHECK_FALSE(sees(strip, 32.1, 40));
     CHECK_FALSE(sees(strip, 20, 29.9));

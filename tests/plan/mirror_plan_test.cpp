@@ -37,8 +37,8 @@ TEST_CASE("what a mirror cannot show is not drawn for it") {
         return plan.scene.mirrors[0].reflected.opaque;
     };
     CHECK(reflected({0, 0.5, 0}).size() == 1);
-    CHECK_FALSE(reflected({0, 0.5, 0})[0].kept);
-    CHECK(reflected({0, 0.1, 0})[0].kept);
+    CHECK_FALSE(reflected({0, 0.5, 0})[0].clip_plane);
+    CHECK(reflected({0, 0.1, 0})[0].clip_plane);
     CHECK(reflected({0, -0.5, 0}).empty());
     CHECK(reflected({0, 0.5, 9}).empty());  // behind the eye, where the floor does not show it
     CHECK(reflected({9, 0.5, 0}).empty());
@@ -50,8 +50,8 @@ TEST_CASE("of a hundred mirrors the largest in the picture show a reflection") {
     const View view = view_from({0, 0, 12});
     const std::vector<Part> parts = hundred_mirrors();
     const FramePlan plan = plan_of(parts, view);
-    REQUIRE(plan.scene.mirrors.size() == kMostMirrors);
-    CHECK(plan.scene.opaque.size() == parts.size() - kMostMirrors);
+    REQUIRE(plan.scene.mirrors.size() == kMaxMirrors);
+    CHECK(plan.scene.opaque.size() == parts.size() - kMaxMirrors);
     // Nodes stand by rising id behind the root. A plate's area shrinks with the sine of the angle between it
     // and the ray.
     const auto area = [&](const DrawItem& item) {
@@ -75,7 +75,7 @@ TEST_CASE("of a hundred mirrors the largest in the picture show a reflection") {
     View around = view;
     around.background.cube_map.emplace();
     const FramePlan panoramic = plan_of(parts, around);
-    CHECK(reflecting(panoramic.scene.opaque) == static_cast<std::ptrdiff_t>(101 - kMostMirrors));
+    CHECK(reflecting(panoramic.scene.opaque) == static_cast<std::ptrdiff_t>(101 - kMaxMirrors));
     for (const MirrorItem& mirror : panoramic.scene.mirrors) {
         CHECK_FALSE(mirror.surface.environment);
         CHECK(reflecting(mirror.reflected.opaque) == 0);

@@ -45,7 +45,7 @@ TEST_CASE("a car's windows are drawn sorted from all around, but for one that is
                     ++windows;
                     exact += group.exact;
                 }
-            for (const DrawItem& item : faces_of(view))
+            for (const DrawItem& item : visible_faces(view))
                 expected += scene.is_transparent(scene.material(item.material));
             CHECK(blended == expected);
             CHECK(windows >= 8);  // of four doors, two quarters, the boot lid, and the windscreen

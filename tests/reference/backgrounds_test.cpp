@@ -1,7 +1,7 @@
 #include <random>
 
-#include "looks.hpp"
 #include "reference/textures.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -24,7 +24,7 @@ std::vector<Texture> six(int size) {
 
 constexpr std::array<Index, 6> kSix{0, 1, 2, 3, 4, 5};
 
-void check_shows(const ReferencePicture& shown, const Image& image) {
+void check_shows(const ReferenceImage& shown, const Image& image) {
     REQUIRE(shown.color.size() * 4 == image.rgba.size());
     for (std::size_t i = 0; i < shown.color.size(); ++i)
         check_same(shown.color[i],
@@ -49,7 +49,7 @@ constexpr std::array<glm::dvec3, 2> kStill{};
 TEST_CASE("nothing but a background") {
     View view = picture({0, 0, 5}, {0, 0, 0}, 3, 2);
     for (const auto& scene : {std::shared_ptr<const PlacedScene>(), scene_of({})}) {
-        const ReferencePicture shown = traced(scene, view);
+        const ReferenceImage shown = traced(scene, view);
         REQUIRE(shown.color.size() == 6);
         for (std::size_t i = 0; i < 6; ++i) {
             check_same(shown.color[i], kDefaultBackground);
@@ -71,7 +71,7 @@ TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") 
     two.image = {2, 1, {0, 0, 0, 255, 200, 200, 200, 255}};
     view.width = 8;
     view.height = 2;
-    const ReferencePicture wide = traced(scene_of({}, {two}), view);
+    const ReferenceImage wide = traced(scene_of({}, {two}), view);
     for (std::size_t i = 0; i < 16; ++i)
         check_same(
             wide.color[i],

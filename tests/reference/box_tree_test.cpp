@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "reference/surfaces.hpp"
+#include "reference/traced_scene.hpp"
 #include "shapes.hpp"
 
 using namespace vrut;
@@ -53,15 +53,15 @@ TEST_CASE("the tree finds what trying each triangle finds") {
         view.camera.eye = {1, 2, 3};
         view.scene =
             scene_of({{1, geometry, material, glm::dmat4(1)}, {2, geometry, glass, moved_by({0, 9, 0})}});
-        const reference::Surfaces surfaces(view);
+        const reference::TracedScene surfaces(view);
         for (int i = 0; i < 400; ++i) {
-            const reference::Sight ray{
+            const reference::RayDifferential ray{
                 glm::dvec3(any(random), any(random), any(random)) * 5.0,
                 glm::normalize(i % 10 == 0 ? glm::dvec3(0, 0, i % 20 ? 1 : -1)
                                            : glm::dvec3(any(random), any(random), any(random))),
                 {},
                 {}};
-            const auto nearest_of = [&](const reference::Part& part, std::vector<double>* all) {
+            const auto nearest_of = [&](const reference::TracedInstance& part, std::vector<double>* all) {
                 double nearest = std::numeric_limits<double>::infinity();
                 for (const glm::uvec3& t : geometry.triangles) {
                     const double d = distance_to(part.positions[t.x], part.positions[t.y],
@@ -72,7 +72,7 @@ TEST_CASE("the tree finds what trying each triangle finds") {
                 return nearest;
             };
             const double nearest = nearest_of(surfaces.parts()[0], nullptr);
-            const auto found = surfaces.first_opaque(ray);
+            const auto found = surfaces.closest_opaque_hit(ray);
             REQUIRE(found.has_value() == std::isfinite(nearest));
             if (found) CHECK(found->distance == doctest::Approx(nearest).epsilon(1e-9));
             hits += found.has_value();
@@ -81,7 +81,7 @@ TEST_CASE("the tree finds what trying each triangle finds") {
             nearest_of(surfaces.parts()[1], &layers);
             std::erase_if(layers, [&](double d) { return d > nearest; });
             std::sort(layers.begin(), layers.end());
-            const auto between = surfaces.transparent_before(ray, found);
+            const auto between = surfaces.transparent_hits_before(ray, found);
             REQUIRE(between.size() == layers.size());
             for (std::size_t k = 0; k < layers.size(); ++k)
                 CHECK(between[k].distance == doctest::Approx(layers[k]).epsilon(1e-9));
@@ -94,10 +94,10 @@ TEST_CASE("boxes in one place, and none at all") {
     const double farthest = std::numeric_limits<double>::infinity();
     const std::vector<Bounds> same(1000, Bounds{{1, 1, 1}, {2, 2, 2}});
     std::vector<int> met(same.size());
-    reference::BoxTree(same).visit({1.5, 1.5, 9}, {0, 0, -1}, farthest, [&](std::uint32_t i) { ++met[i]; });
+    reference::RayBvh(same).visit({1.5, 1.5, 9}, {0, 0, -1}, farthest, [&](std::uint32_t i) { ++met[i]; });
     CHECK(met == std::vector<int>(1000, 1));
-    reference::BoxTree(same).visit({3, 1.5, 9}, {0, 0, -1}, farthest,
-                                   [](std::uint32_t) { FAIL("it is missed"); });
-    reference::BoxTree({}).visit({0, 0, 0}, {0, 0, -1}, farthest,
-                                 [](std::uint32_t) { FAIL("there is none"); });
+    reference::RayBvh(same).visit({3, 1.5, 9}, {0, 0, -1}, farthest,
+                                  [](std::uint32_t) { FAIL("it is missed"); });
+    reference::RayBvh({}).visit({0, 0, 0}, {0, 0, -1}, farthest,
+                                [](std::uint32_t) { FAIL("there is none"); });
 }

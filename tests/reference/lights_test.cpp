@@ -1,6 +1,6 @@
 #include <numbers>
 
-#include "looks.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -116,7 +116,7 @@ TEST_CASE("a ball of many triangles is a ball") {
     constexpr double kRadius = 1.5;
     const View view = picture({2, 1, 5}, {0.2, 0.1, 0});
     const auto ball = scene_of({{1, sphere(kRadius, 300), shiny(), glm::dmat4(1)}});
-    const ReferencePicture shown = traced(ball, view);
+    const ReferenceImage shown = traced(ball, view);
     const glm::dvec3 eye = view.camera.eye;
     int compared = 0;
     for (int y = 0; y < view.height; ++y)

@@ -1,4 +1,4 @@
-#include "looks.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -29,7 +29,7 @@ Texture checks() {
 }
 
 /// A shiny ball, a box with a picture, and a pane before them.
-Parts room(const glm::dmat4& placed) {
+ReferenceParts room(const glm::dmat4& placed) {
     Geometry plate = quad(1);
     plate.texcoords = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
     Material pictured = material_of({1, 1, 1}, {0.2, 0.2, 0.2}, 3);
@@ -60,7 +60,7 @@ TEST_CASE("a mirror shows what the reflected things would show behind it") {
         reflected_light.light.position = glm::dvec3(reflection * glm::dvec4(source, 1));
 
         // The things themselves stand where the eye does not see them: both pictures show reflections only.
-        Parts with = room(glm::dmat4(1));
+        ReferenceParts with = room(glm::dmat4(1));
         with.push_back(mirror_at(1, kPoint, kNormal, mirror(1)));
         const auto shown = traced(scene_of(with, {checks()}), view);
         const auto should = traced(scene_of(room(reflection), {checks()}), reflected_light);
@@ -151,7 +151,7 @@ TEST_CASE("a mirror does not show what lies in its own place") {
         return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
     };
     const Material plate = mirror(0.5, {0.6, 0.2, 0.2});
-    const ReferencePicture alone = traced(plates({plate}), view);
+    const ReferenceImage alone = traced(plates({plate}), view);
     check_same(alone.color[27], {0.4, 0.5, 0.3});
     for (const Material& twin :
          {two_sided(glowing({1, 1, 0})), mirror(1), two_sided(glowing({1, 0, 1}, 0.5))})

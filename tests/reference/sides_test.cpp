@@ -1,4 +1,4 @@
-#include "looks.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -7,7 +7,7 @@ namespace {
 const Material kPlain = material_of({0.6, 0.4, 0.2});
 const glm::dvec3 kLit{0.6, 0.4, 0.2};
 
-bool shows(const Parts& parts, const glm::dvec3& eye) {
+bool shows(const ReferenceParts& parts, const glm::dvec3& eye) {
     return traced(scene_of(parts), look(eye, {0, 0, 0})).node[0] != kNone;
 }
 

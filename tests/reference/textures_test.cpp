@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "looks.hpp"
 #include "reference/shading.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -34,8 +34,8 @@ glm::dvec3 texel(const Image& image, int x, int y) {
 }
 
 /// The picture on a plate that fills a view of so many pixels, `repeats` times across and up.
-ReferencePicture on_plate(const Image& image, int width, int height, const glm::vec2& repeats = {1, 1},
-                          const glm::vec2& from = {0, 0}) {
+ReferenceImage on_plate(const Image& image, int width, int height, const glm::vec2& repeats = {1, 1},
+                        const glm::vec2& from = {0, 0}) {
     const double w = width / 2.0, h = height / 2.0;
     Geometry plate;
     plate.positions = {{-w, -h, 0}, {w, -h, 0}, {w, h, 0}, {-w, h, 0}};
@@ -55,7 +55,7 @@ constexpr std::array<glm::dvec2, 2> kMagnified{};
 
 TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upright") {
     const Image image = noise(8, 6);
-    const ReferencePicture shown = on_plate(image, 8, 6);
+    const ReferenceImage shown = on_plate(image, 8, 6);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 8; ++x)
             check_same(shown.color[8 * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)],
@@ -74,7 +74,7 @@ TEST_CASE("without texture coordinates there is no picture") {
 TEST_CASE("magnified it is bilinear, and repeats") {
     const Image image = noise(2, 3);
     for (const glm::vec2& from : {glm::vec2(0), glm::vec2(-7, 1024)}) {
-        const ReferencePicture shown = on_plate(image, 8, 12, {1, 1}, from);
+        const ReferenceImage shown = on_plate(image, 8, 12, {1, 1}, from);
         for (int y = 0; y < 12; ++y)
             for (int x = 0; x < 8; ++x) {
                 // Four pixels a texel: 1.5/4 or 0.5/4 from the nearest centre of a texel.
@@ -134,7 +134,7 @@ TEST_CASE("shrunk it is trilinear, by the longer side of the pixel in texels") {
 
 TEST_CASE("a plate that is smaller than its picture shows its levels") {
     const Image image = noise(32, 16);
-    const ReferencePicture shown = on_plate(image, 8, 8, {1, 0.5f});  // four texels across, one up
+    const ReferenceImage shown = on_plate(image, 8, 8, {1, 0.5f});  // four texels across, one up
     const reference::MipMap map(image);
     REQUIRE(map.width(2) == 8);
     for (int y = 0; y < 8; ++y)
@@ -154,31 +154,31 @@ TEST_CASE("what a pixel spans is the derivative of what its ray meets") {
     Geometry geometry = sphere(2, 6);
     for (const glm::dvec3& p : geometry.positions) geometry.texcoords.emplace_back(p.x * p.y, p.z + 2 * p.x);
     view.scene = scene_of({{1, geometry, two_sided(material_of({1, 1, 1})), scaled_by({1, -2, 0.5})}});
-    const Surfaces surfaces(view);
-    const Sight sight{{0.1, 0.2, -0.3},
-                      glm::normalize(glm::dvec3(-2, -3, -4)),
-                      {glm::dvec3(0.02, 0.01, -0.03), glm::dvec3(0.01, -0.02, 0)},
-                      {glm::dvec3(0.01, 0.003, -0.01), glm::dvec3(-0.002, 0.01, 0.004)}};
-    const auto meeting = surfaces.first_opaque(sight);
-    REQUIRE(meeting);
-    const reference::Part& part = surfaces.parts()[0];
-    const Spot spot = spot_of(part, *meeting, sight);
+    const TracedScene surfaces(view);
+    const RayDifferential ray{{0.1, 0.2, -0.3},
+                              glm::normalize(glm::dvec3(-2, -3, -4)),
+                              {glm::dvec3(0.02, 0.01, -0.03), glm::dvec3(0.01, -0.02, 0)},
+                              {glm::dvec3(0.01, 0.003, -0.01), glm::dvec3(-0.002, 0.01, 0.004)}};
+    const auto hit = surfaces.closest_opaque_hit(ray);
+    REQUIRE(hit);
+    const reference::TracedInstance& part = surfaces.parts()[0];
+    const SurfaceInteraction interaction = interaction_of(part, *hit, ray);
     for (std::size_t i = 0; i < 2; ++i) {
         constexpr double kStep = 1e-5;
         const auto moved = [&](double by) {
-            Sight other = sight;
-            other.origin += sight.origin_change[i] * by;
-            other.direction = glm::normalize(sight.direction + sight.direction_change[i] * by);
-            const auto there = surfaces.first_opaque(other);
+            RayDifferential other = ray;
+            other.origin += ray.dorigin_dxy[i] * by;
+            other.direction = glm::normalize(ray.direction + ray.ddirection_dxy[i] * by);
+            const auto there = surfaces.closest_opaque_hit(other);
             REQUIRE(there);
-            REQUIRE(there->triangle == meeting->triangle);
-            return spot_of(part, *there, other);
+            REQUIRE(there->triangle == hit->triangle);
+            return interaction_of(part, *there, other);
         };
-        const Spot after = moved(kStep), before = moved(-kStep);
+        const SurfaceInteraction after = moved(kStep), before = moved(-kStep);
         const glm::dvec2 texcoord = (after.texcoord - before.texcoord) / (2 * kStep);
         const glm::dvec3 normal = (after.normal - before.normal) / (2 * kStep);
-        CHECK(glm::distance(spot.texcoord_change[i], texcoord) < 1e-6 * glm::length(texcoord));
-        CHECK(glm::distance(spot.normal_change[i], normal) < 1e-6 * glm::length(normal));
+        CHECK(glm::distance(interaction.duv_dxy[i], texcoord) < 1e-6 * glm::length(texcoord));
+        CHECK(glm::distance(interaction.dn_dxy[i], normal) < 1e-6 * glm::length(normal));
         CHECK(glm::length(texcoord) > 0.01);
     }
 }

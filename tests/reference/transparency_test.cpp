@@ -1,4 +1,4 @@
-#include "looks.hpp"
+#include "reference_image.hpp"
 
 using namespace vrut;
 
@@ -25,7 +25,7 @@ TEST_CASE("light is clamped before it is blended, and all of it is multiplied by
 }
 
 TEST_CASE("eight panes, given in any order") {
-    Parts panes;
+    ReferenceParts panes;
     glm::dvec3 color(0, 0, 0);
     for (int i = 0; i < 8; ++i) {  // from the back
         const glm::dvec3 own(i / 8.0, 1 - i / 8.0, 0.5);
@@ -43,8 +43,8 @@ TEST_CASE("eight panes, given in any order") {
 
 TEST_CASE("panes that cross are each in front on one side") {
     const glm::dvec3 red(1, 0, 0), green(0, 1, 0);
-    const Parts crossing{{1, quad(2), two_sided(glowing(red, 0.5)), turned_by(45, {0, 1, 0})},
-                         {2, quad(2), two_sided(glowing(green, 0.5)), turned_by(-45, {0, 1, 0})}};
+    const ReferenceParts crossing{{1, quad(2), two_sided(glowing(red, 0.5)), turned_by(45, {0, 1, 0})},
+                                  {2, quad(2), two_sided(glowing(green, 0.5)), turned_by(-45, {0, 1, 0})}};
     View view = look({0, 0, 5}, {0, 0, 0});
     view.background.color = {0, 0, 0};
     // Turned by 45 degrees about y, the right half goes to the back.

@@ -17,7 +17,7 @@ using namespace stage;
 namespace {
 
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
-                                                                 const std::string& sha256) {
+                                                                  const std::string& sha256) {
     server::scenes::LoadedScene found = name == "other.vrut" ? other_scene() : scene();
     if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
     return found;
@@ -345,7 +345,7 @@ geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
 node 1 "Part" geometry geometry 1 end
 node 2 "Key" light type point color 1.08 1.06 1.02 1 end
 )",
-                                                      "stage.vrut");
+                                                       "stage.vrut");
     Recorded recorded("a", shown);
     recorded.start();
     recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");

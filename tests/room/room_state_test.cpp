@@ -17,9 +17,9 @@ std::string key(const std::string& name, bool shift = false) {
     return json{{"type", "keydown"}, {"key", name}, {"code", name}, {"shiftKey", shift}}.dump();
 }
 
-std::vector<Mark> marks_in(const Stage& stage) {
-    const auto marks = stage.room.visible().marks;
-    return marks ? *marks : std::vector<Mark>{};
+std::vector<PlacedMarker> marks_in(const Stage& stage) {
+    const auto markers = stage.room.visible().markers;
+    return markers ? *markers : std::vector<PlacedMarker>{};
 }
 
 }  // namespace
@@ -250,20 +250,20 @@ TEST_CASE("a selection has its node's name and path") {
 
 TEST_CASE("markers are seen where their point is, go with their node, and hide with it") {
     Stage stage("a");
-    const auto marks = [&] { return marks_in(stage); };
-    CHECK(marks().empty());
+    const auto markers = [&] { return marks_in(stage); };
+    CHECK(markers().empty());
     stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
     stage.say("a", kMoveHinge);
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}, {{3.5, 0, 0}, "hinge"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}, {{3.5, 0, 0}, "hinge"}});
     stage.say("a", patch(R"({"nodes":{"1":{"active":false}}})"));
-    CHECK(marks() == std::vector<Mark>{{{5, 6, 7}, "free"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":{"node":5}}})"));  // winter, which does not show
-    CHECK(marks().empty());
+    CHECK(markers().empty());
     stage.say("a", patch(R"({"markers":{"free":{"node":4}}})"));
-    CHECK(marks() == std::vector<Mark>{{{4, 6, 7}, "free"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{4, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":null}})"));
-    CHECK(marks().empty());
+    CHECK(markers().empty());
 }
 
 TEST_CASE("a view is saved by {}, as the camera stands then") {
@@ -371,10 +371,10 @@ TEST_CASE("a move of the camera shares with the state before it what did not cha
                              "lights":{"items":{"headlight":{"color":[1,0,0,1]}}}})"));
     stage.state();
     const protocol::State before = stage.room.state();
-    const auto marks = stage.room.visible().marks;
-    REQUIRE(marks);
+    const auto markers = stage.room.visible().markers;
+    REQUIRE(markers);
     const auto check_shared = [&] {
-        CHECK(stage.room.visible().marks == marks);
+        CHECK(stage.room.visible().markers == markers);
         stage.state();
         const protocol::State& now = stage.room.state();
         CHECK(now.camera != before.camera);
@@ -455,14 +455,14 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
     stage.say("a", patch(R"({"markers":{"free":{"point":[1,2,3],"text":"here"},
                                         "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
                                         "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
-    const auto marks = [&] { return marks_in(stage); };
-    REQUIRE(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
+    const auto markers = [&] { return marks_in(stage); };
+    REQUIRE(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
     stage.say("a", kMoveHinge);
-    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
     stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"1":{"active":false}}})"));
-    CHECK(marks() == std::vector<Mark>{{{1, 2, 3}, "free"}, {{-1, 0, 0}, "snow"}});
+    CHECK(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{-1, 0, 0}, "snow"}});
     stage.say("a", patch(R"({"markers":null})"));
-    CHECK(marks().empty());
+    CHECK(markers().empty());
 }
 
 TEST_CASE("a picture's header says where the signs in it stand") {
@@ -492,9 +492,9 @@ TEST_CASE("a marker that lies out of the range of double is nowhere") {
     Stage stage("a", scene_of(text, "large.vrut"));
     stage.say("a",
               patch(R"({"markers":{"far":{"node":20,"point":[1,1,1]},"gone":{"node":22,"point":[1,1,1]}}})"));
-    const std::vector<Mark> marks = marks_in(stage);
-    REQUIRE(marks.size() == 1);
-    CHECK(marks[0].name == "far");
+    const std::vector<PlacedMarker> markers = marks_in(stage);
+    REQUIRE(markers.size() == 1);
+    CHECK(markers[0].name == "far");
 }
 
 TEST_CASE("the view has the active background's colour and pictures, or else the plain colour") {

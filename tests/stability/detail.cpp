@@ -77,7 +77,8 @@ Study outlines_of_levels(const Laboratory& laboratory) {
                                       glm::dvec3(-3, -1, 2), glm::dvec3(1, -3, -2), glm::dvec3(4, 0, 0)}) {
             View view = looking(scene, eye);
             view.width = view.height = 1024;
-            const double told = level.error * most_pixels(view_from_world(view.camera), whole.bounds, view);
+            const double told =
+                level.error * max_screen_space_scale(view_from_world(view.camera), whole.bounds, view);
             const auto before = outline_of(drawn(laboratory, view));
             view.scene = fewer;
             const auto after = outline_of(drawn(laboratory, view));
@@ -120,7 +121,8 @@ Study popping_levels(const Laboratory& laboratory) {
                 view = looking(scene, glm::normalize(glm::dvec3(1, 1, 2)) * distance);
                 view.width = view.height = 512;
                 view.levels = levels;
-                view.detail = most_pixels(view_from_world(view.camera), whole.bounds, view) * level.error;
+                view.detail =
+                    max_screen_space_scale(view_from_world(view.camera), whole.bounds, view) * level.error;
                 if (view.detail <= pixels) break;
             }
             FrameStats fewer, more;

@@ -14,7 +14,7 @@ namespace {
 Image sent(const Image& image, int quality, bool subsampled) {
     server::engine::JpegEncoder encoder;
     const auto file = encoder.encode(image, quality, subsampled);
-    return decode_picture({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
+    return decode_image({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
 }
 
 template <class Color>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "shapes.hpp"
 #include "study.hpp"
 
@@ -64,7 +64,7 @@ server::engine::FrameRenderer renderer_of_balls() {
     server::engine::FrameRenderer renderer;
     renderer.description = "balls";
     auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
-    renderer.step = [drawn](Rendering& rendering) {
+    renderer.step = [drawn](RenderJob& rendering) {
         rendering.samples = rendering.view.samples;
         const View& view = rendering.view;
         Image& image = rendering.image;

@@ -53,7 +53,7 @@ View looking(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& 
 }
 
 Image truth_of(const View& view) {
-    const ReferencePicture picture = trace(view);
+    const ReferenceImage picture = trace(view);
     const bool is_empty =
         std::all_of(picture.node.begin(), picture.node.end(), [](Index node) { return node == kNone; });
     return is_empty ? Image() : image_of(picture);

@@ -76,7 +76,7 @@ struct Topic {
 };
 const std::vector<Topic>& topics();
 
-// surfaces.cpp
+// traced_scene.cpp
 Study far_positions(const Laboratory& laboratory);
 Study deep_views(const Laboratory& laboratory);
 Study large_triangles(const Laboratory& laboratory);

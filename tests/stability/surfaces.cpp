@@ -119,7 +119,7 @@ Study large_triangles(const Laboratory& laboratory) {
         const Image right = truth_of(view);
         study.method.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});
         const double pixel_ms = time_of(laboratory, view);
-        view.methods.light = Methods::Light::vertex;
+        view.methods.light = Methods::Lighting::vertex;
         study.cost = "Here " + times_the_time(pixel_ms, time_of(laboratory, view)) +
                      ", where one wall is all of the picture; within what times vary on the car.";
         study.baseline.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});

@@ -15,7 +15,7 @@
 #include "engine/frame_quality.hpp"
 #include "frame_header.hpp"
 #include "io/vrut/text_reader.hpp"
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 #include "plan/view.hpp"
 
 namespace vrut::test {
@@ -69,7 +69,7 @@ static void fill_with_noise(std::vector<std::uint8_t>& bytes, std::size_t seed) 
 server::engine::FrameRendererFactory FakeRenderer::factory() const {
     return [*this] {
         server::engine::FrameRenderer renderer{"fake", false, 16384, {}};
-        renderer.step = [*this](Rendering& rendering) {
+        renderer.step = [*this](RenderJob& rendering) {
             if (takes.count() > 0) std::this_thread::sleep_for(takes);
             if (++rendering.samples < rendering.view.samples) return false;
             Image& image = rendering.image;
@@ -86,7 +86,8 @@ server::engine::FrameRendererFactory FakeRenderer::factory() const {
 TestServer::TestServer(const FakeRenderer& renderer, const server::net::ServerOptions& options)
     : TestServer(scene_of(kScene, "triangle.vrut"), renderer.factory(), options) {}
 
-TestServer::TestServer(server::scenes::LoadedScene scene, const server::engine::FrameRendererFactory& renderer,
+TestServer::TestServer(server::scenes::LoadedScene scene,
+                       const server::engine::FrameRendererFactory& renderer,
                        server::net::ServerOptions options) {
     spdlog::set_level(spdlog::level::off);
     options.listen.port = 0;

@@ -19,10 +19,10 @@ inline View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec
     return view;
 }
 
-inline std::shared_ptr<const std::vector<Mark>> marks_at(const std::vector<glm::dvec3>& points) {
-    std::vector<Mark> marks;
-    for (const glm::dvec3& point : points) marks.push_back({point});
-    return std::make_shared<const std::vector<Mark>>(std::move(marks));
+inline std::shared_ptr<const std::vector<PlacedMarker>> markers_at(const std::vector<glm::dvec3>& points) {
+    std::vector<PlacedMarker> markers;
+    for (const glm::dvec3& point : points) markers.push_back({point});
+    return std::make_shared<const std::vector<PlacedMarker>>(std::move(markers));
 }
 
 /// Straight on to the plane z = 0, before white; a unit is a pixel.

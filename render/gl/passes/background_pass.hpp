@@ -12,12 +12,12 @@ public:
     }
     /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. A picture is stretched
     /// over the view; of a panorama each pixel shows what lies in the direction of its ray.
-    void draw(const Sight& sight, const View& view, GpuScene& scene, FrameStats& stats);
+    void draw(const CameraMatrices& camera, const View& view, GpuScene& scene, FrameStats& stats);
 
 private:
-    GlProgram picture_, panorama_;
+    GlProgram image_program_, environment_program_;
     GlSampler clamped_;
-    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+    GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
 }  // namespace vrut

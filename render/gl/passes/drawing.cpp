@@ -18,8 +18,8 @@ void set_up_drawing() {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void cull_sides(const DrawItem& item, bool front_only) {
-    if (item.sides == Sides::both && !front_only)
+void set_cull_mode(const DrawItem& item, bool front_only) {
+    if (item.cull_mode == CullMode::none && !front_only)
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);

@@ -17,7 +17,7 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3
 void set_up_drawing();
 
 /// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
-void cull_sides(const DrawItem& item, bool front_only = false);
+void set_cull_mode(const DrawItem& item, bool front_only = false);
 
 /// Nothing outside the box is drawn or cleared, while GL_SCISSOR_TEST is enabled.
 void scissor(const PixelBox& box);

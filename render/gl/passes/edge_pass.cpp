@@ -23,26 +23,26 @@ void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode m
     glDisable(GL_BLEND);
     const bool stylized = mode == DrawMode::stylized;
     glDepthMask(!stylized);  // of one colour, none hides another
-    if (stylized) plain_.use(kStylizedEdges, clip_from_view);
+    if (stylized) solid_color_.use(kStylizedEdges, clip_from_view);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
         if (stylized)
-            set_place(item, geometry);
+            set_transform(item, geometry);
         else
-            programs.use(SurfacePrograms::Shape::edges, item, geometry,
+            programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
                          scene.scene()->material(item.material));
         draw_lines(scene.edges(item.geometry), stats);
     }
     glDepthMask(GL_TRUE);
 }
 
-void EdgePass::draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
-                         const glm::dmat4& clip_from_view, FrameStats& stats) {
+void EdgePass::draw_overlay(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
+                            const glm::dmat4& clip_from_view, FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
-    plain_.use(color, clip_from_view);
+    solid_color_.use(color, clip_from_view);
     for (const DrawItem& item : items) {
-        set_place(item, scene.geometry(item.geometry));
+        set_transform(item, scene.geometry(item.geometry));
         draw_lines(scene.edges(item.geometry), stats);
     }
 }

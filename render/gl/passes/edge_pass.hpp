@@ -14,11 +14,11 @@ public:
     void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
               const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats);
     /// In one colour, over everything.
-    void draw_over(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
-                   const glm::dmat4& clip_from_view, FrameStats& stats);
+    void draw_overlay(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
+                      const glm::dmat4& clip_from_view, FrameStats& stats);
 
 private:
-    PlainProgram plain_;
+    SolidColorProgram solid_color_;
 };
 
 }  // namespace vrut

@@ -41,9 +41,9 @@ std::vector<Index> IdPass::draw(std::span<const DrawItem> items, GpuScene& scene
     FrameStats stats;
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_place(item, geometry);
-        program_.set_number(item.node);
-        cull_sides(item);
+        set_transform(item, geometry);
+        program_.set_node(item.node);
+        set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
     std::vector<Index> nodes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

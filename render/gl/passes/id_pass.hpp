@@ -16,7 +16,7 @@ public:
                             const glm::dmat4& clip_from_view);
 
 private:
-    NumberProgram program_;
+    NodeIdProgram program_;
 };
 
 }  // namespace vrut

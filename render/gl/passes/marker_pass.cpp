@@ -11,7 +11,7 @@ namespace vrut {
 
 namespace {
 
-enum Uniform : GLint { clip_from_view_at = 0, radius_at = 1, judged_at = 2, color_at = 3 };
+enum MarkerUniform : GLint { clip_from_view_at = 0, radius_at = 1, judged_at = 2, color_at = 3 };
 
 constexpr std::size_t kBatch = 256;  // the shader's
 constexpr GLuint kPointsBinding = 1;
@@ -70,7 +70,7 @@ void main() {
 
 constexpr std::string_view kFragmentShader = R"(#version 450 core
 layout(location = 1) uniform float radius;
-layout(location = 3) uniform vec3 mark;
+layout(location = 3) uniform vec3 marker_color;
 flat in vec2 center;
 flat in float opacity;
 out vec4 color;
@@ -79,18 +79,18 @@ void main() {
     float away = length(gl_FragCoord.xy - center);
     float rim = max(radius / 5, 1);
     float in_sign = clamp(radius + 0.5 - away, 0, 1), in_rim = clamp(away - (radius - rim) + 0.5, 0, 1);
-    color = vec4(mix(mark, vec3(1), in_rim), in_sign * opacity);
+    color = vec4(mix(marker_color, vec3(1), in_rim), in_sign * opacity);
 }
 )";
 
 }  // namespace
 
-void MarkPass::draw(std::span<const glm::dvec3> points, Cover cover, const glm::dmat4& clip_from_view,
-                    const Framebuffer& target, FrameStats& stats) {
+void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
+                      const Framebuffer& target, FrameStats& stats) {
     if (!program_) {
         program_ = make_program(kVertexShader, kFragmentShader);
-        nothing_ = make_vertex_array();
-        points_ = make_changing_buffer("markers", kBatch * sizeof(glm::vec4));
+        empty_vertex_array_ = make_vertex_array();
+        points_ = make_dynamic_buffer("markers", kBatch * sizeof(glm::vec4));
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, kPointsBinding, points_.get());
     target.bind();
@@ -102,12 +102,12 @@ void MarkPass::draw(std::span<const glm::dvec3> points, Cover cover, const glm::
     glDepthMask(GL_FALSE);
     glBindTextureUnit(0, target.depth().get());
     glUseProgram(program_.get());
-    glBindVertexArray(nothing_.get());
+    glBindVertexArray(empty_vertex_array_.get());
     const glm::mat4 clip(clip_from_view);
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
-    glUniform1f(radius_at, static_cast<float>(mark_radius(target.height())));
-    glUniform1i(judged_at, cover == Cover::by_depth);
-    const glm::vec3 color(kMark);
+    glUniform1f(radius_at, static_cast<float>(marker_radius(target.height())));
+    glUniform1i(judged_at, fade == MarkerFade::by_depth);
+    const glm::vec3 color(kMarkerColor);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::size_t count = std::min(points.size() - first, kBatch);

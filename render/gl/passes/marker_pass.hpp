@@ -10,20 +10,20 @@ namespace vrut {
 
 /// Round signs of constant size in pixels over the picture, each around its point: full where the point is
 /// seen, and the fainter the more of its surroundings is hidden.
-class MarkPass {
+class MarkerPass {
 public:
     /// What depth tells of a point: whether it is hidden, or, in a wireframe, nothing.
-    enum class Cover { by_depth, none };
+    enum class MarkerFade { by_depth, none };
 
     /// `points` in view space, all before the eye, are drawn in that order into `target`, whose depth is the
     /// scene's; it is bound afterwards. Adds its draws to `stats`.
-    void draw(std::span<const glm::dvec3> points, Cover cover, const glm::dmat4& clip_from_view,
+    void draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
               const Framebuffer& target, FrameStats& stats);
 
 private:
     GlProgram program_;
     GlBuffer points_;
-    GlVertexArray nothing_;  ///< a sign's corners need no attributes
+    GlVertexArray empty_vertex_array_;  ///< a sign's corners need no attributes
 };
 
 }  // namespace vrut

@@ -7,15 +7,15 @@ namespace vrut {
 std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene& scene,
                                    const glm::dmat4& clip_from_view, FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
-    mask_.use(glm::dvec3(0), clip_from_view);
+    solid_color_.use(glm::dvec3(0), clip_from_view);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDepthMask(GL_FALSE);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < mirrors.size(); ++i) {
         const GpuGeometry& geometry = scene.geometry(mirrors[i].surface);
-        set_place(mirrors[i].surface, geometry);
-        cull_sides(mirrors[i].surface);
+        set_transform(mirrors[i].surface, geometry);
+        set_cull_mode(mirrors[i].surface);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, queries_[i].get());
         draw_triangles(geometry, stats);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
@@ -35,9 +35,9 @@ std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene
 void MirrorPass::open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
                       const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats) {
     if (!target_ || target_->width() != picture.width() || target_->height() != picture.height() ||
-        target_->deep() != picture.deep()) {
+        target_->rgba16() != picture.rgba16()) {
         target_.reset();
-        target_.emplace(picture.width(), picture.height(), picture.deep());
+        target_.emplace(picture.width(), picture.height(), picture.rgba16());
     }
     bind(mirror);
     // Nothing comes before what is nearest; but at the mirror's pixels everything does.
@@ -48,10 +48,10 @@ void MirrorPass::open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     glDisable(GL_BLEND);
-    mask_.use(background, clip_from_view);
+    solid_color_.use(background, clip_from_view);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
-    set_place(mirror.surface, geometry);
-    cull_sides(mirror.surface);
+    set_transform(mirror.surface, geometry);
+    set_cull_mode(mirror.surface);
     draw_triangles(geometry, stats);
     glDepthRange(0, 1);
 }
@@ -67,13 +67,13 @@ void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuf
     picture.bind();
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
-    glDepthFunc(mirror.surface.behind_twin ? GL_GREATER : GL_GEQUAL);
+    glDepthFunc(mirror.surface.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
     glDisable(GL_BLEND);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
-    programs.use(SurfacePrograms::Shape::mirror, mirror.surface, geometry,
+    programs.use(SurfacePrograms::SurfaceKind::mirror, mirror.surface, geometry,
                  scene.scene()->material(mirror.surface.material));
     glBindTextureUnit(SurfacePrograms::kReflectionUnit, target_->color().get());
-    cull_sides(mirror.surface);
+    set_cull_mode(mirror.surface);
     draw_triangles(geometry, stats);
     // What is bound for reading must not be what is drawn into next.
     glBindTextureUnit(SurfacePrograms::kReflectionUnit, 0);

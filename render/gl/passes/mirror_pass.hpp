@@ -35,7 +35,7 @@ public:
 
 private:
     std::optional<Framebuffer> target_;
-    PlainProgram mask_;
+    SolidColorProgram solid_color_;
     std::vector<GlQuery> queries_;
 };
 

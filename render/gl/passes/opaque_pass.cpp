@@ -18,25 +18,25 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode
     }
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        programs.use(SurfacePrograms::Shape::faces, item, geometry,
+        programs.use(SurfacePrograms::SurfaceKind::faces, item, geometry,
                      stylized ? stylized_faces() : scene.scene()->material(item.material));
-        cull_sides(item);
+        set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void OpaquePass::move_behind(std::span<const DrawItem> items, GpuScene& scene,
+void OpaquePass::reset_depth(std::span<const DrawItem> items, GpuScene& scene,
                              const glm::dmat4& clip_from_view, FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    cover_.use(glm::dvec3(0), clip_from_view);
+    solid_color_.use(glm::dvec3(0), clip_from_view);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_place(item, geometry);
-        cull_sides(item);
+        set_transform(item, geometry);
+        set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);

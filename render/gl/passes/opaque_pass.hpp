@@ -14,11 +14,11 @@ public:
     void draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode, SurfacePrograms& programs,
               FrameStats& stats);
     /// What was drawn before is behind these items from here on, wherever they cover it.
-    void move_behind(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+    void reset_depth(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
                      FrameStats& stats);
 
 private:
-    PlainProgram cover_;
+    SolidColorProgram solid_color_;
 };
 
 }  // namespace vrut

@@ -10,10 +10,10 @@ namespace vrut {
 
 namespace {
 
-enum Uniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
+enum OutlineUniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
 
 // What lies outside the box is of an earlier picture, or of none.
-constexpr std::string_view kMeasureShader = R"(#version 450 core
+constexpr std::string_view kRowDistanceShader = R"(#version 450 core
 layout(location = 0) uniform int width;
 layout(location = 2) uniform ivec4 box;
 layout(binding = 0) uniform sampler2D covered;
@@ -32,9 +32,9 @@ void main() {
 }
 )";
 
-constexpr std::string_view kMarkShader = R"(#version 450 core
+constexpr std::string_view kOutlineShader = R"(#version 450 core
 layout(location = 0) uniform int width;
-layout(location = 1) uniform vec3 mark;
+layout(location = 1) uniform vec3 outline_color;
 layout(location = 2) uniform ivec4 box;
 layout(binding = 0) uniform sampler2D measured;
 out vec4 color;
@@ -52,7 +52,7 @@ void main() {
         nearest = min(nearest, along * along + step * step);
     }
     if (nearest > width * width) discard;
-    color = vec4(mark, 1);
+    color = vec4(outline_color, 1);
 }
 )";
 
@@ -94,10 +94,10 @@ void OutlinePass::prepare(const Framebuffer& target) {
         mask_.reset();
         mask_.emplace(target.width(), target.height());
     }
-    if (nothing_) return;
-    measure_ = make_program(kScreenShader, kMeasureShader);
-    mark_ = make_program(kScreenShader, kMarkShader);
-    nothing_ = make_vertex_array();
+    if (empty_vertex_array_) return;
+    distance_program_ = make_program(kScreenShader, kRowDistanceShader);
+    outline_program_ = make_program(kScreenShader, kOutlineShader);
+    empty_vertex_array_ = make_vertex_array();
 }
 
 void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
@@ -105,40 +105,40 @@ void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
     prepare(target);
     const glm::ivec2 picture{target.width(), target.height()};
     const int width = outline_width(target.height());
-    all_ = {picture, {0, 0}};
+    box_ = {picture, {0, 0}};
     for (const DrawItem& item : items) {
         const PixelBox box = box_of(item, scene, clip_from_view, picture);
-        all_ = {glm::min(all_.low, box.low - width), glm::max(all_.high, box.high + width)};
+        box_ = {glm::min(box_.low, box.low - width), glm::max(box_.high, box.high + width)};
     }
-    all_ = {glm::max(all_.low, 0), glm::min(all_.high, picture)};
+    box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     glEnable(GL_SCISSOR_TEST);
-    scissor(all_);
+    scissor(box_);
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-void OutlinePass::cover(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-                        FrameStats& stats) {
+void OutlinePass::draw_mask(std::span<const DrawItem> items, GpuScene& scene,
+                            const glm::dmat4& clip_from_view, FrameStats& stats) {
     const glm::ivec2 picture{mask_->width, mask_->height};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glEnable(GL_SCISSOR_TEST);
-    scissor(all_);
+    scissor(box_);
     glClearColor(1, 1, 1, 1);
-    cover_.use(glm::dvec3(1), clip_from_view);
+    solid_color_.use(glm::dvec3(1), clip_from_view);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_place(item, geometry);
+        set_transform(item, geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
         const PixelBox box = box_of(item, scene, clip_from_view, picture);
         if (box.size().x > 2 || box.size().y > 2) continue;
         scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);
-        scissor(all_);
+        scissor(box_);
     }
 }
 
@@ -148,13 +148,13 @@ void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
     glDisable(GL_BLEND);
     glDisable(GL_CULL_FACE);
     glEnable(GL_SCISSOR_TEST);
-    scissor(all_);
-    glBindVertexArray(nothing_.get());
+    scissor(box_);
+    glBindVertexArray(empty_vertex_array_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
-    use(measure_, width, all_, mask_->covered);
+    use(distance_program_, width, box_, mask_->covered);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.bind();
-    use(mark_, width, all_, mask_->across);
+    use(outline_program_, width, box_, mask_->across);
     const glm::vec3 color(kSelection);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);

@@ -19,8 +19,8 @@ public:
     void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const Framebuffer& target);
     /// Draws items into the mask, which is bound afterwards; adds to the draws and triangles of `stats`.
-    void cover(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-               FrameStats& stats);
+    void draw_mask(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                   FrameStats& stats);
     /// Draws the outline into `target`, which is bound afterwards.
     void draw(const Framebuffer& target, FrameStats& stats);
 
@@ -34,10 +34,10 @@ private:
         GlFramebuffer covered_target, across_target;
     };
     std::optional<Mask> mask_;
-    PixelBox all_;  ///< the outline, and all that it surrounds
-    PlainProgram cover_;
-    GlProgram measure_, mark_;
-    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+    PixelBox box_;  ///< the outline, and all that it surrounds
+    SolidColorProgram solid_color_;
+    GlProgram distance_program_, outline_program_;
+    GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
 /// Width of an outline in a picture of that height: 2 pixels at 1 megapixel (1152 x 864).

@@ -16,24 +16,24 @@ const int kAtOnce = 16;
 out vec4 color;
 
 bool is_nearer(uint a, uint b) {
-    float depth_a = layers[a - 1].depth, depth_b = layers[b - 1].depth;
+    float depth_a = fragments[a - 1].depth, depth_b = fragments[b - 1].depth;
     if (depth_a != depth_b) return depth_a > depth_b;
-    uint order_a = layers[a - 1].order, order_b = layers[b - 1].order;
+    uint order_a = fragments[a - 1].order, order_b = fragments[b - 1].order;
     return order_a != order_b ? order_a > order_b : a > b;
 }
 
 void main() {
-    uint first = first_layer[list_index(ivec2(gl_FragCoord.xy))];
+    uint first = heads[head_index(ivec2(gl_FragCoord.xy))];
     if (first == 0) discard;
     vec3 sum = vec3(0);
-    float through = 1;
+    float transmittance = 1;
     uint done = 0;
     uint nearest[kAtOnce];
     for (int i = 0; i < kAtOnce; ++i) nearest[i] = 0;
     int found;
     do {
         found = 0;
-        for (uint at = first; at != 0; at = layers[at - 1].next) {
+        for (uint at = first; at != 0; at = fragments[at - 1].next) {
             if (done != 0 && !is_nearer(done, at)) continue;
             uint further = at;  // moves the others on, and the last one out
             for (int i = 0; i < found; ++i) {
@@ -46,13 +46,13 @@ void main() {
         }
         for (int i = 0; i < found; ++i) {
             done = nearest[i];
-            vec4 own = vec4(unpackUnorm2x16(layers[done - 1].red_green),
-                            unpackUnorm2x16(layers[done - 1].blue_alpha));
-            sum += through * own.rgb;
-            through *= 1 - own.a;
+            vec4 own = vec4(unpackUnorm2x16(fragments[done - 1].red_green),
+                            unpackUnorm2x16(fragments[done - 1].blue_alpha));
+            sum += transmittance * own.rgb;
+            transmittance *= 1 - own.a;
         }
-    } while (found == kAtOnce && through > 1e-5);
-    color = vec4(sum, 1 - through);
+    } while (found == kAtOnce && transmittance > 1e-5);
+    color = vec4(sum, 1 - transmittance);
 }
 )";
 
@@ -70,28 +70,29 @@ void split(const PixelBox& box, std::uint64_t parts, std::vector<PixelBox>& into
 
 }  // namespace
 
-void PixelSortPass::prepare(std::size_t pixels) {
+void PerPixelListsPass::prepare(std::size_t pixels) {
     if (!composite_) {
-        composite_ = make_program(
-            kScreenShader, "#version 450 core\n" + std::string(kLayerLists) + std::string(kCompositeShader));
-        nothing_ = make_vertex_array();
+        composite_ = make_program(kScreenShader, "#version 450 core\n" + std::string(kPerPixelLists) +
+                                                     std::string(kCompositeShader));
+        empty_vertex_array_ = make_vertex_array();
     }
     if (pixels == pixels_) return;
     release();
-    layers_ = make_changing_buffer("transparent layers", kHeadBytes + most_layers(pixels) * kLayerBytes);
-    lists_ = make_changing_buffer("lists of layers", kHeadBytes + pixels * sizeof(GLuint));
+    fragments_ =
+        make_dynamic_buffer("transparent layers", kHeadBytes + max_fragments(pixels) * kFragmentBytes);
+    heads_ = make_dynamic_buffer("lists of layers", kHeadBytes + pixels * sizeof(GLuint));
     pixels_ = pixels;
 }
 
-void PixelSortPass::release() {
-    layers_ = {};
-    lists_ = {};
+void PerPixelListsPass::release() {
+    fragments_ = {};
+    heads_ = {};
     pixels_ = 0;
 }
 
-void PixelSortPass::begin(std::span<const DrawItem> items, const GpuScene& scene,
-                          const glm::dmat4& clip_from_view, const glm::ivec2& picture,
-                          const PixelBox& within) {
+void PerPixelListsPass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+                              const glm::dmat4& clip_from_view, const glm::ivec2& picture,
+                              const PixelBox& within) {
     PixelBox all{picture, {0, 0}};
     for (const DrawItem& item : items) {
         const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
@@ -101,29 +102,29 @@ void PixelSortPass::begin(std::span<const DrawItem> items, const GpuScene& scene
     all = intersection(all, within);
     if (all.empty()) return;
     prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
-    left_.push_back(all);
+    pending_boxes_.push_back(all);
 }
 
-void PixelSortPass::bind() const {
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kLayersBinding, layers_.get());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kListsBinding, lists_.get());
+void PerPixelListsPass::bind() const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFragmentsBinding, fragments_.get());
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kHeadsBinding, heads_.get());
     glEnable(GL_SCISSOR_TEST);
     scissor(box());
     glDepthMask(GL_FALSE);
 }
 
-void PixelSortPass::clear_lists() const {
-    const std::array<GLuint, 2> none{0, static_cast<GLuint>(most_layers(pixels_))};
-    glNamedBufferSubData(layers_.get(), 0, sizeof none, none.data());
+void PerPixelListsPass::clear_lists() const {
+    const std::array<GLuint, 2> none{0, static_cast<GLuint>(max_fragments(pixels_))};
+    glNamedBufferSubData(fragments_.get(), 0, sizeof none, none.data());
     const std::array<GLint, 4> place{box().low.x, box().low.y, box().size().x, box().size().y};
-    glNamedBufferSubData(lists_.get(), 0, sizeof place, place.data());
-    glClearNamedBufferSubData(lists_.get(), GL_R32UI, kHeadBytes,
+    glNamedBufferSubData(heads_.get(), 0, sizeof place, place.data());
+    glClearNamedBufferSubData(heads_.get(), GL_R32UI, kHeadBytes,
                               static_cast<GLsizeiptr>(sizeof(GLuint)) * box().size().x * box().size().y,
                               GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 
-void PixelSortPass::collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
-                            SurfacePrograms& programs, FrameStats& stats) {
+void PerPixelListsPass::collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
+                                SurfacePrograms& programs, FrameStats& stats) {
     bind();
     if (first == 0) clear_lists();
     glEnable(GL_DEPTH_TEST);
@@ -131,37 +132,38 @@ void PixelSortPass::collect(std::span<const DrawItem> items, std::size_t first, 
     for (std::size_t i = 0; i < items.size(); ++i) {
         const DrawItem& item = items[i];
         const GpuGeometry& geometry = scene.geometry(item);
-        programs.use(SurfacePrograms::Shape::layered_glass, item, geometry,
+        programs.use(SurfacePrograms::SurfaceKind::per_pixel_glass, item, geometry,
                      scene.scene()->material(item.material));
-        set_order(static_cast<GLuint>(first + i));
-        glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
-        cull_sides(item);
+        set_draw_order(static_cast<GLuint>(first + i));
+        glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
+        set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-std::uint64_t PixelSortPass::composite(FrameStats& stats) {
-    GLuint layers = 0;
-    glGetNamedBufferSubData(layers_.get(), 0, sizeof layers, &layers);
-    const PixelBox box = left_.back();
-    left_.pop_back();
-    if (const std::size_t most = most_layers(pixels_); layers <= most || box.size() == glm::ivec2(1))
+std::uint64_t PerPixelListsPass::composite(FrameStats& stats) {
+    GLuint fragment_count = 0;
+    glGetNamedBufferSubData(fragments_.get(), 0, sizeof fragment_count, &fragment_count);
+    const PixelBox box = pending_boxes_.back();
+    pending_boxes_.pop_back();
+    if (const std::size_t most = max_fragments(pixels_);
+        fragment_count <= most || box.size() == glm::ivec2(1))
         blend(stats);
     else
-        split(box, 2 + layers / most, left_);
-    return layers;
+        split(box, 2 + fragment_count / most, pending_boxes_);
+    return fragment_count;
 }
 
-void PixelSortPass::blend(FrameStats& stats) {
+void PerPixelListsPass::blend(FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_CLIP_DISTANCE0);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glUseProgram(composite_.get());
-    glBindVertexArray(nothing_.get());
+    glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     // The lists are written again: Mesa's llvmpipe would not wait for this.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

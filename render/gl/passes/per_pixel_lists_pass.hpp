@@ -16,15 +16,15 @@ namespace vrut {
 /// comes later is in front. There is room for two layers in each pixel of the picture, but 64 MiB at most;
 /// lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
 /// single pixel needs more than all of it.
-class PixelSortPass {
+class PerPixelListsPass {
 public:
     /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
     /// composited, again and again while it is drawing.
     void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const glm::ivec2& picture, const PixelBox& within);
-    bool is_drawing() const { return !left_.empty(); }
+    bool is_drawing() const { return !pending_boxes_.empty(); }
     /// The part of the picture for which items are collected.
-    const PixelBox& box() const { return left_.back(); }
+    const PixelBox& box() const { return pending_boxes_.back(); }
     /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
     /// `stats`.
     void collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
@@ -33,15 +33,15 @@ public:
     /// layers there are.
     std::uint64_t composite(FrameStats& stats);
     /// Gives up what it is drawing.
-    void abandon() { left_.clear(); }
+    void abandon() { pending_boxes_.clear(); }
     /// Gives its memory back until it draws again.
     void release();
 
 private:
-    static constexpr std::size_t kLayerBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
+    static constexpr std::size_t kFragmentBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
     /// Two in each pixel, but 64 MiB.
-    static constexpr std::size_t most_layers(std::size_t pixels) {
-        return std::min(8 * pixels, (std::size_t{64} << 20) / kLayerBytes);
+    static constexpr std::size_t max_fragments(std::size_t pixels) {
+        return std::min(8 * pixels, (std::size_t{64} << 20) / kFragmentBytes);
     }
 
     void prepare(std::size_t pixels);
@@ -49,11 +49,11 @@ private:
     void clear_lists() const;
     void blend(FrameStats& stats);
 
-    std::vector<PixelBox> left_;  // the last one first
+    std::vector<PixelBox> pending_boxes_;  // the last one first
     std::size_t pixels_ = 0;
-    GlBuffer layers_, lists_;
+    GlBuffer fragments_, heads_;
     GlProgram composite_;
-    GlVertexArray nothing_;  ///< the corners of a full-screen triangle need no attributes
+    GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
 }  // namespace vrut

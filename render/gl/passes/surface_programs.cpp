@@ -10,36 +10,36 @@ namespace vrut {
 
 namespace {
 
-enum Uniform : GLint {
-    clip_from_view_at = 0,  // of PlainProgram; others find it in the sight's block
+enum SurfaceUniform : GLint {
+    clip_from_view_at = 0,  // of SolidColorProgram; others find it in the sight's block
     view_from_local_at = 1,
     normal_matrix_at = 2,
-    plain_color_at = 3,
-    number_at = 4,
+    solid_color_at = 3,
+    node_at = 4,
     base_at = 5,
     diffuse_at = 6,
     specular_at = 7,
     shininess_at = 8,
-    both_sides_at = 9,
+    two_sided_at = 9,
     reflectivity_at = 10,
     alpha_at = 11,
     order_at = 12,
-    kept_at = 13,
+    clip_plane_at = 13,
 };
 
-constexpr GLuint kSightBinding = 0;
-constexpr GLuint kTextureUnit = 0, kPanoramaUnit = 1;
+constexpr GLuint kViewUniformsBinding = 0;
+constexpr GLuint kTextureUnit = 0, kEnvironmentUnit = 1;
 
 /// What holds for all surfaces of a sight, in view space; laid out as std140 has it.
-struct SightBlock {
+struct ViewUniforms {
     glm::mat4 clip_from_view;
     glm::mat3x4 world_from_view;  // of directions
     glm::vec4 light_color, attenuation, light_position, light_direction;
     glm::vec4 cone;  // x, y: 1 - cos where the light is full, and where it ends
 };
 
-constexpr std::string_view kSightBlock = R"(
-layout(std140, binding = 0) uniform Sight {
+constexpr std::string_view kViewUniformsBlock = R"(
+layout(std140, binding = 0) uniform ViewUniforms {
     mat4 clip_from_view;
     mat3 world_from_view;
     vec4 light_color, attenuation, light_position, light_direction;
@@ -90,13 +90,13 @@ constexpr std::string_view kVertexShader = R"(
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 2) uniform mat3 normal_matrix;
 #ifdef CLIPPED
-layout(location = 13) uniform vec4 kept;
+layout(location = 13) uniform vec4 clip_plane;
 out float gl_ClipDistance[1];
 #endif
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 #ifdef LIT_AT_VERTEX
-layout(location = 9) uniform bool both_sides;
+layout(location = 9) uniform bool two_sided;
 out vec2 light;
 #endif
 #ifdef NEEDS_NORMAL
@@ -106,15 +106,15 @@ out vec3 view_normal;
 invariant gl_Position;  // one depth in all programs
 #ifdef TEXTURED
 layout(location = 2) in vec2 texcoord;
-out vec2 place;
+out vec2 uv;
 #endif
 
 void main() {
 #ifdef CLIPPED
-    gl_ClipDistance[0] = dot(kept, vec4(position, 1));
+    gl_ClipDistance[0] = dot(clip_plane, vec4(position, 1));
 #endif
 #ifdef TEXTURED
-    place = texcoord;
+    uv = texcoord;
 #endif
     vec4 p = view_from_local * vec4(position, 1);
     vec3 n = normal_matrix * normal;
@@ -128,7 +128,7 @@ void main() {
     float d = max(length(p.xyz), 1e-30);
     vec3 to_eye = -p.xyz / d;
     if (size == 0) n = to_eye;  // a vertex knows no face
-    light = phong(p.xyz, both_sides && dot(n, to_eye) < 0 ? -n : n, to_eye, d);
+    light = phong(p.xyz, two_sided && dot(n, to_eye) < 0 ? -n : n, to_eye, d);
 #endif
     gl_Position = clip_from_view * p;
 }
@@ -156,17 +156,17 @@ out vec4 color;
 in vec2 light;
 #endif
 #ifdef NEEDS_NORMAL
-layout(location = 9) uniform bool both_sides;
+layout(location = 9) uniform bool two_sided;
 in vec3 view_position;
 in vec3 view_normal;
 #endif
 #ifdef TEXTURED
 layout(binding = 0) uniform sampler2D image;
-in vec2 place;
+in vec2 uv;
 #endif
 #ifdef ENVIRONMENT
 layout(location = 10) uniform float reflectivity;
-layout(binding = 1) uniform samplerCube panorama;
+layout(binding = 1) uniform samplerCube environment_map;
 #endif
 
 #ifdef NEEDS_NORMAL
@@ -180,7 +180,7 @@ vec3 normal_to(vec3 to_eye) {
     if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
 #endif
     n = normalize(n);
-    return both_sides && dot(n, to_eye) < 0 ? -n : n;
+    return two_sided && dot(n, to_eye) < 0 ? -n : n;
 }
 #endif
 
@@ -194,7 +194,7 @@ void main() {
     vec2 light = phong(view_position, n, to_eye, d);
 #endif
 #ifdef TEXTURED
-    vec4 texel = filtered(image, place);
+    vec4 texel = sample_filtered(image, uv);
     vec3 matte = texel.rgb;
 #else
     vec3 matte = diffuse;
@@ -202,7 +202,7 @@ void main() {
     vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
 #ifdef ENVIRONMENT
     vec3 seen = world_from_view * reflect(-to_eye, n);
-    own = mix(own, around(panorama, seen, dFdx(seen), dFdy(seen)), reflectivity);
+    own = mix(own, sample_environment(environment_map, seen, dFdx(seen), dFdy(seen)), reflectivity);
 #endif
 #ifdef MIRROR
     own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);
@@ -213,7 +213,7 @@ void main() {
     vec4 layer = vec4(own, 1) * alpha;
 #endif
 #if defined(LAYERED)
-    add_layer(layer, order);
+    append_fragment(layer, order);
 #elif defined(GLASS)
     color = layer;
 #else
@@ -222,18 +222,18 @@ void main() {
 }
 )";
 
-// After kLayerLists. A layer without room is counted all the same.
-constexpr std::string_view kAddLayer = R"(
-void add_layer(vec4 own, uint order) {
+// After kPerPixelLists. A layer without room is counted all the same.
+constexpr std::string_view kAppendFragment = R"(
+void append_fragment(vec4 own, uint order) {
     uint number = atomicAdd(count, 1) + 1;
     if (number > most) return;
-    uint next = atomicExchange(first_layer[list_index(ivec2(gl_FragCoord.xy))], number);
-    layers[number - 1] =
-        Layer(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
+    uint next = atomicExchange(heads[head_index(ivec2(gl_FragCoord.xy))], number);
+    fragments[number - 1] =
+        Fragment(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
 }
 )";
 
-constexpr std::string_view kPlainVertexShader = R"(#version 450 core
+constexpr std::string_view kSolidColorVertexShader = R"(#version 450 core
 layout(location = 0) uniform mat4 clip_from_view;
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 0) in vec3 position;
@@ -242,14 +242,14 @@ invariant gl_Position;
 void main() { gl_Position = clip_from_view * (view_from_local * vec4(position, 1)); }
 )";
 
-constexpr std::string_view kPlainFragmentShader = R"(#version 450 core
-layout(location = 3) uniform vec3 plain_color;
+constexpr std::string_view kSolidColorFragmentShader = R"(#version 450 core
+layout(location = 3) uniform vec3 solid_color;
 out vec4 color;
 
-void main() { color = vec4(plain_color, 1); }
+void main() { color = vec4(solid_color, 1); }
 )";
 
-constexpr std::string_view kNumberShader = R"(#version 450 core
+constexpr std::string_view kNodeIdShader = R"(#version 450 core
 layout(location = 4) uniform int number;
 out int node;
 
@@ -264,24 +264,24 @@ double short_of_one(double degrees) {
     return 2 * sine * sine;
 }
 
-SightBlock block_of(const Sight& sight, const View& view) {
+ViewUniforms view_uniforms_of(const CameraMatrices& camera, const View& view) {
     const Light& light = view.light;
-    SightBlock block{};
-    block.clip_from_view = glm::mat4(sight.clip_from_view);
-    block.world_from_view = glm::mat3x4(glm::mat3(glm::transpose(glm::dmat3(sight.view_from_world))));
-    block.light_color = glm::vec4(light.color);
-    block.attenuation = light.attenuation == glm::dvec3(0) ? glm::vec4(1, 0, 0, 0)
-                                                           : glm::vec4(glm::vec3(light.attenuation), 0);
-    glm::dvec3 position(sight.view_from_world *
+    ViewUniforms uniforms{};
+    uniforms.clip_from_view = glm::mat4(camera.clip_from_view);
+    uniforms.world_from_view = glm::mat3x4(glm::mat3(glm::transpose(glm::dmat3(camera.view_from_world))));
+    uniforms.light_color = glm::vec4(light.color);
+    uniforms.attenuation = light.attenuation == glm::dvec3(0) ? glm::vec4(1, 0, 0, 0)
+                                                              : glm::vec4(glm::vec3(light.attenuation), 0);
+    glm::dvec3 position(camera.view_from_world *
                         glm::dvec4(light.headlight ? view.camera.eye : light.position, 1));
     // The shader squares it; from so far its light is parallel.
     const double distance = glm::length(position);
-    if (distance > kFarthestDrawn) position *= kFarthestDrawn / distance;
-    block.light_position = glm::vec4(glm::vec3(position), 1);
-    block.light_direction = glm::vec4(glm::vec3(glm::dmat3(sight.view_from_world) * light.direction), 0);
-    block.cone = {static_cast<float>(short_of_one(0.45 * light.angle)),
-                  static_cast<float>(short_of_one(0.5 * light.angle)), 0, 0};
-    return block;
+    if (distance > kMaxDrawDistance) position *= kMaxDrawDistance / distance;
+    uniforms.light_position = glm::vec4(glm::vec3(position), 1);
+    uniforms.light_direction = glm::vec4(glm::vec3(glm::dmat3(camera.view_from_world) * light.direction), 0);
+    uniforms.cone = {static_cast<float>(short_of_one(0.45 * light.angle)),
+                     static_cast<float>(short_of_one(0.5 * light.angle)), 0, 0};
+    return uniforms;
 }
 
 /// Normals go by the cofactor matrix · sign(det) (eq. 6.3 without its inverse); its scale is taken out, so
@@ -300,39 +300,40 @@ void set_clip(const glm::dmat4& clip_from_view) {
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
-void set_kept(const DrawItem& item, const GpuGeometry& geometry) {
-    if (!item.kept) {
+void set_clip_plane(const DrawItem& item, const GpuGeometry& geometry) {
+    if (!item.clip_plane) {
         glDisable(GL_CLIP_DISTANCE0);
         return;
     }
     glEnable(GL_CLIP_DISTANCE0);
-    const glm::vec4 kept(glm::dvec3(*item.kept), glm::dot(*item.kept, glm::dvec4(geometry.origin, 1)));
-    glUniform4fv(kept_at, 1, glm::value_ptr(kept));
+    const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
+                               glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1)));
+    glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
 }
 
 }  // namespace
 
-const std::string_view kLayerLists = R"(
-struct Layer {
+const std::string_view kPerPixelLists = R"(
+struct Fragment {
     uint next;  // in the same pixel; 0 for none
     uint order;
     float depth;  // reversed
     uint red_green, blue_alpha;  // multiplied by alpha
 };
-layout(std430, binding = 0) buffer Layers {
+layout(std430, binding = 0) buffer Fragments {
     uint count, most, unused_0, unused_1;
-    Layer layers[];
+    Fragment fragments[];
 };
 layout(std430, binding = 1) buffer Lists {
     ivec4 box;  // low corner and size
-    uint first_layer[];
+    uint heads[];
 };
-int list_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
+int head_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
 )";
 
-SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light, const Sight& sight) {
+SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light, const CameraMatrices& camera) {
     // It stays at the true eye, which in a mirror is not the one that sees.
-    const bool reflected = glm::determinant(glm::dmat3(sight.view_from_world)) < 0;
+    const bool reflected = glm::determinant(glm::dmat3(camera.view_from_world)) < 0;
     if (light.headlight) return reflected ? LightKind::point : LightKind::headlight;
     switch (light.type) {
         case LightData::Type::directional:
@@ -345,87 +346,87 @@ SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light, const Si
     return LightKind::point;
 }
 
-GlProgram SurfacePrograms::make(const Variant& variant) {
+GlProgram SurfacePrograms::make(const ProgramKey& key) {
     constexpr std::array<const char*, 4> kLights{"HEADLIGHT", "POINT", "DIRECTIONAL", "SPOT"};
     std::string head = "#version 450 core\n";
     const auto define = [&](bool wanted, const char* name) {
         if (wanted) head += std::string("#define ") + name + "\n";
     };
-    define(true, kLights[static_cast<std::size_t>(variant.light)]);
-    define(variant.shape == Shape::edges, "EDGES");
-    define(variant.textured, "TEXTURED");
-    define(variant.environment, "ENVIRONMENT");
-    const bool layered = variant.shape == Shape::layered_glass;
-    define(layered || variant.shape == Shape::glass, "GLASS");
+    define(true, kLights[static_cast<std::size_t>(key.light)]);
+    define(key.kind == SurfaceKind::edges, "EDGES");
+    define(key.textured, "TEXTURED");
+    define(key.environment, "ENVIRONMENT");
+    const bool layered = key.kind == SurfaceKind::per_pixel_glass;
+    define(layered || key.kind == SurfaceKind::glass, "GLASS");
     define(layered, "LAYERED");
-    define(variant.shape == Shape::mirror, "MIRROR");
-    define(variant.clipped, "CLIPPED");
-    const bool at_vertex = variant.lit_at == Methods::Light::vertex;
+    define(key.kind == SurfaceKind::mirror, "MIRROR");
+    define(key.clipped, "CLIPPED");
+    const bool at_vertex = key.lit_at == Methods::Lighting::vertex;
     define(at_vertex, "LIT_AT_VERTEX");
-    define(!at_vertex || variant.environment, "NEEDS_NORMAL");
-    head += kSightBlock;
-    std::string needed(variant.textured || variant.environment ? kTextureFilter : std::string_view());
-    if (layered) needed += std::string(kLayerLists) + std::string(kAddLayer);
+    define(!at_vertex || key.environment, "NEEDS_NORMAL");
+    head += kViewUniformsBlock;
+    std::string needed(key.textured || key.environment ? kTextureFilter : std::string_view());
+    if (layered) needed += std::string(kPerPixelLists) + std::string(kAppendFragment);
     const std::string phong(kPhong), none;
     return make_program(head + (at_vertex ? phong : none) + std::string(kVertexShader),
                         head + (at_vertex ? none : phong) + needed + std::string(kFragmentShader));
 }
 
-void SurfacePrograms::begin(const Sight& sight, const View& view, GpuScene* scene) {
+void SurfacePrograms::begin(const CameraMatrices& camera, const View& view, GpuScene* scene) {
     scene_ = scene;
     cube_map_ = view.background.cube_map;
-    light_ = kind_of(view.light, sight);
+    light_ = kind_of(view.light, camera);
     lit_at_ = view.methods.light;
-    if (!sight_) sight_ = make_changing_buffer("uniforms", sizeof(SightBlock));
-    const SightBlock block = block_of(sight, view);
-    glNamedBufferSubData(sight_.get(), 0, sizeof block, &block);
-    glBindBufferBase(GL_UNIFORM_BUFFER, kSightBinding, sight_.get());
+    if (!view_uniforms_) view_uniforms_ = make_dynamic_buffer("uniforms", sizeof(ViewUniforms));
+    const ViewUniforms uniforms = view_uniforms_of(camera, view);
+    glNamedBufferSubData(view_uniforms_.get(), 0, sizeof uniforms, &uniforms);
+    glBindBufferBase(GL_UNIFORM_BUFFER, kViewUniformsBinding, view_uniforms_.get());
 }
 
-void SurfacePrograms::use(Shape shape, const DrawItem& item, const GpuGeometry& geometry,
+void SurfacePrograms::use(SurfaceKind kind, const DrawItem& item, const GpuGeometry& geometry,
                           const Material& material) {
-    const Variant variant{shape,  light_, item.texture != kNone, item.environment, item.kept.has_value(),
-                          lit_at_};
-    GlProgram& program = programs_[variant];
-    if (!program) program = make(variant);
+    const ProgramKey key{kind,   light_, item.texture != kNone, item.environment, item.clip_plane.has_value(),
+                         lit_at_};
+    GlProgram& program = programs_[key];
+    if (!program) program = make(key);
     glUseProgram(program.get());
-    set_place(item, geometry);
+    set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
-    if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
-    if (variant.environment) {
-        glBindTextureUnit(kPanoramaUnit, scene_->cube_map(*cube_map_).get());
+    if (key.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (key.environment) {
+        glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
         glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
     }
     set(base_at, glm::vec3(material.emission) + glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
-    glUniform1i(both_sides_at, item.sides != Sides::front || shape == Shape::edges);
-    if (shape == Shape::glass || shape == Shape::layered_glass)
+    glUniform1i(two_sided_at, item.cull_mode != CullMode::back || kind == SurfaceKind::edges);
+    if (kind == SurfaceKind::glass || kind == SurfaceKind::per_pixel_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
-    if (shape == Shape::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
-    set_kept(item, geometry);
+    if (kind == SurfaceKind::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    set_clip_plane(item, geometry);
 }
 
-void PlainProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
-    if (!program_) program_ = make_program(kPlainVertexShader, kPlainFragmentShader);
+void SolidColorProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
+    if (!program_) program_ = make_program(kSolidColorVertexShader, kSolidColorFragmentShader);
     glUseProgram(program_.get());
     set_clip(clip_from_view);
-    set(plain_color_at, glm::vec3(color));
+    set(solid_color_at, glm::vec3(color));
 }
 
-void NumberProgram::use(const glm::dmat4& clip_from_view) {
-    if (!program_) program_ = make_program(kPlainVertexShader, kNumberShader);
+void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
+    if (!program_) program_ = make_program(kSolidColorVertexShader, kNodeIdShader);
     glUseProgram(program_.get());
     set_clip(clip_from_view);
 }
 
-void NumberProgram::set_number(Index number) { glUniform1i(number_at, number); }
+void NodeIdProgram::set_node(Index number) { glUniform1i(node_at, number); }
 
-void set_order(GLuint order) { glUniform1ui(order_at, order); }
+void set_draw_order(GLuint order) { glUniform1ui(order_at, order); }
 
-void set_place(const DrawItem& item, const GpuGeometry& geometry) {
+void set_transform(const DrawItem& item, const GpuGeometry& geometry) {
     glm::dmat4 view_from_local = item.view_from_node;
     view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin, 1);
     const glm::mat4 view(view_from_local);

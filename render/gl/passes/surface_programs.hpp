@@ -12,7 +12,7 @@
 namespace vrut {
 
 /// From where a target's contents are seen. In a mirror the view from the world is a reflected one.
-struct Sight {
+struct CameraMatrices {
     glm::dmat4 clip_from_view{1};
     glm::dmat4 view_from_world{1};
 };
@@ -22,50 +22,50 @@ struct Sight {
 /// ever. A program is compiled for what surfaces and lights ask of it, when they first do.
 class SurfacePrograms {
 public:
-    enum class Shape {
+    enum class SurfaceKind {
         faces,
-        edges,          ///< without sides: their normals are turned to the viewer
-        glass,          ///< faces, their colour multiplied by alpha
-        layered_glass,  ///< the same, into the lists of kLayerLists
-        mirror,         ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
+        edges,            ///< without sides: their normals are turned to the viewer
+        glass,            ///< faces, their colour multiplied by alpha
+        per_pixel_glass,  ///< the same, into the lists of kPerPixelLists
+        mirror,           ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
     };
     static constexpr GLuint kReflectionUnit = 2;
 
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
-    void begin(const Sight& sight, const View& view, GpuScene* scene);
+    void begin(const CameraMatrices& camera, const View& view, GpuScene* scene);
     /// Makes the program for this item the current one and gives it all that it needs.
-    void use(Shape shape, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
+    void use(SurfaceKind kind, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
 
 private:
     enum class LightKind { headlight, point, directional, spot };
-    struct Variant {
-        Shape shape = Shape::faces;
+    struct ProgramKey {
+        SurfaceKind kind = SurfaceKind::faces;
         LightKind light = LightKind::headlight;
         bool textured = false;
         bool environment = false;
         bool clipped = false;
-        Methods::Light lit_at = Methods::Light::pixel;
+        Methods::Lighting lit_at = Methods::Lighting::pixel;
 
-        bool operator<(const Variant& other) const {
-            const auto key = [](const Variant& v) {
-                return std::tie(v.shape, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+        bool operator<(const ProgramKey& other) const {
+            const auto key = [](const ProgramKey& v) {
+                return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
             };
             return key(*this) < key(other);
         }
     };
-    static LightKind kind_of(const Light& light, const Sight& sight);
-    static GlProgram make(const Variant& variant);
+    static LightKind kind_of(const Light& light, const CameraMatrices& camera);
+    static GlProgram make(const ProgramKey& key);
 
     LightKind light_ = LightKind::headlight;
-    Methods::Light lit_at_ = Methods::Light::pixel;
-    std::map<Variant, GlProgram> programs_;
-    GlBuffer sight_;
+    Methods::Lighting lit_at_ = Methods::Lighting::pixel;
+    std::map<ProgramKey, GlProgram> programs_;
+    GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
     std::optional<std::array<Index, 6>> cube_map_;
 };
 
 /// One colour everywhere.
-class PlainProgram {
+class SolidColorProgram {
 public:
     void use(const glm::dvec3& color, const glm::dmat4& clip_from_view);
 
@@ -74,25 +74,25 @@ private:
 };
 
 /// The number of a node everywhere, into a target of integers.
-class NumberProgram {
+class NodeIdProgram {
 public:
     void use(const glm::dmat4& clip_from_view);
     /// Of what is drawn from here on.
-    void set_number(Index number);
+    void set_node(Index number);
 
 private:
     GlProgram program_;
 };
 
-/// Lists of the transparent layers at each pixel of a box: GLSL of a layered_glass program and of one that
+/// Lists of the transparent layers at each pixel of a box: GLSL of a per_pixel_glass program and of one that
 /// reads them. Layers are numbered from 1.
-extern const std::string_view kLayerLists;
-inline constexpr GLuint kLayersBinding = 0, kListsBinding = 1;
+extern const std::string_view kPerPixelLists;
+inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
 
-/// With a layered_glass program: at equal depth the higher order is in front.
-void set_order(GLuint order);
+/// With a per_pixel_glass program: at equal depth the higher order is in front.
+void set_draw_order(GLuint order);
 
 /// Where the next draw of the current program lies.
-void set_place(const DrawItem& item, const GpuGeometry& geometry);
+void set_transform(const DrawItem& item, const GpuGeometry& geometry);
 
 }  // namespace vrut

@@ -9,33 +9,33 @@ namespace vrut {
 /// approximate that level, and the mixing of two; so both are computed here.
 inline constexpr std::string_view kTextureFilter = R"(
 // Of a pixel whose sides, in texels, are these.
-float level_of(vec3 across, vec3 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }
-float level_of(vec2 across, vec2 up) { return level_of(vec3(across, 0), vec3(up, 0)); }
+float mip_level(vec3 across, vec3 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }
+float mip_level(vec2 across, vec2 up) { return mip_level(vec3(across, 0), vec3(up, 0)); }
 
-vec4 at_level(sampler2D image, vec2 place, float level) {
+vec4 sample_level(sampler2D image, vec2 uv, float level) {
     float finer = floor(level);
-    return mix(textureLod(image, place, finer), textureLod(image, place, finer + 1), level - finer);
+    return mix(textureLod(image, uv, finer), textureLod(image, uv, finer + 1), level - finer);
 }
 
-vec4 filtered(sampler2D image, vec2 place) {
+vec4 sample_filtered(sampler2D image, vec2 uv) {
     vec2 size = vec2(textureSize(image, 0));
-    return at_level(image, place, level_of(dFdx(place) * size, dFdy(place) * size));
+    return sample_level(image, uv, mip_level(dFdx(uv) * size, dFdy(uv) * size));
 }
 
 // What lies in a direction of the world, of any length, which changes by `across` and `up` over a pixel.
-vec3 around(samplerCube panorama, vec3 direction, vec3 across, vec3 up) {
+vec3 sample_environment(samplerCube environment_map, vec3 direction, vec3 across, vec3 up) {
     // On the cube whose faces lie at 1, where that direction meets it, and in texels.
     vec3 size = abs(direction);
     vec3 axis = size.y >= size.z ? vec3(0, 1, 0) : vec3(0, 0, 1);
     if (size.x >= size.y && size.x >= size.z) axis = vec3(1, 0, 0);
     float ahead = dot(axis, direction);
-    float texels = float(textureSize(panorama, 0).x) / (2 * ahead * ahead);
-    float level = level_of((across * ahead - direction * dot(axis, across)) * texels,
+    float texels = float(textureSize(environment_map, 0).x) / (2 * ahead * ahead);
+    float level = mip_level((across * ahead - direction * dot(axis, across)) * texels,
                            (up * ahead - direction * dot(axis, up)) * texels);
     float finer = floor(level);
     direction.z = -direction.z;
-    vec3 at_finer = textureLod(panorama, direction, finer).rgb;
-    return mix(at_finer, textureLod(panorama, direction, finer + 1).rgb, level - finer);
+    vec3 at_finer = textureLod(environment_map, direction, finer).rgb;
+    return mix(at_finer, textureLod(environment_map, direction, finer + 1).rgb, level - finer);
 }
 )";
 

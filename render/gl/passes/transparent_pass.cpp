@@ -12,11 +12,12 @@ void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, Sur
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     for (const DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        programs.use(SurfacePrograms::Shape::glass, item, geometry, scene.scene()->material(item.material));
-        glDepthFunc(item.behind_twin ? GL_GREATER : GL_GEQUAL);
-        cull_sides(item, item.order != nullptr);
+        programs.use(SurfacePrograms::SurfaceKind::glass, item, geometry,
+                     scene.scene()->material(item.material));
+        glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
+        set_cull_mode(item, item.order != nullptr);
         if (item.order)
-            draw_triangles(scene.ordered(item), stats);
+            draw_triangles(scene.sorted_triangles(item), stats);
         else
             draw_triangles(geometry, stats);
     }

@@ -18,18 +18,18 @@ glm::dvec3 axis_of(const aiMetadata& settings, const char* name, const char* sig
 
 }  // namespace
 
-glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Losses& losses) {
+glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, ConversionWarnings& warnings) {
     if (format != AssimpFormat::fbx || scene.mMetaData == nullptr) return glm::dmat4(1);
     const glm::dvec3 right = axis_of(*scene.mMetaData, "CoordAxis", "CoordAxisSign");
     const glm::dvec3 up = axis_of(*scene.mMetaData, "UpAxis", "UpAxisSign");
     const glm::dvec3 front = axis_of(*scene.mMetaData, "FrontAxis", "FrontAxisSign");
     const glm::dmat3 upright = glm::transpose(glm::dmat3(right, up, front));
     if (glm::determinant(upright) == 1) return glm::dmat4(upright);
-    losses.add("its axes are left as they are: those that it names are not right-handed");
+    warnings.add("its axes are left as they are: those that it names are not right-handed");
     return glm::dmat4(1);
 }
 
-double unit_of(const aiScene& scene, AssimpFormat format) {
+double metres_per_unit(const aiScene& scene, AssimpFormat format) {
     float centimetres = 100;
     if (format == AssimpFormat::fbx && scene.mMetaData != nullptr)
         scene.mMetaData->Get("UnitScaleFactor", centimetres);

@@ -11,9 +11,9 @@ namespace vrut {
 
 /// Turns the file's axes so that y is up, where it says that another is and assimp 5.2 leaves them as they
 /// are.
-glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Losses& losses);
+glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, ConversionWarnings& warnings);
 
 /// Metres per unit, where the file tells and assimp 5.2 has not scaled by it; else 1.
-double unit_of(const aiScene& scene, AssimpFormat format);
+double metres_per_unit(const aiScene& scene, AssimpFormat format);
 
 }  // namespace vrut

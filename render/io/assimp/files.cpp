@@ -77,12 +77,12 @@ std::string without_percent_codes(std::string_view uri) {
 
 }  // namespace
 
-std::string name_of_address(const std::filesystem::path& folder, const std::string& address) {
+std::string file_name_of_uri(const std::filesystem::path& folder, const std::string& address) {
     return find_below(folder, address) ? address : without_percent_codes(address);
 }
 
-std::string name_of_foreign_address(const std::filesystem::path& folder, const std::string& address) {
-    std::string name = name_of_address(folder, address);
+std::string file_name_of_foreign_path(const std::filesystem::path& folder, const std::string& address) {
+    std::string name = file_name_of_uri(folder, address);
     if (find_below(folder, name)) return name;
     std::replace(name.begin(), name.end(), '\\', '/');
     if (find_below(folder, name)) return name;
@@ -98,21 +98,21 @@ SceneFiles::SceneFiles(std::filesystem::path scene_file, std::string head)
 tl::expected<std::filesystem::path, std::string> SceneFiles::find(const std::string& name) const {
     if (name == main_name_) return scene_file_;
     const auto folder = scene_file_.parent_path();
-    return find_below(folder, name_of_address(folder, name));
+    return find_below(folder, file_name_of_uri(folder, name));
 }
 
 bool SceneFiles::Exists(const char* name) const { return find(name).has_value(); }
 
 Assimp::IOStream* SceneFiles::Open(const char* name, const char* /*mode*/) {
     const auto file = find(name);
-    auto stream = file && !file_fault(*file)
+    auto stream = file && !file_error(*file)
                       ? std::make_unique<FileStream>(*file, name == main_name_ ? head_ : std::string_view())
                       : nullptr;
     if (stream && stream->good()) return stream.release();
     // assimp looks again under names that it makes up from the first.
-    if (refusal_.empty())
-        refusal_ = "'" + excerpt(name) +
-                   "': " + (!file ? file.error() : file_fault(*file).value_or("it cannot be opened"));
+    if (rejection_.empty())
+        rejection_ = "'" + excerpt(name) +
+                     "': " + (!file ? file.error() : file_error(*file).value_or("it cannot be opened"));
     return nullptr;
 }
 

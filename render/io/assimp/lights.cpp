@@ -29,7 +29,7 @@ glm::dvec3 color_of(const aiLight& from, AssimpFormat format) {
     const aiColor3D& color = from.mColorDiffuse;  // times the strength
     const float most = std::max({color.r, color.g, color.b});
     if (!std::isfinite(most)) return glm::dvec3(1);
-    if (format == AssimpFormat::gltf) return displayed_color(most > 0 ? color * (1 / most) : color);
+    if (format == AssimpFormat::gltf) return srgb_from_linear(most > 0 ? color * (1 / most) : color);
     return glm::clamp(glm::dvec3(color.r, color.g, color.b) / std::max(1.0, double{most}), 0.0, 1.0);
 }
 
@@ -43,12 +43,12 @@ double cone_of(const aiLight& from, AssimpFormat format) {
 }
 
 /// Only of Collada are these the file's, in its words.
-glm::dvec3 attenuation_of(const aiLight& from, AssimpFormat format, Losses& losses) {
+glm::dvec3 attenuation_of(const aiLight& from, AssimpFormat format, ConversionWarnings& warnings) {
     const glm::dvec3 file(from.mAttenuationConstant, from.mAttenuationLinear, from.mAttenuationQuadratic);
     const auto is_usable = [](double part) { return part >= 0 && part <= 1e15; };
     if (format == AssimpFormat::collada && is_usable(file.x) && is_usable(file.y) && is_usable(file.z))
         return file;
-    losses.add("a light shines with full colour at any distance: its strength and range are not read");
+    warnings.add("a light shines with full colour at any distance: its strength and range are not read");
     return {1, 0, 0};
 }
 
@@ -65,14 +65,14 @@ glm::dmat4 turn_to(const glm::dvec3& direction) {
 
 }  // namespace
 
-std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Losses& losses) {
+std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, ConversionWarnings& warnings) {
     if (from.mHorizontalFOV <= 0) {
-        losses.add("a camera without perspective is not read");
+        warnings.add("a camera without perspective is not read");
         return std::nullopt;
     }
     const double fov = field_of_view(from, format);
     if (!std::isfinite(fov)) {
-        losses.add("a camera whose field of view is no number is not read");
+        warnings.add("a camera whose field of view is no number is not read");
         return std::nullopt;
     }
     Node node;
@@ -80,7 +80,7 @@ std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Lo
     node.type = NodeType::camera;
     CameraData& camera = node.data.emplace<CameraData>();
     if (is_unread(from, format))
-        losses.add("a camera's field of view is not read: it is 40 degrees");
+        warnings.add("a camera's field of view is not read: it is 40 degrees");
     else
         camera.fov = std::clamp(fov, 1.0, 170.0);
     // At the node's origin: into its position assimp 5.2 puts the node's own a second time.
@@ -89,7 +89,7 @@ std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Lo
     return node;
 }
 
-std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, Losses& losses) {
+std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, ConversionWarnings& warnings) {
     Node node;
     node.name = "light";
     node.type = NodeType::light;
@@ -104,11 +104,11 @@ std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, Loss
         case aiLightSource_POINT:
             break;
         default:
-            losses.add("a light that shines from an area or from everywhere is not read");
+            warnings.add("a light that shines from an area or from everywhere is not read");
             return std::nullopt;
     }
     light.color = glm::dvec4(color_of(from, format), 1);
-    light.attenuation = attenuation_of(from, format, losses);
+    light.attenuation = attenuation_of(from, format, warnings);
     if (light.type == LightData::Type::spot) light.angle = cone_of(from, format);
     if (light.type != LightData::Type::point) node.matrix = turn_to(vector_of(from.mDirection));
     return node;

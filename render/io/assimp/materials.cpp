@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "io/assimp/pictures.hpp"
 #include "io/assimp/text.hpp"
+#include "io/assimp/textures.hpp"
 
 namespace vrut {
 
@@ -15,13 +15,13 @@ namespace {
 
 double in_unit_range(double value) { return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : 0.0; }
 
-double displayed(double linear) {
+double srgb_encoded(double linear) {
     const double light = in_unit_range(linear);
     if (light == 1) return 1;  // which pow() misses
     return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
 
-glm::dvec3 displayed(const aiColor4D& color) { return displayed_color({color.r, color.g, color.b}); }
+glm::dvec3 srgb_encoded(const aiColor4D& color) { return srgb_from_linear({color.r, color.g, color.b}); }
 
 glm::dvec3 as_written(const aiColor4D& color) {
     return {in_unit_range(color.r), in_unit_range(color.g), in_unit_range(color.b)};
@@ -56,18 +56,19 @@ void convert_highlight(const aiMaterial& from, Material& material) {
         1 - part_of(from, "$mat.glossinessFactor", 1 - part_of(from, "$mat.roughnessFactor", 1));
     const glm::dvec3 color(material.diffuse);
     glm::dvec3 reflected = kDielectric + (color - kDielectric) * metallic;
-    if (const auto own = color_of(from, "$clr.specular")) reflected = displayed(*own);
+    if (const auto own = color_of(from, "$clr.specular")) reflected = srgb_encoded(*own);
     material.specular = glm::dvec4((1 - roughness) * reflected, 1);
     material.shininess = phong_exponent(roughness);
 }
 
 /// Metal and roughness.
-void convert_physical(const aiMaterial& from, Material& material) {
+void convert_metallic_roughness(const aiMaterial& from, Material& material) {
     const aiColor4D base = color_of(from, "$clr.diffuse").value_or(aiColor4D(0.6F, 0.6F, 0.6F, 1));
-    material.diffuse = glm::dvec4(displayed(base), alpha_mode(from) == "BLEND" ? in_unit_range(base.a) : 1);
+    material.diffuse =
+        glm::dvec4(srgb_encoded(base), alpha_mode(from) == "BLEND" ? in_unit_range(base.a) : 1);
     convert_highlight(from, material);
     if (const auto emission = color_of(from, "$clr.emissive"))
-        material.emission = glm::dvec4(displayed(*emission), 1);
+        material.emission = glm::dvec4(srgb_encoded(*emission), 1);
     int two_sided = 0;
     material.two_sided = from.Get(AI_MATKEY_TWOSIDED, two_sided) == aiReturn_SUCCESS && two_sided != 0;
 }
@@ -79,7 +80,7 @@ void convert_phong(const aiMaterial& from, AssimpFormat format, Material& materi
     const aiColor4D diffuse = color_of(from, "$clr.diffuse").value_or(white);
     if (!none_told || diffuse != white)  // which assimp makes up
         material.diffuse = glm::dvec4(as_written(diffuse), 1);
-    if (!has_picture(from, aiTextureType_OPACITY)) material.diffuse.a = part_of(from, "$mat.opacity", 1);
+    if (!has_texture(from, aiTextureType_OPACITY)) material.diffuse.a = part_of(from, "$mat.opacity", 1);
     if (const double exponent = number_of(from, "$mat.shininess", 0); exponent > 0) {
         const aiColor4D specular = color_of(from, "$clr.specular").value_or(black);
         material.specular = glm::dvec4(part_of(from, "$mat.shinpercent", 1) * as_written(specular), 1);
@@ -91,23 +92,23 @@ void convert_phong(const aiMaterial& from, AssimpFormat format, Material& materi
 
 }  // namespace
 
-glm::dvec3 displayed_color(const aiColor3D& color) {
-    return {displayed(color.r), displayed(color.g), displayed(color.b)};
+glm::dvec3 srgb_from_linear(const aiColor3D& color) {
+    return {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
 }
 
 Material convert_material(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                          AssimpFormat format, Losses& losses) {
+                          AssimpFormat format, ConversionWarnings& warnings) {
     Material material;
     aiString name;
     if (from.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = text_of(name);
     if (format == AssimpFormat::gltf)
-        convert_physical(from, material);
+        convert_metallic_roughness(from, material);
     else
         convert_phong(from, format, material);
     material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
-    if (has_picture(from, aiTextureType_EMISSIVE)) material.emission = {0, 0, 0, 1};
-    name_picture(from, scene, folder, format, material, losses);
-    tell_lost_pictures(from, losses);
+    if (has_texture(from, aiTextureType_EMISSIVE)) material.emission = {0, 0, 0, 1};
+    set_texture_name(from, scene, folder, format, material, warnings);
+    report_unsupported_textures(from, warnings);
     return material;
 }
 

@@ -11,11 +11,11 @@
 namespace vrut {
 
 /// The scene's picture of an assimp material, by the rules that assimp_scene.hpp tells. The image is named,
-/// not read: name_picture().
+/// not read: set_texture_name().
 Material convert_material(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                          AssimpFormat format, Losses& losses);
+                          AssimpFormat format, ConversionWarnings& warnings);
 
 /// From light to what a display is sent for it (IEC 61966-2-1), each from 0 to 1.
-glm::dvec3 displayed_color(const aiColor3D& color);
+glm::dvec3 srgb_from_linear(const aiColor3D& color);
 
 }  // namespace vrut

@@ -22,8 +22,8 @@ void require_coordinates(const aiVector3D* vectors, const char* what, const aiMe
     for (const aiVector3D* v = vectors; v != vectors + mesh.mNumVertices; ++v)
         all &= int{is_coordinate(v->x)} & int{is_coordinate(v->y)} & int{is_coordinate(v->z)};
     if (all == 0)
-        throw Refused("a " + std::string(what) + " of " + called(mesh) +
-                      " is not a number from -1e15 to 1e15");
+        throw ImportError("a " + std::string(what) + " of " + called(mesh) +
+                          " is not a number from -1e15 to 1e15");
 }
 
 /// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
@@ -33,7 +33,7 @@ void release(T*& array) {
     array = nullptr;
 }
 
-void take_vertices(aiMesh& mesh, Geometry& geometry) {
+void move_vertices(aiMesh& mesh, Geometry& geometry) {
     require_coordinates(mesh.mVertices, "vertex", mesh);
     geometry.positions.reserve(mesh.mNumVertices);
     for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v)
@@ -41,7 +41,7 @@ void take_vertices(aiMesh& mesh, Geometry& geometry) {
     release(mesh.mVertices);
 }
 
-void take_normals(aiMesh& mesh, Geometry& geometry) {
+void move_normals(aiMesh& mesh, Geometry& geometry) {
     if (!mesh.HasNormals()) return;
     require_coordinates(mesh.mNormals, "normal", mesh);
     geometry.normals.reserve(mesh.mNumVertices);
@@ -51,7 +51,7 @@ void take_normals(aiMesh& mesh, Geometry& geometry) {
 }
 
 /// assimp has turned v upwards already, as we have it.
-void take_texcoords(aiMesh& mesh, Geometry& geometry) {
+void move_texcoords(aiMesh& mesh, Geometry& geometry) {
     if (!mesh.HasTextureCoords(0)) return;
     require_coordinates(mesh.mTextureCoords[0], "texture coordinate", mesh);
     geometry.texcoords.reserve(mesh.mNumVertices);
@@ -60,7 +60,7 @@ void take_texcoords(aiMesh& mesh, Geometry& geometry) {
     release(mesh.mTextureCoords[0]);
 }
 
-void take_triangles(aiMesh& mesh, Geometry& geometry) {
+void move_triangles(aiMesh& mesh, Geometry& geometry) {
     geometry.triangles.reserve(mesh.mNumFaces);
     unsigned last = 0;
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
@@ -69,7 +69,7 @@ void take_triangles(aiMesh& mesh, Geometry& geometry) {
         geometry.triangles.emplace_back(i[0], i[1], i[2]);
         last = std::max({last, i[0], i[1], i[2]});
     }
-    if (last >= mesh.mNumVertices) throw Refused(called(mesh) + " has an index out of range");
+    if (last >= mesh.mNumVertices) throw ImportError(called(mesh) + " has an index out of range");
     release(mesh.mFaces);
     mesh.mNumFaces = 0;
 }
@@ -110,32 +110,32 @@ void weld(Geometry& geometry) {
 }  // namespace
 
 void check_faces(const aiMesh& mesh) {
-    if (!mesh.HasPositions()) throw Refused(called(mesh) + " has no vertices");
+    if (!mesh.HasPositions()) throw ImportError(called(mesh) + " has no vertices");
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
-        if (face->mNumIndices == 0) throw Refused(called(mesh) + " has a face without corners");
+        if (face->mNumIndices == 0) throw ImportError(called(mesh) + " has a face without corners");
         for (unsigned i = 0; i < face->mNumIndices; ++i)
             if (face->mIndices[i] >= mesh.mNumVertices)
-                throw Refused(called(mesh) + " has an index out of range");
+                throw ImportError(called(mesh) + " has an index out of range");
     }
 }
 
-Geometry take_geometry(aiMesh& mesh, AssimpFormat format) {
+Geometry convert_geometry(aiMesh& mesh, AssimpFormat format) {
     Geometry geometry;
-    take_triangles(mesh, geometry);
-    take_vertices(mesh, geometry);
-    if (format != AssimpFormat::stl) take_normals(mesh, geometry);  // there each triangle has its own
-    take_texcoords(mesh, geometry);
+    move_triangles(mesh, geometry);
+    move_vertices(mesh, geometry);
+    if (format != AssimpFormat::stl) move_normals(mesh, geometry);  // there each triangle has its own
+    move_texcoords(mesh, geometry);
     if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
     return geometry;
 }
 
-void tell_lost_parts(const aiMesh& mesh, Losses& losses) {
-    if (mesh.HasBones()) losses.add("a skin is not shown: the mesh stands as it was modelled");
-    if (mesh.mNumAnimMeshes > 0) losses.add("the shapes that a mesh can take on are not shown");
-    if (mesh.HasVertexColors(0)) losses.add("a mesh's colours at its vertices are not shown");
-    if (mesh.HasTextureCoords(1)) losses.add("a mesh's further texture coordinates are not read");
+void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings) {
+    if (mesh.HasBones()) warnings.add("a skin is not shown: the mesh stands as it was modelled");
+    if (mesh.mNumAnimMeshes > 0) warnings.add("the shapes that a mesh can take on are not shown");
+    if (mesh.HasVertexColors(0)) warnings.add("a mesh's colours at its vertices are not shown");
+    if (mesh.HasTextureCoords(1)) warnings.add("a mesh's further texture coordinates are not read");
     if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
-        losses.add("a mesh of points or lines is not shown");
+        warnings.add("a mesh of points or lines is not shown");
 }
 
 }  // namespace vrut

@@ -13,7 +13,7 @@
 namespace vrut {
 
 /// Why the file's scene is none, without the file's name.
-struct Refused : std::runtime_error {
+struct ImportError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
@@ -27,8 +27,8 @@ void check_faces(const aiMesh& mesh);
 
 /// The mesh's triangles, by the rules that assimp_scene.hpp tells; frees what it has taken over. The mesh is
 /// checked. Throws Refused.
-Geometry take_geometry(aiMesh& mesh, AssimpFormat format);
+Geometry convert_geometry(aiMesh& mesh, AssimpFormat format);
 
-void tell_lost_parts(const aiMesh& mesh, Losses& losses);
+void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings);
 
 }  // namespace vrut

@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t kMostHeader = 1 << 20;
 
-struct Fault {
+struct PlyError {
     std::string what;
 };
 
-struct Element {
+struct PlyElement {
     std::string line, name;
     std::uint64_t count = 0;
     std::uint64_t least_bytes = 0;  ///< that one of them takes in the file
@@ -60,36 +60,36 @@ public:
             if (keyword == "element") add_element(words);
             if (keyword == "property" && !elements_.empty()) add_property(words);
         }
-        throw Fault{"its header has no 'end_header'"};
+        throw PlyError{"its header has no 'end_header'"};
     }
 
     /// Throws where the elements do not fit into a file of that size.
     void check(std::uint64_t file_size) const {
         std::uint64_t left =
             file_size - std::min<std::uint64_t>(size_, file_size) + 1;  // a line break at the end
-        for (const Element& element : elements_) {
+        for (const PlyElement& element : elements_) {
             const std::uint64_t most = left / std::max<std::uint64_t>(element.least_bytes, 1);
             if (element.count > most)
-                throw Fault{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
-                            "' that fits into the file, found " + std::to_string(element.count)};
+                throw PlyError{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
+                               "' that fits into the file, found " + std::to_string(element.count)};
             left -= element.count * element.least_bytes;
         }
     }
 
 private:
     void add_element(std::istream& words) {
-        Element& element = elements_.emplace_back();
+        PlyElement& element = elements_.emplace_back();
         element.line = std::to_string(lines_);
         std::string count;
         words >> element.name >> count;
         const char* const end = count.data() + count.size();
         if (const auto [at, error] = std::from_chars(count.data(), end, element.count);
             count.empty() || error != std::errc() || at != end)
-            throw Fault{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
-                        "', found '" + excerpt(count) + "'"};
+            throw PlyError{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
+                           "', found '" + excerpt(count) + "'"};
         if (!names_.insert(element.name).second)
-            throw Fault{"line " + element.line + ": expected element '" + excerpt(element.name) +
-                        "' once, found it twice"};
+            throw PlyError{"line " + element.line + ": expected element '" + excerpt(element.name) +
+                           "' once, found it twice"};
     }
 
     /// In text, a digit and what divides it from the next; of a list, its length.
@@ -100,7 +100,7 @@ private:
         elements_.back().least_bytes += is_text_ ? 2 : binary_size(type);
     }
 
-    std::vector<Element> elements_;
+    std::vector<PlyElement> elements_;
     std::set<std::string> names_;
     std::uint64_t size_ = 0, lines_ = 0;
     bool is_text_ = false;
@@ -108,7 +108,7 @@ private:
 
 }  // namespace
 
-std::optional<std::string> ply_fault(const std::filesystem::path& path) try {
+std::optional<std::string> ply_error(const std::filesystem::path& path) try {
     auto file = FileReader::open(path);
     if (!file) return file.error();
     std::string head(std::min<std::uintmax_t>(file->size(), kMostHeader), '\0');
@@ -117,7 +117,7 @@ std::optional<std::string> ply_fault(const std::filesystem::path& path) try {
         return std::nullopt;
     PlyHeader(std::move(head)).check(file->size());
     return std::nullopt;
-} catch (const Fault& fault) {
+} catch (const PlyError& fault) {
     return fault.what;
 }
 

@@ -17,9 +17,9 @@
 #include "io/assimp/lights.hpp"
 #include "io/assimp/materials.hpp"
 #include "io/assimp/meshes.hpp"
-#include "io/assimp/pictures.hpp"
 #include "io/assimp/ply_check.hpp"
 #include "io/assimp/text.hpp"
+#include "io/assimp/textures.hpp"
 #include "io/gltf/check.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
@@ -32,25 +32,25 @@ namespace {
 /// Builds the parts of a scene, and frees what it has taken over from assimp's.
 class AssimpConverter {
 public:
-    AssimpConverter(aiScene& scene, AssimpFormat format, Losses losses, const std::filesystem::path& path,
-                    const ReadProgress& progress)
-        : scene_(scene), format_(format), path_(path), progress_(progress), losses_(std::move(losses)) {}
+    AssimpConverter(aiScene& scene, AssimpFormat format, ConversionWarnings warnings,
+                    const std::filesystem::path& path, const ReadProgress& progress)
+        : scene_(scene), format_(format), path_(path), progress_(progress), warnings_(std::move(warnings)) {}
 
     SceneParts convert() {
         parts_.name = path_.stem().string();
-        parts_.unit = unit_of(scene_, format_);
+        parts_.unit = metres_per_unit(scene_, format_);
         for (unsigned i = 0; i < scene_.mNumCameras; ++i)
             cameras_.emplace(scene_.mCameras[i]->mName.C_Str(), i);
         for (unsigned i = 0; i < scene_.mNumLights; ++i) lights_.emplace(scene_.mLights[i]->mName.C_Str(), i);
         convert_materials();
         convert_meshes();
         convert_nodes();
-        losses_.add("a camera or light that no node of its own has is not read",
-                    cameras_.size() + lights_.size());
-        losses_.add("an animation is not shown", scene_.mNumAnimations);
-        losses_.append_to(parts_.notices, path_.string());
-        read_pictures(parts_, path_, progress_);
-        make_pictures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
+        warnings_.add("a camera or light that no node of its own has is not read",
+                      cameras_.size() + lights_.size());
+        warnings_.add("an animation is not shown", scene_.mNumAnimations);
+        warnings_.append_to(parts_.notices, path_.string());
+        read_textures(parts_, path_, progress_);
+        make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
         if (format_ != AssimpFormat::gltf) find_single_sided();
         return std::move(parts_);
     }
@@ -62,7 +62,7 @@ private:
     void convert_materials() {
         std::vector<bool> used(scene_.mNumMaterials);
         for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
-            if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw Refused("a mesh has no material");
+            if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw ImportError("a mesh has no material");
             used[scene_.mMeshes[i]->mMaterialIndex] = true;
         }
         materials_.assign(scene_.mNumMaterials, kNone);
@@ -70,11 +70,11 @@ private:
             if (!used[i]) continue;
             materials_[i] = static_cast<Index>(parts_.materials.size());
             parts_.materials.push_back(
-                convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, losses_));
+                convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, warnings_));
             parts_.materials.back().id = materials_[i];
             ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i], format_));
         }
-        read_embedded_pictures(scene_, parts_.materials, parts_.textures, path_.string(), parts_.notices);
+        decode_embedded_textures(scene_, parts_.materials, parts_.textures, path_.string(), parts_.notices);
     }
 
     void convert_meshes() {
@@ -82,14 +82,14 @@ private:
             if (progress_) progress_(0.5 + 0.5 * i / scene_.mNumMeshes);
             geometries_.push_back(add_geometry(*scene_.mMeshes[i]));
         }
-        if (parts_.geometries.empty()) throw Refused("it has no triangles to show");
+        if (parts_.geometries.empty()) throw ImportError("it has no triangles to show");
     }
 
     /// kNone: there is nothing in it that could be drawn.
     Index add_geometry(aiMesh& mesh) {
-        tell_lost_parts(mesh, losses_);
+        report_unsupported_parts(mesh, warnings_);
         if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return kNone;
-        Geometry geometry = take_geometry(mesh, format_);
+        Geometry geometry = convert_geometry(mesh, format_);
         if (geometry.triangles.empty()) return kNone;
         geometry.id = static_cast<Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));
@@ -104,7 +104,7 @@ private:
             const auto material = static_cast<std::size_t>(materials_[scene_.mMeshes[i]->mMaterialIndex]);
             if (geometries_[i] != kNone && !open[material])
                 open[material] =
-                    !is_closed(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
+                    !is_watertight(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
         }
         for (std::size_t i = 0; i < open.size(); ++i) {
             Material& material = parts_.materials[i];
@@ -120,29 +120,30 @@ private:
 
     /// From the root downwards, each before its children; without recursion, since a chain may be long.
     void convert_nodes() {
-        struct Place {
+        struct PendingNode {
             const aiNode* node;
             Id parent;
             glm::dmat4 matrix;  // parent from node
         };
-        std::vector<Place> open;
+        std::vector<PendingNode> open;
         const auto open_children = [&](const aiNode& node, Id id, const glm::dmat4& matrix) {
             for (unsigned i = node.mNumChildren; i-- > 0;)
                 open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
         };
         const aiNode& root = *scene_.mRootNode;
-        const glm::dmat4 matrix = upright_from_file(scene_, format_, losses_) * matrix_of(root);
+        const glm::dmat4 matrix = upright_from_file(scene_, format_, warnings_) * matrix_of(root);
         if (is_made_up(root, matrix))
             open_children(root, 0, glm::dmat4(1));
         else
             open.push_back({&root, 0, matrix});
         while (!open.empty()) {
-            const Place place = open.back();
+            const PendingNode pending = open.back();
             open.pop_back();
-            if (is_step(*place.node))
-                open_children(*place.node, place.parent, place.matrix);
+            if (is_step(*pending.node))
+                open_children(*pending.node, pending.parent, pending.matrix);
             else
-                open_children(*place.node, add_node(*place.node, place.parent, place.matrix), glm::dmat4(1));
+                open_children(*pending.node, add_node(*pending.node, pending.parent, pending.matrix),
+                              glm::dmat4(1));
         }
     }
 
@@ -187,7 +188,7 @@ private:
     }
 
     void add_mesh(unsigned mesh, std::vector<Node>& contents) const {
-        if (mesh >= geometries_.size()) throw Refused("a node has a mesh that there is not");
+        if (mesh >= geometries_.size()) throw ImportError("a node has a mesh that there is not");
         if (geometries_[mesh] == kNone) return;
         Node& node = contents.emplace_back();
         node.name = text_of(scene_.mMeshes[mesh]->mName);
@@ -195,17 +196,17 @@ private:
         node.data = GeometryData{geometries_[mesh], materials_[scene_.mMeshes[mesh]->mMaterialIndex]};
     }
 
-    using Names = std::multimap<std::string, unsigned>;
+    using IndicesByName = std::multimap<std::string, unsigned>;
 
     /// assimp knows cameras and lights by their nodes' names; of nodes with one name each has the next.
     template <class T, class Conversion>
-    void add_named(Names& names, T* const* all, Conversion conversion, const aiNode& from,
+    void add_named(IndicesByName& names, T* const* all, Conversion conversion, const aiNode& from,
                    std::vector<Node>& contents) {
         const auto found = names.find(from.mName.C_Str());
         if (found == names.end()) return;
         const unsigned number = found->second;
         names.erase(found);
-        if (auto node = conversion(*all[number], format_, losses_)) contents.push_back(*std::move(node));
+        if (auto node = conversion(*all[number], format_, warnings_)) contents.push_back(*std::move(node));
     }
 
     static glm::dmat4 matrix_of(const aiNode& node) {
@@ -214,13 +215,13 @@ private:
         for (unsigned row = 0; row < 4; ++row)
             for (unsigned column = 0; column < 4; ++column) {
                 if (!is_coordinate(from[row][column]))
-                    throw Refused("the matrix of node '" + excerpt(text_of(node.mName)) +
-                                  "' has an element that is not a number from -1e15 to 1e15");
+                    throw ImportError("the matrix of node '" + excerpt(text_of(node.mName)) +
+                                      "' has an element that is not a number from -1e15 to 1e15");
                 matrix[static_cast<int>(column)][static_cast<int>(row)] = from[row][column];
             }
         if (from.d1 != 0 || from.d2 != 0 || from.d3 != 0 || from.d4 != 1)
-            throw Refused("the matrix of node '" + excerpt(text_of(node.mName)) +
-                          "' does not end with the row 0 0 0 1");
+            throw ImportError("the matrix of node '" + excerpt(text_of(node.mName)) +
+                              "' does not end with the row 0 0 0 1");
         return matrix;
     }
 
@@ -229,10 +230,10 @@ private:
     const std::filesystem::path& path_;
     const ReadProgress& progress_;
     SceneParts parts_;
-    Losses losses_;
+    ConversionWarnings warnings_;
     std::vector<Index> materials_, geometries_;  // ours for each of assimp's
     std::vector<bool> ignore_alpha_;             // for each of ours
-    Names cameras_, lights_;
+    IndicesByName cameras_, lights_;
 };
 
 /// assimp takes what it knows best for a file that it does not know by its ending: only this reader is left
@@ -259,11 +260,11 @@ void check_and_triangulate(Assimp::Importer& importer) {
     const aiScene& scene = *importer.GetScene();
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_faces(*scene.mMeshes[i]);
     if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
-        throw Refused("its polygons cannot be cut into triangles");
+        throw ImportError("its polygons cannot be cut into triangles");
 }
 
 std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) {
-    if (!files.refusal().empty()) return files.refusal();
+    if (!files.rejection().empty()) return files.rejection();
     const std::string error = importer.GetErrorString();
     constexpr std::pair<const char*, const char*> kKnown[] = {
         {"No suitable reader", "it does not begin as a file with this ending does"},
@@ -277,33 +278,33 @@ std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) 
 }
 
 std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format, std::string head,
-                                Losses& losses) {
+                                ConversionWarnings& warnings) {
     Assimp::Importer importer;
     leave_only(importer, importer_name(format));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     auto* files = new SceneFiles(path, std::move(head));
     importer.SetIOHandler(files);  // which it deletes
-    if (importer.ReadFile(files->main_name(), 0) == nullptr) throw Refused(fault_of(importer, *files));
-    if (!files->refusal().empty()) losses.add(files->refusal());
+    if (importer.ReadFile(files->main_name(), 0) == nullptr) throw ImportError(fault_of(importer, *files));
+    if (!files->rejection().empty()) warnings.add(files->rejection());
     if (format != AssimpFormat::gltf) check_and_triangulate(importer);
     return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
 }
 
-std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, Losses& losses) {
+std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, ConversionWarnings& warnings) {
     auto checked = check_gltf(path);
-    if (!checked) throw Refused(checked.error());
-    losses = std::move(checked->losses);
-    auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), losses);
-    if (count_triangles(*scene) != checked->triangles) throw Refused("a mesh has an index out of range");
+    if (!checked) throw ImportError(checked.error());
+    warnings = std::move(checked->warnings);
+    auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), warnings);
+    if (count_triangles(*scene) != checked->triangles) throw ImportError("a mesh has an index out of range");
     return scene;
 }
 
 std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, AssimpFormat format,
-                                        Losses& losses) {
-    if (format == AssimpFormat::gltf) return import_gltf(path, losses);
+                                        ConversionWarnings& warnings) {
+    if (format == AssimpFormat::gltf) return import_gltf(path, warnings);
     if (format == AssimpFormat::ply)
-        if (const auto fault = ply_fault(path)) throw Refused(*fault);
-    return import(path, format, {}, losses);
+        if (const auto fault = ply_error(path)) throw ImportError(*fault);
+    return import(path, format, {}, warnings);
 }
 
 }  // namespace
@@ -312,12 +313,12 @@ PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat fo
                               const ReadProgress& progress) {
     try {
         if (progress) progress(0);
-        Losses losses;
-        const auto scene = import_checked(path, format, losses);
+        ConversionWarnings warnings;
+        const auto scene = import_checked(path, format, warnings);
         if (progress) progress(0.5);
-        return AssimpConverter(*scene, format, std::move(losses), path, progress).convert();
-    } catch (const Refused& refused) {
-        return tl::unexpected(path.string() + ": " + refused.what());
+        return AssimpConverter(*scene, format, std::move(warnings), path, progress).convert();
+    } catch (const ImportError& error) {
+        return tl::unexpected(path.string() + ": " + error.what());
     }
 }
 

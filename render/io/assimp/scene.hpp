@@ -35,8 +35,8 @@ namespace vrut {
 /// STL and PLY without colours take the default material's. Pictures that are not where the file says are
 /// looked for beside it. Which sides of a surface are seen these formats do not tell: materials are
 /// two-sided, but for those that are opaque and on parts only that are closed and wound outwards
-/// (is_closed()), which look the same from one side. What is wound inwards may be a room or a mistake: both
-/// are right when two-sided. Normals are the file's; without any, and in STL, triangles are flat. Equal
+/// (is_watertight()), which look the same from one side. What is wound inwards may be a room or a mistake:
+/// both are right when two-sided. Normals are the file's; without any, and in STL, triangles are flat. Equal
 /// vertices become one. y is up in Collada and FBX, whatever the file's axis; in OBJ, STL and PLY, which do
 /// not tell, it is y. FBX keeps its unit, Collada is scaled to metres.
 PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,

@@ -22,11 +22,11 @@ public:
 
     /// The geometry outlives this. Whether it is new.
     bool add(const Geometry& geometry);
-    void add_picture(std::vector<std::uint8_t> png) { pngs_.push_back(std::move(png)); }
+    void add_image(std::vector<std::uint8_t> png) { pngs_.push_back(std::move(png)); }
 
     const Accessors& accessors_of(const Geometry& geometry) const { return accessors_.at(&geometry); }
-    std::size_t picture_count() const { return pngs_.size(); }
-    std::size_t view_of_picture(std::size_t i) const { return static_cast<std::size_t>(accessor_count_) + i; }
+    std::size_t image_count() const { return pngs_.size(); }
+    std::size_t view_of_image(std::size_t i) const { return static_cast<std::size_t>(accessor_count_) + i; }
 
     /// Writes members of the document: accessors, buffer views and the buffer. Gives the chunk's size in
     /// bytes.

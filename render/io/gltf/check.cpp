@@ -22,7 +22,7 @@ constexpr int kDeepestNode = 1000;
 constexpr std::uint64_t kMostTimes = 64, kAlwaysAllowed = std::uint64_t{256} << 20;
 constexpr std::uint32_t kFloat = 5126;
 
-[[noreturn]] void reject(const std::string& what) { throw JsonFault(what); }
+[[noreturn]] void reject(const std::string& what) { throw JsonError(what); }
 
 std::uint64_t component_size(std::uint32_t type) {
     switch (type) {
@@ -55,13 +55,13 @@ public:
     }
 
 private:
-    const GltfView& view(std::uint32_t index) const {
-        if (index >= document_.views.size()) reject("it has no buffer view " + std::to_string(index));
-        return document_.views[index];
+    const GltfBufferView& view(std::uint32_t index) const {
+        if (index >= document_.buffer_views.size()) reject("it has no buffer view " + std::to_string(index));
+        return document_.buffer_views[index];
     }
 
     void check_views() const {
-        for (const GltfView& view : document_.views) {
+        for (const GltfBufferView& view : document_.buffer_views) {
             if (view.buffer >= document_.buffers.size() ||
                 view.offset + view.length > document_.buffers[view.buffer].length)
                 reject("a buffer view goes beyond its buffer");
@@ -70,26 +70,26 @@ private:
     }
 
     /// Throws where `count` elements of `size` bytes do not lie in the view.
-    void check_room(std::uint32_t index, std::uint64_t offset, std::uint64_t count,
-                    std::uint64_t size) const {
-        const GltfView& in = view(index);
+    void check_range(std::uint32_t index, std::uint64_t offset, std::uint64_t count,
+                     std::uint64_t size) const {
+        const GltfBufferView& in = view(index);
         const std::uint64_t stride = in.stride > 0 ? in.stride : size;
         if (stride < size || (count > 0 && offset + (count - 1) * stride + size > in.length))
             reject("an accessor goes beyond its buffer view");
     }
 
     void check_accessor(const GltfAccessor& accessor) const {
-        const std::uint64_t size = component_size(accessor.component) * accessor.components;
+        const std::uint64_t size = component_size(accessor.component_type) * accessor.components;
         if (size == 0) reject("an accessor has no type of glTF");
-        if (accessor.view) check_room(*accessor.view, accessor.offset, accessor.count, size);
+        if (accessor.view) check_range(*accessor.view, accessor.offset, accessor.count, size);
         if (!accessor.sparse) return;
         if (!accessor.sparse_indices || !accessor.sparse_values)
             reject("a sparse accessor has no indices or no values");
         if (accessor.view && view(*accessor.view).stride > size)
             reject("a sparse accessor is of a kind that is not read");
-        check_room(*accessor.sparse_indices, accessor.sparse_indices_offset, accessor.sparse_count,
-                   component_size(accessor.sparse_component));
-        check_room(*accessor.sparse_values, accessor.sparse_values_offset, accessor.sparse_count, size);
+        check_range(*accessor.sparse_indices, accessor.sparse_indices_offset, accessor.sparse_count,
+                    component_size(accessor.sparse_component_type));
+        check_range(*accessor.sparse_values, accessor.sparse_values_offset, accessor.sparse_count, size);
     }
 
     const GltfAccessor& accessor(std::uint32_t index) const {
@@ -100,11 +100,11 @@ private:
     /// Of what is copied wherever it is named; show() adds the meshes.
     void check_memory() {
         most_memory_ = std::max(kMostTimes * size_of_files(), kAlwaysAllowed);
-        for (const GltfBuffer& buffer : document_.buffers) take_memory(buffer.length);
-        for (const std::uint32_t index : document_.image_views) take_memory(view(index).length);
+        for (const GltfBuffer& buffer : document_.buffers) charge_memory(buffer.length);
+        for (const std::uint32_t index : document_.image_buffer_views) charge_memory(view(index).length);
         for (const GltfAccessor& accessor : document_.accessors)
             if (accessor.sparse)
-                take_memory(accessor.count * component_size(accessor.component) * accessor.components);
+                charge_memory(accessor.count * component_size(accessor.component_type) * accessor.components);
     }
 
     /// The scene's and its buffers', each once, as they lie on the disk: buffers may say anything. At most
@@ -113,8 +113,8 @@ private:
         const auto folder = path_.parent_path();
         std::set<std::filesystem::path> files = {path_};
         for (const GltfBuffer& buffer : document_.buffers)
-            if (!buffer.address.empty() && !buffer.address.starts_with("data:"))
-                if (const auto file = find_below(folder, name_of_address(folder, buffer.address)))
+            if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
+                if (const auto file = find_below(folder, file_name_of_uri(folder, buffer.uri)))
                     files.insert(*file);
         std::uint64_t total = 0;
         for (const auto& file : files) {
@@ -135,7 +135,7 @@ private:
                (primitive.mode == 4 ? drawn / 3 : drawn) * 48;
     }
 
-    void take_memory(std::uint64_t bytes) {
+    void charge_memory(std::uint64_t bytes) {
         memory_ += bytes;  // of which each is far below 2^64
         if (memory_ > most_memory_)
             reject("it would take more than " + std::to_string(most_memory_ >> 20) + " MiB of memory");
@@ -149,18 +149,19 @@ private:
             primitive.indices.reset();
         }
         if (!primitive.positions) reject("a mesh has no positions");
-        const auto has = [&](std::uint32_t index, std::uint64_t components, std::uint32_t component) {
-            return accessor(index).components == components && accessor(index).component == component;
+        const auto has = [&](std::uint32_t index, std::uint64_t components, std::uint32_t component_type) {
+            return accessor(index).components == components &&
+                   accessor(index).component_type == component_type;
         };
         if (!has(*primitive.positions, 3, kFloat) ||
             (primitive.normals && !has(*primitive.normals, 3, kFloat)))
             reject("the positions and normals of a mesh are not three floats each");
         if (primitive.texcoords && !has(*primitive.texcoords, 2, kFloat)) {
             hide_member(result_, primitive.texcoords_name);  // assimp takes integers for floats
-            result_.losses.add("texture coordinates that are not floats are not read");
+            result_.warnings.add("texture coordinates that are not floats are not read");
         }
         if (primitive.indices && (accessor(*primitive.indices).components != 1 ||
-                                  accessor(*primitive.indices).component == kFloat))
+                                  accessor(*primitive.indices).component_type == kFloat))
             reject("the indices of a mesh are not whole numbers");
         if (accessor(*primitive.positions).count < kFewest[primitive.mode] ||
             drawn_vertices(primitive) < kFewest[primitive.mode])
@@ -202,7 +203,7 @@ private:
         for (const GltfPrimitive& primitive : document_.meshes[mesh]) {
             const std::uint64_t vertices = drawn_vertices(primitive);
             if (primitive.mode >= 4) result_.triangles += primitive.mode == 4 ? vertices / 3 : vertices - 2;
-            take_memory(memory_of(primitive));
+            charge_memory(memory_of(primitive));
         }
     }
 
@@ -247,7 +248,7 @@ tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& p
         result.head = read_head(path, binary);
         GltfChecker(path, result, read_gltf(result, binary ? kGlbHeader : 0)).check();
         return result;
-    } catch (const JsonFault& fault) {
+    } catch (const JsonError& fault) {
         return tl::unexpected(std::string(fault.what()));
     }
 }

@@ -15,7 +15,7 @@ struct CheckedGltf {
     /// Triangles of the meshes that the scene shows, each mesh once: assimp leaves out those with indices out
     /// of range.
     std::uint64_t triangles = 0;
-    Losses losses;
+    ConversionWarnings warnings;
 };
 
 /// Checks what assimp 5.2 takes on trust: that JSON and nodes are not nested without bound, nodes form a

@@ -18,7 +18,7 @@ constexpr std::size_t kLongestMeshName = 900;
 // Where the data of an address begins, assimp keeps in a char.
 constexpr std::size_t kLongestDataHead = 126;
 
-[[noreturn]] void fail(const std::string& what) { throw JsonFault(what); }
+[[noreturn]] void fail(const std::string& what) { throw JsonError(what); }
 
 std::uint64_t components_of(std::string_view type) {
     constexpr std::pair<std::string_view, std::uint64_t> kTypes[] = {
@@ -46,8 +46,9 @@ public:
                 document_.scene = scan_.take_index();
                 return;
             }
-            if (name == "skins") return lose(name, "a skin is not read: its mesh stands as it was modelled");
-            if (name == "animations") return lose(name, "an animation is not shown");
+            if (name == "skins")
+                return skip_with_warning(name, "a skin is not read: its mesh stands as it was modelled");
+            if (name == "animations") return skip_with_warning(name, "an animation is not shown");
             for (const auto& [part, read] : parts)
                 if (name == part) return (this->*read)();
             scan_.skip();
@@ -57,10 +58,10 @@ public:
 
 private:
     /// A list of parts that are not read.
-    void lose(std::string_view name, const char* what) {
+    void skip_with_warning(std::string_view name, const char* what) {
         hide_member(result_, name);
         scan_.each_element([&](std::size_t) {
-            result_.losses.add(what);
+            result_.warnings.add(what);
             scan_.skip();
         });
     }
@@ -78,22 +79,22 @@ private:
             if (name == "byteLength")
                 buffer.length = scan_.take_index();
             else if (name == "uri")
-                buffer.address = take_address();
+                buffer.uri = take_uri();
             else
                 scan_.skip();
         });
     }
 
     /// Of a file, the whole; of data, the beginning.
-    std::string take_address() {
+    std::string take_uri() {
         const std::string_view written = scan_.take_string();
-        std::string address = decoded_string(written, kLongestDataHead + 1);
-        const bool data = address.starts_with("data:");
-        if (!data) address = decoded_string(written);
-        require_no_controls(address);
-        if (data && address.find(',') > kLongestDataHead)
+        std::string uri = decoded_string(written, kLongestDataHead + 1);
+        const bool data = uri.starts_with("data:");
+        if (!data) uri = decoded_string(written);
+        require_no_controls(uri);
+        if (data && uri.find(',') > kLongestDataHead)
             fail("an address has more than " + std::to_string(kLongestDataHead) + " bytes before its data");
-        return address;
+        return uri;
     }
 
     /// assimp marks with them what it has parsed, and ends at a zero.
@@ -103,7 +104,7 @@ private:
     }
 
     void read_views() {
-        read_list<GltfView>(document_.views, [&](GltfView& view, std::string_view name) {
+        read_list<GltfBufferView>(document_.buffer_views, [&](GltfBufferView& view, std::string_view name) {
             if (name == "buffer")
                 view.buffer = scan_.take_index();
             else if (name == "byteOffset")
@@ -124,7 +125,7 @@ private:
             else if (name == "byteOffset")
                 accessor.offset = scan_.take_index();
             else if (name == "componentType")
-                accessor.component = scan_.take_index();
+                accessor.component_type = scan_.take_index();
             else if (name == "count")
                 accessor.count = scan_.take_index();
             else if (name == "type")
@@ -151,7 +152,7 @@ private:
                     (values ? accessor.sparse_values_offset : accessor.sparse_indices_offset) =
                         scan_.take_index();
                 else if (name == "componentType")
-                    accessor.sparse_component = scan_.take_index();
+                    accessor.sparse_component_type = scan_.take_index();
                 else
                     scan_.skip();
             });
@@ -162,13 +163,13 @@ private:
         scan_.each_element([&](std::size_t) {
             scan_.each_member([&](std::string_view name) {
                 if (name == "uri") {
-                    const std::string address = take_address();
-                    if (address.starts_with("data:"))
-                        require_kind(std::string_view(address).substr(0, address.find_first_of(";,")));
+                    const std::string uri = take_uri();
+                    if (uri.starts_with("data:"))
+                        require_mime_type(std::string_view(uri).substr(0, uri.find_first_of(";,")));
                 } else if (name == "mimeType") {
-                    require_kind(decoded_string(scan_.take_string()));
+                    require_mime_type(decoded_string(scan_.take_string()));
                 } else if (name == "bufferView") {
-                    document_.image_views.push_back(scan_.take_index());
+                    document_.image_buffer_views.push_back(scan_.take_index());
                 } else {
                     scan_.skip();
                 }
@@ -177,7 +178,7 @@ private:
     }
 
     /// assimp looks for what comes after the `/` of a picture's kind.
-    static void require_kind(std::string_view kind) {
+    static void require_mime_type(std::string_view kind) {
         if (kind.substr(0, kind.find('\0')).find('/') == std::string_view::npos)
             fail("a picture is of no kind, such as image/png");
     }
@@ -219,7 +220,7 @@ private:
         else if (name == "targets") {
             hide_member(result_, name);
             scan_.skip();
-            result_.losses.add("the shapes that a mesh can take on are not shown");
+            result_.warnings.add("the shapes that a mesh can take on are not shown");
         } else
             scan_.skip();
     }
@@ -230,9 +231,9 @@ private:
             const std::uint32_t accessor = scan_.take_index();
             if (name != "POSITION" && name != "NORMAL" && name != "TEXCOORD_0") {
                 if (primitive != nullptr && name.starts_with("COLOR"))
-                    result_.losses.add("a mesh's colours at its vertices are not shown");
+                    result_.warnings.add("a mesh's colours at its vertices are not shown");
                 if (primitive != nullptr && name.starts_with("TEXCOORD"))
-                    result_.losses.add("a mesh's further texture coordinates are not read");
+                    result_.warnings.add("a mesh's further texture coordinates are not read");
                 return hide_member(result_, name);
             }
             if (primitive == nullptr) return;
@@ -273,7 +274,7 @@ private:
             if (name == "KHR_lights_punctual" || name == "KHR_materials_pbrSpecularGlossiness" ||
                 name == "KHR_draco_mesh_compression")
                 return;
-            result_.losses.add("the extension " + excerpt(name) + " is not read");
+            result_.warnings.add("the extension " + excerpt(name) + " is not read");
             hide_member(result_, name);
         });
     }

@@ -14,17 +14,17 @@ using Index32 = std::optional<std::uint32_t>;
 
 struct GltfBuffer {
     std::uint64_t length = 0;
-    std::string address;  // of data, the beginning
+    std::string uri;  // of data, the beginning
 };
 
-struct GltfView {
+struct GltfBufferView {
     std::uint64_t buffer = 0, offset = 0, length = 0, stride = 0;
 };
 
 struct GltfAccessor {
     Index32 view, sparse_indices, sparse_values;
     std::uint64_t offset = 0, sparse_indices_offset = 0, sparse_values_offset = 0;
-    std::uint32_t count = 0, component = 0, sparse_count = 0, sparse_component = 0;
+    std::uint32_t count = 0, component_type = 0, sparse_count = 0, sparse_component_type = 0;
     std::uint64_t components = 0;
     bool sparse = false;
 };
@@ -43,8 +43,8 @@ struct GltfNode {
 /// What of a glTF file is checked.
 struct GltfDocument {
     std::vector<GltfBuffer> buffers;
-    std::vector<std::uint32_t> image_views;  // the buffer views of pictures
-    std::vector<GltfView> views;
+    std::vector<std::uint32_t> image_buffer_views;  // the buffer views of pictures
+    std::vector<GltfBufferView> buffer_views;
     std::vector<GltfAccessor> accessors;
     std::vector<std::vector<GltfPrimitive>> meshes;
     std::vector<GltfNode> nodes;
@@ -56,7 +56,7 @@ struct GltfDocument {
 void hide_member(CheckedGltf& gltf, std::string_view name);
 
 /// Reads the head's JSON, which begins at `start`, hides what is not shown anyway, and checks addresses and
-/// kinds of pictures. Names in the document are parts of the head. Throws JsonFault.
+/// kinds of pictures. Names in the document are parts of the head. Throws JsonError.
 GltfDocument read_gltf(CheckedGltf& gltf, std::size_t start);
 
 }  // namespace vrut

@@ -12,7 +12,7 @@ namespace {
 constexpr int kMostNested = 200;
 
 [[noreturn]] void fail(std::size_t position, const std::string& what) {
-    throw JsonFault("its JSON is damaged at byte " + std::to_string(position) + ": " + what);
+    throw JsonError("its JSON is damaged at byte " + std::to_string(position) + ": " + what);
 }
 
 /// The number of `\uXXXX` at `at`, or nothing.

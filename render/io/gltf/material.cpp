@@ -48,10 +48,12 @@ std::pair<double, double> range_of_k(double shininess) {
     return {1 - roughness_of(shininess), 1 - roughness_of(shininess)};
 }
 
-void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& material, Losses& losses) {
+void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& material,
+                       ConversionWarnings& warnings) {
     const glm::dvec3 wanted(from.specular);
     const auto [least_k, most_k] = range_of_k(from.shininess);
-    if (from.shininess < 1 && largest(wanted) > 0) losses.add("a highlight is as narrow as with shininess 1");
+    if (from.shininess < 1 && largest(wanted) > 0)
+        warnings.add("a highlight is as narrow as with shininess 1");
     const Highlight best = fit(wanted, c, least_k, most_k);
     if (largest(best.color - wanted) <= kVisible) {
         material.roughness = 1 - best.k;
@@ -60,33 +62,33 @@ void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& 
     }
     if (largest(wanted) == 0) return;  // roughness 1 has none
     material.roughness = 1 - most_k;
-    material.specular = linear_color(wanted / most_k);
+    material.specular = linear_from_srgb(wanted / most_k);
     if (largest(wanted) > most_k + kVisible)
-        losses.add("a highlight is weaker, as glTF's are the wider they are");
+        warnings.add("a highlight is weaker, as glTF's are the wider they are");
 }
 
 }  // namespace
 
-glm::dvec3 linear_color(const glm::dvec3& displayed) {
+glm::dvec3 linear_from_srgb(const glm::dvec3& displayed) {
     return {linear(displayed.r), linear(displayed.g), linear(displayed.b)};
 }
 
-GltfMaterial gltf_material(const Scene& scene, const Material& from, Losses& losses) {
+GltfMaterial gltf_material(const Scene& scene, const Material& from, ConversionWarnings& warnings) {
     GltfMaterial material;
-    const bool has_picture = from.texture != kNone;
-    const glm::dvec3 diffuse(from.diffuse), c = has_picture ? glm::dvec3(1) : glm::clamp(diffuse, 0.0, 1.0);
-    material.base = linear_color(c);
+    const bool has_texture = from.texture != kNone;
+    const glm::dvec3 diffuse(from.diffuse), c = has_texture ? glm::dvec3(1) : glm::clamp(diffuse, 0.0, 1.0);
+    material.base = linear_from_srgb(c);
     material.alpha = std::clamp(from.diffuse.a, 0.0, 1.0);
     material.blend = scene.is_transparent(from);
-    material.emission = linear_color(glm::dvec3(from.emission));
-    convert_highlight(from, c, material, losses);
-    if (has_picture && largest(diffuse - c) > kVisible)
-        losses.add("the diffuse colour under a picture becomes white");
+    material.emission = linear_from_srgb(glm::dvec3(from.emission));
+    convert_highlight(from, c, material, warnings);
+    if (has_texture && largest(diffuse - c) > kVisible)
+        warnings.add("the diffuse colour under a picture becomes white");
     if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
-        losses.add("a material's ambient colour becomes a tenth of its diffuse one");
+        warnings.add("a material's ambient colour becomes a tenth of its diffuse one");
     if (largest(diffuse) > 1 || largest(glm::dvec3(from.emission)) > 1)
-        losses.add("a colour above 1 is cut to 1");
-    if (from.reflectivity > 0) losses.add("that a material reflects is not kept");
+        warnings.add("a colour above 1 is cut to 1");
+    if (from.reflectivity > 0) warnings.add("that a material reflects is not kept");
     return material;
 }
 

@@ -19,10 +19,10 @@ struct GltfMaterial {
 };
 
 /// Light that a display is sent this colour for, each from 0 to 1 (IEC 61966-2-1).
-glm::dvec3 linear_color(const glm::dvec3& displayed);
+glm::dvec3 linear_from_srgb(const glm::dvec3& displayed);
 
 /// The material that the reader's rule (assimp_scene.hpp) turns into this one, or the nearest to it; what
 /// differs is told. Under a picture the base colour is white.
-GltfMaterial gltf_material(const Scene& scene, const Material& material, Losses& losses);
+GltfMaterial gltf_material(const Scene& scene, const Material& material, ConversionWarnings& warnings);
 
 }  // namespace vrut

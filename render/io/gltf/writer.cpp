@@ -33,17 +33,17 @@ bool keeps_right_angles(const glm::dmat4& matrix) {
 
 class GlbWriter {
 public:
-    GlbWriter(const Scene& scene, Losses& losses) : scene_(scene), losses_(losses) {
-        shapes_ = shown_shapes(scene, losses);
+    GlbWriter(const Scene& scene, ConversionWarnings& warnings) : scene_(scene), warnings_(warnings) {
+        shapes_ = shown_shapes(scene, warnings);
         for (const ShownShape& shape : shapes_) add_shape(shape);
         for (const Index material : material_list_)
             if (const Index texture = scene_.material(material).texture; texture != kNone)
-                pictures_.emplace(texture, 0);
+                images_.emplace(texture, 0);
         int place = 0;
-        for (auto& [texture, own] : pictures_) {
+        for (auto& [texture, own] : images_) {
             own = place++;
             const Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
-            buffer_.add_picture(encode_png(from.image, from.transparent));
+            buffer_.add_image(encode_png(from.image, from.transparent));
         }
     }
 
@@ -55,7 +55,7 @@ public:
         write_cameras_and_lights();
         write_meshes();
         write_materials();
-        write_pictures();
+        write_textures();
         size_ = buffer_.describe(json_);
         json_.close();
         std::string text = json_.text();
@@ -72,10 +72,10 @@ public:
 private:
     // --- what is written, and where
 
-    using Mesh = std::pair<const Geometry*, Index>;  // with a material
+    using MeshKey = std::pair<const Geometry*, Index>;  // with a material
 
     void add_shape(const ShownShape& shape) {
-        const Mesh mesh{shape.geometry, shape.material};
+        const MeshKey mesh{shape.geometry, shape.material};
         if (const auto [found, is_new] = meshes_.emplace(mesh, static_cast<int>(mesh_list_.size())); is_new)
             mesh_list_.push_back(mesh);
         mesh_of_node_[shape.node] = meshes_.at(mesh);
@@ -83,13 +83,13 @@ private:
             found->second = static_cast<int>(material_list_.size());
             material_list_.push_back(shape.material);
         }
-        if (buffer_.add(*shape.geometry)) tell_rounding(*shape.geometry);
+        if (buffer_.add(*shape.geometry)) report_rounding(*shape.geometry);
     }
 
-    void tell_rounding(const Geometry& geometry) {
+    void report_rounding(const Geometry& geometry) {
         for (const glm::dvec3& position : geometry.positions)
             if (glm::dvec3(glm::vec3(position)) != position)
-                return losses_.add("a geometry's positions are rounded to single precision");
+                return warnings_.add("a geometry's positions are rounded to single precision");
     }
 
     // --- JSON
@@ -100,7 +100,7 @@ private:
         bool lights = false, glossiness = false;
         for (const Node& node : scene_.nodes()) lights = lights || node.type == NodeType::light;
         for (const Index material : material_list_) {
-            converted_.push_back(gltf_material(scene_, scene_.material(material), losses_));
+            converted_.push_back(gltf_material(scene_, scene_.material(material), warnings_));
             glossiness = glossiness || converted_.back().specular;
         }
         if (!lights && !glossiness) return;
@@ -142,7 +142,7 @@ private:
         if (const glm::dmat4 matrix = node.matrix * frame; matrix != glm::dmat4(1))
             json_.numbers(&matrix[0][0], 16, "matrix");
         if (!keeps_right_angles(node.matrix))
-            losses_.add(
+            warnings_.add(
                 "a matrix that shears or flattens is kept, though glTF knows none: other programs may refuse "
                 "it");
         if (!node.children.empty() || extra_child != kNone) {
@@ -182,7 +182,7 @@ private:
             json_.open_object().string("perspective", "type").open_object("perspective");
             json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
             if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
-                losses_.add("a camera's focus is kept as a direction");
+                warnings_.add("a camera's focus is kept as a direction");
         }
         if (!cameras_.empty()) json_.close();
         if (lights_.empty()) return;
@@ -193,7 +193,7 @@ private:
 
     void write_light(const LightData& light) {
         constexpr std::string_view kTypes[] = {"point", "directional", "spot"};
-        const glm::dvec3 color = linear_color(light.color);
+        const glm::dvec3 color = linear_from_srgb(light.color);
         json_.open_object().string(kTypes[static_cast<std::size_t>(light.type)], "type");
         json_.numbers(&color[0], 3, "color");
         if (light.type == LightData::Type::spot) {
@@ -205,7 +205,7 @@ private:
         }
         json_.close();
         if (light.attenuation != glm::dvec3(1, 0, 0) && light.attenuation != glm::dvec3(0))
-            losses_.add("how a light weakens with distance is not kept");
+            warnings_.add("how a light weakens with distance is not kept");
     }
 
     void write_meshes() {
@@ -252,30 +252,29 @@ private:
     }
 
     void write_texture(const Material& from, std::string_view name) {
-        if (from.texture != kNone)
-            json_.open_object(name).number(pictures_.at(from.texture), "index").close();
+        if (from.texture != kNone) json_.open_object(name).number(images_.at(from.texture), "index").close();
     }
 
-    void write_pictures() {
-        if (buffer_.picture_count() == 0) return;
+    void write_textures() {
+        if (buffer_.image_count() == 0) return;
         json_.open_array("textures");
-        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
+        for (std::size_t i = 0; i < buffer_.image_count(); ++i)
             json_.open_object().number(i, "source").close();
         json_.close().open_array("images");
-        for (std::size_t i = 0; i < buffer_.picture_count(); ++i)
+        for (std::size_t i = 0; i < buffer_.image_count(); ++i)
             json_.open_object()
-                .number(buffer_.view_of_picture(i), "bufferView")
+                .number(buffer_.view_of_image(i), "bufferView")
                 .string("image/png", "mimeType")
                 .close();
         json_.close();
     }
 
     const Scene& scene_;
-    Losses& losses_;
+    ConversionWarnings& warnings_;
     std::vector<ShownShape> shapes_;
-    std::map<Mesh, int> meshes_;
-    std::vector<Mesh> mesh_list_;
-    std::map<Index, int> mesh_of_node_, materials_, pictures_;  // places in the file
+    std::map<MeshKey, int> meshes_;
+    std::vector<MeshKey> mesh_list_;
+    std::map<Index, int> mesh_of_node_, materials_, images_;  // places in the file
     std::vector<Index> material_list_;
     std::vector<GltfMaterial> converted_;  // for each of them
     GltfBinaryChunk buffer_;
@@ -294,13 +293,13 @@ void write_words(std::ostream& out, std::initializer_list<std::uint64_t> words) 
 
 }  // namespace
 
-void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-               const WriteProgress& progress) {
-    GlbWriter writer(scene, losses);
-    tell_lost_nodes(scene, losses);
+void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+               ConversionWarnings& warnings, const WriteProgress& progress) {
+    GlbWriter writer(scene, warnings);
+    report_lost_nodes(scene, warnings);
     const std::string json = writer.describe();
     const std::uint64_t binary = writer.size(), all = 12 + 8 + json.size() + (binary > 0 ? 8 + binary : 0);
-    if (all > UINT32_MAX) throw WriteFault(path.string() + ": a GLB file holds at most 4 GiB");
+    if (all > UINT32_MAX) throw WriteError(path.string() + ": a GLB file holds at most 4 GiB");
     constexpr std::uint32_t kGltf = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
     files.write(path, [&](std::ostream& out) {
         write_words(out, {kGltf, 2, all, json.size(), kJson});

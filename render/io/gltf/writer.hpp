@@ -9,8 +9,8 @@ namespace vrut {
 /// glTF 2.0, binary (.glb): nodes with their names and matrices, those that show at the start with their
 /// geometries, each written once; cameras, lights (KHR_lights_punctual) and pictures; materials by
 /// gltf_material(). Ids become places in the file. assimp's exporter is not used: it leaves out cameras and
-/// lights, and changes names that occur twice. Throws WriteFault, for more than 4 GiB too.
-void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files, Losses& losses,
-               const WriteProgress& progress);
+/// lights, and changes names that occur twice. Throws WriteError, for more than 4 GiB too.
+void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+               ConversionWarnings& warnings, const WriteProgress& progress);
 
 }  // namespace vrut

@@ -30,12 +30,12 @@ bool has_kind(std::string_view type) { return type != "Geometry" && type != "Ima
 
 }  // namespace
 
-OsbFault::OsbFault(std::size_t at, const std::string& expected, const std::string& found)
+OsbError::OsbError(std::size_t at, const std::string& expected, const std::string& found)
     : std::runtime_error("at byte " + std::to_string(at) + ": expected " + expected + ", found " + found) {}
 
 std::string_view OsbCursor::take(std::size_t count, std::string_view what) {
     if (count > left())
-        throw OsbFault(at(), std::string(what) + " of " + std::to_string(count) + " bytes",
+        throw OsbError(at(), std::string(what) + " of " + std::to_string(count) + " bytes",
                        std::to_string(left()) + " that are left");
     const std::string_view taken = bytes_.substr(position_, count);
     position_ += count;
@@ -53,7 +53,7 @@ double OsbCursor::take_real(std::string_view what) {
     const std::size_t place = at();
     const double value = std::bit_cast<float>(take_unsigned(4, what));
     if (!(std::abs(value) <= kMaxCoordinate))
-        throw OsbFault(place, std::string(what) + " from -1e15 to 1e15", number_text(value));
+        throw OsbError(place, std::string(what) + " from -1e15 to 1e15", number_text(value));
     return value;
 }
 
@@ -72,7 +72,7 @@ std::size_t OsbCursor::take_count(std::size_t bytes_each, std::string_view what)
     const std::size_t place = at();
     const std::size_t count = take_unsigned(4, what), most = left() / bytes_each;
     if (count > most)
-        throw OsbFault(place, std::string(what) + " of at most " + std::to_string(most),
+        throw OsbError(place, std::string(what) + " of at most " + std::to_string(most),
                        std::to_string(count));
     return count;
 }
@@ -151,11 +151,11 @@ std::string osb_name(const OsbFile& file, const OsbContainer& container) {
 
 void OsbFile::read_header(OsbCursor& cursor) {
     const std::string expected = "'" + std::string(kHeader) + "'";
-    if (cursor.left() < 4 + kHeader.size()) throw OsbFault(0, expected, "the file's end");
+    if (cursor.left() < 4 + kHeader.size()) throw OsbError(0, expected, "the file's end");
     OsbCursor length = cursor;
-    if (length.take_unsigned(4, expected) > kHeader.size() + 1) throw OsbFault(0, expected, "something else");
+    if (length.take_unsigned(4, expected) > kHeader.size() + 1) throw OsbError(0, expected, "something else");
     if (const std::string_view found = cursor.take_string(expected); found != kHeader)
-        throw OsbFault(4, expected, "'" + excerpt(found) + "'");
+        throw OsbError(4, expected, "'" + excerpt(found) + "'");
     cursor.take_string("a name");
     cursor.take_string("options");
     cursor.take(8, "a size");
@@ -165,7 +165,7 @@ void OsbFile::read_container(OsbCursor& cursor, std::string_view type, std::size
     const std::size_t id_at = cursor.at();
     const std::uint32_t id = cursor.take_unsigned(4, "an id");
     if (id == 0 || !index_of_.emplace(id, containers_.size()).second)
-        throw OsbFault(id_at, "an id that no other container has", std::to_string(id));
+        throw OsbError(id_at, "an id that no other container has", std::to_string(id));
     // An old GenericAtt has a kind all the same, 4: where others have the version's upper byte, which is 0.
     OsbCursor ahead = cursor;
     if (has_kind(type) || ahead.take_unsigned(1, "a version") == 4) cursor.take(1, "a kind of container");
@@ -180,7 +180,7 @@ void OsbFile::read_fields(OsbCursor& cursor) {
         const std::string_view name = cursor.take_string("a field's name");
         if (name.empty()) return;
         if (count == kMostFields)
-            throw OsbFault(at, "at most " + std::to_string(kMostFields) + " fields", "one more");
+            throw OsbError(at, "at most " + std::to_string(kMostFields) + " fields", "one more");
         const std::string_view type = cursor.take_string("a field's type");
         std::size_t size = cursor.take_unsigned(4, "a field's size");
         if (type == "PMFUInt8") size += 4;  // which OpenSG forgets to count

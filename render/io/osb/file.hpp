@@ -15,11 +15,11 @@
 namespace vrut {
 
 /// "at byte N: expected …, found …"; caught by the reader, which knows the file's name.
-struct OsbFault : std::runtime_error {
-    OsbFault(std::size_t at, const std::string& expected, const std::string& found);
+struct OsbError : std::runtime_error {
+    OsbError(std::size_t at, const std::string& expected, const std::string& found);
 };
 
-/// Big-endian values one after the other, from bytes that lie `at` in the file. Throws OsbFault past the end.
+/// Big-endian values one after the other, from bytes that lie `at` in the file. Throws OsbError past the end.
 class OsbCursor {
 public:
     OsbCursor(std::string_view bytes, std::size_t at) : bytes_(bytes), at_(at) {}
@@ -75,7 +75,7 @@ struct OsbContainer {
 /// Views into `bytes`, which must outlive it. Takes at most 16 times the memory of the bytes.
 class OsbFile {
 public:
-    explicit OsbFile(std::string_view bytes);  ///< throws OsbFault
+    explicit OsbFile(std::string_view bytes);  ///< throws OsbError
     OsbFile(const OsbFile&) = delete;          // its containers refer to its own fields
     OsbFile& operator=(const OsbFile&) = delete;
 

@@ -50,7 +50,7 @@ constexpr ElementType kPositions[] = {{"MFPnt3f", 12}};
 constexpr ElementType kNormals[] = {{"MFVec3f", 12}, {"MFVec3s", 6}, {"MFVec3b", 3}};
 constexpr ElementType kTexcoords[] = {{"MFVec2f", 8}};
 
-using Corner = std::array<std::uint32_t, 3>;  // indices of a position, a normal and texture coordinates
+using IndexTuple = std::array<std::uint32_t, 3>;  // indices of a position, a normal and texture coordinates
 
 /// What stands where in the indices of a vertex; empty for what is not indexed.
 struct IndexMapping {
@@ -71,26 +71,26 @@ IndexMapping mapping_of(const OsbContainer& container) {
         for (std::size_t i = 0; i < 3; ++i)
             if ((bits & kBits[i]) != 0 && !mapping.slots[i]) mapping.slots[i] = k;
     }
-    if (!mapping.slots[0]) throw OsbFault(at, "an index of positions in the mapping", "none");
+    if (!mapping.slots[0]) throw OsbError(at, "an index of positions in the mapping", "none");
     return mapping;
 }
 
 enum GlPrimitive { kTriangles = 4, kStrip = 5, kFan = 6, kQuads = 7, kQuadStrip = 8, kPolygon = 9 };
 
-class GeometryBuilder {
+class OsbGeometryBuilder {
 public:
-    GeometryBuilder(const OsbFile& file, const OsbContainer& container, Losses& losses,
-                    std::size_t& work_left)
-        : file_(file), container_(container), losses_(losses), work_left_(work_left) {}
+    OsbGeometryBuilder(const OsbFile& file, const OsbContainer& container, ConversionWarnings& warnings,
+                       std::size_t& work_left)
+        : file_(file), container_(container), warnings_(warnings), work_left_(work_left) {}
 
     Geometry build() {
         types_ = find("types", kIntegers);
         lengths_ = find("lengths", kIntegers);
         indices_ = find("indices", kIntegers);
         arrays_ = {find("positions", kPositions), find("normals", kNormals), find("texCoords", kTexcoords)};
-        tell_lost_fields();
+        report_unsupported_fields();
         if (!types_ || !arrays_[0]) {
-            losses_.add("a geometry without positions and types of primitives that are known is not shown");
+            warnings_.add("a geometry without positions and types of primitives that are known is not shown");
             return {};
         }
         mapping_ = mapping_of(container_);
@@ -107,20 +107,20 @@ private:
         return array_of(*array, types);
     }
 
-    void tell_lost_fields() {
+    void report_unsupported_fields() {
         if (file_.find(container_.pointer("colors")) != nullptr)
-            losses_.add("a geometry's colours at its vertices are not shown");
+            warnings_.add("a geometry's colours at its vertices are not shown");
         if (file_.find(container_.pointer("texCoords1")) != nullptr)
-            losses_.add("a geometry's further texture coordinates are not read");
+            warnings_.add("a geometry's further texture coordinates are not read");
         for (const char* packed : {"qpositions", "qnormals", "qtexCoords", "pindices"})
             if (container_.find(packed))
-                losses_.add("a geometry's packed '" + std::string(packed) + "' are not read");
+                warnings_.add("a geometry's packed '" + std::string(packed) + "' are not read");
     }
 
     void drop_unmapped() {
         for (std::size_t i = 1; i < 3; ++i)
             if (indices_ && !mapping_.slots[i] && arrays_[i]) {
-                losses_.add("an array that a geometry does not index is not read");
+                warnings_.add("an array that a geometry does not index is not read");
                 arrays_[i].reset();
             }
     }
@@ -129,12 +129,12 @@ private:
         const std::size_t corners = indices_ ? indices_->count / mapping_.stride : arrays_[0]->count;
         std::size_t first = 0;
         if (lengths_ && lengths_->count < types_->count)
-            throw OsbFault(lengths_->at, std::to_string(types_->count) + " lengths of primitives",
+            throw OsbError(lengths_->at, std::to_string(types_->count) + " lengths of primitives",
                            std::to_string(lengths_->count));
         for (std::size_t i = 0; i < types_->count; ++i) {
             const std::size_t length = lengths_ ? lengths_->integer(i) : corners - first;
             if (length > corners - first)
-                throw OsbFault(lengths_->at + i * lengths_->element_size,
+                throw OsbError(lengths_->at + i * lengths_->element_size,
                                "a primitive of at most " + std::to_string(corners - first) + " vertices",
                                std::to_string(length));
             work(length + 1);
@@ -145,15 +145,15 @@ private:
 
     void work(std::size_t amount) {
         if (amount > work_left_)
-            throw OsbFault(container_.at, "geometries that have no more vertices than the file has bytes",
+            throw OsbError(container_.at, "geometries that have no more vertices than the file has bytes",
                            "more, by arrays that they share");
         work_left_ -= amount;
     }
 
     void add_primitive(std::uint32_t type, std::size_t first, std::size_t length) {
-        if (type < kTriangles) return losses_.add("points or lines are not shown");
+        if (type < kTriangles) return warnings_.add("points or lines are not shown");
         if (type > kPolygon)
-            throw OsbFault(types_->at, "types of primitives from 0 to 9", std::to_string(type));
+            throw OsbError(types_->at, "types of primitives from 0 to 9", std::to_string(type));
         if (length < 3) return;
         vertices_.clear();
         for (std::size_t i = first; i < first + length; ++i) vertices_.push_back(vertex(i));
@@ -183,7 +183,7 @@ private:
     }
 
     unsigned vertex(std::size_t corner) {
-        Corner tuple{};
+        IndexTuple tuple{};
         for (std::size_t i = 0; i < 3; ++i)
             if (arrays_[i]) tuple[i] = index_of(i, corner);
         const auto [found, is_new] = known_.emplace(tuple, static_cast<unsigned>(geometry_.positions.size()));
@@ -195,12 +195,12 @@ private:
         const std::size_t place = indices_ ? corner * mapping_.stride + *mapping_.slots[array] : corner;
         const std::size_t index = indices_ ? indices_->integer(place) : corner;
         if (index >= arrays_[array]->count)
-            throw OsbFault(indices_ ? indices_->at + place * indices_->element_size : arrays_[array]->at,
+            throw OsbError(indices_ ? indices_->at + place * indices_->element_size : arrays_[array]->at,
                            "an index below " + std::to_string(arrays_[array]->count), std::to_string(index));
         return static_cast<std::uint32_t>(index);
     }
 
-    void add_vertex(const Corner& tuple) {
+    void add_vertex(const IndexTuple& tuple) {
         geometry_.bounds.add(
             geometry_.positions.emplace_back(arrays_[0]->element(tuple[0]).take_vec3("a coordinate")));
         if (arrays_[1]) geometry_.normals.push_back(normal(tuple[1]));
@@ -227,13 +227,13 @@ private:
 
     const OsbFile& file_;
     const OsbContainer& container_;
-    Losses& losses_;
+    ConversionWarnings& warnings_;
     std::size_t& work_left_;
     std::optional<OsbArray> types_, lengths_, indices_;
     std::array<std::optional<OsbArray>, 3> arrays_;  // positions, normals, texture coordinates
     IndexMapping mapping_;
     Geometry geometry_;
-    std::unordered_map<Corner, unsigned, SaltedHash> known_;
+    std::unordered_map<IndexTuple, unsigned, SaltedHash> known_;
     std::vector<unsigned> vertices_;  // of the primitive at hand
 };
 
@@ -249,7 +249,7 @@ Index OsbGeometries::take(const OsbContainer& container) {
         for (OsbCursor cursor = mapping->data; cursor.left() > 1;)
             arrays.push_back(cursor.take_unsigned(2, "a mapping"));
     const auto [found, is_new] = known_.emplace(std::move(arrays), kNone);
-    if (is_new) found->second = add(GeometryBuilder(file_, container, losses_, work_left_).build());
+    if (is_new) found->second = add(OsbGeometryBuilder(file_, container, warnings_, work_left_).build());
     return known_containers_[container.id] = found->second;
 }
 

@@ -12,11 +12,11 @@ namespace vrut {
 /// is indexed by several indices gets a vertex for each tuple of them that occurs.
 class OsbGeometries {
 public:
-    OsbGeometries(const OsbFile& file, Losses& losses)
-        : file_(file), losses_(losses), work_left_(file.size()) {}
+    OsbGeometries(const OsbFile& file, ConversionWarnings& warnings)
+        : file_(file), warnings_(warnings), work_left_(file.size()) {}
 
     /// The place in `all` of what a Geometry's container holds, made when it is first asked for; kNone where
-    /// it has no triangles. Geometries of the same arrays are one. Throws OsbFault.
+    /// it has no triangles. Geometries of the same arrays are one. Throws OsbError.
     Index take(const OsbContainer& container);
 
     std::vector<Geometry> all;
@@ -25,7 +25,7 @@ private:
     Index add(Geometry geometry);
 
     const OsbFile& file_;
-    Losses& losses_;
+    ConversionWarnings& warnings_;
     std::map<std::vector<std::uint32_t>, Index> known_;  // by the arrays' ids and the mapping
     std::unordered_map<std::uint32_t, Index, SaltedHash> known_containers_;
     /// What corners and primitives of all geometries together may yet be: each takes a byte of its own,

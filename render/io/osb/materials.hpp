@@ -9,10 +9,10 @@ namespace vrut {
 /// Turns OpenSG's materials into ours, by the rule that osb_scene.hpp tells.
 class OsbMaterials {
 public:
-    OsbMaterials(const OsbFile& file, Losses& losses) : file_(file), losses_(losses) {}
+    OsbMaterials(const OsbFile& file, ConversionWarnings& warnings) : file_(file), warnings_(warnings) {}
 
     /// The place in `all` of the material with this id, made when it is first asked for; kNone for an id that
-    /// is none of a material that is known. Throws OsbFault.
+    /// is none of a material that is known. Throws OsbError.
     Index take(std::uint32_t id);
 
     std::vector<Material> all;
@@ -25,7 +25,7 @@ private:
     Index decode(const OsbContainer& image, OsbCursor pixels);
 
     const OsbFile& file_;
-    Losses& losses_;
+    ConversionWarnings& warnings_;
     std::unordered_map<std::uint32_t, Index, SaltedHash> known_, known_textures_;
 };
 

@@ -77,10 +77,10 @@ glm::dmat4 matrix_of(const OsbContainer& core) {
     const glm::dmat4 matrix = core.type == "Transform" ? stored_matrix(core) : composed_matrix(core);
     for (int column = 0; column < 4; ++column) {
         if (matrix[column][3] != (column == 3 ? 1 : 0))
-            throw OsbFault(core.at, "a matrix whose last row is 0 0 0 1", "another one");
+            throw OsbError(core.at, "a matrix whose last row is 0 0 0 1", "another one");
         for (int row = 0; row < 3; ++row)
             if (!(std::abs(matrix[column][row]) <= 1e15))
-                throw OsbFault(core.at, "matrix elements from -1e15 to 1e15", "others");
+                throw OsbError(core.at, "matrix elements from -1e15 to 1e15", "others");
     }
     return matrix;
 }
@@ -134,13 +134,13 @@ public:
         parts_.geometries = std::move(geometries_.all);
         parts_.materials = std::move(materials_.all);
         parts_.textures = std::move(materials_.textures);
-        losses_.append_to(parts_.notices, file_name_);
-        tell_skipped();
+        warnings_.append_to(parts_.notices, file_name_);
+        report_skipped();
         return std::move(parts_);
     }
 
 private:
-    struct Place {
+    struct OsbPendingNode {
         const OsbContainer* node;
         Id parent;
         Index material;  ///< that a group above gives to all below it
@@ -149,60 +149,61 @@ private:
     /// From the root, which comes first, downwards; without recursion, since a chain may be long.
     void read_nodes() {
         const OsbContainer& root = file_.containers().front();
-        if (root.type != "Node") throw OsbFault(root.at, "a Node first", "'" + excerpt(root.type) + "'");
-        std::vector<Place> open{{&root, 0, kNone}};
+        if (root.type != "Node") throw OsbError(root.at, "a Node first", "'" + excerpt(root.type) + "'");
+        std::vector<OsbPendingNode> open{{&root, 0, kNone}};
         ids_.emplace(root.id, 0);
-        std::vector<Place> children;
+        std::vector<OsbPendingNode> children;
         while (!open.empty()) {
-            const Place place = open.back();
+            const OsbPendingNode pending = open.back();
             open.pop_back();
             if (progress_)
                 progress_(static_cast<double>(ids_.size()) / static_cast<double>(file_.containers().size()));
             children.clear();
-            open_children(place, children);
-            add_node(place, children);
+            open_children(pending, children);
+            add_node(pending, children);
             open.insert(open.end(), children.rbegin(), children.rend());
         }
     }
 
     /// Each node hangs in one place: what is met again would be a cycle, or stand in two places.
-    void open_children(const Place& place, std::vector<Place>& children) {
-        auto ids = place.node->find("children");
+    void open_children(const OsbPendingNode& pending, std::vector<OsbPendingNode>& children) {
+        auto ids = pending.node->find("children");
         for (std::size_t left = ids ? ids->take_count(4, "a count") : 0; left > 0; --left) {
             const std::size_t at = ids->at();
             const std::uint32_t id = ids->take_unsigned(4, "an id");
             const OsbContainer* const child = file_.find(id);
             if (child == nullptr || child->type != "Node") {
-                losses_.add("a child that is no node of the file is left out");
+                warnings_.add("a child that is no node of the file is left out");
                 continue;
             }
             if (!ids_.emplace(id, 0).second)
-                throw OsbFault(at, "a child that hangs nowhere else",
+                throw OsbError(at, "a child that hangs nowhere else",
                                "node " + std::to_string(id) + " again");
-            children.push_back({child, 0, place.material});
+            children.push_back({child, 0, pending.material});
         }
     }
 
-    void add_node(const Place& place, std::vector<Place>& children) {
+    void add_node(const OsbPendingNode& pending, std::vector<OsbPendingNode>& children) {
         Node node;
         node.id = static_cast<Id>(parts_.nodes.size()) + 1;
-        node.name = osb_name(file_, *place.node);
-        node.active = place.node->integer("travMask", -1) != 0;
-        for (Place& child : children) child.parent = node.id;
-        if (const OsbContainer* const core = file_.find(place.node->pointer("core"))) {
+        node.name = osb_name(file_, *pending.node);
+        node.active = pending.node->integer("travMask", -1) != 0;
+        for (OsbPendingNode& child : children) child.parent = node.id;
+        if (const OsbContainer* const core = file_.find(pending.node->pointer("core"))) {
             if (node.name.empty()) node.name = osb_name(file_, *core);
-            read_core(*core, place, node, children);
+            read_core(*core, pending, node, children);
         }
-        ids_[place.node->id] = node.id;
-        parts_.nodes.push_back({std::move(node), place.parent});
+        ids_[pending.node->id] = node.id;
+        parts_.nodes.push_back({std::move(node), pending.parent});
     }
 
-    void read_core(const OsbContainer& core, const Place& place, Node& node, std::vector<Place>& children) {
+    void read_core(const OsbContainer& core, const OsbPendingNode& pending, Node& node,
+                   std::vector<OsbPendingNode>& children) {
         if (core.type == "Transform" || core.type == "ComponentTransform") {
             node.matrix = matrix_of(core);
         } else if (core.type == "Geometry") {
             const Index material =
-                place.material != kNone ? place.material : materials_.take(core.pointer("material"));
+                pending.material != kNone ? pending.material : materials_.take(core.pointer("material"));
             node.type = NodeType::geometry;
             node.data = GeometryData{geometries_.take(core), material};
         } else if (core.type == "Switch") {
@@ -212,8 +213,8 @@ private:
         } else if (core.type == "DistanceLOD") {
             node.type = NodeType::lod;
             node.data = LodData{ranges_of(core, children.size())};
-        } else if (core.type == "MaterialGroup" && place.material == kNone) {
-            for (Place& child : children) child.material = materials_.take(core.pointer("material"));
+        } else if (core.type == "MaterialGroup" && pending.material == kNone) {
+            for (OsbPendingNode& child : children) child.material = materials_.take(core.pointer("material"));
         } else if (is_light(core.type)) {
             lights_.push_back({&core, node.id});
         }
@@ -223,7 +224,7 @@ private:
     std::vector<double> ranges_of(const OsbContainer& core, std::size_t children) {
         std::vector<double> ranges;
         if (core.vec3("center", {}) != glm::dvec3(0))
-            losses_.add(
+            warnings_.add(
                 "a level of detail is chosen by the distance of its node, and not of the centre given");
         auto data = core.find("range");
         const std::size_t count = data ? data->take_count(4, "a count") : 0;
@@ -239,12 +240,12 @@ private:
             node.id = static_cast<Id>(parts_.nodes.size()) + 1;
             const auto beacon = ids_.find(core->pointer("beacon"));
             parts_.nodes.push_back({std::move(node), beacon != ids_.end() ? beacon->second : own});
-            losses_.add(
+            warnings_.add(
                 "a light shines on the whole scene, with the colour that it has for diffuse surfaces");
         }
     }
 
-    void tell_skipped() {
+    void report_skipped() {
         std::map<std::string_view, std::size_t> count;
         for (const OsbContainer& container : file_.containers())
             if (std::find(std::begin(kKnownTypes), std::end(kKnownTypes), container.type) ==
@@ -260,16 +261,16 @@ private:
     std::string file_name_;
     const ReadProgress& progress_;
     OsbFile file_;
-    Losses losses_;
-    OsbGeometries geometries_{file_, losses_};
-    OsbMaterials materials_{file_, losses_};
+    ConversionWarnings warnings_;
+    OsbGeometries geometries_{file_, warnings_};
+    OsbMaterials materials_{file_, warnings_};
     SceneParts parts_;
     std::unordered_map<std::uint32_t, Id, SaltedHash> ids_;  // ours, of the nodes met
-    struct Light {
+    struct OsbLight {
         const OsbContainer* core;
         Id node;
     };
-    std::vector<Light> lights_;
+    std::vector<OsbLight> lights_;
 };
 
 }  // namespace
@@ -277,7 +278,7 @@ private:
 PartsResult read_osb_parts(std::string_view bytes, const std::string& file, const ReadProgress& progress) {
     try {
         return OsbReader(bytes, file, progress).read();
-    } catch (const OsbFault& fault) {
+    } catch (const OsbError& fault) {
         return tl::unexpected(file + ": " + fault.what());
     }
 }
@@ -286,7 +287,7 @@ PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress
     const auto bytes = read_bytes(path);
     if (!bytes) return tl::unexpected(path.string() + ": " + bytes.error());
     auto parts = read_osb_parts(*bytes, path.string(), progress);
-    if (parts) read_pictures(*parts, path, progress);
+    if (parts) read_textures(*parts, path, progress);
     return parts;
 }
 

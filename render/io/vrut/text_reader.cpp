@@ -34,7 +34,7 @@ constexpr NodeKind kNodeKinds[] = {
     {"sound", 8, NodeType::sound},
 };
 
-struct Member {
+struct BlockMember {
     std::string_view name;
     std::function<void()> read;
 };
@@ -83,8 +83,8 @@ private:
 
     // --- members
 
-    void read_members(const std::string& block, std::span<const Member> members) {
-        std::vector<const Member*> seen;
+    void read_members(const std::string& block, std::span<const BlockMember> members) {
+        std::vector<const BlockMember*> seen;
         for (;;) {
             const std::size_t line = tokens_.line();
             const std::string_view name = tokens_.take_word("a member of " + block + " or 'end'");
@@ -102,12 +102,14 @@ private:
         }
     }
 
-    static std::span<const Member>::iterator find(std::span<const Member> members, std::string_view name) {
-        return std::find_if(members.begin(), members.end(), [&](const Member& m) { return m.name == name; });
+    static std::span<const BlockMember>::iterator find(std::span<const BlockMember> members,
+                                                       std::string_view name) {
+        return std::find_if(members.begin(), members.end(),
+                            [&](const BlockMember& m) { return m.name == name; });
     }
 
     void skip_unknown(const std::string& block, std::size_t line, std::string_view name,
-                      std::span<const Member> members) {
+                      std::span<const BlockMember> members) {
         notice(line, "member '" + excerpt(name) + "' of " + block + " is unknown and was skipped");
         for (;;) {
             const Token& token = tokens_.peek();
@@ -151,7 +153,7 @@ private:
         Material material;
         material.id = take_id("the material's id");
         material.name = tokens_.take_string("the material's name");
-        const Member members[] = {
+        const BlockMember members[] = {
             {"ambient", [&] { material.ambient = take_color("ambient"); }},
             {"diffuse", [&] { material.diffuse = take_color("diffuse"); }},
             {"specular", [&] { material.specular = take_color("specular"); }},
@@ -170,7 +172,7 @@ private:
         Geometry geometry;
         geometry.id = take_id("the geometry's id");
         std::size_t normals_line = 0, texcoords_line = 0, triangles_line = 0;
-        const Member members[] = {
+        const BlockMember members[] = {
             {"vertices",
              [&] {
                  geometry.positions.resize(tokens_.take_count("a count of vertices", 6));
@@ -245,7 +247,7 @@ private:
         node.name = tokens_.take_string("the node's name");
         node.type = take_node_type();
 
-        std::vector<Member> members = {
+        std::vector<BlockMember> members = {
             {"parent", [&] { part.parent_id = take_id("the parent's id"); }},
             {"active", [&] { node.active = tokens_.take_flag("active"); }},
             {"matrix", [&] { read_matrix(node.matrix); }},
@@ -280,7 +282,7 @@ private:
         hinge.degrees = tokens_.take_number("the hinge's degrees", -360, 360);
     }
 
-    void add_members_of_type(Node& node, References& references, std::vector<Member>& members) {
+    void add_members_of_type(Node& node, References& references, std::vector<BlockMember>& members) {
         const auto material = [&] { references.material = take_id("the material's id"); };
         switch (node.type) {
             case NodeType::geometry:
@@ -405,7 +407,7 @@ TextSource source_of(FileReader& file) {
 }
 
 /// Which tells how much of it was handed out.
-TextSource telling(TextSource source, const ReadProgress& progress) {
+TextSource with_progress(TextSource source, const ReadProgress& progress) {
     if (!progress) return source;
     return {source.size, [source, progress, done = std::size_t{0}](char* to, std::size_t count) mutable {
                 progress(static_cast<double>(done) / static_cast<double>(source.size));
@@ -414,10 +416,10 @@ TextSource telling(TextSource source, const ReadProgress& progress) {
             }};
 }
 
-PartsResult read_parts(const TextSource& source, const std::string& file, const ReadProgress& progress,
-                       unsigned threads) {
+PartsResult parse_parts(const TextSource& source, const std::string& file, const ReadProgress& progress,
+                        unsigned threads) {
     try {
-        return VrutTextReader(telling(source, progress), file, threads).read();
+        return VrutTextReader(with_progress(source, progress), file, threads).read();
     } catch (const ParseError& error) {
         return tl::unexpected(file + ":" + std::to_string(error.line) + ": " + error.what());
     }
@@ -427,15 +429,15 @@ PartsResult read_parts(const TextSource& source, const std::string& file, const 
 
 PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress,
                             unsigned threads) {
-    return read_parts(source_of(text), file, progress, threads > 0 ? threads : reading_threads());
+    return parse_parts(source_of(text), file, progress, threads > 0 ? threads : reading_threads());
 }
 
 PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) try {
     const std::string file = path.string();
     auto reader = FileReader::open(path);
     if (!reader) return tl::unexpected(file + ": " + reader.error());
-    auto parts = read_parts(source_of(*reader), file, progress, reading_threads());
-    if (parts) read_pictures(*parts, path, progress);
+    auto parts = parse_parts(source_of(*reader), file, progress, reading_threads());
+    if (parts) read_textures(*parts, path, progress);
     return parts;
 } catch (const CutShort&) {
     return tl::unexpected(path.string() + ": " + std::string(kCutShort));

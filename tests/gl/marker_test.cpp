@@ -3,7 +3,7 @@
 #include <random>
 
 #include "plan/frame_plan.hpp"
-#include "studio.hpp"
+#include "renderer_fixture.hpp"
 
 using namespace vrut;
 
@@ -20,7 +20,7 @@ glm::dvec3 at_pixel(double x, double y, const View& view) {
 View view_with_mark(double x, double y) {
     View view = pixel_view(80, 600);
     view.background.color = {0, 0, 0};
-    view.marks = marks_at({at_pixel(x, y, view)});
+    view.markers = markers_at({at_pixel(x, y, view)});
     return view;
 }
 
@@ -36,12 +36,12 @@ double drawn_area(const Image& image) {
     return area;
 }
 
-struct Spot {
+struct MarkerPixel {
     glm::dvec3 point, normal;
 };
 
 /// A point of some triangle, as a picking ray would find it.
-Spot spot_on(const Geometry& geometry, std::mt19937& random) {
+MarkerPixel spot_on(const Geometry& geometry, std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0, 1);
     const auto triangle = static_cast<std::size_t>(random() % geometry.triangles.size());
     const auto corner = [&](int k) { return geometry.positions[geometry.triangles[triangle][k]]; };
@@ -68,7 +68,7 @@ glm::ivec3 color_at(const Image& image, const View& view, const glm::dvec3& poin
 }  // namespace
 
 TEST_CASE("a marker is a round sign of one colour with a rim, on light and on dark") {
-    Studio studio;
+    RendererFixture studio;
     for (const double level : {0.0, 1.0}) {
         CAPTURE(level);
         View view = view_with_mark(40.5, 300.5);
@@ -92,7 +92,7 @@ TEST_CASE("a marker is a round sign of one colour with a rim, on light and on da
 }
 
 TEST_CASE("markers move by parts of a pixel, and cover as much everywhere") {
-    Studio studio;
+    RendererFixture studio;
     int last = 0;
     double least = 1e9, most = 0;
     for (const double part : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
@@ -111,12 +111,12 @@ TEST_CASE("markers move by parts of a pixel, and cover as much everywhere") {
 }
 
 TEST_CASE("a sign is as large at all distances, and in proportion to the picture's height") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_with_mark(40.5, 300.5);
     const std::vector<std::uint8_t> first = studio.draw(nothing(), view).rgba;
-    const glm::dvec3 from_eye = view.marks->front().point - view.camera.eye;
+    const glm::dvec3 from_eye = view.markers->front().point - view.camera.eye;
     for (const double factor : {1e-9, 1e-3, 0.3, 7.0, 1e4, 1e9}) {
-        view.marks = marks_at({view.camera.eye + from_eye * factor});
+        view.markers = markers_at({view.camera.eye + from_eye * factor});
         const Image image = studio.draw(nothing(), view);
         CHECK(image.rgba == first);
     }
@@ -124,7 +124,7 @@ TEST_CASE("a sign is as large at all distances, and in proportion to the picture
         CAPTURE(height);
         View other = pixel_view(200, height);
         other.background.color = {0, 0, 0};
-        other.marks = marks_at({{0, 0, 0}});
+        other.markers = markers_at({{0, 0, 0}});
         const double radius = std::max(3.0, height / 120.0);
         CHECK(std::sqrt(drawn_area(studio.draw(nothing(), other)) / 3.14159) ==
               doctest::Approx(radius + 0.3).epsilon(0.12));
@@ -132,11 +132,11 @@ TEST_CASE("a sign is as large at all distances, and in proportion to the picture
 }
 
 TEST_CASE("a marker fades behind what is opaque, little by little at its edge") {
-    Studio studio;
+    RendererFixture studio;
     View view = pixel_view(200, 600);
     view.background.color = {0, 0, 0};
     const Material black = material_of({0, 0, 0});
-    view.marks = marks_at({{0, 0, -100}});
+    view.markers = markers_at({{0, 0, -100}});
     const Part wall{2, quad(200), black, moved_by({0, 0, -100})};
     std::vector<double> seen;
     for (int quarter = -24; quarter <= 24; ++quarter) {
@@ -158,14 +158,14 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
     // Before the same thing it is whole; a little behind the surface it is not.
     const auto curtain = scene_of({{1, quad(200), black, glm::dmat4(1)}});
     for (const double depth : {50.0, 0.0, -10.0, -250.0}) {
-        view.marks = marks_at({{0, 0, depth}});
+        view.markers = markers_at({{0, 0, depth}});
         CHECK(opacity(studio.draw(curtain, view), 100, 300) ==
               doctest::Approx(depth < 0 ? 0.3 : 1).epsilon(0.02));
     }
     view.mode = DrawMode::stylized;
-    view.marks = marks_at({{20, 5, 0}});
+    view.markers = markers_at({{20, 5, 0}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) == kSign);
-    view.marks = marks_at({{20, 5, -10}});
+    view.markers = markers_at({{20, 5, -10}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) != kSign);
     // Nothing hides anything in a wireframe.
     for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
@@ -176,10 +176,10 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
 }
 
 TEST_CASE("glass covers no marker") {
-    Studio studio;
+    RendererFixture studio;
     Material glass = material_of({0, 0, 0});
     View view = pixel_view(200, 600);
-    view.marks = marks_at({{0, 0, -10}});
+    view.markers = markers_at({{0, 0, -10}});
     for (const double alpha : {0.99, 1.0}) {
         glass.diffuse.a = alpha;
         const Image image = studio.draw(scene_of({{1, quad(200), glass, glm::dmat4(1)}}), view);
@@ -188,13 +188,13 @@ TEST_CASE("glass covers no marker") {
 }
 
 TEST_CASE("no surface hides a marker that lies on it, from near, from far, and at a glance") {
-    Studio studio;
+    RendererFixture studio;
     std::mt19937 random(5);
     for (const Geometry& geometry : {sphere(1, 12), box({1, 0.6, 0.8}), sphere(1, 4, false)}) {
         const auto scene = scene_of({{1, geometry, kPaint, turned_by(20, {0, 0, 1})}});
         for (std::size_t round = 0; round < 150; ++round) {
             const double distance = std::array{1e-3, 0.1, 1.0, 10.0, 1e4}[round % 5];
-            const Spot spot = spot_on(geometry, random);
+            const MarkerPixel spot = spot_on(geometry, random);
             glm::dvec3 way = direction(random);
             if (round % 3 == 0)
                 way = glm::normalize(glm::cross(way, spot.normal)) +
@@ -206,7 +206,7 @@ TEST_CASE("no surface hides a marker that lies on it, from near, from far, and a
             View view = view_from(point + turn * way * distance, point);
             view.height = 300;
             view.mode = round % 2 ? DrawMode::realistic : DrawMode::stylized;
-            view.marks = marks_at({point});
+            view.markers = markers_at({point});
             CAPTURE(round);
             CAPTURE(distance);
             CHECK(color_at(studio.draw(scene, view), view, point) == kSign);
@@ -215,7 +215,7 @@ TEST_CASE("no surface hides a marker that lies on it, from near, from far, and a
 }
 
 TEST_CASE("no wall of a room hides a marker that lies on it") {
-    Studio studio;
+    RendererFixture studio;
     std::mt19937 random(6);
     const glm::dvec3 half{1, 0.6, 0.8};
     const Geometry room = turned_inside_out(box(half));
@@ -223,7 +223,7 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
         const glm::dvec3 point = spot_on(room, random).point;
         View view = view_from(direction(random) * half * 0.95, point);
         view.height = 300;
-        view.marks = marks_at({point});
+        view.markers = markers_at({point});
         CAPTURE(round);
         CHECK(color_at(studio.draw(scene_of({{1, room, kPaint, glm::dmat4(1)}}), view), view, point) ==
               kSign);
@@ -231,18 +231,18 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
     // In a corner, where all three walls come nearer.
     View view = view_from({0.5, -0.4, 0.5}, {-0.999, 0.599, -0.799});
     view.height = 300;
-    view.marks = marks_at({-half * glm::dvec3(1, -1, 1)});
+    view.markers = markers_at({-half * glm::dvec3(1, -1, 1)});
     CHECK(color_at(studio.draw(scene_of({{1, room, kPaint, glm::dmat4(1)}}), view), view,
-                   view.marks->front().point) == kSign);
+                   view.markers->front().point) == kSign);
 }
 
 TEST_CASE("what marks take: nothing where none shows, else one pass and a draw for 256") {
-    Studio studio;
+    RendererFixture studio;
     const auto scene = scene_of({{1, quad(100), kPaint, glm::dmat4(1)}});
     View view = pixel_view(80, 600);
     const Image plain = studio.draw(scene, view);
-    const auto draw = [&](std::vector<Mark> marks) {
-        view.marks = std::make_shared<const std::vector<Mark>>(std::move(marks));
+    const auto draw = [&](std::vector<PlacedMarker> markers) {
+        view.markers = std::make_shared<const std::vector<PlacedMarker>>(std::move(markers));
         const Image image = studio.draw(scene, view);
         return image.rgba == plain.rgba;
     };
@@ -259,43 +259,43 @@ TEST_CASE("what marks take: nothing where none shows, else one pass and a draw f
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.draws == 1);
     for (const auto& [count, draws] : {std::pair{1, 1}, {256, 1}, {257, 2}}) {
-        CHECK_FALSE(draw(std::vector<Mark>(static_cast<std::size_t>(count))));
+        CHECK_FALSE(draw(std::vector<PlacedMarker>(static_cast<std::size_t>(count))));
         CHECK(studio.stats.passes == 2);
         CHECK(studio.stats.draws == 1 + draws);
         CHECK(studio.stats.triangles == 2);
     }
-    CHECK(plan_frame(view).marks.empty());  // a view without a scene
+    CHECK(plan_frame(view).markers.empty());  // a view without a scene
     CHECK(draw({}));
 }
 
 TEST_CASE("markers at the picture's border are cut off there, and nearer ones lie over farther ones") {
-    Studio studio;
+    RendererFixture studio;
     View view = view_with_mark(-2.5, 300.5);
     const Image image = studio.draw(nothing(), view);
     CHECK(pixel_of(image, 0, 300) == kSign);
     CHECK(drawn_area(image) > 10);
     CHECK(drawn_area(image) < 30);
-    view.marks = marks_at({at_pixel(-4.5, -3.5, view)});
+    view.markers = markers_at({at_pixel(-4.5, -3.5, view)});
     CHECK(drawn_area(studio.draw(nothing(), view)) == 0);
     const glm::dvec3 left = at_pixel(38, 300.5, view), right = at_pixel(42, 300.5, view);
     const glm::dvec3 far_left = view.camera.eye + (left - view.camera.eye) * 2.0;
     const glm::dvec3 far_right = view.camera.eye + (right - view.camera.eye) * 2.0;
-    for (const auto& marks : {marks_at({left, far_right}), marks_at({far_right, left})}) {
-        view.marks = marks;
+    for (const auto& markers : {markers_at({left, far_right}), markers_at({far_right, left})}) {
+        view.markers = markers;
         CHECK(pixel_of(studio.draw(nothing(), view), 42, 300) == kRim);
     }
-    view.marks = marks_at({far_left, right});
+    view.markers = markers_at({far_left, right});
     CHECK(pixel_of(studio.draw(nothing(), view), 37, 300) == kRim);
 }
 
 TEST_CASE("markers in pictures a pixel wide or high, and with many samples") {
-    Studio studio;
+    RendererFixture studio;
     for (const glm::ivec2 size : {glm::ivec2(1, 8192), {8192, 1}, {1, 1}}) {
         const int width = size.x, height = size.y;
         CAPTURE(width);
         View view = pixel_view(width, height);
         view.background.color = {0, 0, 0};
-        view.marks = marks_at({{0, 0, 0}});
+        view.markers = markers_at({{0, 0, 0}});
         const Image image = studio.draw(nothing(), view);
         CHECK(pixel_of(image, width / 2, height / 2) == kSign);
         CHECK(drawn_area(image) ==

@@ -1,4 +1,4 @@
-#include "plan/rendering.hpp"
+#include "plan/render_job.hpp"
 
 #include <cmath>
 #include <span>
@@ -18,20 +18,20 @@ void average(std::span<const std::uint32_t> sums, int samples, std::span<std::ui
 
 }  // namespace
 
-Rendering::Rendering(View what, Image buffer) : view(std::move(what)), image(std::move(buffer)) {
+RenderJob::RenderJob(View what, Image buffer) : view(std::move(what)), image(std::move(buffer)) {
     image.resize(view.width, view.height);
     if (view.samples > 1) sums.assign(image.rgba.size(), 0);
 }
 
-bool add_sample(Rendering& rendering, std::vector<std::uint8_t>& pixels) {
-    ++rendering.samples;
-    if (rendering.view.samples <= 1) {
-        rendering.image.rgba.swap(pixels);
+bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels) {
+    ++job.samples;
+    if (job.view.samples <= 1) {
+        job.image.rgba.swap(pixels);
         return true;
     }
-    for (std::size_t k = 0; k < pixels.size(); ++k) rendering.sums[k] += pixels[k];
-    if (rendering.samples < rendering.view.samples) return false;
-    average(rendering.sums, rendering.samples, rendering.image.rgba);
+    for (std::size_t k = 0; k < pixels.size(); ++k) job.sums[k] += pixels[k];
+    if (job.samples < job.view.samples) return false;
+    average(job.sums, job.samples, job.image.rgba);
     return true;
 }
 

@@ -15,9 +15,9 @@ glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3&
 
 /// What a view of a scene shows, computed ray by ray without any of the renderer: opaque surfaces, and flat
 /// mirrors, in which mirrors are ordinary surfaces.
-class ExpectedPicture {
+class ExpectedImage {
 public:
-    ExpectedPicture(const PlacedScene& placed, const View& view);
+    ExpectedImage(const PlacedScene& placed, const View& view);
 
     struct Seen {
         /// Which faces or smooth parts, one behind the other, and in a mirror what is seen there; -1 for the
@@ -32,33 +32,33 @@ public:
     std::optional<Seen> pixel(int x, int y) const;
 
 private:
-    struct Corner {
+    struct ExpectedVertex {
         glm::dvec3 position{0}, normal{0};
     };
-    struct Triangle {
-        Corner corners[3];
+    struct ExpectedTriangle {
+        ExpectedVertex corners[3];
         Material material;
         int surface = -1;
         bool both_sides = false;
         bool mirrored = false;
         Index mirror = kNone;  ///< the node of a flat mirror
     };
-    struct Hit {
+    struct ExpectedHit {
         double distance = 0;
         Seen seen;
         double alpha = 1;
     };
     Seen along(const glm::dvec3& origin, const glm::dvec3& ray, Index from_mirror) const;
     /// In any order, those of the same distance by rising id.
-    Seen composited(std::vector<Hit> hits) const;
+    Seen composited(std::vector<ExpectedHit> hits) const;
     void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
 
     View view_;
-    std::vector<Triangle> triangles_;
+    std::vector<ExpectedTriangle> triangles_;
     int surfaces_ = 0;
 };
 
-struct Difference {
+struct ImageMismatch {
     int worst = 0;      ///< of 255
     std::string where;  ///< that pixel and both its colours
     int compared = 0;   ///< pixels
@@ -66,7 +66,7 @@ struct Difference {
 };
 
 /// Compares all pixels but those at outlines and edges.
-Difference difference(const ExpectedPicture& expected, const Image& image);
+ImageMismatch difference(const ExpectedImage& expected, const Image& image);
 
 /// The bytes at a pixel, y from the top.
 glm::ivec3 pixel_of(const Image& image, int x, int y);

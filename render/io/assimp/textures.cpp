@@ -1,4 +1,4 @@
-#include "io/assimp/pictures.hpp"
+#include "io/assimp/textures.hpp"
 
 #include <assimp/GltfMaterial.h>
 
@@ -17,37 +17,38 @@ namespace vrut {
 
 namespace {
 
-std::string picture_name(const aiMaterial& material, aiTextureType type) {
+std::string texture_name(const aiMaterial& material, aiTextureType type) {
     aiString name;
     return material.Get(AI_MATKEY_TEXTURE(type, 0), name) == aiReturn_SUCCESS ? text_of(name) : "";
 }
 
 /// The picture of the colour; of some materials it is called another thing than of most.
-aiTextureType color_picture(const aiMaterial& material) {
-    return has_picture(material, aiTextureType_DIFFUSE) ? aiTextureType_DIFFUSE : aiTextureType_BASE_COLOR;
+aiTextureType color_texture_type(const aiMaterial& material) {
+    return has_texture(material, aiTextureType_DIFFUSE) ? aiTextureType_DIFFUSE : aiTextureType_BASE_COLOR;
 }
 
 /// As assimp looks for it: a picture inside the file may be meant by its number or by its name.
 std::string name_of(const std::string& address, const aiScene& scene, const std::filesystem::path& folder,
                     AssimpFormat format) {
-    if (format == AssimpFormat::gltf) return name_of_address(folder, address);
+    if (format == AssimpFormat::gltf) return file_name_of_uri(folder, address);
     const int number = scene.GetEmbeddedTextureAndIndex(address.c_str()).second;
-    return number >= 0 ? "*" + std::to_string(number) : name_of_foreign_address(folder, address);
+    return number >= 0 ? "*" + std::to_string(number) : file_name_of_foreign_path(folder, address);
 }
 
-void tell_lost_placement(const aiMaterial& from, aiTextureType type, Losses& losses) {
+void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, ConversionWarnings& warnings) {
     int set = 0, wrap = aiTextureMapMode_Wrap;
     if (from.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS && set != 0)
-        losses.add("a picture is laid by the first texture coordinates, and not by others as the file says");
+        warnings.add(
+            "a picture is laid by the first texture coordinates, and not by others as the file says");
     for (const char* key : {"$tex.mapmodeu", "$tex.mapmodev"})
         if (from.Get(key, type, 0, wrap) == aiReturn_SUCCESS && wrap != aiTextureMapMode_Wrap)
-            losses.add("a picture is repeated where the file clamps or mirrors it");
+            warnings.add("a picture is repeated where the file clamps or mirrors it");
     aiUVTransform shift;
     if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), shift) == aiReturn_SUCCESS &&
         (shift.mTranslation != aiVector2D(0, 0) || shift.mScaling != aiVector2D(1, 1) ||
          shift.mRotation != 0))
-        losses.add("a picture is neither shifted nor scaled nor turned as the file says");
-    if (from.GetTextureCount(type) > 1) losses.add("of several pictures on top of each other one is shown");
+        warnings.add("a picture is neither shifted nor scaled nor turned as the file says");
+    if (from.GetTextureCount(type) > 1) warnings.add("of several pictures on top of each other one is shown");
 }
 
 using TextureResult = tl::expected<Index, std::string>;
@@ -61,7 +62,7 @@ TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint
     aiTexture& from = *scene.mTextures[index];
     if (from.mHeight != 0 || from.pcData == nullptr)
         return tl::unexpected(std::string("it is neither PNG nor JPEG"));
-    auto image = decode_picture({reinterpret_cast<const char*>(from.pcData), from.mWidth}, max_pixels);
+    auto image = decode_image({reinterpret_cast<const char*>(from.pcData), from.mWidth}, max_pixels);
     delete[] from.pcData;  // each is decoded once
     from.pcData = nullptr;
     if (!image) return tl::unexpected(image.error());
@@ -72,21 +73,21 @@ TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint
 
 }  // namespace
 
-bool has_picture(const aiMaterial& material, aiTextureType type) {
+bool has_texture(const aiMaterial& material, aiTextureType type) {
     return material.GetTextureCount(type) > 0;
 }
 
-void name_picture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                  AssimpFormat format, Material& material, Losses& losses) {
-    const aiTextureType type = color_picture(from);
-    if (!has_picture(from, type)) return;
-    material.image = name_of(picture_name(from, type), scene, folder, format);
-    tell_lost_placement(from, type, losses);
+void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                      AssimpFormat format, Material& material, ConversionWarnings& warnings) {
+    const aiTextureType type = color_texture_type(from);
+    if (!has_texture(from, type)) return;
+    material.image = name_of(texture_name(from, type), scene, folder, format);
+    report_unsupported_sampling(from, type, warnings);
     if (glm::dvec3(material.diffuse) != glm::dvec3(1))
-        losses.add("a picture's colours are shown as they are, and not multiplied by the base colour");
+        warnings.add("a picture's colours are shown as they are, and not multiplied by the base colour");
 }
 
-void tell_lost_pictures(const aiMaterial& from, Losses& losses) {
+void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings) {
     constexpr std::pair<aiTextureType, const char*> kLost[] = {
         {aiTextureType_NORMALS, "a normal map is not shown"},
         {aiTextureType_HEIGHT, "a bump map is not shown"},
@@ -99,9 +100,9 @@ void tell_lost_pictures(const aiMaterial& from, Losses& losses) {
         {aiTextureType_EMISSIVE, "a picture that glows is not shown"},
     };
     for (const auto& [type, what] : kLost)
-        if (has_picture(from, type)) losses.add(what);
-    if (has_picture(from, aiTextureType_OPACITY) && ignores_alpha(from, AssimpFormat::obj))
-        losses.add("a picture of transparency on its own is not shown");
+        if (has_texture(from, type)) warnings.add(what);
+    if (has_texture(from, aiTextureType_OPACITY) && ignores_alpha(from, AssimpFormat::obj))
+        warnings.add("a picture of transparency on its own is not shown");
 }
 
 std::string alpha_mode(const aiMaterial& material) {
@@ -111,15 +112,16 @@ std::string alpha_mode(const aiMaterial& material) {
 
 bool ignores_alpha(const aiMaterial& material, AssimpFormat format) {
     if (format == AssimpFormat::gltf) return alpha_mode(material) == "OPAQUE";
-    const std::string opacity = picture_name(material, aiTextureType_OPACITY);
-    return opacity.empty() || opacity != picture_name(material, color_picture(material));
+    const std::string opacity = texture_name(material, aiTextureType_OPACITY);
+    return opacity.empty() || opacity != texture_name(material, color_texture_type(material));
 }
 
-void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, std::vector<Texture>& textures,
-                            const std::string& file, std::vector<std::string>& notices) {
+void decode_embedded_textures(aiScene& scene, std::vector<Material>& materials,
+                              std::vector<Texture>& textures, const std::string& file,
+                              std::vector<std::string>& notices) {
     Notices faults;
     std::map<std::string, TextureResult> known;
-    std::uint64_t pixels_left = kMaxScenePixels;
+    std::uint64_t pixels_left = kMaxTexturePixels;
     for (Material& material : materials) {
         if (!material.image.starts_with('*')) continue;
         auto found = known.find(material.image);
@@ -127,7 +129,7 @@ void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, st
             found = known
                         .emplace(material.image,
                                  decode_embedded(scene, material.image,
-                                                 std::min(pixels_left, kMaxPicturePixels), textures))
+                                                 std::min(pixels_left, kMaxImagePixels), textures))
                         .first;
             if (found->second) pixels_left -= textures.back().image.rgba.size() / 4;
         }
@@ -142,7 +144,7 @@ void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, st
     faults.append_to(notices);
 }
 
-void make_pictures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
+void make_textures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
                           std::vector<Texture>& textures) {
     std::vector<bool> keeps_alpha(textures.size());
     for (std::size_t i = 0; i < materials.size(); ++i)

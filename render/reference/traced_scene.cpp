@@ -1,4 +1,4 @@
-#include "reference/surfaces.hpp"
+#include "reference/traced_scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,7 @@ glm::dmat4 eye_from_centered(const glm::dmat4& world, const glm::dvec3& center, 
 }
 
 /// None where the node draws nothing.
-std::optional<Part> part_of(const View& view, std::size_t node) {
+std::optional<TracedInstance> instance_of(const View& view, std::size_t node) {
     const PlacedScene& placed = *view.scene;
     const Scene& scene = *placed.scene;
     const auto* data = std::get_if<GeometryData>(&scene.nodes()[node].data);
@@ -44,9 +44,9 @@ std::optional<Part> part_of(const View& view, std::size_t node) {
     const glm::dmat4 matrix = eye_from_centered(placed.world[node], center, view.camera.eye);
     const Bounds box =
         transformed(matrix, Bounds{geometry.bounds.min - center, geometry.bounds.max - center});
-    if (!(glm::length(box.min) < kFarthestDrawn && glm::length(box.max) < kFarthestDrawn)) return {};
+    if (!(glm::length(box.min) < kMaxDrawDistance && glm::length(box.max) < kMaxDrawDistance)) return {};
 
-    Part part;
+    TracedInstance part;
     part.node = static_cast<Index>(node);
     part.geometry = &geometry;
     part.positions.reserve(geometry.positions.size());
@@ -63,13 +63,13 @@ std::optional<Part> part_of(const View& view, std::size_t node) {
     if (!stylized && !part.transparent && material.reflectivity > 0 && plane)
         part.mirror = transformed(matrix, Plane{plane->normal, plane->point - center});
     const bool singular = !(std::abs(determinant) > 1e-12);
-    part.both_sides = singular || material.two_sided || part.mirror;
-    part.clockwise = part.both_sides || determinant > 0;
-    part.counter_clockwise = part.both_sides || determinant < 0;
+    part.two_sided = singular || material.two_sided || part.mirror;
+    part.clockwise = part.two_sided || determinant > 0;
+    part.counter_clockwise = part.two_sided || determinant < 0;
     return part;
 }
 
-void number_twins(std::vector<Part>& parts, const PlacedScene& placed) {
+void number_coincident(std::vector<TracedInstance>& parts, const PlacedScene& placed) {
     std::multimap<const Geometry*, std::uint32_t> firsts;
     for (std::uint32_t i = 0; i < parts.size(); ++i) {
         const auto world = [&](std::uint32_t part) {
@@ -78,37 +78,38 @@ void number_twins(std::vector<Part>& parts, const PlacedScene& placed) {
         const auto [begin, end] = firsts.equal_range(parts[i].geometry);
         const auto first =
             std::find_if(begin, end, [&](const auto& other) { return world(other.second) == world(i); });
-        parts[i].twins = first == end ? i : first->second;
+        parts[i].coincident_group = first == end ? i : first->second;
         if (first == end) firsts.emplace(parts[i].geometry, i);
     }
 }
 
-std::vector<Part> parts_of(const View& view) {
-    std::vector<Part> parts;
+std::vector<TracedInstance> parts_of(const View& view) {
+    std::vector<TracedInstance> parts;
     if (!view.scene || view.wireframe) return parts;
     const auto& nodes = view.scene->scene->nodes();
     const std::vector<bool> shown = shown_nodes(*view.scene, view.camera.eye);
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
-            if (auto part = part_of(view, i)) parts.push_back(*std::move(part));
-    const auto id = [&](const Part& part) { return nodes[static_cast<std::size_t>(part.node)].id; };
-    std::sort(parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return id(a) < id(b); });
-    number_twins(parts, *view.scene);
+            if (auto part = instance_of(view, i)) parts.push_back(*std::move(part));
+    const auto id = [&](const TracedInstance& part) { return nodes[static_cast<std::size_t>(part.node)].id; };
+    std::sort(parts.begin(), parts.end(),
+              [&](const TracedInstance& a, const TracedInstance& b) { return id(a) < id(b); });
+    number_coincident(parts, *view.scene);
     return parts;
 }
 
-std::vector<Bounds> boxes_of(const std::vector<Part>& parts, const auto& triangles) {
+std::vector<Bounds> boxes_of(const std::vector<TracedInstance>& parts, const auto& triangles) {
     std::vector<Bounds> boxes;
     boxes.reserve(triangles.size());
     for (const auto& triangle : triangles) {
-        const Part& part = parts[triangle.part];
+        const TracedInstance& part = parts[triangle.part];
         Bounds& box = boxes.emplace_back();
         for (int k = 0; k < 3; ++k) box.add(part.positions[part.geometry->triangles[triangle.index][k]]);
     }
     return boxes;
 }
 
-auto triangles_of(const std::vector<Part>& parts, bool transparent, auto triangles) {
+auto triangles_of(const std::vector<TracedInstance>& parts, bool transparent, auto triangles) {
     for (std::uint32_t i = 0; i < parts.size(); ++i)
         for (std::uint32_t k = 0;
              parts[i].transparent == transparent && k < parts[i].geometry->triangles.size(); ++k)
@@ -124,13 +125,13 @@ double side(double value, const glm::dvec3& a, const glm::dvec3& b) {
 }
 
 /// With the part left to be filled in.
-std::optional<Meeting> meet(const Part& part, std::uint32_t triangle, const RaySpace& space,
-                            const glm::dvec3& origin) {
+std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
+                                     const RaySpace& space, const glm::dvec3& origin) {
     const glm::uvec3& corners = part.geometry->triangles[triangle];
-    const glm::dvec3 a = space.from_seen(part.positions[corners.x] - origin);
-    const glm::dvec3 b = space.from_seen(part.positions[corners.y] - origin);
-    const glm::dvec3 c = space.from_seen(part.positions[corners.z] - origin);
-    const double u = edge(c, b), v = edge(a, c), w = edge(b, a);
+    const glm::dvec3 a = space.to_ray_space(part.positions[corners.x] - origin);
+    const glm::dvec3 b = space.to_ray_space(part.positions[corners.y] - origin);
+    const glm::dvec3 c = space.to_ray_space(part.positions[corners.z] - origin);
+    const double u = edge_function(c, b), v = edge_function(a, c), w = edge_function(b, a);
     const double u_side = side(u, c, b), v_side = side(v, a, c), w_side = side(w, b, a);
     const bool clockwise = u_side > 0 && v_side > 0 && w_side > 0;
     const bool counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
@@ -139,54 +140,56 @@ std::optional<Meeting> meet(const Part& part, std::uint32_t triangle, const RayS
     if (area == 0) return {};
     const double distance = a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area;
     if (!(distance > 0)) return {};
-    return Meeting{0, triangle, distance, glm::dvec3(u, v, w) / area};
+    return TriangleHit{0, triangle, distance, glm::dvec3(u, v, w) / area};
 }
 
 }  // namespace
 
-bool Meeting::before(const Meeting& other) const {
+bool TriangleHit::is_in_front_of(const TriangleHit& other) const {
     return std::tie(distance, other.part, other.triangle) < std::tie(other.distance, part, triangle);
 }
 
-Surfaces::Group::Group(const std::vector<Part>& parts, bool are_transparent)
-    : triangles(triangles_of(parts, are_transparent, std::vector<Triangle>())),
+TracedScene::TriangleSet::TriangleSet(const std::vector<TracedInstance>& parts, bool are_transparent)
+    : triangles(triangles_of(parts, are_transparent, std::vector<TriangleRef>())),
       tree(boxes_of(parts, triangles)) {}
 
-Surfaces::Surfaces(const View& view)
+TracedScene::TracedScene(const View& view)
     : parts_(parts_of(view)), opaque_(parts_, false), transparent_(parts_, true) {}
 
-std::optional<Meeting> Surfaces::first_opaque(const Sight& ray, std::uint32_t without) const {
+std::optional<TriangleHit> TracedScene::closest_opaque_hit(const RayDifferential& ray,
+                                                           std::uint32_t excluded) const {
     const RaySpace space(ray.direction);
-    Meeting first;
+    TriangleHit first;
     first.distance = std::numeric_limits<double>::infinity();
     opaque_.tree.visit(ray.origin, ray.direction, first.distance, [&](std::uint32_t number) {
-        const Triangle& triangle = opaque_.triangles[number];
-        if (is_twin(triangle.part, without)) return;
-        auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
-        if (!meeting) return;
-        meeting->part = triangle.part;
-        if (meeting->before(first)) first = *meeting;
+        const TriangleRef& triangle = opaque_.triangles[number];
+        if (is_coincident(triangle.part, excluded)) return;
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);
+        if (!hit) return;
+        hit->part = triangle.part;
+        if (hit->is_in_front_of(first)) first = *hit;
     });
     if (!std::isfinite(first.distance)) return {};
     return first;
 }
 
-std::vector<Meeting> Surfaces::transparent_before(const Sight& ray, const std::optional<Meeting>& end,
-                                                  std::uint32_t without) const {
-    std::vector<Meeting> meetings;
+std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferential& ray,
+                                                              const std::optional<TriangleHit>& end,
+                                                              std::uint32_t excluded) const {
+    std::vector<TriangleHit> hits;
     const RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
     transparent_.tree.visit(ray.origin, ray.direction, farthest, [&](std::uint32_t number) {
-        const Triangle& triangle = transparent_.triangles[number];
-        if (is_twin(triangle.part, without)) return;
-        auto meeting = meet(parts_[triangle.part], triangle.index, space, ray.origin);
-        if (!meeting) return;
-        meeting->part = triangle.part;
-        if (!end || meeting->before(*end)) meetings.push_back(*meeting);
+        const TriangleRef& triangle = transparent_.triangles[number];
+        if (is_coincident(triangle.part, excluded)) return;
+        auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);
+        if (!hit) return;
+        hit->part = triangle.part;
+        if (!end || hit->is_in_front_of(*end)) hits.push_back(*hit);
     });
-    std::sort(meetings.begin(), meetings.end(),
-              [](const Meeting& a, const Meeting& b) { return a.before(b); });
-    return meetings;
+    std::sort(hits.begin(), hits.end(),
+              [](const TriangleHit& a, const TriangleHit& b) { return a.is_in_front_of(b); });
+    return hits;
 }
 
 }  // namespace vrut::reference

@@ -13,9 +13,9 @@ class FramePlanner;
 
 /// An image of a view that is drawn in steps (Renderer::step). Between two steps it may wait while others are
 /// drawn, and it may outlive its renderer.
-struct Rendering {
+struct RenderJob {
     /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again.
-    explicit Rendering(View what, Image buffer = {});
+    explicit RenderJob(View what, Image buffer = {});
 
     View view;
     Image image;                      ///< of the view's size; its pixels once all samples are drawn
@@ -24,15 +24,15 @@ struct Rendering {
     int samples = 0;                  ///< drawn, of view.samples
     std::shared_ptr<FramePlanner> planner = nullptr;  ///< the renderer's, by which it knows this image
     // Copies would share one unfinished sample.
-    Rendering(const Rendering&) = delete;
-    Rendering& operator=(const Rendering&) = delete;
-    Rendering(Rendering&&) = default;
-    Rendering& operator=(Rendering&&) = default;
-    ~Rendering() = default;
+    RenderJob(const RenderJob&) = delete;
+    RenderJob& operator=(const RenderJob&) = delete;
+    RenderJob(RenderJob&&) = default;
+    RenderJob& operator=(RenderJob&&) = default;
+    ~RenderJob() = default;
 };
 
 /// Adds a sample, given by the bytes of its pixels; where there is only one, they become the image, and
 /// `pixels` takes the image's memory. True if all samples are drawn: then the image holds their averages.
-bool add_sample(Rendering& rendering, std::vector<std::uint8_t>& pixels);
+bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
 
 }  // namespace vrut

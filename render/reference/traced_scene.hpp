@@ -13,13 +13,13 @@ namespace vrut::reference {
 
 /// A half-line relative to the eye, along the world's axes, and how it changes from a pixel to the next, to
 /// the right and upwards.
-struct Sight {
+struct RayDifferential {
     glm::dvec3 origin{0}, direction{0, 0, -1};  ///< the direction is unit
-    std::array<glm::dvec3, 2> origin_change{}, direction_change{};
+    std::array<glm::dvec3, 2> dorigin_dxy{}, ddirection_dxy{};
 };
 
 /// A geometry node as the eye sees it: all is relative to the eye, along the world's axes.
-struct Part {
+struct TracedInstance {
     Index node = kNone;
     const Geometry* geometry = nullptr;
     const Material* material = nullptr;
@@ -28,53 +28,55 @@ struct Part {
         1};  ///< cofactors of the node's matrix, by the sign of its determinant, to scale
     /// Which triangles are drawn, by how they turn in a ray's space.
     bool clockwise = false, counter_clockwise = false;
-    bool both_sides = false;  ///< normals turn to the viewer
+    bool two_sided = false;  ///< normals turn to the viewer
     bool transparent = false;
     std::optional<Plane> mirror;
-    std::uint32_t twins = 0;  ///< the first part of the same geometry under the same matrix
+    std::uint32_t coincident_group = 0;  ///< the first part of the same geometry under the same matrix
 };
 
 /// Where a ray goes through a triangle. One exactly through an edge or a corner meets one of the triangles
 /// around it that turn the same way, so that a pane of glass is met once and a closed surface has no gaps.
-struct Meeting {
+struct TriangleHit {
     std::uint32_t part = 0, triangle = 0;
-    double distance = 0;    ///< along the ray, above 0, in the scene's unit
-    glm::dvec3 weights{0};  ///< of the triangle's corners; their sum is 1
+    double distance = 0;         ///< along the ray, above 0, in the scene's unit
+    glm::dvec3 barycentrics{0};  ///< of the triangle's corners; their sum is 1
 
     /// Equal distance: the higher id is in front; of one geometry the later triangle.
-    bool before(const Meeting& other) const;
+    bool is_in_front_of(const TriangleHit& other) const;
 };
 
 /// What a view shows of a scene, to be met by rays.
-class Surfaces {
+class TracedScene {
 public:
-    explicit Surfaces(const View& view);
-    const std::vector<Part>& parts() const { return parts_; }  ///< by rising id
+    explicit TracedScene(const View& view);
+    const std::vector<TracedInstance>& parts() const { return parts_; }  ///< by rising id
 
-    static constexpr std::uint32_t kNoPart = 0xffffffff;
+    static constexpr std::uint32_t kNoInstance = 0xffffffff;
     /// The first opaque surface along the ray; the part `without` and its twins are passed.
-    std::optional<Meeting> first_opaque(const Sight& ray, std::uint32_t without = kNoPart) const;
+    std::optional<TriangleHit> closest_opaque_hit(const RayDifferential& ray,
+                                                  std::uint32_t excluded = kNoInstance) const;
     /// All transparent surfaces before `end` (all along the ray, where it is none), nearest first; `without`
     /// and its twins are passed.
-    std::vector<Meeting> transparent_before(const Sight& ray, const std::optional<Meeting>& end,
-                                            std::uint32_t without = kNoPart) const;
+    std::vector<TriangleHit> transparent_hits_before(const RayDifferential& ray,
+                                                     const std::optional<TriangleHit>& end,
+                                                     std::uint32_t excluded = kNoInstance) const;
 
 private:
-    bool is_twin(std::uint32_t part, std::uint32_t of) const {
-        return of != kNoPart && parts_[part].twins == parts_[of].twins;
+    bool is_coincident(std::uint32_t part, std::uint32_t of) const {
+        return of != kNoInstance && parts_[part].coincident_group == parts_[of].coincident_group;
     }
-    struct Triangle {
+    struct TriangleRef {
         std::uint32_t part, index;
     };
     /// Triangles in a tree.
-    struct Group {
-        Group(const std::vector<Part>& parts, bool transparent);
-        std::vector<Triangle> triangles;
-        BoxTree tree;
+    struct TriangleSet {
+        TriangleSet(const std::vector<TracedInstance>& parts, bool transparent);
+        std::vector<TriangleRef> triangles;
+        RayBvh tree;
     };
 
-    std::vector<Part> parts_;
-    Group opaque_, transparent_;
+    std::vector<TracedInstance> parts_;
+    TriangleSet opaque_, transparent_;
 };
 
 }  // namespace vrut::reference

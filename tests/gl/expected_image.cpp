@@ -1,4 +1,4 @@
-#include "expected_picture.hpp"
+#include "expected_image.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3&
                       0.0, 1.0);
 }
 
-ExpectedPicture::ExpectedPicture(const PlacedScene& placed, const View& view) : view_(view) {
+ExpectedImage::ExpectedImage(const PlacedScene& placed, const View& view) : view_(view) {
     const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
     std::vector<std::size_t> order(shown.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -47,7 +47,7 @@ ExpectedPicture::ExpectedPicture(const PlacedScene& placed, const View& view) : 
             add(placed, i, *data);
 }
 
-void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const GeometryData& data) {
+void ExpectedImage::add(const PlacedScene& placed, std::size_t node, const GeometryData& data) {
     const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
     const Material& material = placed.scene->material(placed.nodes[node].material);
     const glm::dmat4& world = placed.world[node];
@@ -59,7 +59,7 @@ void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const Geo
     for (const glm::uvec3& indices : geometry.triangles) {
         const auto position = [&](int k) { return geometry.positions[indices[k]]; };
         const glm::dvec3 face = glm::cross(position(1) - position(0), position(2) - position(0));
-        Triangle triangle{{}, material, smooth_surface, material.two_sided, mirrored, kNone};
+        ExpectedTriangle triangle{{}, material, smooth_surface, material.two_sided, mirrored, kNone};
         if (material.reflectivity > 0 && placed.scene->plane(data.geometry)) {
             triangle.mirror = static_cast<Index>(node);
             triangle.both_sides = true;
@@ -78,7 +78,7 @@ void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const Geo
         if (flat) {
             // Two triangles of one plane are one surface.
             const auto same_plane =
-                std::find_if(triangles_.begin(), triangles_.end(), [&](const Triangle& other) {
+                std::find_if(triangles_.begin(), triangles_.end(), [&](const ExpectedTriangle& other) {
                     return other.surface > smooth_surface &&
                            glm::distance(other.corners[0].normal, triangle.corners[0].normal) < 1e-6;
                 });
@@ -88,7 +88,7 @@ void ExpectedPicture::add(const PlacedScene& placed, std::size_t node, const Geo
     }
 }
 
-ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
+ExpectedImage::Seen ExpectedImage::at(double x, double y) const {
     const Camera& camera = view_.camera;
     const glm::dvec3 view = glm::normalize(camera.focus - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(view, camera.up)), up = glm::cross(right, view);
@@ -100,16 +100,16 @@ ExpectedPicture::Seen ExpectedPicture::at(double x, double y) const {
     return along(camera.eye, ray, kNone);
 }
 
-ExpectedPicture::Seen ExpectedPicture::along(const glm::dvec3& origin, const glm::dvec3& ray,
-                                             Index from_mirror) const {
+ExpectedImage::Seen ExpectedImage::along(const glm::dvec3& origin, const glm::dvec3& ray,
+                                         Index from_mirror) const {
     Light light = view_.light;
     if (light.headlight) {
         light.headlight = false;
         light.type = LightData::Type::point;
         light.position = view_.camera.eye;
     }
-    std::vector<Hit> hits;
-    for (const Triangle& triangle : triangles_) {
+    std::vector<ExpectedHit> hits;
+    for (const ExpectedTriangle& triangle : triangles_) {
         if (from_mirror != kNone && triangle.mirror == from_mirror) continue;
         const auto& [a, b, c] = triangle.corners;
         // Möller and Trumbore: origin + t ray = a + u (b - a) + v (c - a)
@@ -140,16 +140,16 @@ ExpectedPicture::Seen ExpectedPicture::along(const glm::dvec3& origin, const glm
     return composited(std::move(hits));
 }
 
-ExpectedPicture::Seen ExpectedPicture::composited(std::vector<Hit> hits) const {
+ExpectedImage::Seen ExpectedImage::composited(std::vector<ExpectedHit> hits) const {
     // Of the same depth the later one is in front.
     std::reverse(hits.begin(), hits.end());
     std::stable_sort(hits.begin(), hits.end(),
-                     [](const Hit& a, const Hit& b) { return a.distance < b.distance; });
+                     [](const ExpectedHit& a, const ExpectedHit& b) { return a.distance < b.distance; });
 
     Seen all{-1, glm::dvec3(0)};
     double through = 1;
-    const Hit* before = nullptr;
-    for (const Hit& hit : hits) {
+    const ExpectedHit* before = nullptr;
+    for (const ExpectedHit& hit : hits) {
         // A ray through the edge between two triangles meets their surface once.
         if (before && before->seen.surface == hit.seen.surface &&
             hit.distance - before->distance < 1e-9 * hit.distance)
@@ -164,7 +164,7 @@ ExpectedPicture::Seen ExpectedPicture::composited(std::vector<Hit> hits) const {
     return all;
 }
 
-std::optional<ExpectedPicture::Seen> ExpectedPicture::pixel(int x, int y) const {
+std::optional<ExpectedImage::Seen> ExpectedImage::pixel(int x, int y) const {
     const Seen center = at(x + 0.5, y + 0.5);
     for (const double dx : {0.02, 0.98})
         for (const double dy : {0.02, 0.98})
@@ -172,8 +172,8 @@ std::optional<ExpectedPicture::Seen> ExpectedPicture::pixel(int x, int y) const 
     return center;
 }
 
-Difference difference(const ExpectedPicture& expected, const Image& image) {
-    Difference result;
+ImageMismatch difference(const ExpectedImage& expected, const Image& image) {
+    ImageMismatch result;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const auto seen = expected.pixel(x, y);

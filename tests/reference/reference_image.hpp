@@ -9,7 +9,7 @@
 
 namespace vrut {
 
-using Parts = std::vector<Part>;
+using ReferenceParts = std::vector<Part>;
 
 /// One pixel, which looks from `eye` to `focus`.
 inline View look(const glm::dvec3& eye, const glm::dvec3& focus) {
@@ -38,13 +38,13 @@ inline View pixels(int width, int height) {
     return view;
 }
 
-inline ReferencePicture traced(const std::shared_ptr<const PlacedScene>& scene, View view) {
+inline ReferenceImage traced(const std::shared_ptr<const PlacedScene>& scene, View view) {
     view.scene = scene;
     return trace(view);
 }
 
 /// What the one pixel shows.
-inline glm::dvec3 seen(const Parts& parts, const View& view) {
+inline glm::dvec3 seen(const ReferenceParts& parts, const View& view) {
     return traced(scene_of(parts), view).color[0];
 }
 
@@ -58,7 +58,7 @@ inline void check_same(const glm::dvec3& is, const glm::dvec3& should, double to
 }
 
 /// The largest difference of any component.
-inline double difference_of(const ReferencePicture& a, const ReferencePicture& b) {
+inline double difference_of(const ReferenceImage& a, const ReferenceImage& b) {
     REQUIRE(a.color.size() == b.color.size());
     double worst = 0;
     for (std::size_t i = 0; i < a.color.size(); ++i)

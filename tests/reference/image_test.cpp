@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "looks.hpp"
+#include "reference_image.hpp"
 #include "scene/colors.hpp"
 
 using namespace vrut;
@@ -17,7 +17,7 @@ Geometry rounded(Geometry geometry) {
     return geometry;
 }
 
-Parts things() {
+ReferenceParts things() {
     Material glass = material_of({0.1, 0.6, 0.4}, {0.5, 0.5, 0.5}, 9);
     glass.diffuse.a = 0.5;
     Material mirror = material_of({0.1, 0.1, 0.1});
@@ -27,7 +27,7 @@ Parts things() {
             {3, rounded(mapped(sphere(0.5, 7), 1, {1, 0.5, 0.25})), glass, glm::dmat4(1)}};
 }
 
-Parts map_all(Parts parts, double scale, const glm::dvec3& offset) {
+ReferenceParts map_all(ReferenceParts parts, double scale, const glm::dvec3& offset) {
     for (Part& part : parts) part.geometry = mapped(part.geometry, scale, offset);
     return parts;
 }
@@ -39,9 +39,9 @@ View seen_from(double scale, const glm::dvec3& offset) {
 }  // namespace
 
 TEST_CASE("far from the origin, and of any size, the picture is the same") {
-    const ReferencePicture here = traced(scene_of(things()), seen_from(1, {0, 0, 0}));
-    const auto check = [&](const Parts& parts, const View& view) {
-        const ReferencePicture there = traced(scene_of(parts), view);
+    const ReferenceImage here = traced(scene_of(things()), seen_from(1, {0, 0, 0}));
+    const auto check = [&](const ReferenceParts& parts, const View& view) {
+        const ReferenceImage there = traced(scene_of(parts), view);
         CHECK(there.node == here.node);
         CHECK(difference_of(there, here) < 1e-9);
     };
@@ -53,7 +53,7 @@ TEST_CASE("far from the origin, and of any size, the picture is the same") {
         check(map_all(things(), scale, {0, 0, 0}), seen_from(scale, {0, 0, 0}));
 
     // By matrices: moved there, and from there back; mirrored twice; turned all the way round.
-    Parts parts = things();
+    ReferenceParts parts = things();
     for (Part& part : parts) part.matrix = moved_by(far);
     check(parts, seen_from(1, far));
     parts = map_all(things(), 1, far);
@@ -67,9 +67,9 @@ TEST_CASE("far from the origin, and of any size, the picture is the same") {
 }
 
 TEST_CASE("the order of the file is nothing to it") {
-    Parts parts = things();
+    ReferenceParts parts = things();
     const View view = seen_from(1, {0, 0, 0});
-    const ReferencePicture should = traced(scene_of(parts), view);
+    const ReferenceImage should = traced(scene_of(parts), view);
     std::reverse(parts.begin(), parts.end());
     CHECK(traced(scene_of(parts), view).color == should.color);
 }
@@ -80,7 +80,7 @@ TEST_CASE("a pixel is the mean of its samples, not rounded before") {
     step.samples = 4;
     step.background.color = {0, 0, 0};
     const Part half{1, quad(9), glowing({1, 1, 1}), moved_by({-9.5, 0, 0})};
-    const ReferencePicture edge = traced(scene_of({half}), step);
+    const ReferenceImage edge = traced(scene_of({half}), step);
     for (const double row : {0, 4}) {
         const auto first = static_cast<std::size_t>(row);
         check_same(edge.color[first], glm::dvec3(1));
@@ -88,19 +88,19 @@ TEST_CASE("a pixel is the mean of its samples, not rounded before") {
         check_same(edge.color[first + 2], glm::dvec3(0));
     }
     const Part top{1, quad(9), glowing({1, 1, 1}), moved_by({0, 9.75, 0})};  // a quarter of the upper row
-    const ReferencePicture upper = traced(scene_of({top}), step);
+    const ReferenceImage upper = traced(scene_of({top}), step);
     check_same(upper.color[4], glm::dvec3(0.25));  // one of the offsets 1/8, 3/8, 5/8, 7/8 is less
     check_same(upper.color[0], glm::dvec3(0));
 }
 
 TEST_CASE("stylized faces are all in one colour, and hide what is behind") {
-    Parts parts = things();
+    ReferenceParts parts = things();
     View view = seen_from(1, {0, 0, 0});
     view.mode = DrawMode::stylized;
-    const ReferencePicture shown = traced(scene_of(parts), view);
+    const ReferenceImage shown = traced(scene_of(parts), view);
     for (Part& part : parts) part.material = stylized_faces();
     view.mode = DrawMode::realistic;
-    const ReferencePicture should = traced(scene_of(parts), view);
+    const ReferenceImage should = traced(scene_of(parts), view);
     CHECK(difference_of(shown, should) == 0);
     CHECK(shown.node == should.node);
 }
@@ -108,13 +108,13 @@ TEST_CASE("stylized faces are all in one colour, and hide what is behind") {
 TEST_CASE("a wireframe has no faces") {
     View view = seen_from(1, {0, 0, 0});
     view.wireframe = true;
-    const ReferencePicture shown = traced(scene_of(things()), view);
+    const ReferenceImage shown = traced(scene_of(things()), view);
     CHECK(std::count(shown.node.begin(), shown.node.end(), kNone) == 48 * 32);
     check_same(shown.color[700], kDefaultBackground);
 }
 
 TEST_CASE("bytes are rounded to the nearest, halves up") {
-    ReferencePicture picture{
+    ReferenceImage picture{
         3, 1, {{0, 1, 0.5}, {0.49 / 255, 0.51 / 255, 1 - 0.49 / 255}, {0.002, 1.5 / 255, 0.9981}}, {}};
     CHECK(image_of(picture).rgba ==
           std::vector<std::uint8_t>{0, 255, 128, 255, 0, 1, 255, 255, 1, 2, 255, 255});
@@ -125,7 +125,7 @@ TEST_CASE("views of one pixel's width or height") {
         View view = seen_from(1, {0, 0, 0});
         view.width = width;
         view.height = height;
-        const ReferencePicture shown = traced(scene_of(things()), view);
+        const ReferenceImage shown = traced(scene_of(things()), view);
         CHECK(shown.color.size() == static_cast<std::size_t>(width * height));
         CHECK(std::count(shown.node.begin(), shown.node.end(), kNone) < width * height);
     }

@@ -24,17 +24,17 @@ OrientedBox oriented_box(const Geometry& geometry);
 OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
 
 /// What decides in which order glass of a scene's geometries is drawn, found when it is first asked for.
-class GlassShapes {
+class TransparencyCache {
 public:
     /// The scene must outlive it.
-    explicit GlassShapes(const Scene& scene) : scene_(scene), shapes_(scene.geometries().size()) {}
-    /// Finds what is asked below for an item; what that took, in units of StepWork.
+    explicit TransparencyCache(const Scene& scene) : scene_(scene), entries_(scene.geometries().size()) {}
+    /// Finds what is asked below for an item; what that took, in units of DrawBudget.
     std::int64_t find(const DrawItem& item);
     const OrientedBox& box(Index geometry);
-    const TriangleOrder& order(Index geometry, Sides sides);
+    const TriangleOrder& order(Index geometry, CullMode cull_mode);
 
 private:
-    struct Shape {
+    struct CacheEntry {
         std::optional<OrientedBox> box;
         std::array<std::optional<TriangleOrder>, 2> orders;  // with front faces, with both
     };
@@ -43,7 +43,7 @@ private:
     }
 
     const Scene& scene_;
-    std::vector<Shape> shapes_;
+    std::vector<CacheEntry> entries_;
 };
 
 }  // namespace vrut

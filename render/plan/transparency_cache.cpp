@@ -1,4 +1,4 @@
-#include "plan/glass_shape.hpp"
+#include "plan/transparency_cache.hpp"
 
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@ namespace vrut {
 
 namespace {
 
-constexpr std::int64_t kBox = 20;  ///< of the smallest geometry, in units of StepWork
+constexpr std::int64_t kBox = 20;  ///< of the smallest geometry, in units of DrawBudget
 
 glm::dvec3 doubled_area(const Geometry& geometry, const glm::uvec3& triangle) {
     const glm::dvec3& a = geometry.positions[triangle[0]];
@@ -78,29 +78,31 @@ OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box) {
     return result;
 }
 
-std::int64_t GlassShapes::find(const DrawItem& item) {
-    const Shape& shape = shapes_[static_cast<std::size_t>(item.geometry)];
+std::int64_t TransparencyCache::find(const DrawItem& item) {
+    const CacheEntry& shape = entries_[static_cast<std::size_t>(item.geometry)];
     const Geometry& read = geometry(item.geometry);
     std::int64_t work = 1;
     if (!shape.box) work += kBox + static_cast<std::int64_t>(read.positions.size() + read.triangles.size());
     box(item.geometry);
     if (is_flattened(item.view_from_node)) return work;  // no order is asked for
-    const std::size_t sides = item.sides == Sides::both ? 2 : 1, count = sides * read.triangles.size();
-    if (!shape.orders[sides - 1] && count <= kMostOrdered) work += static_cast<std::int64_t>(count * count);
-    order(item.geometry, item.sides);
+    const std::size_t side_count = item.cull_mode == CullMode::none ? 2 : 1,
+                      count = side_count * read.triangles.size();
+    if (!shape.orders[side_count - 1] && count <= kMaxOrderedTriangles)
+        work += static_cast<std::int64_t>(count * count);
+    order(item.geometry, item.cull_mode);
     return work;
 }
 
-const OrientedBox& GlassShapes::box(Index index) {
-    std::optional<OrientedBox>& box = shapes_[static_cast<std::size_t>(index)].box;
+const OrientedBox& TransparencyCache::box(Index index) {
+    std::optional<OrientedBox>& box = entries_[static_cast<std::size_t>(index)].box;
     if (!box) box = oriented_box(geometry(index));
     return *box;
 }
 
-const TriangleOrder& GlassShapes::order(Index index, Sides sides) {
+const TriangleOrder& TransparencyCache::order(Index index, CullMode cull_mode) {
     std::optional<TriangleOrder>& order =
-        shapes_[static_cast<std::size_t>(index)].orders[sides == Sides::both ? 1 : 0];
-    if (!order) order = order_triangles(geometry(index), sides);
+        entries_[static_cast<std::size_t>(index)].orders[cull_mode == CullMode::none ? 1 : 0];
+    if (!order) order = order_triangles(geometry(index), cull_mode);
     return *order;
 }
 

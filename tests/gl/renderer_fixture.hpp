@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "expected_picture.hpp"
+#include "expected_image.hpp"
 #include "gl/handles.hpp"
 #include "renderer/renderer.hpp"
 #include "shapes.hpp"
@@ -11,10 +11,10 @@
 namespace vrut {
 
 /// A renderer whose driver must have no complaints and which gives everything back at the end.
-class Studio {
+class RendererFixture {
 public:
-    Studio() : renderer_(std::in_place, std::nullopt, true) {}
-    ~Studio() {
+    RendererFixture() : renderer_(std::in_place, std::nullopt, true) {}
+    ~RendererFixture() {
         for (const std::string& message : renderer_->take_messages()) FAIL_CHECK(message);
         renderer_.reset();
         CHECK(live_gl_objects() == 0);
@@ -31,8 +31,8 @@ public:
     }
 
     /// Draws and compares with what is computed, at all pixels but those at edges.
-    Difference check(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
-        Difference result = difference(ExpectedPicture(*scene, view), draw(scene, view));
+    ImageMismatch check(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
+        ImageMismatch result = difference(ExpectedImage(*scene, view), draw(scene, view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         return result;
     }

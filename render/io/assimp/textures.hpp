@@ -13,13 +13,13 @@
 
 namespace vrut {
 
-bool has_picture(const aiMaterial& material, aiTextureType type);
+bool has_texture(const aiMaterial& material, aiTextureType type);
 
 /// Gives a material the name of its colour's picture, where it has one: a file in `folder`, or `*` and a
 /// number where it lies inside the scene's file.
-void name_picture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                  AssimpFormat format, Material& material, Losses& losses);
-void tell_lost_pictures(const aiMaterial& from, Losses& losses);
+void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                      AssimpFormat format, Material& material, ConversionWarnings& warnings);
+void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings);
 
 /// Of glTF.
 std::string alpha_mode(const aiMaterial& material);
@@ -27,11 +27,12 @@ std::string alpha_mode(const aiMaterial& material);
 bool ignores_alpha(const aiMaterial& material, AssimpFormat format);
 
 /// Decodes the pictures inside the file that `materials` name into `textures`, and frees them.
-void read_embedded_pictures(aiScene& scene, std::vector<Material>& materials, std::vector<Texture>& textures,
-                            const std::string& file, std::vector<std::string>& notices);
+void decode_embedded_textures(aiScene& scene, std::vector<Material>& materials,
+                              std::vector<Texture>& textures, const std::string& file,
+                              std::vector<std::string>& notices);
 
 /// Gives those of the materials that ignore alpha pictures without it.
-void make_pictures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
+void make_textures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
                           std::vector<Texture>& textures);
 
 }  // namespace vrut
