@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace vrut {
+namespace vrut::base {
 
 /// What was drawn is lost, with all that the GPU held: a new renderer must be made, in a moment perhaps.
 class ContextLost : public std::runtime_error {
@@ -17,4 +17,4 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-}  // namespace vrut
+}  // namespace vrut::base

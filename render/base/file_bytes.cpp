@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace vrut {
+namespace vrut::base {
 
 std::optional<std::string> file_error(const std::filesystem::path& path) {
     std::error_code error;
@@ -56,4 +56,4 @@ tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& p
     return bytes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::base

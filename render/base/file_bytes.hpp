@@ -8,7 +8,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-namespace vrut {
+namespace vrut::base {
 
 /// Why a path names no file that could be read, without its name; nothing where it names one.
 std::optional<std::string> file_error(const std::filesystem::path& path);
@@ -43,4 +43,4 @@ private:
 tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path,
                                                   std::uintmax_t most = UINTMAX_MAX);
 
-}  // namespace vrut
+}  // namespace vrut::base

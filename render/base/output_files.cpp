@@ -6,7 +6,7 @@
 #include <cstring>
 #include <fstream>
 
-namespace vrut {
+namespace vrut::base {
 
 namespace fs = std::filesystem;
 
@@ -50,4 +50,4 @@ void OutputFiles::commit() {
     made_folders_.clear();
 }
 
-}  // namespace vrut
+}  // namespace vrut::base

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace vrut {
+namespace vrut::base {
 
 /// Why a file cannot be written, in one sentence that names it; caught by write_scene().
 struct WriteError : std::runtime_error {
@@ -39,4 +39,4 @@ private:
     std::vector<std::filesystem::path> made_folders_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::base

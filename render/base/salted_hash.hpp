@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-namespace vrut {
+namespace vrut::base {
 
 /// Hashes numbers that a file chooses, otherwise in each run of the program: of a hash that is known a file
 /// could have all its numbers in one bucket, and a table of them would take the square of their count.
@@ -35,4 +35,4 @@ private:
     }
 };
 
-}  // namespace vrut
+}  // namespace vrut::base

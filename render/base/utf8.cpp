@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace vrut {
+namespace vrut::base {
 
 std::size_t find_invalid_utf8(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
@@ -33,4 +33,4 @@ std::size_t find_invalid_utf8(std::string_view text) {
     return std::string_view::npos;
 }
 
-}  // namespace vrut
+}  // namespace vrut::base

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace vrut {
+namespace vrut::compare {
 
 std::uint64_t Difference::count() const {
     return std::accumulate(pixels.begin(), pixels.end(), std::uint64_t{0});
@@ -33,7 +33,7 @@ double Difference::share_above(int steps) const {
     return n > 0 ? static_cast<double>(above) / static_cast<double>(n) : 0;
 }
 
-Difference difference(const Image& a, const Image& b, const std::vector<bool>& counts) {
+Difference difference(const scene::Image& a, const scene::Image& b, const std::vector<bool>& counts) {
     const std::size_t pixels = a.rgba.size() / 4;
     if (a.width != b.width || a.height != b.height || (!counts.empty() && counts.size() != pixels))
         throw std::invalid_argument("pictures of different sizes cannot be compared");
@@ -51,7 +51,7 @@ Difference difference(const Image& a, const Image& b, const std::vector<bool>& c
     return result;
 }
 
-std::vector<bool> interior_pixels(const std::vector<Index>& nodes, int width, int height) {
+std::vector<bool> interior_pixels(const std::vector<scene::Index>& nodes, int width, int height) {
     std::vector<bool> interior(nodes.size());
     const auto at = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -66,4 +66,4 @@ std::vector<bool> interior_pixels(const std::vector<Index>& nodes, int width, in
     return interior;
 }
 
-}  // namespace vrut
+}  // namespace vrut::compare

@@ -7,7 +7,7 @@
 #include "scene/image.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::compare {
 
 /// How far two pictures are apart in red, green and blue, in steps of 1/255; alpha is not compared.
 struct Difference {
@@ -28,9 +28,9 @@ struct Difference {
 
 /// Of the pixels for which `counts`, one for each as rows of the pictures go, is true; of all where it is
 /// empty. Throws std::invalid_argument where sizes differ.
-Difference difference(const Image& a, const Image& b, const std::vector<bool>& counts = {});
+Difference difference(const scene::Image& a, const scene::Image& b, const std::vector<bool>& counts = {});
 
 /// For each pixel whether it and its eight neighbours, all in the picture, show one node.
-std::vector<bool> interior_pixels(const std::vector<Index>& nodes, int width, int height);
+std::vector<bool> interior_pixels(const std::vector<scene::Index>& nodes, int width, int height);
 
-}  // namespace vrut
+}  // namespace vrut::compare

@@ -10,7 +10,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace vrut {
+namespace vrut::compare {
 
 namespace {
 
@@ -179,7 +179,7 @@ struct PerceivedRows {
 class Viewer {
 public:
     /// Rows from `first` on. The rows beyond the picture's edges are as these edges are.
-    PerceivedRows see(const Image& image, std::size_t first, std::size_t rows) const {
+    PerceivedRows see(const scene::Image& image, std::size_t first, std::size_t rows) const {
         const std::array<Channel, 3> opponent = opponent_channels(image, first, rows);
         PerceivedRows sight{filtered_colors(opponent), {0, 0}, {0, 0}};
         Channel grey = opponent[0];
@@ -190,7 +190,8 @@ public:
     }
 
 private:
-    std::array<Channel, 3> opponent_channels(const Image& image, std::size_t first, std::size_t rows) const {
+    std::array<Channel, 3> opponent_channels(const scene::Image& image, std::size_t first,
+                                             std::size_t rows) const {
         const auto width = static_cast<std::size_t>(image.width), height = rows + 2 * margin_;
         std::array<Channel, 3> channels{Channel{width, height}, {width, height}, {width, height}};
         for (std::size_t y = 0; y < height; ++y) {
@@ -263,7 +264,7 @@ double flip_error(const PerceivedRows& a, const PerceivedRows& b, std::size_t i)
 
 }  // namespace
 
-std::vector<float> flip(const Image& a, const Image& b) {
+std::vector<float> flip(const scene::Image& a, const scene::Image& b) {
     if (a.width != b.width || a.height != b.height)
         throw std::invalid_argument("pictures of different sizes cannot be compared");
     const Viewer viewer;
@@ -299,8 +300,8 @@ FlipSummary summary_of(std::vector<float> errors) {
     return summary;
 }
 
-Image grey_map(const std::vector<float>& errors, int width, int height) {
-    Image map;
+scene::Image grey_map(const std::vector<float>& errors, int width, int height) {
+    scene::Image map;
     map.resize(width, height);
     for (std::size_t i = 0; i < errors.size(); ++i) {
         std::fill_n(map.rgba.begin() + static_cast<std::ptrdiff_t>(i * 4), 3,
@@ -310,4 +311,4 @@ Image grey_map(const std::vector<float>& errors, int width, int height) {
     return map;
 }
 
-}  // namespace vrut
+}  // namespace vrut::compare

@@ -4,7 +4,7 @@
 
 #include "scene/image.hpp"
 
-namespace vrut {
+namespace vrut::compare {
 
 /// The difference that eyes see when two pictures alternate: LDR-FLIP as published by Andersson et al.,
 /// "FLIP: A Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
@@ -14,7 +14,7 @@ namespace vrut {
 
 /// For each pixel, as the pictures' rows go, 0 (no difference) to 1. Symmetric in its pictures. Throws
 /// std::invalid_argument where sizes differ.
-std::vector<float> flip(const Image& a, const Image& b);
+std::vector<float> flip(const scene::Image& a, const scene::Image& b);
 
 /// Section 5. A weighted percentile p is the value up to which values, from the lowest, make p of their sum.
 struct FlipSummary {
@@ -25,6 +25,6 @@ struct FlipSummary {
 FlipSummary summary_of(std::vector<float> errors);
 
 /// Values as greys, 0 black and 1 white.
-Image grey_map(const std::vector<float>& errors, int width, int height);
+scene::Image grey_map(const std::vector<float>& errors, int width, int height);
 
-}  // namespace vrut
+}  // namespace vrut::compare

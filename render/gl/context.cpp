@@ -13,7 +13,7 @@
 #include "gl/framebuffer.hpp"
 #include "gl/shader_program.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 struct GlContext::DeviceCandidate {
     EGLDeviceEXT device = EGL_NO_DEVICE_EXT;  // none: the surfaceless platform
@@ -236,4 +236,4 @@ void GlContext::describe(const DeviceCandidate& candidate) {
 
 std::vector<std::string> GlContext::take_messages() { return std::exchange(messages_, {}); }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace vrut {
+namespace vrut::gl {
 
 struct GlOptions {
     std::optional<int> device;  ///< index in EGL's enumeration; none: the first that works
@@ -51,4 +51,4 @@ private:
     int max_size_ = 0;
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

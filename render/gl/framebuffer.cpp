@@ -5,7 +5,7 @@
 
 #include "base/drawing_errors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -27,8 +27,8 @@ Framebuffer::Framebuffer(int width, int height, bool rgba16)
     glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, color_.get(), 0);
     glNamedFramebufferTexture(framebuffer_.get(), GL_DEPTH_ATTACHMENT, depth_.get(), 0);
     if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw OutOfMemory("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                          " pixels can be drawn: the driver refuses the framebuffer");
+        throw base::OutOfMemory("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                " pixels can be drawn: the driver refuses the framebuffer");
 }
 
 void Framebuffer::bind() const {
@@ -57,4 +57,4 @@ void wait_for_gl() {
     glDeleteSync(fence);
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

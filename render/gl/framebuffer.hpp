@@ -6,7 +6,7 @@
 
 #include "gl/handles.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// A colour target (RGBA8; `deep`: RGBA16, in which many layers can be blended before rounding shows) with
 /// depth (32-bit float).
@@ -37,4 +37,4 @@ private:
 /// Waits until everything submitted so far is drawn.
 void wait_for_gl();
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -9,7 +9,7 @@
 #include "gl/gpu_textures.hpp"
 #include "mesh/simplification.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -41,7 +41,7 @@ GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices)
 /// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
 /// its face's, so that the shader need not know the difference. Most geometries have none, and keep their
 /// triangles.
-VertexArrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
+VertexArrays make_arrays(const scene::Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
     // Unit, so that float can square them.
     const auto normal = [&](unsigned i) {
@@ -80,13 +80,13 @@ VertexArrays make_arrays(const Geometry& geometry, const glm::dvec3& origin) {
     return arrays;
 }
 
-const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const Geometry& geometry) {
+const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const scene::Geometry& geometry) {
     return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
 }
 
 /// Textures repeat, so that whole numbers may be taken off; what is left keeps more digits in float between
 /// the vertices.
-std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const Geometry& geometry) {
+std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry) {
     glm::dvec2 low(geometry.texcoords.front()), high = low;
     for (const glm::dvec2 texcoord : geometry.texcoords) {
         low = glm::min(low, texcoord);
@@ -108,7 +108,7 @@ void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array)
     glVertexArrayAttribBinding(array, 2, 1);
 }
 
-GpuGeometry upload(const Geometry& geometry) {
+GpuGeometry upload(const scene::Geometry& geometry) {
     GpuGeometry result;
     result.origin = geometry.bounds.center();
     const VertexArrays arrays = make_arrays(geometry, result.origin);
@@ -146,7 +146,8 @@ std::vector<unsigned> first_with_same_position(const std::vector<glm::dvec3>& po
 }
 
 /// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
-std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector<glm::uvec3>& vertices) {
+std::vector<glm::uvec2> unique_edges(const scene::Geometry& geometry,
+                                     const std::vector<glm::uvec3>& vertices) {
     struct EdgeCandidate {
         glm::uvec2 corners;  // known as one, the lower first
         std::size_t number;
@@ -175,7 +176,7 @@ std::vector<glm::uvec2> unique_edges(const Geometry& geometry, const std::vector
     return result;
 }
 
-GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
+GpuEdges upload_edges(const scene::Geometry& geometry, const GpuGeometry& uploaded) {
     GpuEdges result;
     const VertexArrays arrays = make_arrays(geometry, uploaded.origin);
     const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
@@ -188,24 +189,24 @@ GpuEdges upload_edges(const Geometry& geometry, const GpuGeometry& uploaded) {
 
 }  // namespace
 
-GpuScene::GpuScene(std::shared_ptr<const Scene> scene)
+GpuScene::GpuScene(std::shared_ptr<const scene::Scene> scene)
     : scene_(std::move(scene)),
       geometries_(scene_->geometries().size()),
       edges_(geometries_.size()),
       textures_(scene_->textures().size()) {}
 
-void GpuScene::upload_shown(const View& view) {
-    for (const DrawItem& item : visible_items(view)) {
+void GpuScene::upload_shown(const plan::View& view) {
+    for (const plan::DrawItem& item : plan::visible_items(view)) {
         geometry(item.geometry);
-        if (item.texture != kNone) texture(item.texture);
+        if (item.texture != scene::kNone) texture(item.texture);
     }
     if (view.background.cube_map)
         cube_map(*view.background.cube_map);
-    else if (view.background.texture != kNone)
+    else if (view.background.texture != scene::kNone)
         texture(view.background.texture);
 }
 
-const GpuGeometry& GpuScene::geometry(Index index) {
+const GpuGeometry& GpuScene::geometry(scene::Index index) {
     GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
     if (!geometry.vertex_array) {
         geometry = upload(scene_->geometries()[static_cast<std::size_t>(index)]);
@@ -214,12 +215,12 @@ const GpuGeometry& GpuScene::geometry(Index index) {
     return geometry;
 }
 
-const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
+const GpuGeometry& GpuScene::geometry(const plan::DrawItem& item) {
     if (!item.level) return geometry(item.geometry);
     GpuGeometry& level = levels_[{item.geometry, item.level->number}];
     if (!level.vertex_array) {
-        level =
-            upload(geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
+        level = upload(
+            mesh::geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
         ++uploads_;
         // The same in another order: what still needs the file's uploads it again.
         if (item.level->number == 0) geometries_[static_cast<std::size_t>(item.geometry)] = {};
@@ -227,12 +228,12 @@ const GpuGeometry& GpuScene::geometry(const DrawItem& item) {
     return level;
 }
 
-bool GpuScene::is_resident(const DrawItem& item) const {
+bool GpuScene::is_resident(const plan::DrawItem& item) const {
     if (!item.level) return bool(geometries_[static_cast<std::size_t>(item.geometry)].vertex_array);
     return levels_.contains({item.geometry, item.level->number});
 }
 
-const GpuEdges& GpuScene::edges(Index index) {
+const GpuEdges& GpuScene::edges(scene::Index index) {
     std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
     if (!edges) {
         edges = upload_edges(scene_->geometries()[static_cast<std::size_t>(index)], geometry(index));
@@ -241,7 +242,7 @@ const GpuEdges& GpuScene::edges(Index index) {
     return *edges;
 }
 
-const GlTexture& GpuScene::texture(Index index) {
+const GlTexture& GpuScene::texture(scene::Index index) {
     GlTexture& texture = textures_[static_cast<std::size_t>(index)];
     if (!texture) {
         texture = upload_texture(scene_->textures()[static_cast<std::size_t>(index)].image);
@@ -250,10 +251,10 @@ const GlTexture& GpuScene::texture(Index index) {
     return texture;
 }
 
-const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
+const GlTexture& GpuScene::cube_map(const std::array<scene::Index, 6>& textures) {
     GlTexture& cube_map = cube_maps_[textures];
     if (!cube_map) {
-        std::array<const Image*, 6> images{};
+        std::array<const scene::Image*, 6> images{};
         for (std::size_t i = 0; i < 6; ++i)
             images[i] = &scene_->textures()[static_cast<std::size_t>(textures[i])].image;
         cube_map = upload_cube_map(images);
@@ -262,13 +263,13 @@ const GlTexture& GpuScene::cube_map(const std::array<Index, 6>& textures) {
     return cube_map;
 }
 
-const GpuTriangles& GpuScene::sorted_triangles(const DrawItem& item) {
+const GpuTriangles& GpuScene::sorted_triangles(const plan::DrawItem& item) {
     const std::vector<unsigned>& order = *item.order;
     GpuTriangles& result = sorted_triangles_[{item.geometry, order.size()}];
     if (result.order && (result.order == item.order || *result.order == order)) return result;
     if (!result.vertex_array) {
         const GpuGeometry& uploaded = geometry(item.geometry);
-        const Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
+        const scene::Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
         result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
         result.indices = make_dynamic_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
         result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
@@ -288,4 +289,4 @@ const GpuTriangles& GpuScene::sorted_triangles(const DrawItem& item) {
     return result;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -11,7 +11,7 @@
 #include "plan/frame_plan.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a
 /// scene far from the world's origin keeps its precision.
@@ -43,34 +43,34 @@ struct GpuTriangles {
 /// The geometries and textures of a scene, each uploaded when it is first drawn.
 class GpuScene {
 public:
-    explicit GpuScene(std::shared_ptr<const Scene> scene);
-    const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    explicit GpuScene(std::shared_ptr<const scene::Scene> scene);
+    const std::shared_ptr<const scene::Scene>& scene() const { return scene_; }
     /// What a view of it shows, in the picture or beside it. Throws OutOfMemory, as all below.
-    void upload_shown(const View& view);
-    const GpuGeometry& geometry(Index index);
+    void upload_shown(const plan::View& view);
+    const GpuGeometry& geometry(scene::Index index);
     /// Of an item: its level's, if it has one.
-    const GpuGeometry& geometry(const DrawItem& item);
+    const GpuGeometry& geometry(const plan::DrawItem& item);
     /// Whether that is there already.
-    bool is_resident(const DrawItem& item) const;
-    const GpuEdges& edges(Index index);
+    bool is_resident(const plan::DrawItem& item) const;
+    const GpuEdges& edges(scene::Index index);
     /// Its triangles in an item's order, which is not null.
-    const GpuTriangles& sorted_triangles(const DrawItem& item);
-    const GlTexture& texture(Index index);
+    const GpuTriangles& sorted_triangles(const plan::DrawItem& item);
+    const GlTexture& texture(scene::Index index);
     /// Of the six textures (upload_cube_map()).
-    const GlTexture& cube_map(const std::array<Index, 6>& textures);
+    const GlTexture& cube_map(const std::array<scene::Index, 6>& textures);
     /// Geometries, their levels and edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
-    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const scene::Scene> scene_;
     std::vector<GpuGeometry> geometries_;
-    std::map<std::pair<Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
-    std::vector<std::optional<GpuEdges>> edges_;           // after the geometries, whose vertices they use
-    std::map<std::pair<Index, std::size_t>, GpuTriangles>
+    std::map<std::pair<scene::Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
+    std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
+    std::map<std::pair<scene::Index, std::size_t>, GpuTriangles>
         sorted_triangles_;  // by the number of triangles, too
     std::vector<GlTexture> textures_;
-    std::map<std::array<Index, 6>, GlTexture> cube_maps_;
+    std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -6,7 +6,7 @@
 
 #include "base/drawing_errors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -18,7 +18,8 @@ void allocate_or_throw(Allocate allocate, What what) {
     constexpr int kMostErrors = 100;  // of a lost context there may be no end
     for (int i = 0; i < kMostErrors && glGetError() != GL_NO_ERROR; ++i) continue;
     allocate();
-    if (glGetError() != GL_NO_ERROR) throw OutOfMemory("the graphics driver has no memory for " + what());
+    if (glGetError() != GL_NO_ERROR)
+        throw base::OutOfMemory("the graphics driver has no memory for " + what());
 }
 
 std::string mebibytes_of(const char* what, std::size_t bytes) {
@@ -125,4 +126,4 @@ GlQuery make_query(GLenum target) {
     return GlQuery(name);
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

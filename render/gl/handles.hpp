@@ -4,7 +4,7 @@
 
 #include "gl/gl.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// GL objects that live now, of all kinds: 0 when everything is given back.
 long live_gl_objects();
@@ -76,4 +76,4 @@ GlSampler make_clamping_sampler();
 GlFramebuffer make_framebuffer();
 GlQuery make_query(GLenum target);
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/glm.hpp>
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -67,8 +67,8 @@ FloatMipLevel half(int width, int height, const Texel& texel) {
     return result;
 }
 
-Image rounded(const FloatMipLevel& level) {
-    Image image;
+scene::Image rounded(const FloatMipLevel& level) {
+    scene::Image image;
     image.resize(level.width, level.height);
     for (std::size_t i = 0; i < level.texels.size(); ++i)
         for (int channel = 0; channel < 4; ++channel)
@@ -79,8 +79,8 @@ Image rounded(const FloatMipLevel& level) {
 
 }  // namespace
 
-std::vector<Image> mip_levels(const Image& image) {
-    std::vector<Image> levels;
+std::vector<scene::Image> mip_levels(const scene::Image& image) {
+    std::vector<scene::Image> levels;
     if (image.width <= 1 && image.height <= 1) return levels;
     FloatMipLevel level = half(image.width, image.height, [&](std::size_t i) {
         const std::uint8_t* bytes = image.rgba.data() + 4 * i;
@@ -94,4 +94,4 @@ std::vector<Image> mip_levels(const Image& image) {
     return levels;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

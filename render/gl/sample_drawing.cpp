@@ -7,52 +7,53 @@
 #include "plan/projection.hpp"
 #include "scene/colors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
-using Kind = DrawCommand::Kind;
+using Kind = plan::DrawCommand::Kind;
 
 constexpr int kKeepListsFor = 100;  // images
 
 /// In units of DrawBudget; a full-screen pass takes these for each pixel, a layer is looked at a few times.
 constexpr std::int64_t kScreenPixelCost = 1, kFragmentCost = 8;
 
-glm::dmat4 clip_of(const RenderJob& job) {
-    const View& view = job.view;
-    const double near = fit_clip_range(view.camera, view.scene ? view.scene->bounds : Bounds()).near;
-    return reversed_clip_from_view(view, near, sample_offset(job.samples, view.samples));
+glm::dmat4 clip_of(const plan::RenderJob& job) {
+    const plan::View& view = job.view;
+    const double near =
+        scene::fit_clip_range(view.camera, view.scene ? view.scene->bounds : math::Bounds()).near;
+    return plan::reversed_clip_from_view(view, near, math::sample_offset(job.samples, view.samples));
 }
 
 }  // namespace
 
 struct SampleDrawing::StepContext {
-    const View& view;
-    const FramePlan& plan;
+    const plan::View& view;
+    const plan::FramePlan& plan;
     GpuScene* scene = nullptr;
     Passes& passes;
-    DrawBudget& budget;
-    FrameStats& stats;
+    plan::DrawBudget& budget;
+    plan::FrameStats& stats;
     /// What commands draw into; none after one that has changed it.
-    std::optional<const MirrorItem*> bound = {};
+    std::optional<const plan::MirrorItem*> bound = {};
 };
 
-SampleDrawing::SampleDrawing(const RenderJob& job, std::unique_ptr<SampleTargets> targets)
+SampleDrawing::SampleDrawing(const plan::RenderJob& job, std::unique_ptr<SampleTargets> targets)
     : planner_(job.planner),
       targets_(std::move(targets)),
-      camera_{clip_of(job), view_from_world(job.view.camera)},
-      commands_(draw_commands(job.planner->plan(), job.view)) {
-    const FramePlan& plan = job.planner->plan();
-    use_target(job.view, has_transparent(plan.scene) || has_transparent(plan.overlay));
+      camera_{clip_of(job), scene::view_from_world(job.view.camera)},
+      commands_(plan::draw_commands(job.planner->plan(), job.view)) {
+    const plan::FramePlan& plan = job.planner->plan();
+    use_target(job.view, plan::has_transparent(plan.scene) || plan::has_transparent(plan.overlay));
     if (plan.scene.mirrors.empty() && plan.overlay.mirrors.empty()) targets_->mirrors.release();
     if (job.samples > 0) return;
     // What turns has panes now that only pixels order, now not: room for them is kept for a while.
     int& without = targets_->images_without_lists;
-    without = has_exact_group(plan.scene) || has_exact_group(plan.overlay) ? 0 : without + 1;
+    without = plan::has_exact_group(plan.scene) || plan::has_exact_group(plan.overlay) ? 0 : without + 1;
     if (without > kKeepListsFor) targets_->per_pixel_lists.release();
 }
 
-void SampleDrawing::use_target(const View& view, bool rgba16) {
+void SampleDrawing::use_target(const plan::View& view, bool rgba16) {
     std::optional<Framebuffer>& target = targets_->image_target;
     if (target && target->width() == view.width && target->height() == view.height &&
         target->rgba16() == rgba16)
@@ -61,10 +62,10 @@ void SampleDrawing::use_target(const View& view, bool rgba16) {
     target.emplace(view.width, view.height, rgba16);
 }
 
-bool SampleDrawing::draw(RenderJob& job, GpuScene* scene, Passes& passes, DrawBudget& budget) {
+bool SampleDrawing::draw(plan::RenderJob& job, GpuScene* scene, Passes& passes, plan::DrawBudget& budget) {
     StepContext step{job.view, job.planner->plan(), scene, passes, budget, job.stats};
     while (command_ < commands_.size() && !budget.is_spent()) {
-        const DrawCommand& command = commands_[command_];
+        const plan::DrawCommand& command = commands_[command_];
         if (!is_hidden(command.mirror) && !execute(command, step)) continue;
         ++command_;
         item_ = 0;
@@ -72,21 +73,21 @@ bool SampleDrawing::draw(RenderJob& job, GpuScene* scene, Passes& passes, DrawBu
     return command_ == commands_.size();
 }
 
-bool SampleDrawing::is_hidden(const MirrorItem* mirror) const {
+bool SampleDrawing::is_hidden(const plan::MirrorItem* mirror) const {
     return mirror && std::find(hidden_.begin(), hidden_.end(), mirror) != hidden_.end();
 }
 
-CameraMatrices SampleDrawing::camera_in(const MirrorItem* mirror) const {
+CameraMatrices SampleDrawing::camera_in(const plan::MirrorItem* mirror) const {
     return mirror ? CameraMatrices{camera_.clip_from_view, mirror->reflection * camera_.view_from_world}
                   : camera_;
 }
 
-PixelBox SampleDrawing::full_viewport() const {
+plan::PixelBox SampleDrawing::full_viewport() const {
     return {{0, 0}, {targets_->image_target->width(), targets_->image_target->height()}};
 }
 
 /// Another step may have drawn something else.
-void SampleDrawing::bind_target(const MirrorItem* mirror, StepContext& step) {
+void SampleDrawing::bind_target(const plan::MirrorItem* mirror, StepContext& step) {
     if (step.bound == mirror) return;
     set_up_drawing();
     if (mirror)
@@ -97,8 +98,9 @@ void SampleDrawing::bind_target(const MirrorItem* mirror, StepContext& step) {
     step.bound = mirror;
 }
 
-bool SampleDrawing::execute(const DrawCommand& command, StepContext& step) {
-    bind_target(is_reflected(command) && command.kind != Kind::open_mirror ? command.mirror : nullptr, step);
+bool SampleDrawing::execute(const plan::DrawCommand& command, StepContext& step) {
+    bind_target(plan::is_reflected(command) && command.kind != Kind::open_mirror ? command.mirror : nullptr,
+                step);
     if (command.kind == Kind::per_pixel_glass) return draw_per_pixel_lists(command, step);
     if (command.items.empty() || command.kind == Kind::outline) {
         draw_once(command, step);
@@ -106,7 +108,7 @@ bool SampleDrawing::execute(const DrawCommand& command, StepContext& step) {
     }
     if (command.kind == Kind::outline_mask && item_ == 0)
         targets_->outline.begin(command.items, *step.scene, camera_.clip_from_view, *targets_->image_target);
-    const std::span<const DrawItem> items = next_batch(command, full_viewport(), step);
+    const std::span<const plan::DrawItem> items = next_batch(command, full_viewport(), step);
     draw_items(command, items, step);
     item_ += items.size();
     if (item_ < command.items.size()) return false;
@@ -114,14 +116,15 @@ bool SampleDrawing::execute(const DrawCommand& command, StepContext& step) {
     return true;
 }
 
-std::span<const DrawItem> SampleDrawing::next_batch(const DrawCommand& command, const PixelBox& box,
-                                                    StepContext& step) const {
+std::span<const plan::DrawItem> SampleDrawing::next_batch(const plan::DrawCommand& command,
+                                                          const plan::PixelBox& box,
+                                                          StepContext& step) const {
     return step.budget.next_batch(command.items.subspan(item_), *step.scene->scene(), camera_.clip_from_view,
                                   box, full_viewport().high,
-                                  [&](const DrawItem& item) { return step.scene->is_resident(item); });
+                                  [&](const plan::DrawItem& item) { return step.scene->is_resident(item); });
 }
 
-void SampleDrawing::draw_items(const DrawCommand& command, std::span<const DrawItem> items,
+void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const plan::DrawItem> items,
                                StepContext& step) {
     const glm::dmat4& clip = camera_.clip_from_view;
     Passes& passes = step.passes;
@@ -133,7 +136,7 @@ void SampleDrawing::draw_items(const DrawCommand& command, std::span<const DrawI
         case Kind::edges:
             return passes.edges.draw(items, *step.scene, step.view.mode, clip, passes.programs, step.stats);
         case Kind::edges_overlay:
-            return passes.edges.draw_overlay(items, *step.scene, kSelection, clip, step.stats);
+            return passes.edges.draw_overlay(items, *step.scene, scene::kSelection, clip, step.stats);
         case Kind::reset_depth:
             return passes.opaque.reset_depth(items, *step.scene, clip, step.stats);
         case Kind::outline_mask:
@@ -144,7 +147,7 @@ void SampleDrawing::draw_items(const DrawCommand& command, std::span<const DrawI
     }
 }
 
-void SampleDrawing::draw_once(const DrawCommand& command, StepContext& step) {
+void SampleDrawing::draw_once(const plan::DrawCommand& command, StepContext& step) {
     const glm::dmat4& clip = camera_.clip_from_view;
     const Framebuffer& image_target = *targets_->image_target;
     Passes& passes = step.passes;
@@ -172,22 +175,22 @@ void SampleDrawing::draw_once(const DrawCommand& command, StepContext& step) {
 }
 
 void SampleDrawing::clear(StepContext& step) {
-    const View& view = step.view;
+    const plan::View& view = step.view;
     glClearColor(static_cast<float>(view.background.color.r), static_cast<float>(view.background.color.g),
                  static_cast<float>(view.background.color.b), 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (BackgroundPass::is_needed(view)) step.passes.background.draw(camera_, view, *step.scene, step.stats);
 }
 
-void SampleDrawing::find_mirrors(const DrawCommand& command, StepContext& step) {
+void SampleDrawing::find_mirrors(const plan::DrawCommand& command, StepContext& step) {
     const std::vector<bool> seen =
         targets_->mirrors.seen(command.mirrors, *step.scene, camera_.clip_from_view, step.stats);
     for (std::size_t i = 0; i < seen.size(); ++i)
         if (!seen[i]) hidden_.push_back(&command.mirrors[i]);
 }
 
-void SampleDrawing::open(const MirrorItem& mirror, StepContext& step) {
-    const View& view = step.view;
+void SampleDrawing::open(const plan::MirrorItem& mirror, StepContext& step) {
+    const plan::View& view = step.view;
     targets_->mirrors.open(mirror, *step.scene, camera_.clip_from_view, view.background.color,
                            *targets_->image_target, step.stats);
     if (BackgroundPass::is_needed(view))
@@ -195,13 +198,13 @@ void SampleDrawing::open(const MirrorItem& mirror, StepContext& step) {
     step.bound.reset();
 }
 
-bool SampleDrawing::draw_per_pixel_lists(const DrawCommand& command, StepContext& step) {
+bool SampleDrawing::draw_per_pixel_lists(const plan::DrawCommand& command, StepContext& step) {
     PerPixelListsPass& pass = targets_->per_pixel_lists;
     if (!pass.is_drawing())
         pass.begin(command.items, *step.scene, camera_.clip_from_view, full_viewport().high,
                    command.mirror ? command.mirror->box : full_viewport());
     if (!pass.is_drawing()) return true;  // outside the picture
-    const std::span<const DrawItem> items = next_batch(command, pass.box(), step);
+    const std::span<const plan::DrawItem> items = next_batch(command, pass.box(), step);
     pass.collect(items, item_, *step.scene, step.passes.programs, step.stats);
     step.bound.reset();
     item_ += items.size();
@@ -211,4 +214,4 @@ bool SampleDrawing::draw_per_pixel_lists(const DrawCommand& command, StepContext
     return !pass.is_drawing();
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

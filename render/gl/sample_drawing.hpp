@@ -18,7 +18,7 @@
 #include "plan/draw_commands.hpp"
 #include "plan/render_job.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// Passes that hold nothing of a sample that is not whole.
 struct Passes {
@@ -42,15 +42,15 @@ struct SampleTargets {
 /// The next sample of a rendering, which may take several steps. Others may be drawn between them.
 class SampleDrawing {
 public:
-    SampleDrawing(const RenderJob& job, std::unique_ptr<SampleTargets> targets);
+    SampleDrawing(const plan::RenderJob& job, std::unique_ptr<SampleTargets> targets);
 
-    bool belongs_to(const RenderJob& job) const { return planner_.lock() == job.planner; }
+    bool belongs_to(const plan::RenderJob& job) const { return planner_.lock() == job.planner; }
     /// Whether nobody has the rendering any more.
     bool abandoned() const { return planner_.expired(); }
 
     /// Draws on, until `work` is spent. True if the sample is drawn: then the picture's target holds it.
     /// `scene` is the rendering's; null where it has none.
-    bool draw(RenderJob& job, GpuScene* scene, Passes& passes, DrawBudget& budget);
+    bool draw(plan::RenderJob& job, GpuScene* scene, Passes& passes, plan::DrawBudget& budget);
 
     Framebuffer& image_target() { return *targets_->image_target; }
     /// For another sample, whether this one is drawn or not.
@@ -61,28 +61,29 @@ public:
 
 private:
     struct StepContext;  ///< what drawing is given, and what is bound meanwhile
-    void use_target(const View& view, bool rgba16);
-    void bind_target(const MirrorItem* mirror, StepContext& step);
+    void use_target(const plan::View& view, bool rgba16);
+    void bind_target(const plan::MirrorItem* mirror, StepContext& step);
     /// True if the command is done.
-    bool execute(const DrawCommand& command, StepContext& step);
-    void draw_once(const DrawCommand& command, StepContext& step);
-    void draw_items(const DrawCommand& command, std::span<const DrawItem> items, StepContext& step);
-    bool draw_per_pixel_lists(const DrawCommand& command, StepContext& step);
+    bool execute(const plan::DrawCommand& command, StepContext& step);
+    void draw_once(const plan::DrawCommand& command, StepContext& step);
+    void draw_items(const plan::DrawCommand& command, std::span<const plan::DrawItem> items,
+                    StepContext& step);
+    bool draw_per_pixel_lists(const plan::DrawCommand& command, StepContext& step);
     void clear(StepContext& step);
-    void find_mirrors(const DrawCommand& command, StepContext& step);
-    void open(const MirrorItem& mirror, StepContext& step);
-    bool is_hidden(const MirrorItem* mirror) const;
-    std::span<const DrawItem> next_batch(const DrawCommand& command, const PixelBox& box,
-                                         StepContext& step) const;
-    PixelBox full_viewport() const;
-    CameraMatrices camera_in(const MirrorItem* mirror) const;
+    void find_mirrors(const plan::DrawCommand& command, StepContext& step);
+    void open(const plan::MirrorItem& mirror, StepContext& step);
+    bool is_hidden(const plan::MirrorItem* mirror) const;
+    std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const plan::PixelBox& box,
+                                               StepContext& step) const;
+    plan::PixelBox full_viewport() const;
+    CameraMatrices camera_in(const plan::MirrorItem* mirror) const;
 
-    std::weak_ptr<const FramePlanner> planner_;
+    std::weak_ptr<const plan::FramePlanner> planner_;
     std::unique_ptr<SampleTargets> targets_;
     CameraMatrices camera_;
-    std::vector<DrawCommand> commands_;
+    std::vector<plan::DrawCommand> commands_;
     std::size_t command_ = 0, item_ = 0;  // the next
-    std::vector<const MirrorItem*> hidden_;
+    std::vector<const plan::MirrorItem*> hidden_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -46,4 +46,4 @@ GlProgram make_program(std::string_view vertex_source, std::string_view fragment
     return program;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

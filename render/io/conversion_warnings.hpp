@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace vrut {
+namespace vrut::io {
 
 /// What of a file does not come into the scene: one notice for each kind, with how often it occurred.
 class ConversionWarnings {
@@ -22,4 +22,4 @@ private:
     std::map<std::string, std::size_t> count_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -12,11 +12,11 @@
 
 #include "base/file_bytes.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
-using Result = tl::expected<Image, std::string>;
+using Result = tl::expected<scene::Image, std::string>;
 
 // What the largest picture takes uncompressed: 16 bits RGBA.
 constexpr std::uintmax_t kMaxFileBytes = kMaxImagePixels * 8 + (std::uintmax_t{1} << 20);
@@ -95,7 +95,7 @@ Result decode_png(std::string_view bytes, std::uint64_t max_pixels) {
     if (!decoder.read_header()) return tl::unexpected(decoder.fault());
     if (auto fault = size_fault(decoder.width(), decoder.height(), max_pixels))
         return tl::unexpected(*std::move(fault));
-    Image image;
+    scene::Image image;
     image.resize(static_cast<int>(decoder.width()), static_cast<int>(decoder.height()));
     std::vector<png_bytep> rows;
     for (std::size_t row = decoder.height(); row-- > 0;)
@@ -120,7 +120,7 @@ Result decode_jpeg(std::string_view bytes, std::uint64_t max_pixels) {
     if (auto why =
             size_fault(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), max_pixels))
         return tl::unexpected(*std::move(why));
-    Image image;
+    scene::Image image;
     image.resize(width, height);
     // The limit is for progressive files: each of thousands of scans costs as much as the whole picture.
     constexpr int kFlags = TJFLAG_BOTTOMUP | TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
@@ -139,9 +139,9 @@ Result decode_image(std::string_view bytes, std::uint64_t max_pixels) {
 }
 
 Result read_image_file(const std::filesystem::path& path, std::uint64_t max_pixels) {
-    const auto bytes = read_bytes(path, kMaxFileBytes);
+    const auto bytes = base::read_bytes(path, kMaxFileBytes);
     if (!bytes) return tl::unexpected(bytes.error());
     return decode_image(*bytes, max_pixels);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

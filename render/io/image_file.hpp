@@ -8,7 +8,7 @@
 
 #include "scene/image.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// The most pixels, and the longest side, of a picture that is read.
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 26;
@@ -18,11 +18,11 @@ inline constexpr std::uint32_t kMaxImageSide = 16384;
 /// Its values are the file's: gamma, colour profile and orientation tags mean nothing here; 16 bits are
 /// rounded to 8. Size is judged before pixels get any memory. Else why there is none, without the file's
 /// name.
-tl::expected<Image, std::string> decode_image(std::string_view bytes,
-                                              std::uint64_t max_pixels = kMaxImagePixels);
+tl::expected<scene::Image, std::string> decode_image(std::string_view bytes,
+                                                     std::uint64_t max_pixels = kMaxImagePixels);
 
 /// The same, from a file.
-tl::expected<Image, std::string> read_image_file(const std::filesystem::path& path,
-                                                 std::uint64_t max_pixels = kMaxImagePixels);
+tl::expected<scene::Image, std::string> read_image_file(const std::filesystem::path& path,
+                                                        std::uint64_t max_pixels = kMaxImagePixels);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace vrut {
+namespace vrut::io {
 
 /// Notices of one kind: the first few, and how many more there were.
 class Notices {
@@ -25,4 +25,4 @@ private:
     std::size_t more_ = 0;
 };
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -9,14 +9,14 @@
 #include "io/texture_writer.hpp"
 #include "io/visible_shapes.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
 /// Gives each thing a name of its own.
 class UniqueNames {
 public:
-    std::string unique_name(const std::string& name, Id id, const std::string& otherwise) {
+    std::string unique_name(const std::string& name, scene::Id id, const std::string& otherwise) {
         std::string own = plain_name(name.empty() ? otherwise : name);
         while (!taken_.insert(own).second) own += "_" + std::to_string(id);
         return own;
@@ -33,7 +33,7 @@ public:
     void begin(const std::string& library) { text("mtllib ").text(library).text("\n").flush(); }
 
     void write_shape(const ShownShape& shape, const std::string& name, const std::string& material) {
-        const Geometry& geometry = *shape.geometry;
+        const scene::Geometry& geometry = *shape.geometry;
         text("o ").text(name).text("\nusemtl ").text(material).text("\n");
         for (const glm::dvec3& position : geometry.positions)
             vector("v", glm::dvec3(shape.world * glm::dvec4(position, 1)));
@@ -47,7 +47,7 @@ public:
     }
 
     /// `picture` is empty for none; with holes, it is that of the opacity as well.
-    void write_material(const Material& material, const std::string& name, const std::string& picture,
+    void write_material(const scene::Material& material, const std::string& name, const std::string& picture,
                         bool holes) {
         text("newmtl ").text(name).text("\nillum 2\n");
         vector("Ka", glm::dvec3(material.ambient));
@@ -87,7 +87,7 @@ private:
     }
 
     /// By the matrix's cofactors times the sign of its determinant, as they are drawn.
-    void write_normals(const Geometry& geometry, const glm::dmat3& m) {
+    void write_normals(const scene::Geometry& geometry, const glm::dmat3& m) {
         const glm::dmat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
         const double sign = glm::determinant(m) < 0 ? -1 : 1;
         for (const glm::vec3& normal : geometry.normals) {
@@ -98,7 +98,7 @@ private:
     }
 
     /// Under a mirroring matrix corners change their turn, so that the front stays the front.
-    void write_faces(const Geometry& geometry, bool mirrored) {
+    void write_faces(const scene::Geometry& geometry, bool mirrored) {
         for (const glm::uvec3& triangle : geometry.triangles) {
             text("f");
             for (int i = 0; i < 3; ++i) write_corner(geometry, triangle[mirrored ? 2 - i : i]);
@@ -106,7 +106,7 @@ private:
         }
     }
 
-    void write_corner(const Geometry& geometry, std::size_t vertex) {
+    void write_corner(const scene::Geometry& geometry, std::size_t vertex) {
         text(" ").text(std::to_string(positions_ + vertex + 1));
         if (!geometry.texcoords.empty() || !geometry.normals.empty()) text("/");
         if (!geometry.texcoords.empty()) text(std::to_string(texcoords_ + vertex + 1));
@@ -119,24 +119,25 @@ private:
 };
 
 /// For each material and, at last, the default one, its name; empty where no shape has it.
-std::vector<std::string> name_materials(const Scene& scene, const std::vector<ShownShape>& shapes) {
+std::vector<std::string> name_materials(const scene::Scene& scene, const std::vector<ShownShape>& shapes) {
     std::vector<std::string> names(scene.materials().size() + 1);
     UniqueNames taken;
     for (const ShownShape& shape : shapes) {
         const std::size_t i =
-            shape.material == kNone ? names.size() - 1 : static_cast<std::size_t>(shape.material);
-        const Material& material = scene.material(shape.material);
+            shape.material == scene::kNone ? names.size() - 1 : static_cast<std::size_t>(shape.material);
+        const scene::Material& material = scene.material(shape.material);
         if (names[i].empty()) names[i] = taken.unique_name(material.name, material.id, "material");
     }
     return names;
 }
 
 /// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
-void report_lost_shading(const Scene& scene, const Material& material, ConversionWarnings& warnings) {
+void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
+                         ConversionWarnings& warnings) {
     warnings.add("whether a material is drawn from both sides is not kept");
     if (material.reflectivity > 0) warnings.add("that a material reflects is not kept");
-    const bool has_holes =
-        material.texture != kNone && scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
+    const bool has_holes = material.texture != scene::kNone &&
+                           scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
     if (has_holes && material.diffuse.a < 1)
         warnings.add("a material's opacity beside that of its picture is written, but not read here");
     if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
@@ -145,10 +146,10 @@ void report_lost_shading(const Scene& scene, const Material& material, Conversio
         warnings.add("a highlight with a shininess below 1 is written, but read here as another or none");
 }
 
-void report_lost_materials(const Scene& scene, const std::vector<std::string>& names,
+void report_lost_materials(const scene::Scene& scene, const std::vector<std::string>& names,
                            ConversionWarnings& warnings) {
     for (std::size_t i = 0; i + 1 < names.size(); ++i) {
-        const Material& material = scene.materials()[i];
+        const scene::Material& material = scene.materials()[i];
         if (names[i].empty()) {
             warnings.add("a material that nothing shows is left out");
             continue;
@@ -159,7 +160,7 @@ void report_lost_materials(const Scene& scene, const std::vector<std::string>& n
 }
 
 void report_lost_geometry(const std::vector<ShownShape>& shapes, ConversionWarnings& warnings) {
-    std::set<const Geometry*> written;
+    std::set<const scene::Geometry*> written;
     for (const ShownShape& shape : shapes) {
         if (!written.insert(shape.geometry).second)
             warnings.add("a geometry that several nodes show is written for each of them");
@@ -175,7 +176,7 @@ void report_lost_geometry(const std::vector<ShownShape>& shapes, ConversionWarni
 
 }  // namespace
 
-void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+void write_obj(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                ConversionWarnings& warnings, const WriteProgress& progress) {
     const auto shapes = shown_shapes(scene, warnings);
     const auto materials = name_materials(scene, shapes);
@@ -188,10 +189,10 @@ void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFile
     files.write(path.parent_path() / library, [&](std::ostream& out) {
         for (std::size_t i = 0; i < materials.size(); ++i) {
             if (materials[i].empty()) continue;
-            const Material& material =
-                scene.material(i + 1 < materials.size() ? static_cast<Index>(i) : kNone);
+            const scene::Material& material =
+                scene.material(i + 1 < materials.size() ? static_cast<scene::Index>(i) : scene::kNone);
             const auto texture = static_cast<std::size_t>(material.texture);
-            const bool pictured = material.texture != kNone;
+            const bool pictured = material.texture != scene::kNone;
             ObjWriter(out).write_material(material, materials[i], pictured ? pictures[texture] : "",
                                           pictured && scene.textures()[texture].transparent);
         }
@@ -201,16 +202,16 @@ void write_obj(const Scene& scene, const std::filesystem::path& path, OutputFile
         UniqueNames names;
         writer.begin(library);
         for (std::size_t i = 0; i < shapes.size(); ++i) {
-            const Node& node = scene.nodes()[static_cast<std::size_t>(shapes[i].node)];
+            const scene::Node& node = scene.nodes()[static_cast<std::size_t>(shapes[i].node)];
             const std::string name = names.unique_name(node.name, node.id, "node");
             if (name != node.name) warnings.add("a node's name is changed to one word of its own");
-            const Index material = shapes[i].material;
-            writer.write_shape(
-                shapes[i], name,
-                materials[material == kNone ? materials.size() - 1 : static_cast<std::size_t>(material)]);
+            const scene::Index material = shapes[i].material;
+            writer.write_shape(shapes[i], name,
+                               materials[material == scene::kNone ? materials.size() - 1
+                                                                  : static_cast<std::size_t>(material)]);
             if (progress) progress(static_cast<double>(i + 1) / static_cast<double>(shapes.size()));
         }
     });
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

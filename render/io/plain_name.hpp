@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace vrut {
+namespace vrut::io {
 
 /// A name as one word that any format and file system takes: all but letters, digits, '-', '.' and what is
 /// not ASCII become '_'; at most 60 bytes.
@@ -19,4 +19,4 @@ inline std::string plain_name(std::string name) {
     return name;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

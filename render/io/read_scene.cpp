@@ -7,7 +7,7 @@
 #include "io/osb/scene.hpp"
 #include "io/vrut/text_reader.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -46,10 +46,10 @@ std::string known_extensions() {
 
 }  // namespace
 
-ReadResult build_scene(SceneParts parts, const std::string& file) {
+ReadResult build_scene(scene::SceneParts parts, const std::string& file) {
     std::vector<std::size_t> lines;
     for (const auto& part : parts.nodes) lines.push_back(part.line);
-    auto scene = Scene::build(std::move(parts));
+    auto scene = scene::Scene::build(std::move(parts));
     if (scene) return *std::move(scene);
     // The root that build adds itself is never at fault.
     const std::size_t line = scene.error().node < lines.size() ? lines[scene.error().node] : 0;
@@ -75,7 +75,7 @@ bool has_foreign_reader(const std::filesystem::path& path) {
 PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress) {
     const std::string file = path.string();
     const ReaderEntry* const format = reader_of(path);
-    if (const auto fault = file_error(path)) return tl::unexpected(file + ": " + *fault);
+    if (const auto fault = base::file_error(path)) return tl::unexpected(file + ": " + *fault);
     if (lower_extension(path) == ".csb")
         return tl::unexpected(file +
                               ": the CSB format has no public specification, so that nothing reads it here; "
@@ -91,4 +91,4 @@ ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& pro
     return build_scene(*std::move(parts), path.string());
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -7,19 +7,19 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// A scene, or one sentence that names the file, where it can the line, and what was expected.
-using ReadResult = tl::expected<Scene, std::string>;
+using ReadResult = tl::expected<scene::Scene, std::string>;
 
 /// Is told now and then which part, 0 to 1, has been read.
 using ReadProgress = std::function<void(double)>;
 
 /// What the reader of a format hands over, or the same kind of sentence.
-using PartsResult = tl::expected<SceneParts, std::string>;
+using PartsResult = tl::expected<scene::SceneParts, std::string>;
 
 /// Scene::build with its error as a reader's, of the scene in `file`.
-ReadResult build_scene(SceneParts parts, const std::string& file);
+ReadResult build_scene(scene::SceneParts parts, const std::string& file);
 
 /// The file's ending with its dot, a to z in lower case.
 std::string lower_extension(const std::filesystem::path& path);
@@ -37,4 +37,4 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
 /// (read_textures()).
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -13,7 +13,7 @@
 #include "io/image_file.hpp"
 #include "io/scene_textures.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -104,7 +104,7 @@ public:
     }
     void text(std::string& value) {
         take_block(value);
-        require(find_invalid_utf8(value) == std::string_view::npos, "UTF-8");
+        require(base::find_invalid_utf8(value) == std::string_view::npos, "UTF-8");
     }
     template <class Item>
     void array(std::vector<Item>& items) {
@@ -184,7 +184,8 @@ void serialize_vector(Stream& stream, Vector& vector, double least = -kMostNumbe
 }
 
 template <class Stream>
-void serialize_index(Stream& stream, Index& index, std::size_t count, Index least = kNone) {
+void serialize_index(Stream& stream, scene::Index& index, std::size_t count,
+                     scene::Index least = scene::kNone) {
     stream.integer(index, least, static_cast<std::int64_t>(count) - 1);
 }
 
@@ -198,8 +199,8 @@ void serialize_optional(Stream& stream, std::optional<Item>& item, Pass serializ
 }
 
 template <class Stream>
-void serialize(Stream& stream, Texture& texture) {
-    Image& image = texture.image;
+void serialize(Stream& stream, scene::Texture& texture) {
+    scene::Image& image = texture.image;
     stream.text(texture.file);
     stream.integer(image.width, 1, kMaxImageSide);
     stream.integer(image.height, 1, kMaxImageSide);
@@ -211,8 +212,8 @@ void serialize(Stream& stream, Texture& texture) {
 }
 
 template <class Stream>
-void serialize(Stream& stream, Material& material, const SceneParts& parts) {
-    stream.integer(material.id, 0, kMaxId);
+void serialize(Stream& stream, scene::Material& material, const scene::SceneParts& parts) {
+    stream.integer(material.id, 0, scene::kMaxId);
     stream.text(material.name);
     for (glm::dvec4* color : {&material.ambient, &material.diffuse, &material.specular, &material.emission})
         serialize_vector(stream, *color, 0);
@@ -239,8 +240,8 @@ unsigned highest_index(const std::vector<glm::uvec3>& triangles) {
 }
 
 template <class Stream>
-void serialize(Stream& stream, Geometry& geometry) {
-    stream.integer(geometry.id, 0, kMaxId);
+void serialize(Stream& stream, scene::Geometry& geometry) {
+    stream.integer(geometry.id, 0, scene::kMaxId);
     stream.array(geometry.positions);
     stream.array(geometry.normals);
     stream.array(geometry.texcoords);
@@ -260,15 +261,16 @@ void serialize(Stream& stream, Geometry& geometry) {
 }
 
 template <class Stream>
-void serialize_cube_map(Stream& stream, BackgroundData& data, const std::vector<Texture>& textures) {
+void serialize_cube_map(Stream& stream, scene::BackgroundData& data,
+                        const std::vector<scene::Texture>& textures) {
     serialize_optional(stream, data.cube_map, [&](auto& faces) {
         for (std::string& face : faces) stream.text(face);
     });
     serialize_optional(stream, data.cube_textures, [&](auto& faces) {
-        for (Index& face : faces) {
+        for (scene::Index& face : faces) {
             serialize_index(stream, face, textures.size(), 0);
             if constexpr (std::is_same_v<Stream, PartsDeserializer>) {
-                const Image& image = textures[static_cast<std::size_t>(face)].image;
+                const scene::Image& image = textures[static_cast<std::size_t>(face)].image;
                 const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
                 stream.require(image.width == side && image.height == side, "squares of one size");
             }
@@ -279,68 +281,69 @@ void serialize_cube_map(Stream& stream, BackgroundData& data, const std::vector<
 
 /// The alternative that belongs to the node's type.
 template <class Data>
-Data& data_of(Node& node) {
+Data& data_of(scene::Node& node) {
     if (!std::holds_alternative<Data>(node.data)) node.data.emplace<Data>();
     return std::get<Data>(node.data);
 }
 
 template <class Stream>
-void serialize_data(Stream& stream, Node& node, const SceneParts& parts) {
+void serialize_data(Stream& stream, scene::Node& node, const scene::SceneParts& parts) {
     switch (node.type) {
-        case NodeType::geometry: {
-            auto& data = data_of<GeometryData>(node);
+        case scene::NodeType::geometry: {
+            auto& data = data_of<scene::GeometryData>(node);
             serialize_index(stream, data.geometry, parts.geometries.size());
             serialize_index(stream, data.material, parts.materials.size());
             break;
         }
-        case NodeType::camera: {
-            auto& data = data_of<CameraData>(node);
+        case scene::NodeType::camera: {
+            auto& data = data_of<scene::CameraData>(node);
             for (glm::dvec3* point : {&data.eye, &data.focus, &data.up}) serialize_vector(stream, *point);
             stream.number(data.fov, 1, 170);
             break;
         }
-        case NodeType::light: {
-            auto& data = data_of<LightData>(node);
-            stream.integer(data.type, 0, static_cast<std::int64_t>(LightData::Type::spot));
+        case scene::NodeType::light: {
+            auto& data = data_of<scene::LightData>(node);
+            stream.integer(data.type, 0, static_cast<std::int64_t>(scene::LightData::Type::spot));
             serialize_vector(stream, data.color, 0);
             serialize_vector(stream, data.attenuation, 0);
             stream.number(data.angle, 0, 180);
             break;
         }
-        case NodeType::switch_:
-            stream.integer(data_of<SwitchData>(node).active_child, SwitchData::kAllChildren, 1 << 30);
+        case scene::NodeType::switch_:
+            stream.integer(data_of<scene::SwitchData>(node).active_child, scene::SwitchData::kAllChildren,
+                           1 << 30);
             break;
-        case NodeType::lod: {
-            auto& ranges = data_of<LodData>(node).ranges;
+        case scene::NodeType::lod: {
+            auto& ranges = data_of<scene::LodData>(node).ranges;
             stream.array(ranges);
             for (const double range : ranges)
                 stream.require(range >= 0 && range <= kMostNumber, "a distance");
             break;
         }
-        case NodeType::background: {
-            auto& data = data_of<BackgroundData>(node);
+        case scene::NodeType::background: {
+            auto& data = data_of<scene::BackgroundData>(node);
             serialize_index(stream, data.material, parts.materials.size());
             serialize_cube_map(stream, data, parts.textures);
             break;
         }
-        case NodeType::assembly:
-        case NodeType::root:
-        case NodeType::sound:
+        case scene::NodeType::assembly:
+        case scene::NodeType::root:
+        case scene::NodeType::sound:
             break;
     }
 }
 
 template <class Stream>
-void serialize(Stream& stream, Node& node, const SceneParts& parts) {
-    stream.integer(node.id, 0, kMaxId);
+void serialize(Stream& stream, scene::Node& node, const scene::SceneParts& parts) {
+    stream.integer(node.id, 0, scene::kMaxId);
     stream.text(node.name);
-    stream.integer(node.type, 0, static_cast<std::int64_t>(NodeType::sound));
+    stream.integer(node.type, 0, static_cast<std::int64_t>(scene::NodeType::sound));
     serialize_flag(stream, node.active);
     for (int column = 0; column < 4; ++column) serialize_vector(stream, node.matrix[column]);
     stream.require(glm::dvec4(node.matrix[0][3], node.matrix[1][3], node.matrix[2][3], node.matrix[3][3]) ==
                        glm::dvec4(0, 0, 0, 1),
                    "0 0 0 1 as a matrix's last row");
-    serialize_optional(stream, node.hinge, [&](Hinge& hinge) {
+    serialize_optional(stream, node.hinge, [&](scene::Hinge& hinge) {
         serialize_vector(stream, hinge.axis);
         stream.require(hinge.axis != glm::dvec3(0), "a hinge's axis");
         stream.number(hinge.degrees, -360, 360);
@@ -350,26 +353,26 @@ void serialize(Stream& stream, Node& node, const SceneParts& parts) {
 
 template <class Stream, class Item>
 void require_ids_once(const Stream& stream, const std::vector<Item>& items) {
-    std::unordered_set<Id, SaltedHash> ids;
+    std::unordered_set<scene::Id, base::SaltedHash> ids;
     for (const Item& item : items) stream.require(ids.insert(item.id).second, "each id once");
 }
 
 template <class Stream>
-void serialize(Stream& stream, SceneParts& parts) {
+void serialize(Stream& stream, scene::SceneParts& parts) {
     stream.text(parts.name);
     stream.number(parts.unit, 1e-12, 1e12);
-    stream.list(parts.textures, [&](Texture& texture) { serialize(stream, texture); });
+    stream.list(parts.textures, [&](scene::Texture& texture) { serialize(stream, texture); });
     std::uint64_t pixels = 0;
-    for (const Texture& texture : parts.textures) pixels += texture.image.rgba.size() / 4;
+    for (const scene::Texture& texture : parts.textures) pixels += texture.image.rgba.size() / 4;
     stream.require(pixels <= kMaxTexturePixels, "fewer pixels");
-    stream.list(parts.materials, [&](Material& material) { serialize(stream, material, parts); });
+    stream.list(parts.materials, [&](scene::Material& material) { serialize(stream, material, parts); });
     require_ids_once(stream, parts.materials);
-    stream.list(parts.geometries, [&](Geometry& geometry) { serialize(stream, geometry); });
+    stream.list(parts.geometries, [&](scene::Geometry& geometry) { serialize(stream, geometry); });
     require_ids_once(stream, parts.geometries);
-    stream.list(parts.nodes, [&](SceneParts::PartNode& part) {
+    stream.list(parts.nodes, [&](scene::SceneParts::PartNode& part) {
         serialize(stream, part.node, parts);
-        stream.integer(part.parent_id, 0, kMaxId);
-        stream.integer(part.line, 0, kMaxId);
+        stream.integer(part.parent_id, 0, scene::kMaxId);
+        stream.integer(part.line, 0, scene::kMaxId);
     });
     stream.list(parts.notices, [&](std::string& notice) { stream.text(notice); });
 }
@@ -410,4 +413,4 @@ PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, cons
     return tl::unexpected(file + ": its reader handed over what is no scene: " + fault.what());
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -7,7 +7,7 @@
 
 #include "io/read_scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Takes the bytes of a stream, piece after piece.
 using ByteSink = std::function<void(std::string_view)>;
@@ -23,4 +23,4 @@ void serialize_parts(PartsResult parts, const ByteSink& sink);
 /// than 5 times what came. Throws what `source` throws.
 PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, const std::string& file);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -9,28 +9,28 @@
 #include "io/notices.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
 namespace fs = std::filesystem;
 
-using TextureResult = tl::expected<Index, std::string>;
+using TextureResult = tl::expected<scene::Index, std::string>;
 
 class TextureReader {
 public:
-    TextureReader(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+    TextureReader(scene::SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
                   std::uint64_t max_pixels)
         : textures_(parts.textures),
           folder_(scene_file.parent_path()),
           progress_(progress),
           pixels_left_(max_pixels) {
-        for (const Texture& texture : textures_)
+        for (const scene::Texture& texture : textures_)
             pixels_left_ -= std::min<std::uint64_t>(pixels_left_, texture.image.rgba.size() / 4);
     }
 
     TextureResult read(const std::string& name) {
-        const auto file = find_below(folder_, name);
+        const auto file = base::find_below(folder_, name);
         if (!file) return tl::unexpected(file.error());
         if (const auto known = known_.find(file->string()); known != known_.end()) return known->second;
         if (progress_) progress_(1);
@@ -44,21 +44,21 @@ private:
         pixels_left_ -= image->rgba.size() / 4;
         const bool transparent = has_transparent_pixel(*image);
         textures_.push_back({name, *std::move(image), transparent});
-        return static_cast<Index>(textures_.size() - 1);
+        return static_cast<scene::Index>(textures_.size() - 1);
     }
 
-    std::vector<Texture>& textures_;
+    std::vector<scene::Texture>& textures_;
     const fs::path folder_;
     const ReadProgress& progress_;
     std::uint64_t pixels_left_;
     std::map<std::string, TextureResult> known_;  // by the file's own path
 };
 
-using CubeResult = tl::expected<std::array<Index, 6>, std::string>;
+using CubeResult = tl::expected<std::array<scene::Index, 6>, std::string>;
 
-CubeResult read_cube(TextureReader& reader, const std::vector<Texture>& textures,
+CubeResult read_cube(TextureReader& reader, const std::vector<scene::Texture>& textures,
                      const std::array<std::string, 6>& names) {
-    std::array<Index, 6> faces{};
+    std::array<scene::Index, 6> faces{};
     for (std::size_t i = 0; i < faces.size(); ++i) {
         const TextureResult face = reader.read(names[i]);
         if (!face) return tl::unexpected("'" + excerpt(names[i]) + "': " + face.error());
@@ -66,7 +66,7 @@ CubeResult read_cube(TextureReader& reader, const std::vector<Texture>& textures
     }
     const int side = textures[static_cast<std::size_t>(faces[0])].image.width;
     for (std::size_t i = 0; i < faces.size(); ++i)
-        if (const Image& image = textures[static_cast<std::size_t>(faces[i])].image;
+        if (const scene::Image& image = textures[static_cast<std::size_t>(faces[i])].image;
             image.width != side || image.height != side)
             return tl::unexpected("its pictures are squares of one size, and '" + excerpt(names[i]) +
                                   "' is " + std::to_string(image.width) + " x " +
@@ -76,18 +76,18 @@ CubeResult read_cube(TextureReader& reader, const std::vector<Texture>& textures
 
 }  // namespace
 
-bool has_transparent_pixel(const Image& image) {
+bool has_transparent_pixel(const scene::Image& image) {
     for (std::size_t i = 3; i < image.rgba.size(); i += 4)
         if (image.rgba[i] < 255) return true;
     return false;
 }
 
-void read_textures(SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
+void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
                    std::uint64_t max_pixels) {
     TextureReader reader(parts, scene_file, progress, max_pixels);
     Notices notices;
     const auto say = [&](const std::string& what) { notices.add(scene_file.string() + ": " + what); };
-    for (Material& material : parts.materials) {
+    for (scene::Material& material : parts.materials) {
         if (material.image.empty()) continue;
         if (const TextureResult texture = reader.read(material.image))
             material.texture = *texture;
@@ -96,7 +96,7 @@ void read_textures(SceneParts& parts, const fs::path& scene_file, const ReadProg
                 excerpt(material.image) + "': " + texture.error());
     }
     for (auto& [node, parent_id, line] : parts.nodes) {
-        auto* background = std::get_if<BackgroundData>(&node.data);
+        auto* background = std::get_if<scene::BackgroundData>(&node.data);
         if (!background || !background->cube_map) continue;
         if (const CubeResult faces = read_cube(reader, parts.textures, *background->cube_map))
             background->cube_textures = *faces;
@@ -106,4 +106,4 @@ void read_textures(SceneParts& parts, const fs::path& scene_file, const ReadProg
     notices.append_to(parts.notices);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

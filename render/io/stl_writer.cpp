@@ -7,7 +7,7 @@
 
 #include "io/visible_shapes.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -48,7 +48,7 @@ void report_lost_materials(const std::vector<ShownShape>& shapes, ConversionWarn
 
 }  // namespace
 
-void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+void write_stl(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                ConversionWarnings& warnings, const WriteProgress& progress) {
     const auto shapes = shown_shapes(scene, warnings);
     report_lost_nodes(scene, warnings);
@@ -57,7 +57,7 @@ void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFile
     std::uint64_t triangles = 0;
     for (const ShownShape& shape : shapes) triangles += shape.geometry->triangles.size();
     if (triangles > UINT32_MAX)
-        throw WriteError(path.string() + ": an STL file holds at most 2^32 - 1 triangles");
+        throw base::WriteError(path.string() + ": an STL file holds at most 2^32 - 1 triangles");
     files.write(path, [&](std::ostream& out) {
         std::array<char, 84> header{};
         std::strncpy(header.data(), "binary STL of vrut-preview", 80);
@@ -71,4 +71,4 @@ void write_stl(const Scene& scene, const std::filesystem::path& path, OutputFile
     });
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -6,9 +6,9 @@
 
 #include "io/plain_name.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
-std::vector<std::uint8_t> encode_png(const Image& image, bool with_alpha) {
+std::vector<std::uint8_t> encode_png(const scene::Image& image, bool with_alpha) {
     png_image header{};
     header.version = PNG_IMAGE_VERSION;
     header.width = static_cast<png_uint_32>(image.width);
@@ -29,10 +29,10 @@ std::vector<std::uint8_t> encode_png(const Image& image, bool with_alpha) {
     return png;
 }
 
-std::vector<std::string> write_textures(const Scene& scene, const std::filesystem::path& scene_file,
-                                        OutputFiles& files) {
+std::vector<std::string> write_textures(const scene::Scene& scene, const std::filesystem::path& scene_file,
+                                        base::OutputFiles& files) {
     std::vector<std::string> names;
-    for (const Texture& texture : scene.textures()) {
+    for (const scene::Texture& texture : scene.textures()) {
         const std::string own = plain_name(std::filesystem::path(texture.file).stem().string());
         names.push_back(plain_name(scene_file.stem().string()) + ".textures/" + std::to_string(names.size()) +
                         (own.empty() ? "" : "-" + own) + ".png");
@@ -44,4 +44,4 @@ std::vector<std::string> write_textures(const Scene& scene, const std::filesyste
     return names;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -10,11 +10,11 @@
 #include "io/texture_writer.hpp"
 #include "io/vrut/text_writer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
-void write_vrut_file(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+void write_vrut_file(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                      ConversionWarnings&, const WriteProgress&) {
     const auto pictures = write_textures(scene, path, files);
     files.write(path, [&](std::ostream& out) { write_vrut_text(scene, out, {}, pictures); });
@@ -22,7 +22,7 @@ void write_vrut_file(const Scene& scene, const std::filesystem::path& path, Outp
 
 struct WriterEntry {
     const char* extension;
-    void (*write)(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+    void (*write)(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                   ConversionWarnings& warnings,
                   const WriteProgress& progress);  // throws WriteError
 };
@@ -53,23 +53,23 @@ std::string written_extensions() {
     return list;
 }
 
-WriteResult write_scene(const Scene& scene, const std::filesystem::path& path, const WriteProgress& progress,
-                        std::vector<std::filesystem::path> protected_files) {
+WriteResult write_scene(const scene::Scene& scene, const std::filesystem::path& path,
+                        const WriteProgress& progress, std::vector<std::filesystem::path> protected_files) {
     const WriterEntry* const format = writer_of(path);
     if (format == nullptr)
         return tl::unexpected(path.string() + ": no writer for this ending; known are " +
                               written_extensions());
     try {
-        OutputFiles files(std::move(protected_files));
+        base::OutputFiles files(std::move(protected_files));
         ConversionWarnings warnings;
         format->write(scene, path, files, warnings, progress);
         files.commit();
         std::vector<std::string> lost;
         warnings.append_to(lost, path.string());
         return lost;
-    } catch (const WriteError& fault) {
+    } catch (const base::WriteError& fault) {
         return tl::unexpected(std::string(fault.what()));
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

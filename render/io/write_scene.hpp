@@ -8,7 +8,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Is told now and then which part, 0 to 1, has been written.
 using WriteProgress = std::function<void(double)>;
@@ -26,8 +26,8 @@ std::string written_extensions();
 /// as PNG files in the folder STEM.textures beside it. Files get their names when all are whole: a failure
 /// leaves what was there before; so does one of `kept` in the place of a file, such as what the scene is read
 /// from.
-WriteResult write_scene(const Scene& scene, const std::filesystem::path& path,
+WriteResult write_scene(const scene::Scene& scene, const std::filesystem::path& path,
                         const WriteProgress& progress = {},
                         std::vector<std::filesystem::path> protected_files = {});
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -1,6 +1,6 @@
 #include "math/bounds.hpp"
 
-namespace vrut {
+namespace vrut::math {
 
 // Halves are summed, not sums halved, so that a box near the end of the double range keeps a finite centre.
 glm::dvec3 Bounds::center() const { return empty() ? glm::dvec3(0) : min * 0.5 + max * 0.5; }
@@ -34,4 +34,4 @@ std::array<glm::dvec3, 8> corners(const Bounds& box) {
     return result;
 }
 
-}  // namespace vrut
+}  // namespace vrut::math

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-namespace vrut {
+namespace vrut::math {
 
 /// Axis-aligned box in the scene's unit. Starts empty: `min` above `max`.
 struct Bounds {
@@ -30,4 +30,4 @@ Bounds transformed(const glm::dmat4& matrix, const Bounds& box);
 /// The eight corners of a box that is not empty.
 std::array<glm::dvec3, 8> corners(const Bounds& box);
 
-}  // namespace vrut
+}  // namespace vrut::math

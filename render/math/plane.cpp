@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vrut {
+namespace vrut::math {
 
 std::optional<Plane> transformed(const glm::dmat4& matrix, const Plane& plane) {
     // Two directions in the plane keep their plane under any matrix that does not collapse it.
@@ -24,4 +24,4 @@ glm::dmat4 reflection_about(const Plane& plane) {
     return matrix;
 }
 
-}  // namespace vrut
+}  // namespace vrut::math

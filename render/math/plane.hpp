@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-namespace vrut {
+namespace vrut::math {
 
 /// The points p with normal · (p - point) = 0.
 struct Plane {
@@ -20,4 +20,4 @@ std::optional<Plane> transformed(const glm::dmat4& matrix, const Plane& plane);
 /// The reflection about a plane, for column vectors (Macků 2016, eq. 6.12).
 glm::dmat4 reflection_about(const Plane& plane);
 
-}  // namespace vrut
+}  // namespace vrut::math

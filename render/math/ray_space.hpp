@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <utility>
 
-namespace vrut {
+namespace vrut::math {
 
 /// Space in which a ray runs along z: x and y across it, sheared from the given axes; z is the distance along
 /// the ray where x and y are 0. What it is given is relative to the ray's origin. A triangle that turns
@@ -42,4 +42,4 @@ inline double edge_function(const glm::dvec3& a, const glm::dvec3& b) {
     return std::fma(a.x, b.y, -p) - std::fma(a.y, b.x, -q);
 }
 
-}  // namespace vrut
+}  // namespace vrut::math

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace vrut {
+namespace vrut::math {
 
 glm::dvec2 sample_offset(int index, int samples) {
     const auto count = std::bit_ceil(static_cast<unsigned>(samples));
@@ -13,4 +13,4 @@ glm::dvec2 sample_offset(int index, int samples) {
     return {(index + 0.5) / samples - 0.5, y - 0.5};
 }
 
-}  // namespace vrut
+}  // namespace vrut::math

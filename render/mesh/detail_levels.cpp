@@ -12,14 +12,14 @@
 #include "mesh/vertex_cache_order.hpp"
 #include "mesh/watertight.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
 /// On Linux a thread has a niceness of its own.
 void lower_thread_priority() { static_cast<void>(setpriority(PRIO_PROCESS, 0, 10)); }
 
-std::vector<DetailLevel> levels_of(const Geometry& geometry, const std::atomic<bool>& stop) {
+std::vector<DetailLevel> levels_of(const scene::Geometry& geometry, const std::atomic<bool>& stop) {
     std::vector<DetailLevel> levels = simplify(geometry, stop);
     if (stop) return levels;
     if (auto ordered = optimize_vertex_cache(geometry)) levels.insert(levels.begin(), *std::move(ordered));
@@ -35,27 +35,28 @@ struct DetailLevels::LevelGenerator {
         std::atomic<bool> watertight{false};
     };
 
-    explicit LevelGenerator(std::shared_ptr<const Scene> of)
+    explicit LevelGenerator(std::shared_ptr<const scene::Scene> of)
         : scene(std::move(of)), chains(scene->geometries().size()) {}
     void find_watertight(const std::vector<std::size_t>& order);
     void make_all();
     void run();
 
-    const std::shared_ptr<const Scene> scene;
+    const std::shared_ptr<const scene::Scene> scene;
     std::vector<LevelChain> chains;  // one for each geometry
     std::atomic<bool> stop{false}, done{false};
 };
 
 void DetailLevels::LevelGenerator::find_watertight(const std::vector<std::size_t>& order) {
-    const std::vector<Material>& materials = scene->materials();
-    if (std::none_of(materials.begin(), materials.end(), [](const Material& m) { return m.two_sided; }))
+    const std::vector<scene::Material>& materials = scene->materials();
+    if (std::none_of(materials.begin(), materials.end(),
+                     [](const scene::Material& m) { return m.two_sided; }))
         return;
     for (const std::size_t at : order)
         chains[at].watertight.store(is_watertight(scene->geometries()[at], stop), std::memory_order_relaxed);
 }
 
 void DetailLevels::LevelGenerator::make_all() {
-    const std::vector<Geometry>& geometries = scene->geometries();
+    const std::vector<scene::Geometry>& geometries = scene->geometries();
     std::vector<std::size_t> order(geometries.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -80,22 +81,22 @@ void DetailLevels::LevelGenerator::run() {
     done.notify_all();
 }
 
-DetailLevels::DetailLevels(std::shared_ptr<const Scene> scene)
+DetailLevels::DetailLevels(std::shared_ptr<const scene::Scene> scene)
     : generator_(std::make_shared<LevelGenerator>(std::move(scene))) {
     std::thread([generator = generator_] { generator->run(); }).detach();
 }
 
 DetailLevels::~DetailLevels() { generator_->stop = true; }
 
-const std::shared_ptr<const Scene>& DetailLevels::scene() const { return generator_->scene; }
+const std::shared_ptr<const scene::Scene>& DetailLevels::scene() const { return generator_->scene; }
 
-std::span<const DetailLevel> DetailLevels::of(Index geometry) const {
+std::span<const DetailLevel> DetailLevels::of(scene::Index geometry) const {
     const LevelGenerator::LevelChain& chain = generator_->chains[static_cast<std::size_t>(geometry)];
     if (!chain.made.load(std::memory_order_acquire)) return {};
     return chain.levels;
 }
 
-bool DetailLevels::known_watertight(Index geometry) const {
+bool DetailLevels::known_watertight(scene::Index geometry) const {
     return generator_->chains[static_cast<std::size_t>(geometry)].watertight.load(std::memory_order_relaxed);
 }
 
@@ -103,4 +104,4 @@ void DetailLevels::wait() const { generator_->done.wait(false); }
 
 bool DetailLevels::done() const { return generator_->done; }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

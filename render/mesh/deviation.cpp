@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -147,4 +147,4 @@ std::optional<float> SurfaceDeviation::measure(std::span<const glm::uvec3> befor
     return std::sqrt(squared_);
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -9,7 +9,7 @@
 #include "mesh/triangle_bvh.hpp"
 #include "mesh/vertex_adjacency.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// Measures how far a surface moves while its edges are collapsed, step by step: the distance of all its
 /// vertices and, as far as those lie apart, of edges' and triangles' middles from the new surface, and of the
@@ -51,4 +51,4 @@ private:
     float squared_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -90,4 +90,4 @@ float NormalDeviation::measure(const SurfaceDeviation& deviation, std::span<cons
     return 0;
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

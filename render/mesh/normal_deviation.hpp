@@ -6,7 +6,7 @@
 
 #include "mesh/deviation.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// Measures how far off a simplified surface's normals make it look: a normal that is off by an angle, over
 /// half a triangle's longest edge, pretends a step of their product. It shrinks in the picture as a distance
@@ -32,4 +32,4 @@ private:
     std::vector<NormalSample> samples_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -6,7 +6,7 @@
 
 #include "math/ray_space.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -25,7 +25,7 @@ glm::dvec3 sum(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 }
 
 /// The box's centre along the axes where each of its points minus that is exact (Sterbenz), else 0.
-glm::dvec3 exact_origin(const Bounds& box) {
+glm::dvec3 exact_origin(const math::Bounds& box) {
     glm::dvec3 origin(0);
     for (int axis = 0; axis < 3; ++axis) {
         const double near = std::min(std::abs(box.min[axis]), std::abs(box.max[axis]));
@@ -40,7 +40,7 @@ glm::dvec3 exact_origin(const Bounds& box) {
 /// are kept, but all is relative to the ray's origin, so that what is far from the world's origin, or from
 /// the geometry's, cancels before it is rounded.
 struct InstanceAtRay {
-    InstanceAtRay(const Geometry& part_geometry, const glm::dmat4& world, const glm::dvec3& eye)
+    InstanceAtRay(const scene::Geometry& part_geometry, const glm::dmat4& world, const glm::dvec3& eye)
         : geometry(part_geometry),
           axes(world),
           origin(exact_origin(geometry.bounds)),
@@ -48,7 +48,7 @@ struct InstanceAtRay {
 
     glm::dvec3 seen(const glm::dvec3& position) const { return axes * (position - origin) + place; }
 
-    const Geometry& geometry;
+    const scene::Geometry& geometry;
     glm::dmat3 axes;           ///< world from node
     glm::dvec3 origin, place;  ///< a point of the node's space, and where it is seen
 };
@@ -59,7 +59,7 @@ struct InstanceAtRay {
 /// tolerance is far above the rounding, so that the triangles decide at the box's very edge.
 std::optional<double> box_entry(const InstanceAtRay& part, const glm::dvec3& direction) {
     constexpr double kTolerance = 1e-12;
-    const Bounds& box = part.geometry.bounds;
+    const math::Bounds& box = part.geometry.bounds;
     const glm::dvec3 box_center = box.center();
     const glm::dvec3 half = glm::max(box.max - box_center, box_center - box.min);
     const glm::dvec3 center = part.seen(box_center);
@@ -69,7 +69,8 @@ std::optional<double> box_entry(const InstanceAtRay& part, const glm::dvec3& dir
                std::abs(glm::dot(edges[2], axis));
     };
     const glm::dvec3 extent = glm::abs(edges[0]) + glm::abs(edges[1]) + glm::abs(edges[2]);
-    if (!(glm::length(center - extent) < kMaxDrawDistance && glm::length(center + extent) < kMaxDrawDistance))
+    if (!(glm::length(center - extent) < scene::kMaxDrawDistance &&
+          glm::length(center + extent) < scene::kMaxDrawDistance))
         return {};
 
     const double tolerance = kTolerance * (glm::length(center) + glm::length(extent));
@@ -102,8 +103,8 @@ struct Windings {
 };
 
 /// The sides that are drawn.
-Windings drawn_windings(const InstanceAtRay& part, const Material& material) {
-    const double determinant = relative_determinant(part.axes);
+Windings drawn_windings(const InstanceAtRay& part, const scene::Material& material) {
+    const double determinant = scene::relative_determinant(part.axes);
     const bool singular = !(std::abs(determinant) > 1e-12);
     const bool both = singular || material.two_sided;
     return {both || determinant > 0, both || determinant < 0};
@@ -111,7 +112,7 @@ Windings drawn_windings(const InstanceAtRay& part, const Material& material) {
 
 /// The triangle that is met first, and before `hit.distance`; `hit.node` and `hit.point` are left alone.
 /// `corners` is memory that is used again.
-bool intersect_triangles(const InstanceAtRay& part, const RaySpace& space, const Windings& faces,
+bool intersect_triangles(const InstanceAtRay& part, const math::RaySpace& space, const Windings& faces,
                          std::vector<glm::dvec3>& corners, Hit& hit) {
     corners.clear();
     for (const glm::dvec3& position : part.geometry.positions)
@@ -120,7 +121,8 @@ bool intersect_triangles(const InstanceAtRay& part, const RaySpace& space, const
     bool met = false;
     for (const glm::uvec3& triangle : part.geometry.triangles) {
         const glm::dvec3 &a = corners[triangle.x], &b = corners[triangle.y], &c = corners[triangle.z];
-        const double u = edge_function(c, b), v = edge_function(a, c), w = edge_function(b, a);
+        const double u = math::edge_function(c, b), v = math::edge_function(a, c),
+                     w = math::edge_function(b, a);
         // Asked for what is hit, not for what is missed: a number that is not finite misses.
         const bool clockwise = u >= 0 && v >= 0 && w >= 0;
         const bool counter_clockwise = u <= 0 && v <= 0 && w <= 0;
@@ -140,19 +142,21 @@ bool intersect_triangles(const InstanceAtRay& part, const RaySpace& space, const
 
 }  // namespace
 
-std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_transparent) {
+std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent) {
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::dvec3(0)) return {};
-    const std::vector<bool> shown = shown_nodes(placed, ray.origin);
+    const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
     const auto& nodes = placed.scene->nodes();
-    const RaySpace space(ray.direction);
+    const math::RaySpace space(ray.direction);
     std::vector<glm::dvec3> corners;
     Hit best;
     best.distance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto* data = std::get_if<GeometryData>(&nodes[i].data);
-        if (!shown[i] || !data || data->geometry == kNone || !is_finite(placed.world[i])) continue;
-        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
-        const Material& material = placed.scene->material(placed.nodes[i].material);
+        const auto* data = std::get_if<scene::GeometryData>(&nodes[i].data);
+        if (!shown[i] || !data || data->geometry == scene::kNone || !scene::is_finite(placed.world[i]))
+            continue;
+        const scene::Geometry& geometry =
+            placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+        const scene::Material& material = placed.scene->material(placed.nodes[i].material);
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
         if (through_transparent && placed.scene->is_transparent(material)) continue;
 
@@ -161,17 +165,17 @@ std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_
         if (!from || *from > best.distance) continue;
         // A tie is met too where the id is higher.
         const bool wins_ties =
-            best.node != kNone && nodes[i].id > nodes[static_cast<std::size_t>(best.node)].id;
+            best.node != scene::kNone && nodes[i].id > nodes[static_cast<std::size_t>(best.node)].id;
         Hit hit = best;
         if (wins_ties) hit.distance = std::nextafter(best.distance, std::numeric_limits<double>::infinity());
         if (!intersect_triangles(part, space, drawn_windings(part, material), corners, hit)) continue;
-        hit.node = static_cast<Index>(i);
+        hit.node = static_cast<scene::Index>(i);
         best = hit;
     }
-    if (best.node == kNone) return {};
+    if (best.node == scene::kNone) return {};
     best.point = ray.origin + ray.direction * best.distance;
     if (glm::dot(best.normal, ray.direction) > 0) best.normal = -best.normal;
     return best;
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

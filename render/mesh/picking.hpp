@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// A half-line in world space; `direction` is unit.
 struct Ray {
@@ -14,7 +14,7 @@ struct Ray {
 
 /// What a ray meets first.
 struct Hit {
-    Index node = kNone;
+    scene::Index node = scene::kNone;
     glm::dvec3 point{0};   ///< world space
     glm::dvec3 normal{0};  ///< the triangle's own, in world space: unit, towards the ray's origin
     double distance = 0;   ///< from the ray's origin, above 0, in the scene's unit
@@ -27,6 +27,6 @@ struct Hit {
 /// surface has no gaps; a triangle without area, or seen exactly along its plane, is missed. Nothing is hit
 /// by a ray that is not finite or has no direction. Edge test: Woop, Benthin, Wald, "Watertight Ray/Triangle
 /// Intersection", JCGT 2(1), 2013.
-std::optional<Hit> pick(const PlacedScene& placed, const Ray& ray, bool through_transparent);
+std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent);
 
-}  // namespace vrut
+}  // namespace vrut::mesh

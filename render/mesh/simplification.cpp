@@ -9,7 +9,7 @@
 #include "mesh/deviation.hpp"
 #include "mesh/normal_deviation.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -23,7 +23,7 @@ constexpr float kBetweenSamples = 1.25F;
 constexpr float kNegligible = 1e-5F;
 
 /// Relative to the centre and in radii, so that float has room for any geometry.
-std::vector<glm::vec3> normalized_positions(const Geometry& geometry) {
+std::vector<glm::vec3> normalized_positions(const scene::Geometry& geometry) {
     const glm::dvec3 center = geometry.bounds.center();
     const double radius = geometry.bounds.radius();
     std::vector<glm::vec3> result;
@@ -37,7 +37,7 @@ constexpr unsigned kUnused = ~0U;
 
 /// Numbers for vertices, the same for those that are equal in all streams, kUnused for those of no triangle;
 /// sets how many numbers there are.
-std::vector<unsigned> numbered(std::span<const meshopt_Stream> streams, const Geometry& geometry,
+std::vector<unsigned> numbered(std::span<const meshopt_Stream> streams, const scene::Geometry& geometry,
                                std::size_t& count) {
     std::vector<unsigned> numbers(geometry.positions.size());
     count = meshopt_generateVertexRemapMulti(numbers.data(), &geometry.triangles[0].x,
@@ -54,7 +54,7 @@ struct WorkingMesh {
     std::vector<glm::uvec3> triangles;
 };
 
-WorkingMesh mesh_of(const Geometry& geometry) {
+WorkingMesh mesh_of(const scene::Geometry& geometry) {
     const std::vector<glm::vec3> positions = normalized_positions(geometry);
     std::vector<meshopt_Stream> streams{{positions.data(), sizeof(glm::vec3), sizeof(glm::vec3)}};
     std::size_t points = 0, vertices = 0;
@@ -102,7 +102,7 @@ std::vector<glm::uvec3> renamed(const std::vector<glm::uvec3>& triangles,
 }
 
 /// For each corner of the triangles, where the geometry has normals.
-std::vector<glm::vec3> corner_normals(const WorkingMesh& mesh, const Geometry& geometry) {
+std::vector<glm::vec3> corner_normals(const WorkingMesh& mesh, const scene::Geometry& geometry) {
     std::vector<glm::vec3> result;
     if (geometry.normals.empty()) return result;
     result.reserve(mesh.triangles.size() * 3);
@@ -127,7 +127,7 @@ void halve(WorkingMesh& mesh) {
 
 }  // namespace
 
-std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bool>& stop) {
+std::vector<DetailLevel> simplify(const scene::Geometry& geometry, const std::atomic<bool>& stop) {
     std::vector<DetailLevel> levels;
     const double radius = geometry.bounds.radius();
     if (geometry.triangles.size() < 2 * kFewest || !(radius > 0) || !std::isfinite(radius)) return levels;
@@ -159,8 +159,8 @@ std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bo
     return levels;
 }
 
-Geometry geometry_of(const Geometry& geometry, const DetailLevel& level) {
-    Geometry result;
+scene::Geometry geometry_of(const scene::Geometry& geometry, const DetailLevel& level) {
+    scene::Geometry result;
     result.id = geometry.id;
     result.bounds = geometry.bounds;
     std::vector<unsigned> numbers(geometry.positions.size(), kUnused);
@@ -179,4 +179,4 @@ Geometry geometry_of(const Geometry& geometry, const DetailLevel& level) {
     return result;
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// A geometry's surface with fewer triangles, between some of its vertices; or with its own in another order.
 struct DetailLevel {
@@ -21,9 +21,9 @@ struct DetailLevel {
 /// and Heckbert 1997, as in meshoptimizer); how far that moves the surface and turns its normals is measured
 /// (Deviation, Slant). Corners of the same position stay together, whatever normals and texture coordinates
 /// they have.
-std::vector<DetailLevel> simplify(const Geometry& geometry, const std::atomic<bool>& stop);
+std::vector<DetailLevel> simplify(const scene::Geometry& geometry, const std::atomic<bool>& stop);
 
 /// The level as a geometry of its own, with the same bounds, without the vertices that it does not use.
-Geometry geometry_of(const Geometry& geometry, const DetailLevel& level);
+scene::Geometry geometry_of(const scene::Geometry& geometry, const DetailLevel& level);
 
-}  // namespace vrut
+}  // namespace vrut::mesh

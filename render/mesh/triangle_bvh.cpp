@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -109,4 +109,4 @@ ClosestTriangle ClosestTriangleBvh::nearest(const glm::vec3& point, ClosestTrian
     return known;
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

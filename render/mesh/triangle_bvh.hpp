@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// A triangle and its squared distance from a point.
 struct ClosestTriangle {
@@ -45,4 +45,4 @@ private:
     std::vector<std::uint32_t> order_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::mesh

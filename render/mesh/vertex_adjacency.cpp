@@ -2,7 +2,7 @@
 
 #include <numeric>
 
-namespace vrut {
+namespace vrut::mesh {
 
 VertexAdjacency::VertexAdjacency(std::span<const glm::uvec3> triangles, std::size_t vertex_count)
     : first_(vertex_count + 1), triangles_(triangles.size() * 3) {
@@ -13,4 +13,4 @@ VertexAdjacency::VertexAdjacency(std::span<const glm::uvec3> triangles, std::siz
         for (int k = 0; k < 3; ++k) triangles_[--first_[triangles[i][k]]] = static_cast<unsigned>(i);
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

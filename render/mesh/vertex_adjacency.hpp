@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// Which triangles meet in a vertex.
 class VertexAdjacency {
@@ -18,4 +18,4 @@ private:
     std::vector<unsigned> first_, triangles_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::mesh

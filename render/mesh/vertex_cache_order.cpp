@@ -2,7 +2,7 @@
 
 #include <meshoptimizer.h>
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -16,7 +16,7 @@ unsigned transformed_vertices(const std::vector<glm::uvec3>& triangles, std::siz
 
 }  // namespace
 
-std::optional<DetailLevel> optimize_vertex_cache(const Geometry& geometry) {
+std::optional<DetailLevel> optimize_vertex_cache(const scene::Geometry& geometry) {
     if (geometry.triangles.size() < kFewest || geometry.normals.empty()) return std::nullopt;
     const std::size_t vertices = geometry.positions.size();
     DetailLevel level{0, 0, std::vector<glm::uvec3>(geometry.triangles.size())};
@@ -28,4 +28,4 @@ std::optional<DetailLevel> optimize_vertex_cache(const Geometry& geometry) {
     return level;
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -8,7 +8,7 @@
 
 #include "mesh/vertex_adjacency.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 namespace {
 
@@ -16,7 +16,7 @@ namespace {
 constexpr double kLeastVolume = 1e-9;
 
 /// With the first corner of each position in the place of all.
-std::vector<glm::uvec3> with_merged_positions(const Geometry& geometry) {
+std::vector<glm::uvec3> with_merged_positions(const scene::Geometry& geometry) {
     std::vector<glm::dvec3> positions = geometry.positions;
     for (glm::dvec3& position : positions) position += 0.0;  // no -0, whose bytes are others
     std::vector<unsigned> numbers(positions.size());
@@ -92,7 +92,7 @@ bool unite_across_edges(std::span<const glm::uvec3> triangles, std::size_t verte
     return true;
 }
 
-bool have_positive_volume(const Geometry& geometry, std::span<const glm::uvec3> triangles,
+bool have_positive_volume(const scene::Geometry& geometry, std::span<const glm::uvec3> triangles,
                           UnionFind& components) {
     std::vector<double> sum(triangles.size()), magnitude(triangles.size());
     for (unsigned i = 0; i < triangles.size(); ++i) {
@@ -112,7 +112,7 @@ bool have_positive_volume(const Geometry& geometry, std::span<const glm::uvec3> 
 
 }  // namespace
 
-bool is_watertight(const Geometry& geometry, const std::atomic<bool>& stop) {
+bool is_watertight(const scene::Geometry& geometry, const std::atomic<bool>& stop) {
     if (stop || geometry.triangles.empty()) return false;
     const std::vector<glm::uvec3> triangles = with_merged_positions(geometry);
     if (stop || triangles.empty()) return false;
@@ -121,4 +121,4 @@ bool is_watertight(const Geometry& geometry, const std::atomic<bool>& stop) {
            have_positive_volume(geometry, triangles, components);
 }
 
-}  // namespace vrut
+}  // namespace vrut::mesh

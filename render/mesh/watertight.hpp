@@ -4,13 +4,13 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
 
 /// Whether the surface bounds solids: at each edge two triangles meet that agree on the outside, and each
 /// piece that hangs together by its edges has a positive volume. From outside, the nearest of its triangles
 /// on any line of sight then shows its front. Corners of equal position are one; triangles that use one twice
 /// do not count. It does not see where a piece crosses itself so that a part of it is inside out. Gives up,
 /// with false, soon after `stop` is set.
-bool is_watertight(const Geometry& geometry, const std::atomic<bool>& stop);
+bool is_watertight(const scene::Geometry& geometry, const std::atomic<bool>& stop);
 
-}  // namespace vrut
+}  // namespace vrut::mesh

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -21,18 +21,18 @@ double closest_at(const glm::dvec3& point) {
 }
 
 /// A camera that looks straight up or down does not: either side of it may be up.
-bool hangs_upside_down(const Camera& camera) { return camera.up.y < -1e-12; }
+bool hangs_upside_down(const scene::Camera& camera) { return camera.up.y < -1e-12; }
 
 /// `moved`, or `camera` where the move left the range of double.
-Camera if_valid(const Camera& moved, const Camera& camera) {
-    return is_valid_pose(moved, 0) ? moved : camera;
+scene::Camera if_valid(const scene::Camera& moved, const scene::Camera& camera) {
+    return scene::is_valid_pose(moved, 0) ? moved : camera;
 }
 
 /// The part of `radians` (a turn about the right axis) that keeps up · vertical from changing its
 /// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its
 /// peak.
-double clamp_pitch(const Camera& camera, double radians) {
-    const double up = camera.up.y, back = -view_direction(camera).y;
+double clamp_pitch(const scene::Camera& camera, double radians) {
+    const double up = camera.up.y, back = -scene::view_direction(camera).y;
     if (std::hypot(up, back) < 1e-12) return radians;  // the right axis is vertical: nothing can tip over
     const double sign = hangs_upside_down(camera) ? -1 : 1;
     // up(a) · vertical = up cos a + back sin a, greatest at a = atan2(back, up).
@@ -43,64 +43,67 @@ double clamp_pitch(const Camera& camera, double radians) {
 
 }  // namespace
 
-Camera fitted(const Camera& camera, const Bounds& bounds, double aspect) {
+scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, double aspect) {
     const double extent = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
     const double radius = std::max(extent, closest_at(bounds.center()));
-    const double half_fov = camera.fov * kRadiansPerDegree / 2;
+    const double half_fov = camera.fov * scene::kRadiansPerDegree / 2;
     const double half_width = std::atan(std::tan(half_fov) * aspect);
-    Camera result = camera;
-    const glm::dvec3 view = view_direction(camera);
+    scene::Camera result = camera;
+    const glm::dvec3 view = scene::view_direction(camera);
     result.focus = result.center = bounds.center();
     result.eye = result.focus - view * (radius / std::sin(std::min(half_fov, half_width)));
     return result;
 }
 
-Camera home_camera(const Bounds& bounds, double aspect) {
-    Camera camera;
+scene::Camera home_camera(const math::Bounds& bounds, double aspect) {
+    scene::Camera camera;
     camera.focus = {0, 0, 0};
     camera.eye = {1, 0.45, 1.25};
-    return fitted(with_orthogonal_up(camera), bounds, aspect);
+    return fitted(scene::with_orthogonal_up(camera), bounds, aspect);
 }
 
-Camera rotated(const Camera& camera, double right, double down, bool keep_upright) {
+scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright) {
     // The scene turns one way, the camera the other.
-    const double yaw = -right * kRadiansPerDegree;
-    double pitch = -down * kRadiansPerDegree;
+    const double yaw = -right * scene::kRadiansPerDegree;
+    double pitch = -down * scene::kRadiansPerDegree;
     if (keep_upright) pitch = clamp_pitch(camera, pitch);
     if (yaw == 0 && pitch == 0) return camera;
 
-    const glm::dvec3 across = right_direction(camera);
-    const glm::dvec3 axis = !keep_upright ? camera.up : hangs_upside_down(camera) ? -kVertical : kVertical;
+    const glm::dvec3 across = scene::right_direction(camera);
+    const glm::dvec3 axis = !keep_upright               ? camera.up
+                            : hangs_upside_down(camera) ? -scene::kVertical
+                                                        : scene::kVertical;
     const auto turn = [&](const glm::dvec3& v) { return turned(turned(v, across, pitch), axis, yaw); };
-    Camera result = camera;
+    scene::Camera result = camera;
     result.eye = camera.center + turn(camera.eye - camera.center);
     result.focus = camera.center + turn(camera.focus - camera.center);
     result.up = turn(camera.up);
-    return if_valid(with_orthogonal_up(result), camera);
+    return if_valid(scene::with_orthogonal_up(result), camera);
 }
 
-Camera panned(const Camera& camera, double right, double down) {
+scene::Camera panned(const scene::Camera& camera, double right, double down) {
     if (right == 0 && down == 0) return camera;
-    const double height = 2 * focus_distance(camera) * std::tan(camera.fov * kRadiansPerDegree / 2);
-    const glm::dvec3 shift = (camera.up * down - right_direction(camera) * right) * height;
-    Camera result = camera;
+    const double height =
+        2 * scene::focus_distance(camera) * std::tan(camera.fov * scene::kRadiansPerDegree / 2);
+    const glm::dvec3 shift = (camera.up * down - scene::right_direction(camera) * right) * height;
+    scene::Camera result = camera;
     result.eye += shift;
     result.focus += shift;
     return if_valid(result, camera);
 }
 
-Camera zoomed(const Camera& camera, double factor, double scene_radius) {
+scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius) {
     if (factor == 1) return camera;
-    const double distance = focus_distance(camera);
+    const double distance = scene::focus_distance(camera);
     const double radius = scene_radius > 0 ? scene_radius : 1;
     const double closest = std::max(radius * 1e-6, closest_at(camera.focus));
     // A pose given from outside may lie beyond the limits; then they are where it stands.
     const double wanted =
         std::clamp(distance / factor, std::min(distance, closest), std::max(distance, radius * 1e6));
     if (std::abs(wanted - distance) < 1e-14 * distance) return camera;  // at a limit
-    Camera result = camera;
-    result.eye = camera.focus - view_direction(camera) * wanted;
+    scene::Camera result = camera;
+    result.eye = camera.focus - scene::view_direction(camera) * wanted;
     return if_valid(result, camera);
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

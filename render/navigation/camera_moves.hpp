@@ -3,13 +3,13 @@
 #include "math/bounds.hpp"
 #include "scene/camera.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 /// The camera, looking along the same direction, from where the sphere around `bounds` just fits into a view
 /// of `aspect`: distance r / sin(half of the smaller fov). Empty bounds count as a unit sphere at the origin.
-Camera fitted(const Camera& camera, const Bounds& bounds, double aspect);
+scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, double aspect);
 /// The view of a scene without a camera node: three quarters from the front and above, fitted.
-Camera home_camera(const Bounds& bounds, double aspect);
+scene::Camera home_camera(const math::Bounds& bounds, double aspect);
 
 // Moves. Each leaves the camera as it is, to the bit, where it is asked for nothing, or for more than double
 // holds.
@@ -17,11 +17,11 @@ Camera home_camera(const Bounds& bounds, double aspect);
 /// The scene turns by `right` and `down` degrees, as if dragged there, around `camera.center`. With
 /// `keep_upright` about the scene's vertical, and `down` stops at the poles, so that the scene never stands
 /// on its head; else about the camera's own up.
-Camera rotated(const Camera& camera, double right, double down, bool keep_upright);
+scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright);
 /// The picture moves right and down by fractions of the view's height in the plane through `focus`.
-Camera panned(const Camera& camera, double right, double down);
+scene::Camera panned(const scene::Camera& camera, double right, double down);
 /// The distance from eye to focus is divided by `factor` (above 0); it stays within 10⁻⁶ and 10⁶ of
 /// `scene_radius`.
-Camera zoomed(const Camera& camera, double factor, double scene_radius);
+scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius);
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -113,4 +113,4 @@ void Clicks::lift(const std::string& client) {
     last_.reset();
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

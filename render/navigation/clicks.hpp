@@ -8,7 +8,7 @@
 
 #include "navigation/gestures.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 /// When an event happened.
 struct EventTime {
@@ -72,4 +72,4 @@ private:
     std::optional<Press> last_;                 // the last click, until a second follows it
 };
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -13,62 +13,65 @@ struct ViewBasis {
 };
 
 /// The horizon is level, and the scene does not stand on its head. Straight up and down count, too.
-bool is_level(const Camera& camera) {
-    return std::abs(right_direction(camera).y) < 1e-9 && camera.up.y > -1e-9;
+bool is_level(const scene::Camera& camera) {
+    return std::abs(scene::right_direction(camera).y) < 1e-9 && camera.up.y > -1e-9;
 }
 
 /// Radians: of the right vector around the vertical, which tells more than the view where that is vertical.
-double azimuth(const Camera& camera) {
-    const glm::dvec3 right = right_direction(camera);
+double azimuth(const scene::Camera& camera) {
+    const glm::dvec3 right = scene::right_direction(camera);
     return std::atan2(-right.z, right.x);
 }
 
 /// Radians of the eye above the focus, -π/2 to π/2.
-double elevation(const Camera& camera) { return std::atan2(-view_direction(camera).y, camera.up.y); }
+double elevation(const scene::Camera& camera) {
+    return std::atan2(-scene::view_direction(camera).y, camera.up.y);
+}
 
-ViewBasis between_level(const Camera& a, const Camera& b, double part) {
+ViewBasis between_level(const scene::Camera& a, const scene::Camera& b, double part) {
     const double from = azimuth(a), turn = std::remainder(azimuth(b) - from, 2 * std::numbers::pi);
     const double around = from + turn * part, above = std::lerp(elevation(a), elevation(b), part);
     const glm::dvec3 ahead(-std::sin(around), 0, -std::cos(around));
     const double c = std::cos(above), s = std::sin(above);
-    return {ahead * c - kVertical * s, ahead * s + kVertical * c};
+    return {ahead * c - scene::kVertical * s, ahead * s + scene::kVertical * c};
 }
 
-glm::dquat orientation(const Camera& camera) {
-    const glm::dvec3 back = -view_direction(camera), right = right_direction(camera);
+glm::dquat orientation(const scene::Camera& camera) {
+    const glm::dvec3 back = -scene::view_direction(camera), right = scene::right_direction(camera);
     return glm::normalize(glm::quat_cast(glm::dmat3(right, glm::cross(back, right), back)));
 }
 
-ViewBasis between_any(const Camera& a, const Camera& b, double part) {
+ViewBasis between_any(const scene::Camera& a, const scene::Camera& b, double part) {
     const glm::dquat turned = glm::normalize(glm::slerp(orientation(a), orientation(b), part));
     return {turned * glm::dvec3(0, 0, -1), turned * glm::dvec3(0, 1, 0)};
 }
 
-Camera between(const Camera& a, const Camera& b, double part) {
+scene::Camera between(const scene::Camera& a, const scene::Camera& b, double part) {
     if (part <= 0 || a == b) return a;
     if (part >= 1) return b;
     const ViewBasis basis = is_level(a) && is_level(b) ? between_level(a, b, part) : between_any(a, b, part);
-    const double distance = focus_distance(a) * std::pow(focus_distance(b) / focus_distance(a), part);
-    Camera result;
+    const double distance =
+        scene::focus_distance(a) * std::pow(scene::focus_distance(b) / scene::focus_distance(a), part);
+    scene::Camera result;
     result.focus = a.focus + (b.focus - a.focus) * part;
     result.center = a.center + (b.center - a.center) * part;
     result.fov = std::lerp(a.fov, b.fov, part);
     result.eye = result.focus - basis.view * distance;
     result.up = basis.up;
     // Very near to something very far off the way is finer than double tells.
-    if (!is_valid_pose(result, 0)) return part < 0.5 ? a : b;
-    return with_orthogonal_up(result);
+    if (!scene::is_valid_pose(result, 0)) return part < 0.5 ? a : b;
+    return scene::with_orthogonal_up(result);
 }
 
 }  // namespace
 
-CameraPath::CameraPath(const Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing)
+CameraPath::CameraPath(const scene::Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing)
     : path_{{0, from}}, easing_(easing) {
     if (!keyframes.empty() && keyframes.front().at <= 0) path_.clear();
     path_.insert(path_.end(), keyframes.begin(), keyframes.end());
 }
 
-Camera CameraPath::at(double ms) const {
+scene::Camera CameraPath::at(double ms) const {
     const auto next = std::upper_bound(path_.begin(), path_.end(), ms,
                                        [](double time, const CameraKeyframe& key) { return time < key.at; });
     if (next == path_.begin()) return path_.front().camera;
@@ -93,4 +96,4 @@ double CameraPath::slope(std::size_t index) const {
     return at_an_end ? 0 : 2 / (path_[index + 1].at - path_[index - 1].at);
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

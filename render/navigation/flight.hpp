@@ -4,11 +4,11 @@
 
 #include "scene/camera.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 struct CameraKeyframe {
     double at = 0;  ///< ms since the start
-    Camera camera;
+    scene::Camera camera;
 };
 
 enum class Easing {
@@ -25,11 +25,11 @@ class CameraPath {
 public:
     /// `from` is where it starts; the keyframes' times are 0 or more and rise, their poses are valid. One at
     /// 0 takes the place of `from`.
-    CameraPath(const Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing);
+    CameraPath(const scene::Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing);
 
     /// Each keyframe's own camera, to the bit, at its time; the first before the start, the last after the
     /// end.
-    Camera at(double ms) const;
+    scene::Camera at(double ms) const;
     double duration() const { return path_.back().at; }
 
 private:
@@ -41,4 +41,4 @@ private:
     Easing easing_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::navigation

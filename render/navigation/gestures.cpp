@@ -5,7 +5,7 @@
 
 #include "navigation/camera_moves.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -31,17 +31,18 @@ int number_of(const KeyInput& input) {
     return typed == 0 && input.code.starts_with("Digit") ? digit(input.code, 5) : typed;
 }
 
-Camera rotate_by(const Camera& camera, const glm::dvec2& moved, const NavigationContext& context) {
+scene::Camera rotate_by(const scene::Camera& camera, const glm::dvec2& moved,
+                        const NavigationContext& context) {
     const double degrees = 180 * context.rotate_speed / std::min(context.width, context.height);
     return rotated(camera, moved.x * degrees, moved.y * degrees, context.keep_upright);
 }
 
-Camera pan_by(const Camera& camera, const glm::dvec2& moved, const NavigationContext& context) {
+scene::Camera pan_by(const scene::Camera& camera, const glm::dvec2& moved, const NavigationContext& context) {
     const glm::dvec2 part = moved * (context.pan_speed / context.height);
     return panned(camera, part.x, part.y);
 }
 
-Camera zoom_by(const Camera& camera, double factor, const NavigationContext& context) {
+scene::Camera zoom_by(const scene::Camera& camera, double factor, const NavigationContext& context) {
     return zoomed(camera, std::pow(factor, context.zoom_speed), context.bounds.radius());
 }
 
@@ -55,7 +56,8 @@ bool Gestures::is_pressed(const std::string& client, std::int64_t pointer) const
                        [&](const Pressed& p) { return p.pointer == pointer && p.client == client; });
 }
 
-Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const NavigationContext& context) {
+scene::Camera Gestures::pointer(const PointerInput& input, const scene::Camera& camera,
+                                const NavigationContext& context) {
     const auto pressed = std::find_if(pressed_.begin(), pressed_.end(), [&](const Pressed& p) {
         return p.pointer == input.pointer && p.client == input.client;
     });
@@ -75,7 +77,7 @@ Camera Gestures::pointer(const PointerInput& input, const Camera& camera, const 
         change_buttons(*pressed, input);  // unseen, too: the whole way since is the new drag's
         restart(camera);
     }
-    Camera result = camera;
+    scene::Camera result = camera;
     if (!lost) {
         pressed->now = {input.x, input.y};
         result = dragged(context);
@@ -144,12 +146,12 @@ std::vector<PointerInput> Gestures::pressed() const {
     return inputs;
 }
 
-void Gestures::restart(const Camera& camera) {
+void Gestures::restart(const scene::Camera& camera) {
     start_ = camera;
     for (Pressed& pressed : pressed_) pressed.start = pressed.now;
 }
 
-void Gestures::lift(const std::string& client, const Camera& camera) {
+void Gestures::lift(const std::string& client, const scene::Camera& camera) {
     std::erase_if(pressed_, [&](const Pressed& pressed) { return pressed.client == client; });
     std::erase_if(keys_, [&](const HeldKey& key) { return key.client == client; });
     restart(camera);
@@ -162,13 +164,13 @@ std::vector<const Gestures::Pressed*> Gestures::fingers() const {
     return touching;
 }
 
-Camera Gestures::dragged(const NavigationContext& context) const {
+scene::Camera Gestures::dragged(const NavigationContext& context) const {
     const std::vector<const Pressed*> touching = fingers();
     if (touching.size() == 1) return rotate_by(start_, touching[0]->now - touching[0]->start, context);
     if (touching.size() == 2) {
         const Pressed &a = *touching[0], &b = *touching[1];
         // The pan comes second, so that it is measured in the picture as the fingers leave it.
-        const Camera pinched = zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), context);
+        const scene::Camera pinched = zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), context);
         return pan_by(pinched, (a.now + b.now - a.start - b.start) * 0.5, context);
     }
     const Pressed& pressed = pressed_.back();
@@ -186,11 +188,11 @@ Camera Gestures::dragged(const NavigationContext& context) const {
     return start_;
 }
 
-Camera wheel(const WheelInput& input, const Camera& camera, const NavigationContext& context) {
+scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context) {
     const double step = input.unit == WheelInput::Unit::pixel  ? 100.0
                         : input.unit == WheelInput::Unit::line ? 3.0
                                                                : 1.0 / 3;
     return zoom_by(camera, std::pow(1.1, -input.delta_y / step), context);
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -7,7 +7,7 @@
 #include "navigation/navigation_style.hpp"
 #include "scene/camera.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 /// W3C Pointer Events, in CSS pixels of the view from its top left.
 struct PointerInput {
@@ -38,7 +38,7 @@ struct KeyInput {
 /// What turns an input into a move, besides the input.
 struct NavigationContext {
     double width = 1280, height = 720;  ///< of the view, CSS pixels
-    Bounds bounds;                      ///< of the scene
+    math::Bounds bounds;                ///< of the scene
     bool keep_upright = true;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
     NavigationStyle style = NavigationStyle::vrut;
@@ -59,15 +59,16 @@ public:
     };
 
     /// The camera after `input`, from `camera` before it.
-    Camera pointer(const PointerInput& input, const Camera& camera, const NavigationContext& context);
+    scene::Camera pointer(const PointerInput& input, const scene::Camera& camera,
+                          const NavigationContext& context);
     /// Number keys, which some navigation styles have for drags that begin while they are held; others are
     /// ignored.
     void key_down(const std::string& client, const KeyInput& input);
     void key_up(const std::string& client, const KeyInput& input);
     /// To be called after the camera changed by anything but pointer(): drags begin anew there.
-    void restart(const Camera& camera);
+    void restart(const scene::Camera& camera);
     /// Lifts the pointers and keys of `client`; the camera stays where it is.
-    void lift(const std::string& client, const Camera& camera);
+    void lift(const std::string& client, const scene::Camera& camera);
     bool any_pressed() const { return !pressed_.empty(); }
     bool is_pressed(const std::string& client, std::int64_t pointer) const;
 
@@ -90,15 +91,15 @@ private:
     void press(const PointerInput& input);
     static void change_buttons(Pressed& pressed, const PointerInput& input);
     std::vector<const Pressed*> fingers() const;  ///< two at most: a third is ignored until it is lifted
-    Camera dragged(const NavigationContext& context) const;
+    scene::Camera dragged(const NavigationContext& context) const;
 
     std::vector<Pressed> pressed_;  // in the order of pressing
     std::vector<HeldKey> keys_;     // in the order of pressing
-    Camera start_;
+    scene::Camera start_;
 };
 
 /// The camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides the
 /// distance by 1.1.
-Camera wheel(const WheelInput& input, const Camera& camera, const NavigationContext& context);
+scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context);
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -6,7 +6,7 @@
 
 #include "navigation/camera_moves.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -48,8 +48,8 @@ std::optional<KeyOperation> key_operation(const KeyInput& input) {
     return row == std::end(kKeys) ? std::nullopt : std::optional(row->operation);
 }
 
-Camera apply_key_operation(const KeyOperation& operation, const Camera& camera, const Camera& home,
-                           const NavigationContext& context) {
+scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Camera& camera,
+                                  const scene::Camera& home, const NavigationContext& context) {
     const glm::dvec2& by = operation.by;
     switch (operation.kind) {
         case Kind::rotate:
@@ -70,4 +70,4 @@ Camera apply_key_operation(const KeyOperation& operation, const Camera& camera, 
     return camera;
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -6,7 +6,7 @@
 
 #include "navigation/gestures.hpp"
 
-namespace vrut {
+namespace vrut::navigation {
 
 /// What a key asks for when it goes down.
 struct KeyOperation {
@@ -23,7 +23,7 @@ std::optional<KeyOperation> key_operation(const KeyInput& input);
 
 /// The camera after an operation; the same camera for those that do not move it. Speeds do not apply. `home`
 /// is where Home goes; `context.bounds` is what fit fits, and what limits the zoom.
-Camera apply_key_operation(const KeyOperation& operation, const Camera& camera, const Camera& home,
-                           const NavigationContext& context);
+scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Camera& camera,
+                                  const scene::Camera& home, const NavigationContext& context);
 
-}  // namespace vrut
+}  // namespace vrut::navigation

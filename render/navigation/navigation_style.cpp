@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace vrut {
+namespace vrut::navigation {
 
 namespace {
 
@@ -91,4 +91,4 @@ bool suppresses_clicks(NavigationStyle style, const ModifierKeys& modifiers) {
                                         [&](const DragRow& row) { return row.style == style && row.alt; });
 }
 
-}  // namespace vrut
+}  // namespace vrut::navigation

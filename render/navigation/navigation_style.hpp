@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vrut {
+namespace vrut::navigation {
 
 /// Whose mouse the user's hand is used to. Touch and the wheel are the same in all of them.
 enum class NavigationStyle { vrut, maya, catia, cinema4d };
@@ -32,4 +32,4 @@ DragOperation drag_operation(NavigationStyle style, const Grip& grip);
 /// click.
 bool suppresses_clicks(NavigationStyle style, const ModifierKeys& modifiers);
 
-}  // namespace vrut
+}  // namespace vrut::navigation

@@ -9,7 +9,7 @@
 
 #include "mesh/detail_levels.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -30,7 +30,7 @@ public:
     /// Levels that are made meanwhile wait for the next picture: all of a geometry's items see the same.
     explicit LevelSelector(const View& view) : view_(view), scene_(*view.scene->scene) {
         for (std::size_t i = 0; i < scene_.geometries().size(); ++i)
-            levels_.push_back(view.levels->of(static_cast<Index>(i)));
+            levels_.push_back(view.levels->of(static_cast<scene::Index>(i)));
     }
 
     void select_in(DrawLists& lists) const {
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    using FullDetailItems = std::multimap<Index, glm::dmat4>;  ///< matrices by geometry
+    using FullDetailItems = std::multimap<scene::Index, glm::dmat4>;  ///< matrices by geometry
 
     bool has_levels(const DrawItem& item) const {
         return !levels_[static_cast<std::size_t>(item.geometry)].empty();
@@ -62,7 +62,7 @@ private:
     FullDetailItems full_detail_items(const DrawLists& lists) const {
         FullDetailItems full_detail;
         const auto add_if_full_detail = [&](const DrawItem& item, bool ordered) {
-            if ((item.texture != kNone || ordered) && has_levels(item))
+            if ((item.texture != scene::kNone || ordered) && has_levels(item))
                 full_detail.emplace(item.geometry, item.view_from_node);
         };
         for (const DrawItem& item : lists.opaque) add_if_full_detail(item, false);
@@ -79,29 +79,29 @@ private:
         const bool is_full_detail = !(view_.detail > 0) || std::any_of(first, last, [&](const auto& other) {
             return other.second == item.view_from_node;
         });
-        const Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+        const math::Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const double most = view_.detail / max_screen_space_scale(item.view_from_node, box, view_);
-        for (const DetailLevel& level : levels_[static_cast<std::size_t>(item.geometry)])
+        for (const mesh::DetailLevel& level : levels_[static_cast<std::size_t>(item.geometry)])
             if (level.number == 0 || (!is_full_detail && level.error <= most)) item.level = &level;
     }
 
     const View& view_;
-    const Scene& scene_;
-    std::vector<std::span<const DetailLevel>> levels_;
+    const scene::Scene& scene_;
+    std::vector<std::span<const mesh::DetailLevel>> levels_;
 };
 
 /// Whether nothing in the box is cut by the near plane or reaches around the eye.
-bool is_beyond_near_plane(const Bounds& in_view, const View& view) {
-    const double near = fit_clip_range(view.camera, view.scene->bounds).near * (1 + kNearMargin);
+bool is_beyond_near_plane(const math::Bounds& in_view, const View& view) {
+    const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near * (1 + kNearMargin);
     if (-in_view.max.z > near) return true;
-    const double half = std::tan(view.camera.fov * kRadiansPerDegree / 2);
+    const double half = std::tan(view.camera.fov * scene::kRadiansPerDegree / 2);
     const double aspect = static_cast<double>(view.width) / view.height;
     const double corner = near * std::sqrt(1 + half * half * (1 + aspect * aspect));
     return glm::length(glm::clamp(glm::dvec3(0), in_view.min, in_view.max)) > corner;
 }
 
 void cull_backfaces(DrawLists& lists, const View& view) {
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     for (DrawItem& item : lists.opaque)
         if (item.cull_mode == CullMode::none && !item.clip_plane &&
             view.levels->known_watertight(item.geometry) && !is_flattened(item.view_from_node) &&
@@ -115,13 +115,13 @@ void cull_backfaces(DrawLists& lists, const View& view) {
 
 }  // namespace
 
-double max_screen_space_scale(const glm::dmat4& view_from_node, const Bounds& box, const View& view) {
-    const Bounds in_view = transformed(view_from_node, box);
+double max_screen_space_scale(const glm::dmat4& view_from_node, const math::Bounds& box, const View& view) {
+    const math::Bounds in_view = transformed(view_from_node, box);
     const double depth = -in_view.max.z;
     if (!(depth > 0)) return std::numeric_limits<double>::infinity();
     // A step s at depth z and at an angle a to the line of sight is seen no longer than s / (z cos a): it is
     // longest at right angles to the ray, in the plane of both.
-    const double half = std::tan(view.camera.fov * kRadiansPerDegree / 2);
+    const double half = std::tan(view.camera.fov * scene::kRadiansPerDegree / 2);
     const glm::dvec2 corner = half * glm::dvec2(static_cast<double>(view.width) / view.height, 1);
     const glm::dvec2 aside = glm::min(
         glm::max(glm::abs(glm::dvec2(in_view.min)), glm::abs(glm::dvec2(in_view.max))) / depth, corner);
@@ -143,4 +143,4 @@ void cull_backfaces(FramePlan& plan, const View& view) {
     cull_backfaces(plan.overlay, view);
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -2,14 +2,14 @@
 
 #include "mesh/simplification.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
 constexpr std::int64_t kDraw = 150, kTriangle = 3;
 constexpr std::int64_t kUpload = 400, kUploadedTriangle = 10;  // besides, for the first draw
 
-std::int64_t cost_of(const DrawItem& item, const Geometry& geometry, bool is_uploaded) {
+std::int64_t cost_of(const DrawItem& item, const scene::Geometry& geometry, bool is_uploaded) {
     const auto triangles =
         static_cast<std::int64_t>((item.level ? item.level->triangles : geometry.triangles).size());
     const std::int64_t draw = kDraw + kTriangle * triangles;
@@ -18,14 +18,14 @@ std::int64_t cost_of(const DrawItem& item, const Geometry& geometry, bool is_upl
 
 }  // namespace
 
-std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items, const Scene& scene,
+std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
                                                  const glm::dmat4& clip_from_view, const PixelBox& box,
                                                  const glm::ivec2& viewport,
                                                  const std::function<bool(const DrawItem&)>& is_uploaded) {
     std::size_t count = 0;
     for (; count < items.size() && !is_spent(); ++count) {
         const DrawItem& item = items[count];
-        const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
+        const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
         const PixelBox covered =
             intersection(pixel_box(geometry.bounds, clip_from_view * item.view_from_node, viewport), box);
         if (!covered.empty()) spend_pixels(std::int64_t{covered.size().x} * covered.size().y);
@@ -34,4 +34,4 @@ std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items
     return items.first(count);
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -6,7 +6,7 @@
 
 #include "plan/frame_plan.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// How much one step of drawing may still do. The unit is what a processor takes for the colour of a pixel,
 /// about 20 ns. An item is never divided: a step does kMost, and what its last item takes.
@@ -21,7 +21,7 @@ public:
     void spend_pixels(std::int64_t pixels) { left_ -= pixels * pixel_weight_ / 64; }
     /// The first of `items`, as many as may be drawn within `box`: one at least if it is not spent.
     /// `is_uploaded` says whether an item's geometry is on the GPU already.
-    std::span<const DrawItem> next_batch(std::span<const DrawItem> items, const Scene& scene,
+    std::span<const DrawItem> next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
                                          const glm::dmat4& clip_from_view, const PixelBox& box,
                                          const glm::ivec2& viewport,
                                          const std::function<bool(const DrawItem&)>& is_uploaded);
@@ -31,4 +31,4 @@ private:
     std::int64_t pixel_weight_;  // of 64
 };
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -1,6 +1,6 @@
 #include "plan/draw_commands.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -46,4 +46,4 @@ std::vector<DrawCommand> draw_commands(const FramePlan& plan, const View& view) 
     return commands;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

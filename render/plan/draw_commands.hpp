@@ -6,7 +6,7 @@
 
 #include "plan/frame_plan.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// One thing that is done to draw a sample, over some items or none. Those over items may be done for some
 /// of them, and later for the others.
@@ -39,4 +39,4 @@ bool is_reflected(const DrawCommand& command);
 /// What draws a sample of a view, in this order. The plan must outlive it, and stay where it is.
 std::vector<DrawCommand> draw_commands(const FramePlan& plan, const View& view);
 
-}  // namespace vrut
+}  // namespace vrut::plan

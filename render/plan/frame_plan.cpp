@@ -12,7 +12,7 @@
 #include "plan/transparency_cache.hpp"
 #include "plan/transparency_plan.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -20,22 +20,23 @@ namespace {
 constexpr std::int64_t kListed = 20, kOrdered = 20;
 
 /// None where the node draws nothing.
-std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, const glm::dmat4& view,
+std::optional<DrawItem> item_of(const scene::PlacedScene& placed, std::size_t node, const glm::dmat4& view,
                                 DrawMode mode) {
-    const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[node].data);
-    if (!data || data->geometry == kNone) return {};
-    const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+    const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[node].data);
+    if (!data || data->geometry == scene::kNone) return {};
+    const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
     if (geometry.triangles.empty()) return {};
-    const Index material = placed.nodes[node].material;
+    const scene::Index material = placed.nodes[node].material;
     DrawItem item;
-    item.node = static_cast<Index>(node);
+    item.node = static_cast<scene::Index>(node);
     item.geometry = data->geometry;
     item.material = material;
     item.view_from_node = view * placed.world[node];
-    const Bounds in_view = transformed(item.view_from_node, geometry.bounds);
-    if (!(glm::length(in_view.min) < kMaxDrawDistance && glm::length(in_view.max) < kMaxDrawDistance))
+    const math::Bounds in_view = transformed(item.view_from_node, geometry.bounds);
+    if (!(glm::length(in_view.min) < scene::kMaxDrawDistance &&
+          glm::length(in_view.max) < scene::kMaxDrawDistance))
         return {};
-    const double determinant = relative_determinant(glm::dmat3(item.view_from_node));
+    const double determinant = scene::relative_determinant(glm::dmat3(item.view_from_node));
     const bool mirror = mode == DrawMode::realistic && mirror_plane(*placed.scene, item);
     const bool both =
         is_flattened(item.view_from_node) || mirror || placed.scene->material(material).two_sided;
@@ -45,7 +46,7 @@ std::optional<DrawItem> item_of(const PlacedScene& placed, std::size_t node, con
 }
 
 /// Equal depth: the higher id is in front, so it comes last.
-void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
+void sort_by_id(std::vector<DrawItem>& items, const scene::Scene& scene) {
     const auto id = [&](const DrawItem& item) {
         return scene.nodes()[static_cast<std::size_t>(item.node)].id;
     };
@@ -54,9 +55,9 @@ void sort_by_id(std::vector<DrawItem>& items, const Scene& scene) {
 }
 
 void assign_textures(std::vector<DrawItem>& items, const View& view) {
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     for (DrawItem& item : items) {
-        const Material& material = scene.material(item.material);
+        const scene::Material& material = scene.material(item.material);
         if (!scene.geometries()[static_cast<std::size_t>(item.geometry)].texcoords.empty())
             item.texture = material.texture;
         item.environment = view.background.cube_map && material.reflectivity > 0 &&
@@ -65,26 +66,26 @@ void assign_textures(std::vector<DrawItem>& items, const View& view) {
 }
 
 /// Reflective geometry nodes, mirrors or others, in the materials of their file.
-std::size_t count_reflective(const Scene& scene, bool mirrors) {
+std::size_t count_reflective(const scene::Scene& scene, bool mirrors) {
     std::size_t count = 0;
-    for (const Node& node : scene.nodes())
-        if (const auto* data = std::get_if<GeometryData>(&node.data);
-            data && data->geometry != kNone && scene.material(data->material).reflectivity > 0)
+    for (const scene::Node& node : scene.nodes())
+        if (const auto* data = std::get_if<scene::GeometryData>(&node.data);
+            data && data->geometry != scene::kNone && scene.material(data->material).reflectivity > 0)
             count += is_mirror(scene, data->geometry, data->material) == mirrors;
     return count;
 }
 
-bool has_cube_map(const Scene& scene) {
-    return std::any_of(scene.nodes().begin(), scene.nodes().end(), [](const Node& node) {
-        const auto* data = std::get_if<BackgroundData>(&node.data);
+bool has_cube_map(const scene::Scene& scene) {
+    return std::any_of(scene.nodes().begin(), scene.nodes().end(), [](const scene::Node& node) {
+        const auto* data = std::get_if<scene::BackgroundData>(&node.data);
         return data && data->cube_textures;
     });
 }
 
 /// Of items by rising id; mirrors among them are ordinary surfaces.
 DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, TransparencyCache& shapes) {
-    const PlacedScene& placed = *view.scene;
-    const Scene& scene = *placed.scene;
+    const scene::PlacedScene& placed = *view.scene;
+    const scene::Scene& scene = *placed.scene;
     const auto is_opaque = [&](const DrawItem& item) {
         return !scene.is_transparent(scene.material(item.material));
     };
@@ -147,7 +148,7 @@ std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matr
     const Frustum frustum = frustum_of(view, marker_radius(view.height) + 1);
     for (const PlacedMarker& marker : *view.markers) {
         const glm::dvec3 point(view_matrix * glm::dvec4(marker.point, 1));
-        if (!(glm::length(point) < kMaxDrawDistance && point.z < 0)) continue;
+        if (!(glm::length(point) < scene::kMaxDrawDistance && point.z < 0)) continue;
         if (!is_outside(frustum, glm::dmat4(1), {point, point})) markers.push_back(point);
     }
     std::stable_sort(markers.begin(), markers.end(),
@@ -158,9 +159,9 @@ std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matr
 }  // namespace
 
 std::vector<DrawItem> visible_items(const View& view) {
-    const PlacedScene& placed = *view.scene;
-    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
-    const glm::dmat4 view_matrix = view_from_world(view.camera);
+    const scene::PlacedScene& placed = *view.scene;
+    const std::vector<bool> shown = scene::shown_nodes(placed, view.camera.eye);
+    const glm::dmat4 view_matrix = scene::view_from_world(view.camera);
     std::vector<DrawItem> items;
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
@@ -172,13 +173,13 @@ std::vector<DrawItem> visible_items(const View& view) {
 
 double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
-bool is_mirror(const Scene& scene, Index geometry, Index material) {
-    const Material& of = scene.material(material);
+bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material) {
+    const scene::Material& of = scene.material(material);
     return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
 }
 
 bool is_flattened(const glm::dmat4& view_from_node) {
-    return !(std::abs(relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
+    return !(std::abs(scene::relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
 }
 
 bool has_transparent(const DrawLists& lists) {
@@ -195,23 +196,24 @@ bool has_exact_group(const DrawLists& lists) {
 }
 
 void FramePlanner::find_items(const View& view) {
-    const PlacedScene& placed = *view.scene;
+    const scene::PlacedScene& placed = *view.scene;
     items_ = visible_items(view);
     if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
             return is_mirror(*placed.scene, item.geometry, item.material);
         }))
         unculled_items_ = items_;  // what lies beside the picture may be seen in a mirror
     cull_frustum(items_, view);
-    plan_.markers = markers_of(view, view_from_world(view.camera));
+    plan_.markers = markers_of(view, scene::view_from_world(view.camera));
 
-    if (view.selected != kNone) plan_.selected = extract(items_, subtree(*placed.scene, view.selected));
+    if (view.selected != scene::kNone)
+        plan_.selected = extract(items_, scene::subtree(*placed.scene, view.selected));
     if (view.wireframe || view.mode == DrawMode::stylized) plan_.edges = items_;
 }
 
 /// Of glass, which will be put in order; what only mirrors show is left to that.
 bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
     if (view.wireframe || view.mode == DrawMode::stylized) return true;
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     const std::size_t count = items_.size() + plan_.selected.size();
     for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {
         const DrawItem& item = shapes_found_ < items_.size() ? items_[shapes_found_]
@@ -267,11 +269,11 @@ std::vector<DrawItem> visible_faces(const View& view) {
     return items;
 }
 
-ClassCounts count_classes(const PlacedScene& placed) {
+ClassCounts count_classes(const scene::PlacedScene& placed) {
     ClassCounts counts;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
-        if (!std::holds_alternative<GeometryData>(placed.scene->nodes()[i].data)) continue;
-        const Material& material = placed.scene->material(placed.nodes[i].material);
+        if (!std::holds_alternative<scene::GeometryData>(placed.scene->nodes()[i].data)) continue;
+        const scene::Material& material = placed.scene->material(placed.nodes[i].material);
         ++(placed.scene->is_transparent(material) ? counts.transparent
            : material.reflectivity > 0            ? counts.reflective
                                                   : counts.solid);
@@ -279,7 +281,7 @@ ClassCounts count_classes(const PlacedScene& placed) {
     return counts;
 }
 
-std::vector<std::string> unsupported_features(const Scene& scene) {
+std::vector<std::string> unsupported_features(const scene::Scene& scene) {
     std::vector<std::string> notices;
     const std::size_t mirrors = count_reflective(scene, true), others = count_reflective(scene, false);
     if (mirrors > kMaxMirrors)
@@ -291,4 +293,4 @@ std::vector<std::string> unsupported_features(const Scene& scene) {
     return notices;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -9,21 +9,23 @@
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
-
+namespace vrut::mesh {
 struct DetailLevel;
+}
+
+namespace vrut::plan {
 
 /// Closed: both, but the backs are not drawn, for fronts of the same part hide them.
 enum class CullMode { back, none, hidden_back };
 
 /// One geometry node to be drawn.
 struct DrawItem {
-    Index node = kNone, geometry = kNone, material = kNone;
+    scene::Index node = scene::kNone, geometry = scene::kNone, material = scene::kNone;
     glm::dmat4 view_from_node{1};
     CullMode cull_mode = CullMode::back;
-    bool mirrored = false;     ///< the matrix turns counter-clockwise triangles clockwise
-    Index texture = kNone;     ///< whose colour stands in the place of the material's diffuse one
-    bool environment = false;  ///< mixed with the panorama that it reflects
+    bool mirrored = false;                ///< the matrix turns counter-clockwise triangles clockwise
+    scene::Index texture = scene::kNone;  ///< whose colour stands in the place of the material's diffuse one
+    bool environment = false;             ///< mixed with the panorama that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
     /// Only points of the node's space whose product with this is not negative are drawn.
@@ -31,7 +33,7 @@ struct DrawItem {
     /// Its triangles from far to near, numbered as TriangleOrder does; null: as in the file.
     std::shared_ptr<const std::vector<unsigned>> order;
     /// What is drawn of the geometry, of the view's; null: every triangle.
-    const DetailLevel* level = nullptr;
+    const mesh::DetailLevel* level = nullptr;
 };
 
 /// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,
@@ -76,7 +78,7 @@ struct FramePlan {
 };
 
 /// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
-bool is_mirror(const Scene& scene, Index geometry, Index material);
+bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material);
 
 class TransparencyCache;
 class DrawBudget;
@@ -123,9 +125,9 @@ struct ClassCounts {
 
     bool operator==(const ClassCounts&) const = default;
 };
-ClassCounts count_classes(const PlacedScene& placed);
+ClassCounts count_classes(const scene::PlacedScene& placed);
 
 /// A sentence for each thing that the scene holds and the renderer does not draw, or not always.
-std::vector<std::string> unsupported_features(const Scene& scene);
+std::vector<std::string> unsupported_features(const scene::Scene& scene);
 
-}  // namespace vrut
+}  // namespace vrut::plan

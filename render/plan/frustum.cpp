@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 // The GPU has positions in float; a few roundings of one add up to less than this part of it.
@@ -14,8 +14,8 @@ NdcRect ndc_with_margin(int width, int height, double pixels) {
     return {-edge, edge};
 }
 
-Frustum frustum_of(const Camera& camera, double aspect, const NdcRect& area) {
-    const double half = std::tan(camera.fov * kRadiansPerDegree / 2);
+Frustum frustum_of(const scene::Camera& camera, double aspect, const NdcRect& area) {
+    const double half = std::tan(camera.fov * scene::kRadiansPerDegree / 2);
     const glm::dvec2 low = area.low * half * glm::dvec2(aspect, 1);
     const glm::dvec2 high = area.high * half * glm::dvec2(aspect, 1);
     // Through the eye and an edge of the area at z = -1.
@@ -24,7 +24,7 @@ Frustum frustum_of(const Camera& camera, double aspect, const NdcRect& area) {
              glm::dvec3(0, 0, -1)}};
 }
 
-bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box) {
+bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const math::Bounds& box) {
     const glm::dvec3 center(view_from_node * glm::dvec4(box.center(), 1));
     const glm::dvec3 half = box.half_extent();
     const glm::dmat3 linear(view_from_node);
@@ -38,4 +38,4 @@ bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const 
     return false;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

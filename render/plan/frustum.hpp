@@ -5,7 +5,7 @@
 
 #include "scene/camera.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// Part of a picture: x and y from −1 (left, bottom) to 1 (right, top).
 struct NdcRect {
@@ -20,10 +20,10 @@ struct Frustum {
     std::array<glm::dvec3, 5> normals;  ///< unit, pointing inwards: left, right, bottom, top, before the eye
 };
 /// `aspect` is width / height of the whole picture.
-Frustum frustum_of(const Camera& camera, double aspect, const NdcRect& area = {});
+Frustum frustum_of(const scene::Camera& camera, double aspect, const NdcRect& area = {});
 
 /// True where the box, seen through an affine matrix, lies wholly beyond one of the frustum's planes, by more
 /// than float can be wrong about a position. Boxes before a corner of the picture may be missed.
-bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box);
+bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const math::Bounds& box);
 
-}  // namespace vrut
+}  // namespace vrut::plan

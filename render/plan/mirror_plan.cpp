@@ -7,7 +7,7 @@
 #include "plan/frustum.hpp"
 #include "plan/transparency_plan.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -34,7 +34,7 @@ Polygon cut(const Polygon& polygon, const glm::dvec4& inside) {
 }
 
 /// The part of a geometry's plane that lies in its bounds.
-Polygon slice(const Plane& plane, const Bounds& bounds) {
+Polygon slice(const math::Plane& plane, const math::Bounds& bounds) {
     const double radius = bounds.radius();
     const glm::dvec3& n = plane.normal;
     const glm::dvec3 u =
@@ -75,17 +75,17 @@ double covered_area(Polygon polygon, const glm::dvec2& viewport) {
     return std::abs(doubled) / 2;
 }
 
-const Geometry& geometry_of(const Scene& scene, const DrawItem& item) {
+const scene::Geometry& geometry_of(const scene::Scene& scene, const DrawItem& item) {
     return scene.geometries()[static_cast<std::size_t>(item.geometry)];
 }
 
 struct MirrorCandidate {
     std::size_t index = 0;  ///< among the opaque
-    Plane plane;            ///< whose normal is on the viewer's side
+    math::Plane plane;      ///< whose normal is on the viewer's side
     double area = 0;
 };
 
-std::vector<MirrorCandidate> candidates(std::span<const DrawItem> opaque, const Scene& scene,
+std::vector<MirrorCandidate> candidates(std::span<const DrawItem> opaque, const scene::Scene& scene,
                                         const glm::dmat4& clip_from_view, const glm::dvec2& viewport) {
     std::vector<MirrorCandidate> found;
     for (std::size_t i = 0; i < opaque.size(); ++i) {
@@ -112,7 +112,7 @@ void keep_largest(std::vector<MirrorCandidate>& mirrors) {
 }
 
 /// A pixel more on all sides: samples lie beside the pixels' centres.
-PixelBox box_of(const DrawItem& item, const Scene& scene, const glm::dmat4& clip_from_view,
+PixelBox box_of(const DrawItem& item, const scene::Scene& scene, const glm::dmat4& clip_from_view,
                 const glm::ivec2& viewport) {
     const PixelBox box =
         pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, viewport);
@@ -124,9 +124,9 @@ bool are_coincident(const DrawItem& a, const DrawItem& b) {
 }
 
 /// `item` as the mirror shows it; none where all of it lies behind the mirror, or in its plane.
-std::optional<DrawItem> reflected(const DrawItem& item, const Scene& scene, const Plane& plane,
+std::optional<DrawItem> reflected(const DrawItem& item, const scene::Scene& scene, const math::Plane& plane,
                                   const glm::dmat4& reflection) {
-    const Bounds& bounds = geometry_of(scene, item).bounds;
+    const math::Bounds& bounds = geometry_of(scene, item).bounds;
     const glm::dmat4& matrix = item.view_from_node;
     // Distances from the plane, of points of the node's space.
     glm::dvec4 distance = glm::dvec4(plane.normal, -glm::dot(plane.normal, plane.point)) * matrix;
@@ -145,12 +145,12 @@ std::optional<DrawItem> reflected(const DrawItem& item, const Scene& scene, cons
     return image;
 }
 
-std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const Plane& plane,
+std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const math::Plane& plane,
                                       std::span<const DrawItem> shown, const View& view) {
     const glm::dvec2 scale = 2.0 / glm::dvec2(view.width, view.height);
     const NdcRect area{glm::dvec2(mirror.box.low) * scale - 1.0, glm::dvec2(mirror.box.high) * scale - 1.0};
     const Frustum frustum = frustum_of(view.camera, static_cast<double>(view.width) / view.height, area);
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     std::vector<DrawItem> items;
     for (const DrawItem& item : shown) {
         if (are_coincident(item, mirror.surface)) continue;
@@ -163,17 +163,17 @@ std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const Plane& pla
 
 }  // namespace
 
-std::optional<Plane> mirror_plane(const Scene& scene, const DrawItem& item) {
+std::optional<math::Plane> mirror_plane(const scene::Scene& scene, const DrawItem& item) {
     if (!is_mirror(scene, item.geometry, item.material)) return {};
     return transformed(item.view_from_node, *scene.plane(item.geometry));
 }
 
 std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
                                         const View& view) {
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     const glm::ivec2 viewport(view.width, view.height);
     const glm::dmat4 clip_from_view =
-        reversed_clip_from_view(view, fit_clip_range(view.camera, view.scene->bounds).near);
+        reversed_clip_from_view(view, scene::fit_clip_range(view.camera, view.scene->bounds).near);
     std::vector<MirrorCandidate> chosen = candidates(opaque, scene, clip_from_view, viewport);
     if (chosen.empty()) return {};
     keep_largest(chosen);
@@ -183,10 +183,10 @@ std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span
     mark_occluded_by_coincident(surfaces, opaque, scene);
     std::vector<MirrorItem> mirrors;
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-        const Plane& plane = chosen[i].plane;
+        const math::Plane& plane = chosen[i].plane;
         MirrorItem& mirror = mirrors.emplace_back();
         mirror.surface = surfaces[i];
-        mirror.reflection = reflection_about(plane);
+        mirror.reflection = math::reflection_about(plane);
         mirror.box = box_of(mirror.surface, scene, clip_from_view, viewport);
         mirror.reflected.opaque = reflected_items(mirror, plane, shown, view);
     }
@@ -195,4 +195,4 @@ std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span
     return mirrors;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -5,7 +5,7 @@
 
 #include "plan/view.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
 /// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
@@ -22,6 +22,6 @@ PixelBox intersection(const PixelBox& a, const PixelBox& b);
 
 /// All that something within `bounds` can cover of a picture, whose clip space is a reversed one; what lies
 /// before the near plane counts for nothing.
-PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport);
+PixelBox pixel_box(const math::Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport);
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -18,7 +18,7 @@ void average(std::span<const std::uint32_t> sums, int samples, std::span<std::ui
 
 }  // namespace
 
-RenderJob::RenderJob(View what, Image buffer) : view(std::move(what)), image(std::move(buffer)) {
+RenderJob::RenderJob(View what, scene::Image buffer) : view(std::move(what)), image(std::move(buffer)) {
     image.resize(view.width, view.height);
     if (view.samples > 1) sums.assign(image.rgba.size(), 0);
 }
@@ -35,4 +35,4 @@ bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels) {
     return true;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -7,7 +7,7 @@
 #include "plan/view.hpp"
 #include "scene/image.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 class FramePlanner;
 
@@ -15,10 +15,10 @@ class FramePlanner;
 /// drawn, and it may outlive its renderer.
 struct RenderJob {
     /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again.
-    explicit RenderJob(View what, Image buffer = {});
+    explicit RenderJob(View what, scene::Image buffer = {});
 
     View view;
-    Image image;                      ///< of the view's size; its pixels once all samples are drawn
+    scene::Image image;               ///< of the view's size; its pixels once all samples are drawn
     FrameStats stats;                 ///< of all steps so far
     std::vector<std::uint32_t> sums;  ///< for each byte of the image, over the samples; empty for one sample
     int samples = 0;                  ///< drawn, of view.samples
@@ -35,4 +35,4 @@ struct RenderJob {
 /// `pixels` takes the image's memory. True if all samples are drawn: then the image holds their averages.
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<std::vector<unsigned>> strong_components(const std::vector<std::vect
     return Search(successors).run();
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -3,19 +3,19 @@
 #include <cmath>
 #include <limits>
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
 constexpr std::int64_t kBox = 20;  ///< of the smallest geometry, in units of DrawBudget
 
-glm::dvec3 doubled_area(const Geometry& geometry, const glm::uvec3& triangle) {
+glm::dvec3 doubled_area(const scene::Geometry& geometry, const glm::uvec3& triangle) {
     const glm::dvec3& a = geometry.positions[triangle[0]];
     return glm::cross(geometry.positions[triangle[1]] - a, geometry.positions[triangle[2]] - a);
 }
 
 /// Mean direction of the faces by area, all turned like the largest; along y where there is none.
-glm::dvec3 sheet_normal(const Geometry& geometry) {
+glm::dvec3 sheet_normal(const scene::Geometry& geometry) {
     glm::dvec3 largest(0), sum(0);
     for (const glm::uvec3& triangle : geometry.triangles)
         if (const glm::dvec3 area = doubled_area(geometry, triangle);
@@ -30,7 +30,7 @@ glm::dvec3 sheet_normal(const Geometry& geometry) {
 }
 
 /// At right angles to `normal`, along the way from the box's centre to the point that is furthest that way.
-glm::dvec3 long_side(const Geometry& geometry, const glm::dvec3& normal) {
+glm::dvec3 long_side(const scene::Geometry& geometry, const glm::dvec3& normal) {
     const glm::dvec3 center = geometry.bounds.center();
     glm::dvec3 longest(0);
     for (const glm::dvec3& position : geometry.positions) {
@@ -42,7 +42,7 @@ glm::dvec3 long_side(const Geometry& geometry, const glm::dvec3& normal) {
     return glm::normalize(longest);
 }
 
-OrientedBox box_along(const Geometry& geometry, const std::array<glm::dvec3, 3>& directions) {
+OrientedBox box_along(const scene::Geometry& geometry, const std::array<glm::dvec3, 3>& directions) {
     const glm::dvec3 origin = geometry.bounds.center();
     OrientedBox box{origin, {}};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -64,7 +64,7 @@ double thinnest(const OrientedBox& box) {
 
 }  // namespace
 
-OrientedBox oriented_box(const Geometry& geometry) {
+OrientedBox oriented_box(const scene::Geometry& geometry) {
     const OrientedBox upright =
         box_along(geometry, {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)});
     const glm::dvec3 normal = sheet_normal(geometry), side = long_side(geometry, normal);
@@ -80,7 +80,7 @@ OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box) {
 
 std::int64_t TransparencyCache::find(const DrawItem& item) {
     const CacheEntry& shape = entries_[static_cast<std::size_t>(item.geometry)];
-    const Geometry& read = geometry(item.geometry);
+    const scene::Geometry& read = geometry(item.geometry);
     std::int64_t work = 1;
     if (!shape.box) work += kBox + static_cast<std::int64_t>(read.positions.size() + read.triangles.size());
     box(item.geometry);
@@ -93,17 +93,17 @@ std::int64_t TransparencyCache::find(const DrawItem& item) {
     return work;
 }
 
-const OrientedBox& TransparencyCache::box(Index index) {
+const OrientedBox& TransparencyCache::box(scene::Index index) {
     std::optional<OrientedBox>& box = entries_[static_cast<std::size_t>(index)].box;
     if (!box) box = oriented_box(geometry(index));
     return *box;
 }
 
-const TriangleOrder& TransparencyCache::order(Index index, CullMode cull_mode) {
+const TriangleOrder& TransparencyCache::order(scene::Index index, CullMode cull_mode) {
     std::optional<TriangleOrder>& order =
         entries_[static_cast<std::size_t>(index)].orders[cull_mode == CullMode::none ? 1 : 0];
     if (!order) order = order_triangles(geometry(index), cull_mode);
     return *order;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

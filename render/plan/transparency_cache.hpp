@@ -8,7 +8,7 @@
 
 #include "plan/triangle_order.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// A box of any orientation: the points center + Σ t_k · axes[k] with t_k from -1 to 1.
 struct OrientedBox {
@@ -18,7 +18,7 @@ struct OrientedBox {
 
 /// Around a geometry, in its own space, with one axis along the normal of its largest triangle's side: thin
 /// around a sheet of glass, however that lies in its space.
-OrientedBox oriented_box(const Geometry& geometry);
+OrientedBox oriented_box(const scene::Geometry& geometry);
 
 /// The box seen through an affine `matrix`.
 OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
@@ -27,23 +27,24 @@ OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
 class TransparencyCache {
 public:
     /// The scene must outlive it.
-    explicit TransparencyCache(const Scene& scene) : scene_(scene), entries_(scene.geometries().size()) {}
+    explicit TransparencyCache(const scene::Scene& scene)
+        : scene_(scene), entries_(scene.geometries().size()) {}
     /// Finds what is asked below for an item; what that took, in units of DrawBudget.
     std::int64_t find(const DrawItem& item);
-    const OrientedBox& box(Index geometry);
-    const TriangleOrder& order(Index geometry, CullMode cull_mode);
+    const OrientedBox& box(scene::Index geometry);
+    const TriangleOrder& order(scene::Index geometry, CullMode cull_mode);
 
 private:
     struct CacheEntry {
         std::optional<OrientedBox> box;
         std::array<std::optional<TriangleOrder>, 2> orders;  // with front faces, with both
     };
-    const Geometry& geometry(Index index) const {
+    const scene::Geometry& geometry(scene::Index index) const {
         return scene_.geometries()[static_cast<std::size_t>(index)];
     }
 
-    const Scene& scene_;
+    const scene::Scene& scene_;
     std::vector<CacheEntry> entries_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -10,7 +10,7 @@
 
 #include "plan/strong_components.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -22,9 +22,10 @@ struct ColorRange {
     double alpha = 1;
 };
 
-ColorRange color_range(const Material& material, const Light& light) {
+ColorRange color_range(const scene::Material& material, const scene::Light& light) {
     if (material.reflectivity > 0) return {glm::dvec3(0), glm::dvec3(1), material.diffuse.a};
-    const glm::dvec3 diffuse = material.texture == kNone ? glm::dvec3(material.diffuse) : glm::dvec3(1);
+    const glm::dvec3 diffuse =
+        material.texture == scene::kNone ? glm::dvec3(material.diffuse) : glm::dvec3(1);
     const double brightest = light.attenuation == glm::dvec3(0) ? 1 : 1 / std::max(light.attenuation.x, 1e-6);
     const glm::dvec3 unlit = glm::dvec3(material.emission) + glm::dvec3(material.ambient);
     const glm::dvec3 lit = (diffuse + glm::dvec3(material.specular)) * glm::dvec3(light.color) * brightest;
@@ -123,7 +124,7 @@ DepthRelation depth_relation(const OrientedBox& a, const OrientedBox& b, double 
 /// Which panes lie before which others, as the eye sees them.
 class DepthOrderGraph {
 public:
-    DepthOrderGraph(std::span<const DrawItem> items, const Scene& scene, const Light& light,
+    DepthOrderGraph(std::span<const DrawItem> items, const scene::Scene& scene, const scene::Light& light,
                     TransparencyCache& shapes);
 
     /// False where too many overlap.
@@ -145,12 +146,12 @@ private:
     const std::vector<FrontFacingTriangle>& facing(unsigned index);
     /// Of its facing triangles those that may lie before or behind something of the other.
     std::vector<FrontFacingTriangle> covering(unsigned index, const TransparentItem& other);
-    const Geometry& geometry(unsigned index) const {
+    const scene::Geometry& geometry(unsigned index) const {
         return scene_.geometries()[static_cast<std::size_t>(items_[index].geometry)];
     }
 
     std::span<const DrawItem> items_;
-    const Scene& scene_;
+    const scene::Scene& scene_;
     TransparencyCache& shapes_;
     std::vector<TransparentItem> transparent_items_;
     std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
@@ -158,8 +159,8 @@ private:
     std::size_t compared_ = 0;  // pairs of triangles
 };
 
-DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const Scene& scene, const Light& light,
-                                 TransparencyCache& shapes)
+DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const scene::Scene& scene,
+                                 const scene::Light& light, TransparencyCache& shapes)
     : items_(items), scene_(scene), shapes_(shapes), behind_(items.size()), facing_(items.size()) {
     for (const DrawItem& item : items)
         transparent_items_.push_back(
@@ -302,8 +303,8 @@ bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) cons
 
 }  // namespace
 
-std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const Scene& scene,
-                                                const Light& light, Methods::Transparency method,
+std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const scene::Scene& scene,
+                                                const scene::Light& light, Methods::Transparency method,
                                                 TransparencyCache& shapes) {
     DepthOrderGraph graph(items, scene, light, shapes);
     std::vector<std::vector<unsigned>> order;
@@ -334,7 +335,7 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
 }
 
 void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const DrawItem> others,
-                                 const Scene& scene) {
+                                 const scene::Scene& scene) {
     // Compared by geometry and matrix: thousands of parts may share a geometry.
     const auto before = [](const DrawItem* a, const DrawItem* b) {
         if (a->geometry != b->geometry) return a->geometry < b->geometry;
@@ -355,4 +356,4 @@ void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const D
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -8,7 +8,7 @@
 
 #include "plan/strong_components.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 namespace {
 
@@ -27,7 +27,7 @@ TriangleFace face_of(const std::array<glm::dvec3, 3>& corners) {
     return {corners, length > 0 ? area / length : glm::dvec3(0)};
 }
 
-std::array<glm::dvec3, 3> corners_of(const Geometry& geometry, std::size_t number) {
+std::array<glm::dvec3, 3> corners_of(const scene::Geometry& geometry, std::size_t number) {
     const std::size_t count = geometry.triangles.size();
     glm::uvec3 triangle = geometry.triangles[number % count];
     if (number >= count) std::swap(triangle.y, triangle.z);
@@ -134,7 +134,7 @@ DepthRelation depth_relation(const FrontFacingTriangle& a, const FrontFacingTria
 
 }  // namespace
 
-TriangleOrder order_triangles(const Geometry& geometry, CullMode cull_mode) {
+TriangleOrder order_triangles(const scene::Geometry& geometry, CullMode cull_mode) {
     const std::size_t count = geometry.triangles.size() * (cull_mode == CullMode::none ? 2 : 1);
     TriangleOrder result;
     if (count > kMaxOrderedTriangles) {
@@ -159,13 +159,14 @@ TriangleOrder order_triangles(const Geometry& geometry, CullMode cull_mode) {
     return result;
 }
 
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry) {
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item,
+                                                        const scene::Geometry& geometry) {
     std::vector<unsigned> all(geometry.triangles.size() * (item.cull_mode == CullMode::none ? 2 : 1));
     std::iota(all.begin(), all.end(), 0U);
     return front_facing_triangles(item, geometry, all);
 }
 
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry,
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const scene::Geometry& geometry,
                                                         std::span<const unsigned> numbers) {
     std::vector<FrontFacingTriangle> result;
     for (const unsigned number : numbers) {
@@ -237,4 +238,4 @@ std::optional<std::vector<unsigned>> back_to_front(std::vector<FrontFacingTriang
     return result;
 }
 
-}  // namespace vrut
+}  // namespace vrut::plan

@@ -9,7 +9,7 @@
 
 #include "plan/frame_plan.hpp"
 
-namespace vrut {
+namespace vrut::plan {
 
 /// Of a part's radius: what lies closer together counts as touching.
 inline constexpr double kNegligible = 1e-6;
@@ -24,7 +24,7 @@ struct TriangleOrder {
 };
 
 /// Takes the square of the number of triangles; above kMaxOrderedTriangles they are one ring.
-TriangleOrder order_triangles(const Geometry& geometry, CullMode cull_mode);
+TriangleOrder order_triangles(const scene::Geometry& geometry, CullMode cull_mode);
 inline constexpr std::size_t kMaxOrderedTriangles = 2048;
 
 /// A triangle that faces the eye, in view space.
@@ -37,8 +37,9 @@ struct FrontFacingTriangle {
 
 /// Of an item's triangles those that face the eye and are not degenerate: of all, or of some numbers of a
 /// TriangleOrder.
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry);
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const Geometry& geometry,
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item,
+                                                        const scene::Geometry& geometry);
+std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const scene::Geometry& geometry,
                                                         std::span<const unsigned> numbers);
 
 /// Which of two lies before the other, seen from the origin.
@@ -55,4 +56,4 @@ inline constexpr std::size_t kMaxComparedPairs = std::size_t{1} << 18;
 std::optional<std::vector<unsigned>> back_to_front(std::vector<FrontFacingTriangle> triangles,
                                                    double tolerance);
 
-}  // namespace vrut
+}  // namespace vrut::plan

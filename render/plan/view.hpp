@@ -12,7 +12,11 @@
 #include "scene/light.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::mesh {
+class DetailLevels;
+}
+
+namespace vrut::plan {
 
 /// The plain background: 230/255, 235/255, 242/255.
 inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
@@ -21,8 +25,8 @@ inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 /
 /// are the scene's.
 struct Background {
     glm::dvec3 color = kDefaultBackground;
-    Index texture = kNone;
-    std::optional<std::array<Index, 6>> cube_map;  ///< px nx py ny pz nz
+    scene::Index texture = scene::kNone;
+    std::optional<std::array<scene::Index, 6>> cube_map;  ///< px nx py ny pz nz
 
     bool operator==(const Background&) const = default;
 };
@@ -38,8 +42,6 @@ struct PlacedMarker {
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
 enum class DrawMode { realistic, stylized };
 
-class DetailLevels;
-
 /// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
 /// default is the most accurate.
 struct Methods {
@@ -53,20 +55,21 @@ struct Methods {
 
 /// What a picture shows, in pixels of the picture.
 struct View {
-    std::shared_ptr<const PlacedScene> scene;  ///< null: the background only; views are equal by its address
-    Camera camera;
+    std::shared_ptr<const scene::PlacedScene>
+        scene;  ///< null: the background only; views are equal by its address
+    scene::Camera camera;
     int width = 1280, height = 720;
     int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
     double detail =
         0;  ///< how far, in pixels, the surfaces drawn may lie from the scene's; 0: every triangle
     /// Of the scene, for `detail`, and to leave out triangles that are hidden; null: none are made.
-    std::shared_ptr<const DetailLevels> levels;
+    std::shared_ptr<const mesh::DetailLevels> levels;
     Methods methods;
-    Light light;
+    scene::Light light;
     DrawMode mode = DrawMode::realistic;
     bool wireframe = false;  ///< the edges of all triangles, and no faces
     /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
-    Index selected = kNone;
+    scene::Index selected = scene::kNone;
     Background background;
     std::shared_ptr<const std::vector<PlacedMarker>> markers;  ///< null: none; views are equal by its address
 
@@ -86,4 +89,4 @@ struct FrameStats {
     double readback_ms = 0;  ///< from the GPU into memory
 };
 
-}  // namespace vrut
+}  // namespace vrut::plan

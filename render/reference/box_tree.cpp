@@ -22,7 +22,7 @@ RayBvh::SlabRay::SlabRay(const glm::dvec3& origin, const glm::dvec3& direction) 
                                                                  : direction[axis]);
 }
 
-RayBvh::RayBvh(std::span<const Bounds> boxes) : order_(boxes.size()) {
+RayBvh::RayBvh(std::span<const math::Bounds> boxes) : order_(boxes.size()) {
     if (boxes.empty()) return;
     std::iota(order_.begin(), order_.end(), 0U);
     const auto count = static_cast<std::uint32_t>(boxes.size());
@@ -32,17 +32,18 @@ RayBvh::RayBvh(std::span<const Bounds> boxes) : order_(boxes.size()) {
         if (nodes_[node].count > kLeaf) split(node, boxes);
 }
 
-Bounds RayBvh::bounds_of(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const {
-    Bounds box;
+math::Bounds RayBvh::bounds_of(std::uint32_t first, std::uint32_t count,
+                               std::span<const math::Bounds> boxes) const {
+    math::Bounds box;
     for (std::uint32_t i = first; i < first + count; ++i) box.add(boxes[order_[i]]);
     const double slack = kSlack * std::max(largest_of(box.min), largest_of(box.max));
     return {box.min - slack, box.max + slack};
 }
 
 /// In halves, across the axis along which the boxes' centres are spread most.
-void RayBvh::split(std::uint32_t node, std::span<const Bounds> boxes) {
+void RayBvh::split(std::uint32_t node, std::span<const math::Bounds> boxes) {
     const std::uint32_t first = nodes_[node].first, count = nodes_[node].count, half = count / 2;
-    Bounds centers;
+    math::Bounds centers;
     for (std::uint32_t i = first; i < first + count; ++i) centers.add(boxes[order_[i]].center());
     const glm::dvec3 spread = centers.max - centers.min;
     const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;

@@ -18,7 +18,7 @@ namespace vrut::reference {
 class RayBvh {
 public:
     /// None of the boxes is empty or infinite.
-    explicit RayBvh(std::span<const Bounds> boxes);
+    explicit RayBvh(std::span<const math::Bounds> boxes);
 
     /// Calls `meet` with the number of each box that the ray may enter up to `farthest`, which `meet` may
     /// lower to pass over what lies behind; roughly nearest first. Never misses a box for rounding.
@@ -47,7 +47,7 @@ public:
 
 private:
     struct RayBvhNode {
-        Bounds box;
+        math::Bounds box;
         std::uint32_t first = 0;  ///< of a leaf: in `order_`; else of its two children
         std::uint32_t count = 0;  ///< 0: not a leaf
     };
@@ -63,7 +63,7 @@ private:
         SlabRay(const glm::dvec3& origin, const glm::dvec3& direction);
         /// Distance at which a box is entered, not below 0; NaN, which no comparison holds for, where
         /// it is passed by.
-        double entry(const Bounds& box) const {
+        double entry(const math::Bounds& box) const {
             const glm::dvec3 a = (box.min - after_) * inverse_, b = (box.max - before_) * inverse_;
             const glm::dvec3 in = glm::min(a, b), out = glm::max(a, b);
             const double enters = std::max(std::max(in.x, in.y), std::max(in.z, 0.0));
@@ -75,8 +75,9 @@ private:
         glm::dvec3 before_{0}, after_{0}, inverse_{0};  ///< the origin, less and plus its slack
     };
 
-    void split(std::uint32_t node, std::span<const Bounds> boxes);
-    Bounds bounds_of(std::uint32_t first, std::uint32_t count, std::span<const Bounds> boxes) const;
+    void split(std::uint32_t node, std::span<const math::Bounds> boxes);
+    math::Bounds bounds_of(std::uint32_t first, std::uint32_t count,
+                           std::span<const math::Bounds> boxes) const;
 
     std::vector<RayBvhNode> nodes_;
     std::vector<std::uint32_t> order_;

@@ -8,12 +8,12 @@
 #include "math/sample_sequence.hpp"
 #include "reference/tracer.hpp"
 
-namespace vrut {
+namespace vrut::reference {
 
 namespace {
 
 /// The row is counted from the bottom.
-void trace_row(const reference::Tracer& tracer, const View& view, int row, ReferenceImage& image) {
+void trace_row(const reference::Tracer& tracer, const plan::View& view, int row, ReferenceImage& image) {
     const int y = view.height - 1 - row;
     for (int x = 0; x < view.width; ++x) {
         const auto at = static_cast<std::size_t>(row) * static_cast<std::size_t>(view.width) +
@@ -21,7 +21,7 @@ void trace_row(const reference::Tracer& tracer, const View& view, int row, Refer
         const glm::dvec2 center(x + 0.5, y + 0.5);
         glm::dvec3 sum(0);
         for (int i = 0; i < view.samples; ++i)
-            sum += tracer.color_at(center + sample_offset(i, view.samples));
+            sum += tracer.color_at(center + math::sample_offset(i, view.samples));
         image.color[at] = sum / static_cast<double>(view.samples);
         image.node[at] = tracer.node_at(center);
     }
@@ -29,10 +29,10 @@ void trace_row(const reference::Tracer& tracer, const View& view, int row, Refer
 
 }  // namespace
 
-ReferenceImage trace(const View& view) {
+ReferenceImage trace(const plan::View& view) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     ReferenceImage image{view.width, view.height, std::vector<glm::dvec3>(pixels),
-                         std::vector<Index>(pixels, kNone)};
+                         std::vector<scene::Index>(pixels, scene::kNone)};
     const reference::Tracer tracer(view);
     std::atomic<int> next = 0;
     const auto work = [&] {
@@ -45,8 +45,8 @@ ReferenceImage trace(const View& view) {
     return image;
 }
 
-Image image_of(const ReferenceImage& picture) {
-    Image image;
+scene::Image image_of(const ReferenceImage& picture) {
+    scene::Image image;
     image.resize(picture.width, picture.height);
     for (std::size_t i = 0; i < picture.color.size(); ++i) {
         for (int k = 0; k < 3; ++k)
@@ -57,4 +57,4 @@ Image image_of(const ReferenceImage& picture) {
     return image;
 }
 
-}  // namespace vrut
+}  // namespace vrut::reference

@@ -49,7 +49,7 @@ glm::dvec3 dbarycentrics(const TriangleVertices& corners, const glm::dvec3& move
     return {-v - w, v, w};
 }
 
-double attenuated(const Light& light, double d) {
+double attenuated(const scene::Light& light, double d) {
     const glm::dvec3 given = light.attenuation == glm::dvec3(0) ? glm::dvec3(1, 0, 0) : light.attenuation;
     return 1 / std::max(given.x + given.y * d + given.z * d * d, 1e-6);
 }
@@ -61,8 +61,8 @@ double short_of_one(double radians) {
 }
 
 /// smoothstep(cos(angle / 2), cos(0.45 angle), cos θ), by what the cosines are short of 1.
-double in_cone(const Light& light, const glm::dvec3& from_light) {
-    const double angle = light.angle * kRadiansPerDegree;
+double in_cone(const scene::Light& light, const glm::dvec3& from_light) {
+    const double angle = light.angle * scene::kRadiansPerDegree;
     const double outer = short_of_one(angle / 2), inner = short_of_one(0.45 * angle);
     const glm::dvec3 off = from_light - light.direction;
     const double here = glm::dot(off, off) / 2;
@@ -76,11 +76,11 @@ struct IncidentLight {
     double intensity = 1;
 };
 
-IncidentLight incident_light(const Light& light, const glm::dvec3& eye, const glm::dvec3& point) {
-    if (!light.headlight && light.type == LightData::Type::directional) return {-light.direction, 1};
+IncidentLight incident_light(const scene::Light& light, const glm::dvec3& eye, const glm::dvec3& point) {
+    if (!light.headlight && light.type == scene::LightData::Type::directional) return {-light.direction, 1};
     const glm::dvec3 way = (light.headlight ? glm::dvec3(0) : light.position - eye) - point;
     IncidentLight result{unit(way), attenuated(light, glm::length(way))};
-    if (!light.headlight && light.type == LightData::Type::spot)
+    if (!light.headlight && light.type == scene::LightData::Type::spot)
         result.intensity *= in_cone(light, -result.to_light);
     return result;
 }
@@ -113,7 +113,7 @@ SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit&
     return interaction;
 }
 
-glm::dvec3 phong(const Material& material, const glm::dvec3& diffuse, const Light& light,
+glm::dvec3 phong(const scene::Material& material, const glm::dvec3& diffuse, const scene::Light& light,
                  const glm::dvec3& eye, const SurfaceInteraction& interaction, const glm::dvec3& to_viewer) {
     const auto [to_light, intensity] = incident_light(light, eye, interaction.point);
     const double cosine = glm::dot(to_light, interaction.normal), lambert = std::max(cosine, 0.0);

@@ -22,7 +22,7 @@ SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit&
 /// The light's equations (Macků 2016, eq. 6.4 to 6.9), each component clamped to 0…1. `diffuse` stands for
 /// the material's, `to_viewer` (unit) is the way back along the ray; `light` is in world space, and so is
 /// `eye`, which the spot is relative to.
-glm::dvec3 phong(const Material& material, const glm::dvec3& diffuse, const Light& light,
+glm::dvec3 phong(const scene::Material& material, const glm::dvec3& diffuse, const scene::Light& light,
                  const glm::dvec3& eye, const SurfaceInteraction& interaction, const glm::dvec3& to_viewer);
 
 }  // namespace vrut::reference

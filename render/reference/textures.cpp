@@ -84,14 +84,14 @@ glm::dvec2 uv_on(const CubeFace& face, const glm::dvec3& direction) {
            0.5;
 }
 
-std::array<MipMap, 6> mip_maps(const std::array<const Image*, 6>& images) {
+std::array<MipMap, 6> mip_maps(const std::array<const scene::Image*, 6>& images) {
     return {MipMap(*images[0]), MipMap(*images[1]), MipMap(*images[2]),
             MipMap(*images[3]), MipMap(*images[4]), MipMap(*images[5])};
 }
 
 }  // namespace
 
-MipMap::MipMap(const Image& image) {
+MipMap::MipMap(const scene::Image& image) {
     MipLevel& first = levels_.emplace_back(MipLevel{image.width, image.height, {}});
     first.texels.reserve(image.rgba.size() / 4);
     for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4)
@@ -132,7 +132,7 @@ glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>&
     });
 }
 
-CubeMap::CubeMap(const std::array<const Image*, 6>& images) : faces_(mip_maps(images)) {}
+CubeMap::CubeMap(const std::array<const scene::Image*, 6>& images) : faces_(mip_maps(images)) {}
 
 glm::dvec3 CubeMap::sample(const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) const {
     const std::size_t number = face_of(direction);

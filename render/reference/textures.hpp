@@ -15,7 +15,7 @@ enum class Wrap { repeat, clamp };
 /// texels a side, 1 at least.
 class MipMap {
 public:
-    explicit MipMap(const Image& image);
+    explicit MipMap(const scene::Image& image);
 
     int levels() const { return static_cast<int>(levels_.size()); }
     int width(int level) const { return levels_[static_cast<std::size_t>(level)].width; }
@@ -42,7 +42,7 @@ private:
 /// +x, -x, +y, -y, +z, -z; its top is +y, but +z for +y and -z for -y.
 class CubeMap {
 public:
-    explicit CubeMap(const std::array<const Image*, 6>& images);
+    explicit CubeMap(const std::array<const scene::Image*, 6>& images);
 
     /// RGB in a direction of the world (of any length) that changes so from a pixel to the next; as
     /// MipMap::sample, on the face that the direction meets, and filtered across its edges.

@@ -33,35 +33,36 @@ glm::dmat4 eye_from_centered(const glm::dmat4& world, const glm::dvec3& center, 
 }
 
 /// None where the node draws nothing.
-std::optional<TracedInstance> instance_of(const View& view, std::size_t node) {
-    const PlacedScene& placed = *view.scene;
-    const Scene& scene = *placed.scene;
-    const auto* data = std::get_if<GeometryData>(&scene.nodes()[node].data);
-    if (!data || data->geometry == kNone || !is_finite(placed.world[node])) return {};
-    const Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
+std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t node) {
+    const scene::PlacedScene& placed = *view.scene;
+    const scene::Scene& scene = *placed.scene;
+    const auto* data = std::get_if<scene::GeometryData>(&scene.nodes()[node].data);
+    if (!data || data->geometry == scene::kNone || !scene::is_finite(placed.world[node])) return {};
+    const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
     if (geometry.triangles.empty()) return {};
     const glm::dvec3 center = geometry.bounds.center();
     const glm::dmat4 matrix = eye_from_centered(placed.world[node], center, view.camera.eye);
-    const Bounds box =
-        transformed(matrix, Bounds{geometry.bounds.min - center, geometry.bounds.max - center});
-    if (!(glm::length(box.min) < kMaxDrawDistance && glm::length(box.max) < kMaxDrawDistance)) return {};
+    const math::Bounds box =
+        math::transformed(matrix, math::Bounds{geometry.bounds.min - center, geometry.bounds.max - center});
+    if (!(glm::length(box.min) < scene::kMaxDrawDistance && glm::length(box.max) < scene::kMaxDrawDistance))
+        return {};
 
     TracedInstance part;
-    part.node = static_cast<Index>(node);
+    part.node = static_cast<scene::Index>(node);
     part.geometry = &geometry;
     part.positions.reserve(geometry.positions.size());
     for (const glm::dvec3& position : geometry.positions)
         part.positions.emplace_back(matrix * glm::dvec4(position - center, 1));
-    const double determinant = relative_determinant(glm::dmat3(matrix));
+    const double determinant = scene::relative_determinant(glm::dmat3(matrix));
     part.normal_matrix = normal_matrix(glm::dmat3(matrix), determinant);
 
-    const Material& material = scene.material(placed.nodes[node].material);
-    const bool stylized = view.mode == DrawMode::stylized;
-    part.material = stylized ? &stylized_faces() : &material;
+    const scene::Material& material = scene.material(placed.nodes[node].material);
+    const bool stylized = view.mode == plan::DrawMode::stylized;
+    part.material = stylized ? &scene::stylized_faces() : &material;
     part.transparent = !stylized && scene.is_transparent(material);
     const auto& plane = scene.plane(data->geometry);
     if (!stylized && !part.transparent && material.reflectivity > 0 && plane)
-        part.mirror = transformed(matrix, Plane{plane->normal, plane->point - center});
+        part.mirror = math::transformed(matrix, math::Plane{plane->normal, plane->point - center});
     const bool singular = !(std::abs(determinant) > 1e-12);
     part.two_sided = singular || material.two_sided || part.mirror;
     part.clockwise = part.two_sided || determinant > 0;
@@ -69,8 +70,8 @@ std::optional<TracedInstance> instance_of(const View& view, std::size_t node) {
     return part;
 }
 
-void number_coincident(std::vector<TracedInstance>& parts, const PlacedScene& placed) {
-    std::multimap<const Geometry*, std::uint32_t> firsts;
+void number_coincident(std::vector<TracedInstance>& parts, const scene::PlacedScene& placed) {
+    std::multimap<const scene::Geometry*, std::uint32_t> firsts;
     for (std::uint32_t i = 0; i < parts.size(); ++i) {
         const auto world = [&](std::uint32_t part) {
             return placed.world[static_cast<std::size_t>(parts[part].node)];
@@ -83,11 +84,11 @@ void number_coincident(std::vector<TracedInstance>& parts, const PlacedScene& pl
     }
 }
 
-std::vector<TracedInstance> parts_of(const View& view) {
+std::vector<TracedInstance> parts_of(const plan::View& view) {
     std::vector<TracedInstance> parts;
     if (!view.scene || view.wireframe) return parts;
     const auto& nodes = view.scene->scene->nodes();
-    const std::vector<bool> shown = shown_nodes(*view.scene, view.camera.eye);
+    const std::vector<bool> shown = scene::shown_nodes(*view.scene, view.camera.eye);
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
             if (auto part = instance_of(view, i)) parts.push_back(*std::move(part));
@@ -98,12 +99,12 @@ std::vector<TracedInstance> parts_of(const View& view) {
     return parts;
 }
 
-std::vector<Bounds> boxes_of(const std::vector<TracedInstance>& parts, const auto& triangles) {
-    std::vector<Bounds> boxes;
+std::vector<math::Bounds> boxes_of(const std::vector<TracedInstance>& parts, const auto& triangles) {
+    std::vector<math::Bounds> boxes;
     boxes.reserve(triangles.size());
     for (const auto& triangle : triangles) {
         const TracedInstance& part = parts[triangle.part];
-        Bounds& box = boxes.emplace_back();
+        math::Bounds& box = boxes.emplace_back();
         for (int k = 0; k < 3; ++k) box.add(part.positions[part.geometry->triangles[triangle.index][k]]);
     }
     return boxes;
@@ -126,12 +127,12 @@ double side(double value, const glm::dvec3& a, const glm::dvec3& b) {
 
 /// With the part left to be filled in.
 std::optional<TriangleHit> intersect(const TracedInstance& part, std::uint32_t triangle,
-                                     const RaySpace& space, const glm::dvec3& origin) {
+                                     const math::RaySpace& space, const glm::dvec3& origin) {
     const glm::uvec3& corners = part.geometry->triangles[triangle];
     const glm::dvec3 a = space.to_ray_space(part.positions[corners.x] - origin);
     const glm::dvec3 b = space.to_ray_space(part.positions[corners.y] - origin);
     const glm::dvec3 c = space.to_ray_space(part.positions[corners.z] - origin);
-    const double u = edge_function(c, b), v = edge_function(a, c), w = edge_function(b, a);
+    const double u = math::edge_function(c, b), v = math::edge_function(a, c), w = math::edge_function(b, a);
     const double u_side = side(u, c, b), v_side = side(v, a, c), w_side = side(w, b, a);
     const bool clockwise = u_side > 0 && v_side > 0 && w_side > 0;
     const bool counter_clockwise = u_side < 0 && v_side < 0 && w_side < 0;
@@ -153,12 +154,12 @@ TracedScene::TriangleSet::TriangleSet(const std::vector<TracedInstance>& parts, 
     : triangles(triangles_of(parts, are_transparent, std::vector<TriangleRef>())),
       tree(boxes_of(parts, triangles)) {}
 
-TracedScene::TracedScene(const View& view)
+TracedScene::TracedScene(const plan::View& view)
     : parts_(parts_of(view)), opaque_(parts_, false), transparent_(parts_, true) {}
 
 std::optional<TriangleHit> TracedScene::closest_opaque_hit(const RayDifferential& ray,
                                                            std::uint32_t excluded) const {
-    const RaySpace space(ray.direction);
+    const math::RaySpace space(ray.direction);
     TriangleHit first;
     first.distance = std::numeric_limits<double>::infinity();
     opaque_.tree.visit(ray.origin, ray.direction, first.distance, [&](std::uint32_t number) {
@@ -177,7 +178,7 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
                                                               const std::optional<TriangleHit>& end,
                                                               std::uint32_t excluded) const {
     std::vector<TriangleHit> hits;
-    const RaySpace space(ray.direction);
+    const math::RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
     transparent_.tree.visit(ray.origin, ray.direction, farthest, [&](std::uint32_t number) {
         const TriangleRef& triangle = transparent_.triangles[number];

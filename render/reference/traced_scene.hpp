@@ -20,9 +20,9 @@ struct RayDifferential {
 
 /// A geometry node as the eye sees it: all is relative to the eye, along the world's axes.
 struct TracedInstance {
-    Index node = kNone;
-    const Geometry* geometry = nullptr;
-    const Material* material = nullptr;
+    scene::Index node = scene::kNone;
+    const scene::Geometry* geometry = nullptr;
+    const scene::Material* material = nullptr;
     std::vector<glm::dvec3> positions;
     glm::dmat3 normal_matrix{
         1};  ///< cofactors of the node's matrix, by the sign of its determinant, to scale
@@ -30,7 +30,7 @@ struct TracedInstance {
     bool clockwise = false, counter_clockwise = false;
     bool two_sided = false;  ///< normals turn to the viewer
     bool transparent = false;
-    std::optional<Plane> mirror;
+    std::optional<math::Plane> mirror;
     std::uint32_t coincident_group = 0;  ///< the first part of the same geometry under the same matrix
 };
 
@@ -48,7 +48,7 @@ struct TriangleHit {
 /// What a view shows of a scene, to be met by rays.
 class TracedScene {
 public:
-    explicit TracedScene(const View& view);
+    explicit TracedScene(const plan::View& view);
     const std::vector<TracedInstance>& parts() const { return parts_; }  ///< by rising id
 
     static constexpr std::uint32_t kNoInstance = 0xffffffff;

@@ -7,16 +7,16 @@ namespace vrut::reference {
 
 namespace {
 
-const Image& image_of(const View& view, Index texture) {
+const scene::Image& image_of(const plan::View& view, scene::Index texture) {
     return view.scene->scene->textures()[static_cast<std::size_t>(texture)].image;
 }
 
-std::vector<std::optional<MipMap>> textures_in_use(const View& view, const TracedScene& surfaces) {
+std::vector<std::optional<MipMap>> textures_in_use(const plan::View& view, const TracedScene& surfaces) {
     std::vector<std::optional<MipMap>> textures;
     if (!view.scene) return textures;
     textures.resize(view.scene->scene->textures().size());
-    const auto use = [&](Index texture) {
-        if (texture == kNone) return;
+    const auto use = [&](scene::Index texture) {
+        if (texture == scene::kNone) return;
         auto& map = textures[static_cast<std::size_t>(texture)];
         if (!map) map.emplace(image_of(view, texture));
     };
@@ -25,9 +25,9 @@ std::vector<std::optional<MipMap>> textures_in_use(const View& view, const Trace
     return textures;
 }
 
-std::optional<CubeMap> cube_map_of(const View& view) {
+std::optional<CubeMap> cube_map_of(const plan::View& view) {
     if (!view.scene || !view.background.cube_map) return {};
-    std::array<const Image*, 6> images{};
+    std::array<const scene::Image*, 6> images{};
     for (std::size_t i = 0; i < 6; ++i) images[i] = &image_of(view, (*view.background.cube_map)[i]);
     return CubeMap(images);
 }
@@ -38,19 +38,19 @@ glm::dvec3 reflect(const glm::dvec3& v, const glm::dvec3& normal) {
 
 }  // namespace
 
-Tracer::Tracer(const View& view)
+Tracer::Tracer(const plan::View& view)
     : view_(view), scene_(view), textures_(textures_in_use(view, scene_)), cube_map_(cube_map_of(view)) {}
 
 glm::dvec3 Tracer::color_at(const glm::dvec2& raster) const {
     return radiance({generate_ray(raster), raster});
 }
 
-Index Tracer::node_at(const glm::dvec2& raster) const {
+scene::Index Tracer::node_at(const glm::dvec2& raster) const {
     const RayDifferential ray = generate_ray(raster);
     std::optional<TriangleHit> first = scene_.closest_opaque_hit(ray);
     const auto before = scene_.transparent_hits_before(ray, first);
     if (!before.empty()) first = before.front();
-    return first ? scene_.parts()[first->part].node : kNone;
+    return first ? scene_.parts()[first->part].node : scene::kNone;
 }
 
 std::vector<Tracer::VisibleHit> Tracer::hits_at(const glm::dvec2& raster) const {
@@ -70,9 +70,9 @@ std::vector<Tracer::VisibleHit> Tracer::hits_at(const glm::dvec2& raster) const 
 }
 
 RayDifferential Tracer::generate_ray(const glm::dvec2& raster) const {
-    const glm::dvec3 view = view_direction(view_.camera), right = right_direction(view_.camera);
+    const glm::dvec3 view = scene::view_direction(view_.camera), right = scene::right_direction(view_.camera);
     const glm::dvec3 up = glm::cross(right, view);
-    const double pixel = 2 * std::tan(view_.camera.fov * kRadiansPerDegree / 2) / view_.height;
+    const double pixel = 2 * std::tan(view_.camera.fov * scene::kRadiansPerDegree / 2) / view_.height;
     const glm::dvec3 way = view + right * ((raster.x - view_.width / 2.0) * pixel) +
                            up * ((view_.height / 2.0 - raster.y) * pixel);
     const double length = glm::length(way);
@@ -95,10 +95,10 @@ glm::dvec3 Tracer::radiance(const PathRay& path) const {
 
 Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit& hit) const {
     const TracedInstance& part = scene_.parts()[hit.part];
-    const Material& material = *part.material;
+    const scene::Material& material = *part.material;
     const SurfaceInteraction interaction = interaction_of(part, hit, path.ray);
     glm::dvec4 diffuse = material.diffuse;
-    if (material.texture != kNone && !part.geometry->texcoords.empty()) {
+    if (material.texture != scene::kNone && !part.geometry->texcoords.empty()) {
         const glm::dvec4 texel = textures_[static_cast<std::size_t>(material.texture)]->sample(
             interaction.texcoord, interaction.duv_dxy, Wrap::repeat);
         diffuse = glm::dvec4(glm::dvec3(texel), diffuse.a * texel.a);
@@ -118,7 +118,7 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
 /// As if the eye looked from behind the mirror's plane. The new ray starts on the plane, which the triangle
 /// may miss by a hair; all before it is on the viewer's side.
 Tracer::PathRay Tracer::reflected(const PathRay& path, const TriangleHit& hit) const {
-    const Plane& plane = *scene_.parts()[hit.part].mirror;
+    const math::Plane& plane = *scene_.parts()[hit.part].mirror;
     const RayDifferential& ray = path.ray;
     const double approach = glm::dot(plane.normal, ray.direction);
     double distance = -plane.distance(ray.origin) / approach;
@@ -147,7 +147,7 @@ glm::dvec3 Tracer::environment(const PathRay& path, const SurfaceInteraction& in
 
 glm::dvec3 Tracer::background(const PathRay& path) const {
     if (cube_map_) return cube_map_->sample(path.ray.direction, path.ray.ddirection_dxy);
-    if (view_.scene && view_.background.texture != kNone) {
+    if (view_.scene && view_.background.texture != scene::kNone) {
         const glm::dvec2 pixel = 1.0 / glm::dvec2(view_.width, view_.height);
         const glm::dvec2 uv(path.raster.x * pixel.x, 1 - path.raster.y * pixel.y);
         const auto& map = textures_[static_cast<std::size_t>(view_.background.texture)];

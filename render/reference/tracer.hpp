@@ -13,11 +13,11 @@ namespace vrut::reference {
 /// What a view shows in each direction. Safe to ask from several threads.
 class Tracer {
 public:
-    explicit Tracer(const View& view);
+    explicit Tracer(const plan::View& view);
 
     /// `place` is in pixels from the picture's top left.
     glm::dvec3 color_at(const glm::dvec2& raster) const;
-    Index node_at(const glm::dvec2& raster) const;
+    scene::Index node_at(const glm::dvec2& raster) const;
 
     /// A surface that a pixel's colour is made of.
     struct VisibleHit {
@@ -47,7 +47,7 @@ private:
     glm::dvec3 environment(const PathRay& path, const SurfaceInteraction& interaction) const;
     glm::dvec3 background(const PathRay& path) const;
 
-    const View& view_;
+    const plan::View& view_;
     TracedScene scene_;
     std::vector<std::optional<MipMap>> textures_;  ///< the scene's; those in use
     std::optional<CubeMap> cube_map_;

@@ -14,7 +14,7 @@
 #include "plan/projection.hpp"
 #include "plan/transparency_cache.hpp"
 
-namespace vrut {
+namespace vrut::renderer {
 
 namespace {
 
@@ -30,7 +30,7 @@ struct Renderer::Impl {
     Impl(std::optional<int> device, bool debug) : context({device, debug}) {}
 
     void require_context() const {
-        if (context.lost()) throw ContextLost("the graphics driver has reset itself");
+        if (context.lost()) throw base::ContextLost("the graphics driver has reset itself");
     }
 
     static void require_memory() {
@@ -38,7 +38,8 @@ struct Renderer::Impl {
         GLenum error = glGetError();
         for (int i = 0; i < kMostErrors && error != GL_NO_ERROR && error != GL_OUT_OF_MEMORY; ++i)
             error = glGetError();
-        if (error == GL_OUT_OF_MEMORY) throw OutOfMemory("the graphics driver has no memory to draw with");
+        if (error == GL_OUT_OF_MEMORY)
+            throw base::OutOfMemory("the graphics driver has no memory to draw with");
     }
 
     /// Draws. The one place that asks whether the context was lost meanwhile, whatever that made of it, and
@@ -46,35 +47,35 @@ struct Renderer::Impl {
     template <class Draw>
     auto draw_or_fail(Draw draw) {
         try {
-            set_up_drawing();
+            gl::set_up_drawing();
             auto drawn = draw();
             require_context();
             require_memory();
             return drawn;
         } catch (const std::bad_alloc&) {
             require_context();
-            throw OutOfMemory("this machine has no memory left to draw with");
+            throw base::OutOfMemory("this machine has no memory left to draw with");
         } catch (const std::exception&) {
             require_context();
             throw;
         }
     }
 
-    void use_scene(const std::shared_ptr<const Scene>& wanted) {
+    void use_scene(const std::shared_ptr<const scene::Scene>& wanted) {
         if (scene && scene->scene() == wanted) return;
         scene.reset();
         if (staged && staged->scene() == wanted)
             scene = std::move(staged);
         else
-            scene = std::make_unique<GpuScene>(wanted);
+            scene = std::make_unique<gl::GpuScene>(wanted);
         staged.reset();
         shapes.emplace(*wanted);
     }
 
-    void upload(const View& view) {
+    void upload(const plan::View& view) {
         staged.reset();
         if (scene && scene->scene() == view.scene->scene) return;
-        auto next = std::make_unique<GpuScene>(view.scene->scene);
+        auto next = std::make_unique<gl::GpuScene>(view.scene->scene);
         next->upload_shown(view);
         staged = std::move(next);
     }
@@ -89,50 +90,50 @@ struct Renderer::Impl {
     }
 
     /// What draws the rendering's next sample.
-    SampleDrawing& sample_of(const RenderJob& job) {
-        const auto is_its = [&](const SampleDrawing& sample) { return sample.belongs_to(job); };
+    gl::SampleDrawing& sample_of(const plan::RenderJob& job) {
+        const auto is_its = [&](const gl::SampleDrawing& sample) { return sample.belongs_to(job); };
         if (const auto found = std::ranges::find_if(in_flight, is_its); found != in_flight.end())
             return *found;
-        for (SampleDrawing& sample : in_flight)
+        for (gl::SampleDrawing& sample : in_flight)
             if (sample.abandoned()) targets = sample.release();
-        std::erase_if(in_flight, [](const SampleDrawing& sample) { return sample.abandoned(); });
-        if (!targets) targets = std::make_unique<SampleTargets>();
+        std::erase_if(in_flight, [](const gl::SampleDrawing& sample) { return sample.abandoned(); });
+        if (!targets) targets = std::make_unique<gl::SampleTargets>();
         return in_flight.emplace_back(job, std::move(targets));
     }
 
-    void forget_sample_of(const RenderJob& job) {
-        std::erase_if(in_flight, [&](const SampleDrawing& sample) { return sample.belongs_to(job); });
+    void forget_sample_of(const plan::RenderJob& job) {
+        std::erase_if(in_flight, [&](const gl::SampleDrawing& sample) { return sample.belongs_to(job); });
     }
 
-    bool step(RenderJob& job);
-    bool draw(RenderJob& job);
+    bool step(plan::RenderJob& job);
+    bool draw(plan::RenderJob& job);
 
-    GlContext context;  // first: destroyed after everything below
-    std::unique_ptr<GpuScene> scene, staged;
-    std::optional<TransparencyCache> shapes;
-    Passes passes;
-    std::list<SampleDrawing> in_flight;      // of renderings that wait
-    std::unique_ptr<SampleTargets> targets;  // of a sample before, for the next
-    IdPass ids;
+    gl::GlContext context;  // first: destroyed after everything below
+    std::unique_ptr<gl::GpuScene> scene, staged;
+    std::optional<plan::TransparencyCache> shapes;
+    gl::Passes passes;
+    std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
+    std::unique_ptr<gl::SampleTargets> targets;  // of a sample before, for the next
+    gl::IdPass ids;
     std::vector<std::uint8_t> pixels;  // of a sample
 };
 
 /// True if a sample is drawn: then `pixels` are its colours.
-bool Renderer::Impl::draw(RenderJob& job) {
-    const View& view = job.view;
-    FrameStats& stats = job.stats;
+bool Renderer::Impl::draw(plan::RenderJob& job) {
+    const plan::View& view = job.view;
+    plan::FrameStats& stats = job.stats;
     Clock::time_point start = Clock::now();
     if (view.scene) use_scene(view.scene->scene);
-    DrawBudget budget(context.software());
-    if (!job.planner) job.planner = std::make_shared<FramePlanner>();
+    plan::DrawBudget budget(context.software());
+    if (!job.planner) job.planner = std::make_shared<plan::FramePlanner>();
     if (view.scene && !job.planner->step(view, *shapes, budget)) {
         stats.render_ms += milliseconds_since(start);
         return false;
     }
     const int uploads_before = scene ? scene->uploads() : 0;
-    SampleDrawing& sample = sample_of(job);
+    gl::SampleDrawing& sample = sample_of(job);
     const bool drawn = sample.draw(job, scene.get(), passes, budget);
-    wait_for_gl();
+    gl::wait_for_gl();
     stats.render_ms += milliseconds_since(start);
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;
     if (!drawn) return false;
@@ -147,7 +148,7 @@ bool Renderer::Impl::draw(RenderJob& job) {
     return true;
 }
 
-bool Renderer::Impl::step(RenderJob& job) {
+bool Renderer::Impl::step(plan::RenderJob& job) {
     bool drawn = false;
     try {
         drawn = draw_or_fail([&] { return draw(job); });
@@ -158,7 +159,7 @@ bool Renderer::Impl::step(RenderJob& job) {
     if (!drawn) return false;
     forget_sample_of(job);
     const Clock::time_point start = Clock::now();
-    const bool whole = add_sample(job, pixels);
+    const bool whole = plan::add_sample(job, pixels);
     job.stats.readback_ms += milliseconds_since(start);
     return whole;
 }
@@ -170,44 +171,44 @@ const std::string& Renderer::description() const { return impl_->context.descrip
 const std::vector<std::string>& Renderer::rejected() const { return impl_->context.rejected(); }
 bool Renderer::software() const { return impl_->context.software(); }
 int Renderer::max_size() const { return impl_->context.max_size(); }
-long Renderer::gl_objects() const { return live_gl_objects(); }
+long Renderer::gl_objects() const { return gl::live_gl_objects(); }
 std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
 
-bool Renderer::step(RenderJob& job) {
+bool Renderer::step(plan::RenderJob& job) {
     try {
         return impl_->step(job);
-    } catch (const OutOfMemory&) {
+    } catch (const base::OutOfMemory&) {
         // Much may be there of pictures before: levels of detail, edges, the targets of larger ones.
         impl_->release();
     }
     return impl_->step(job);
 }
 
-void Renderer::render(const View& view, Image& image, FrameStats& stats) {
-    RenderJob job(view, std::move(image));
+void Renderer::render(const plan::View& view, scene::Image& image, plan::FrameStats& stats) {
+    plan::RenderJob job(view, std::move(image));
     while (!step(job)) {
     }
     image = std::move(job.image);
     stats = job.stats;
 }
 
-void Renderer::upload(const View& view) {
+void Renderer::upload(const plan::View& view) {
     impl_->draw_or_fail([&] {
         impl_->upload(view);
         return true;
     });
 }
 
-std::vector<Index> Renderer::node_ids(const View& view) {
+std::vector<scene::Index> Renderer::node_ids(const plan::View& view) {
     if (!view.scene)
-        return std::vector<Index>(
-            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), kNone);
+        return std::vector<scene::Index>(
+            static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), scene::kNone);
     return impl_->draw_or_fail([&] {
         impl_->use_scene(view.scene->scene);
-        const double near = fit_clip_range(view.camera, view.scene->bounds).near;
-        return impl_->ids.draw(visible_faces(view), *impl_->scene, view.width, view.height,
-                               reversed_clip_from_view(view, near, glm::dvec2(0)));
+        const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near;
+        return impl_->ids.draw(plan::visible_faces(view), *impl_->scene, view.width, view.height,
+                               plan::reversed_clip_from_view(view, near, glm::dvec2(0)));
     });
 }
 
-}  // namespace vrut
+}  // namespace vrut::renderer

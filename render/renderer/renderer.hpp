@@ -11,7 +11,7 @@
 #include "plan/view.hpp"
 #include "scene/image.hpp"
 
-namespace vrut {
+namespace vrut::renderer {
 
 /// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread. Whatever draws
 /// throws ContextLost when the driver has reset itself: from then on it draws nothing any more. It throws
@@ -35,25 +35,25 @@ public:
 
     /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
     /// drawn last stays there, too, until then; for good where this throws.
-    void upload(const View& view);
+    void upload(const plan::View& view);
 
     /// Draws the next sample, or a part of it where that is too much for one step (DrawBudget); first of all
     /// it may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
     /// this throws, the samples drawn before hold, and what was drawn of the next is drawn again: after
     /// ContextLost a new renderer goes on, or the view is begun anew. The scene drawn last stays on the GPU.
-    bool step(RenderJob& job);
+    bool step(plan::RenderJob& job);
 
     /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has
     /// nothing else to do meanwhile.
-    void render(const View& view, Image& image, FrameStats& stats);
+    void render(const plan::View& view, scene::Image& image, plan::FrameStats& stats);
 
     /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
     /// is in front of what is seen through it. Rows from the bottom up.
-    std::vector<Index> node_ids(const View& view);
+    std::vector<scene::Index> node_ids(const plan::View& view);
 
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::renderer

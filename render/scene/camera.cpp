@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vrut {
+namespace vrut::scene {
 
 namespace {
 
@@ -51,13 +51,13 @@ Camera with_roll_of(const Camera& before, Camera pose) {
     return pose;
 }
 
-ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds) {
+ClipRange fit_clip_range(const Camera& camera, const math::Bounds& bounds) {
     const double distance = focus_distance(camera);
     ClipRange range{distance * 0.01, distance * 10};
     if (bounds.empty()) return range;
     const glm::dvec3 view = view_direction(camera);
     double nearest = std::numeric_limits<double>::infinity(), farthest = -nearest;
-    for (const glm::dvec3& corner : corners(bounds)) {
+    for (const glm::dvec3& corner : math::corners(bounds)) {
         const double depth = glm::dot(corner - camera.eye, view);
         nearest = std::min(nearest, depth);
         farthest = std::max(farthest, depth);
@@ -126,4 +126,4 @@ Index first_camera_node(const PlacedScene& placed) {
     return static_cast<Index>(first);
 }
 
-}  // namespace vrut
+}  // namespace vrut::scene

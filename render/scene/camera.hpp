@@ -6,7 +6,7 @@
 #include "math/bounds.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 inline constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 /// The scene's vertical.
@@ -43,7 +43,7 @@ struct ClipRange {
 
 /// The tightest near and far around `bounds`; near is never below 10⁻⁶ of far, or 10⁻³ of the focus' distance
 /// where that is less.
-ClipRange fit_clip_range(const Camera& camera, const Bounds& bounds);
+ClipRange fit_clip_range(const Camera& camera, const math::Bounds& bounds);
 
 /// Right-handed, view along −z.
 glm::dmat4 view_from_world(const Camera& camera);
@@ -59,4 +59,4 @@ std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
 /// kNone.
 Index first_camera_node(const PlacedScene& placed);
 
-}  // namespace vrut
+}  // namespace vrut::scene

@@ -2,7 +2,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 /// Faces of the stylized drawing: dark blue, under the same light as realistic ones.
 inline const Material& stylized_faces() {
@@ -24,4 +24,4 @@ inline constexpr glm::dvec3 kSelection{1, 0.6, 0};
 /// What markers are: crimson, with a white rim.
 inline constexpr glm::dvec3 kMarkerColor{0.8, 0.04, 0.32};
 
-}  // namespace vrut
+}  // namespace vrut::scene

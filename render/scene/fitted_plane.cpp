@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 namespace {
 
@@ -38,7 +38,7 @@ bool is_solid(const Geometry& geometry, double limit) {
 
 }  // namespace
 
-std::optional<Plane> fitted_plane(const Geometry& geometry) {
+std::optional<math::Plane> fitted_plane(const Geometry& geometry) {
     const double limit = 1e-4 * geometry.bounds.radius();
     if (is_solid(geometry, limit)) return std::nullopt;
     const glm::dvec3 center = geometry.bounds.empty() ? glm::dvec3(0) : geometry.bounds.center();
@@ -65,11 +65,11 @@ std::optional<Plane> fitted_plane(const Geometry& geometry) {
     }
     const double length = glm::length(normal);
     if (!(length > 0) || !std::isfinite(length)) return std::nullopt;
-    const Plane plane{normal / length, center + weighted / total};
+    const math::Plane plane{normal / length, center + weighted / total};
     for (const glm::uvec3& triangle : geometry.triangles)
         for (int k = 0; k < 3; ++k)
             if (!(std::abs(plane.distance(geometry.positions[triangle[k]])) <= limit)) return std::nullopt;
     return plane;
 }
 
-}  // namespace vrut
+}  // namespace vrut::scene

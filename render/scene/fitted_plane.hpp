@@ -4,12 +4,12 @@
 
 #include "math/plane.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 struct Geometry;
 
 /// The plane in which a geometry lies: fitted to its triangles by their areas, and none of their corners is
 /// further from it than 1e-4 of the geometry's radius. None where there is no such plane.
-std::optional<Plane> fitted_plane(const Geometry& geometry);
+std::optional<math::Plane> fitted_plane(const Geometry& geometry);
 
-}  // namespace vrut
+}  // namespace vrut::scene

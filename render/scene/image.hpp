@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vrut {
+namespace vrut::scene {
 
 /// 8-bit RGBA as the GPU hands it over: rows from the bottom up.
 struct Image {
@@ -17,4 +17,4 @@ struct Image {
     }
 };
 
-}  // namespace vrut
+}  // namespace vrut::scene

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vrut {
+namespace vrut::scene {
 
 Light light_of(const PlacedScene& placed, Index node) {
     const auto at = static_cast<std::size_t>(node);
@@ -14,4 +14,4 @@ Light light_of(const PlacedScene& placed, Index node) {
     return light;
 }
 
-}  // namespace vrut
+}  // namespace vrut::scene

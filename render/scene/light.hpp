@@ -4,7 +4,7 @@
 
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 /// The light that shines in a picture, in world space. `position` is a point's and a spot's, `direction`
 /// (unit, the way in which it shines) a spot's and a directional light's. Attenuation is constant, linear,
@@ -24,4 +24,4 @@ struct Light {
 /// where its matrix leaves no direction, along the world's.
 Light light_of(const PlacedScene& placed, Index node);
 
-}  // namespace vrut
+}  // namespace vrut::scene

@@ -6,7 +6,7 @@
 
 #include "scene/fitted_plane.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 std::string_view name_of(NodeType type) {
     switch (type) {
@@ -281,18 +281,18 @@ std::vector<bool> subtree(const Scene& scene, Index top) {
     return below;
 }
 
-Bounds subtree_bounds(const PlacedScene& placed, Index node) {
+math::Bounds subtree_bounds(const PlacedScene& placed, Index node) {
     // Squares and sums of what is used below stay finite.
     constexpr double kFarthest = 1e150;
-    Bounds bounds;
+    math::Bounds bounds;
     const std::vector<bool> shown = shown_nodes(placed, std::nullopt);
     const std::vector<bool> below = subtree(*placed.scene, node);
     for (std::size_t i = 0; i < shown.size(); ++i) {
         const glm::dmat4& world = placed.world[i];
         const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data);
         if (!below[i] || !shown[i] || !data || data->geometry == kNone || !is_finite(world)) continue;
-        const Bounds box =
-            transformed(world, placed.scene->geometries()[static_cast<std::size_t>(data->geometry)].bounds);
+        const math::Bounds box = math::transformed(
+            world, placed.scene->geometries()[static_cast<std::size_t>(data->geometry)].bounds);
         if (!box.empty() && glm::length(box.min) < kFarthest && glm::length(box.max) < kFarthest)
             bounds.add(box);
     }
@@ -313,4 +313,4 @@ bool is_finite(const glm::dmat4& matrix) {
     return true;
 }
 
-}  // namespace vrut
+}  // namespace vrut::scene

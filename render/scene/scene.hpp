@@ -16,7 +16,7 @@
 #include "math/plane.hpp"
 #include "scene/image.hpp"
 
-namespace vrut {
+namespace vrut::scene {
 
 /// Identifiers of nodes, materials and geometries as a file gives them: 0 to 2^53 - 1, exact in JSON.
 using Id = std::int64_t;
@@ -54,7 +54,7 @@ struct Geometry {
     std::vector<glm::vec3> normals;     ///< one for each position, or none: then triangles are flat
     std::vector<glm::vec2> texcoords;   ///< one for each position, or none
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise from the front
-    Bounds bounds;
+    math::Bounds bounds;
 };
 
 enum class NodeType { assembly, root, camera, geometry, light, lod, switch_, background, sound };
@@ -165,7 +165,7 @@ public:
     const std::vector<std::string>& notices() const { return notices_; }
     const Material& material(Index index) const;
     /// The plane in which a geometry lies, in its own space (fitted_plane()).
-    const std::optional<Plane>& plane(Index geometry) const {
+    const std::optional<math::Plane>& plane(Index geometry) const {
         return planes_[static_cast<std::size_t>(geometry)];
     }
     /// Whether something can be seen through it: its diffuse alpha or one of its texture's is below 1.
@@ -183,7 +183,7 @@ private:
     std::vector<Texture> textures_;
     std::vector<Material> materials_;
     std::vector<Geometry> geometries_;
-    std::vector<std::optional<Plane>> planes_;
+    std::vector<std::optional<math::Plane>> planes_;
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;
@@ -207,7 +207,7 @@ struct PlacedScene {
     std::shared_ptr<const Scene> scene;  ///< never null
     std::vector<NodeState> nodes;        ///< one for each of the scene's
     std::vector<glm::dmat4> world;       ///< world from node
-    Bounds bounds;                       ///< subtree_bounds of the root
+    math::Bounds bounds;                 ///< subtree_bounds of the root
 };
 
 /// As the file says.
@@ -229,7 +229,7 @@ std::vector<bool> subtree(const Scene& scene, Index top);
 
 /// Box around the geometry at and below `node` that could show from anywhere: active and chosen by its
 /// switches. Nodes that lie beyond the range of double are left out.
-Bounds subtree_bounds(const PlacedScene& placed, Index node);
+math::Bounds subtree_bounds(const PlacedScene& placed, Index node);
 
 /// What lies further from the eye is neither drawn nor picked: positions are float on the GPU, and squared
 /// there.
@@ -242,4 +242,4 @@ double relative_determinant(const glm::dmat3& m);
 /// True when every number of the matrix is finite.
 bool is_finite(const glm::dmat4& matrix);
 
-}  // namespace vrut
+}  // namespace vrut::scene

@@ -52,17 +52,19 @@ double to_number(const Json& value, const std::string& who, const std::string& w
     return number;
 }
 
-Id to_integer(const Json& value, Id min, Id max, const std::string& who, const std::string& what) {
-    const bool beyond = value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{kMaxId};
-    if (!value.is_number_integer() || beyond || value.get<Id>() < min || value.get<Id>() > max)
+scene::Id to_integer(const Json& value, scene::Id min, scene::Id max, const std::string& who,
+                     const std::string& what) {
+    const bool beyond =
+        value.is_number_unsigned() && value.get<std::uint64_t>() > std::uint64_t{scene::kMaxId};
+    if (!value.is_number_integer() || beyond || value.get<scene::Id>() < min || value.get<scene::Id>() > max)
         fail(who, "expected an integer from " + std::to_string(min) + " to " + std::to_string(max) + " as " +
                       what + ", found " + excerpt(value));
-    return value.get<Id>();
+    return value.get<scene::Id>();
 }
 
 int to_place(const Json& value, std::size_t count, const std::string& who, const std::string& what) {
     if (count == 0) fail(who, "expected no " + what + " as there are none, found " + excerpt(value));
-    return static_cast<int>(to_integer(value, 0, static_cast<Id>(count) - 1, who, what));
+    return static_cast<int>(to_integer(value, 0, static_cast<scene::Id>(count) - 1, who, what));
 }
 
 std::string to_text(const Json& value, const std::string& who, const std::string& what) {
@@ -297,10 +299,10 @@ Skin read_skin(const Json& value, std::size_t number, const std::vector<Cage>& m
 
 // --- materials and nodes
 
-Material read_material(const Json& value, std::size_t number) {
+scene::Material read_material(const Json& value, std::size_t number) {
     Members members(value, "material " + std::to_string(number));
-    Material material;
-    material.id = static_cast<Id>(number) + 1;
+    scene::Material material;
+    material.id = static_cast<scene::Id>(number) + 1;
     material.name = to_text(members.need("name"), members.who(), "name");
     members.rename("material " + in_quotes(material.name));
     members.read("ambient", material.ambient);
@@ -318,24 +320,24 @@ Material read_material(const Json& value, std::size_t number) {
 class NodeReader {
 public:
     explicit NodeReader(CageScene& scene) : scene_(scene) {
-        for (const Material& material : scene.materials)
-            if (!materials_.emplace(material.name, static_cast<Index>(materials_.size())).second)
+        for (const scene::Material& material : scene.materials)
+            if (!materials_.emplace(material.name, static_cast<scene::Index>(materials_.size())).second)
                 fail("material " + in_quotes(material.name), "there are two materials of this name");
     }
 
     void read(const Json& value) {
         Members members(value, "node at place " + std::to_string(scene_.nodes.size()));
         CageNode result;
-        Node& node = result.part.node;
-        node.id = to_integer(members.need("id"), 0, kMaxId, members.who(), "id");
+        scene::Node& node = result.part.node;
+        node.id = to_integer(members.need("id"), 0, scene::kMaxId, members.who(), "id");
         members.read("name", node.name);
         members.rename("node " + std::to_string(node.id) + " " + in_quotes(node.name));
         node.type = type_of(to_text(members.need("type"), members.who(), "type"), members.who());
         if (const Json* parent = members.find("parent"); parent && !parent->is_null())
-            result.part.parent_id = to_integer(*parent, 0, kMaxId, members.who(), "parent");
+            result.part.parent_id = to_integer(*parent, 0, scene::kMaxId, members.who(), "parent");
         members.read("active", node.active);
         if (const Json* matrix = members.find("matrix")) read_matrix(*matrix, node, members.who());
-        if (node.type == NodeType::assembly || node.type == NodeType::geometry)
+        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry)
             if (const Json* hinge = members.find("hinge")) node.hinge = to_hinge(*hinge, members.who());
         read_type(members, result);
         members.expect_no_more();
@@ -347,7 +349,7 @@ public:
     /// What names other nodes, once all are known.
     void check() const {
         for (const CageNode& entry : scene_.nodes) {
-            const Node& node = entry.part.node;
+            const scene::Node& node = entry.part.node;
             const std::string who = "node " + std::to_string(node.id) + " " + in_quotes(node.name);
             if (entry.part.parent_id != 0 && !places_.contains(entry.part.parent_id))
                 fail(who, "unknown parent " + std::to_string(entry.part.parent_id));
@@ -356,22 +358,24 @@ public:
             const auto place = places_.find(*entry.geometry_of);
             if (place == places_.end()) fail(who, "geometryOf names the unknown node " + other);
             const CageNode& source = scene_.nodes[place->second];
-            if (source.mesh == kNone && !source.panel)
+            if (source.mesh == scene::kNone && !source.panel)
                 fail(who, "geometryOf names node " + other + ", which has no mesh or panel of its own");
         }
     }
 
 private:
-    static NodeType type_of(const std::string& name, const std::string& who) {
-        for (const NodeType type : {NodeType::assembly, NodeType::geometry, NodeType::switch_, NodeType::lod,
-                                    NodeType::light, NodeType::camera, NodeType::background})
-            if (name == name_of(type)) return type;
-        if (name == "root") return NodeType::root;
+    static scene::NodeType type_of(const std::string& name, const std::string& who) {
+        for (const scene::NodeType type :
+             {scene::NodeType::assembly, scene::NodeType::geometry, scene::NodeType::switch_,
+              scene::NodeType::lod, scene::NodeType::light, scene::NodeType::camera,
+              scene::NodeType::background})
+            if (name == scene::name_of(type)) return type;
+        if (name == "root") return scene::NodeType::root;
         fail(who, "expected assembly, geometry, switch, lod, light, camera or background as type, found " +
                       in_quotes(name));
     }
 
-    static void read_matrix(const Json& value, Node& node, const std::string& who) {
+    static void read_matrix(const Json& value, scene::Node& node, const std::string& who) {
         const auto numbers = to_numbers<16>(value, who, "a matrix");
         for (int row = 0; row < 4; ++row)
             for (int column = 0; column < 4; ++column)
@@ -381,7 +385,7 @@ private:
             fail(who, "expected 0 0 0 1 as the matrix's last row");
     }
 
-    static Hinge to_hinge(const Json& value, const std::string& who) {
+    static scene::Hinge to_hinge(const Json& value, const std::string& who) {
         const auto [x, y, z, degrees] = to_numbers<4>(value, who, "a hinge");
         if (glm::dvec3(x, y, z) == glm::dvec3(0))
             fail(who, "expected a hinge's axis that is not zero, found " + excerpt(value));
@@ -390,9 +394,9 @@ private:
         return {{x, y, z}, degrees};
     }
 
-    Index material(Members& members) const {
+    scene::Index material(Members& members) const {
         const Json* value = members.find("material");
-        if (value == nullptr) return kNone;
+        if (value == nullptr) return scene::kNone;
         const std::string name = to_text(*value, members.who(), "material");
         const auto found = materials_.find(name);
         if (found == materials_.end()) fail(members.who(), "unknown material " + in_quotes(name));
@@ -400,37 +404,37 @@ private:
     }
 
     void read_type(Members& members, CageNode& result) {
-        Node& node = result.part.node;
+        scene::Node& node = result.part.node;
         switch (node.type) {
-            case NodeType::geometry:
-                node.data = GeometryData{kNone, material(members)};
+            case scene::NodeType::geometry:
+                node.data = scene::GeometryData{scene::kNone, material(members)};
                 read_geometry(members, result);
                 break;
-            case NodeType::switch_:
+            case scene::NodeType::switch_:
                 if (const Json* child = members.find("activeChild"))
-                    node.data = SwitchData{static_cast<int>(
-                        to_integer(*child, SwitchData::kAllChildren, 1 << 30, members.who(), "activeChild"))};
+                    node.data = scene::SwitchData{static_cast<int>(to_integer(
+                        *child, scene::SwitchData::kAllChildren, 1 << 30, members.who(), "activeChild"))};
                 else
-                    node.data = SwitchData{};
+                    node.data = scene::SwitchData{};
                 break;
-            case NodeType::lod: {
-                auto& data = node.data.emplace<LodData>();
+            case scene::NodeType::lod: {
+                auto& data = node.data.emplace<scene::LodData>();
                 for (const Json& range : to_list(members.need("ranges"), members.who(), "ranges"))
                     data.ranges.push_back(to_number(range, members.who(), "a range", kDistances));
                 break;
             }
-            case NodeType::light:
-                read_light(members, node.data.emplace<LightData>());
+            case scene::NodeType::light:
+                read_light(members, node.data.emplace<scene::LightData>());
                 break;
-            case NodeType::camera: {
-                auto& camera = node.data.emplace<CameraData>();
+            case scene::NodeType::camera: {
+                auto& camera = node.data.emplace<scene::CameraData>();
                 members.read("eye", camera.eye);
                 members.read("focus", camera.focus);
                 members.read("up", camera.up);
                 members.read("fov", camera.fov, {1, 170});
                 break;
             }
-            case NodeType::background:
+            case scene::NodeType::background:
                 read_background(members, node);
                 break;
             default:
@@ -447,8 +451,8 @@ private:
             result.mesh = to_place(*mesh, scene_.meshes.size(), who, "mesh");
         if (const Json* panel = members.find("panel")) result.panel = read_panel(*panel, who);
         if (const Json* other = members.find("geometryOf"))
-            result.geometry_of = to_integer(*other, 0, kMaxId, who, "geometryOf");
-        if ((result.mesh != kNone) + result.panel.has_value() + result.geometry_of.has_value() != 1)
+            result.geometry_of = to_integer(*other, 0, scene::kMaxId, who, "geometryOf");
+        if ((result.mesh != scene::kNone) + result.panel.has_value() + result.geometry_of.has_value() != 1)
             fail(who, "expected one of mesh, panel and geometryOf");
     }
 
@@ -485,13 +489,13 @@ private:
         return panel;
     }
 
-    static void read_light(Members& members, LightData& light) {
+    static void read_light(Members& members, scene::LightData& light) {
         std::string type = "point";
         members.read("lightType", type);
         if (type == "directional")
-            light.type = LightData::Type::directional;
+            light.type = scene::LightData::Type::directional;
         else if (type == "spot")
-            light.type = LightData::Type::spot;
+            light.type = scene::LightData::Type::spot;
         else if (type != "point")
             fail(members.who(), "expected point, directional or spot as lightType, found " + in_quotes(type));
         members.read("color", light.color);
@@ -502,15 +506,15 @@ private:
     }
 
     /// A background's own image becomes a material that shows it.
-    void read_background(Members& members, Node& node) {
-        BackgroundData data;
+    void read_background(Members& members, scene::Node& node) {
+        scene::BackgroundData data;
         data.material = material(members);
         if (const Json* image = members.find("image")) {
-            Material& shown = scene_.materials.emplace_back();
-            shown.id = static_cast<Id>(scene_.materials.size());
+            scene::Material& shown = scene_.materials.emplace_back();
+            shown.id = static_cast<scene::Id>(scene_.materials.size());
             shown.name = node.name;
             shown.image = to_text(*image, members.who(), "image");
-            data.material = static_cast<Index>(scene_.materials.size() - 1);
+            data.material = static_cast<scene::Index>(scene_.materials.size() - 1);
         }
         if (const Json* faces = members.find("cubeMap")) {
             if (to_list(*faces, members.who(), "cubeMap").size() != 6)
@@ -523,8 +527,8 @@ private:
     }
 
     CageScene& scene_;
-    std::map<std::string, Index> materials_;
-    std::map<Id, std::size_t> places_;  // of nodes
+    std::map<std::string, scene::Index> materials_;
+    std::map<scene::Id, std::size_t> places_;  // of nodes
 };
 
 CageScene read(const Json& root) {

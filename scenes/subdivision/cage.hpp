@@ -62,8 +62,8 @@ struct Panel {
         back,     ///< the back alone
     };
     int skin = 0;
-    int cut = kNone;  ///< kNone: all that no cut took
-    double lift = 0;  ///< outward, of all of it
+    int cut = scene::kNone;  ///< kNone: all that no cut took
+    double lift = 0;         ///< outward, of all of it
     double thickness = 0.001;
     double edge = 0;  ///< radius of its outer edge
     double grow = 0;  ///< how far it reaches beyond its cut, under what surrounds it
@@ -71,16 +71,16 @@ struct Panel {
 };
 
 struct CageNode {
-    SceneParts::PartNode part;  ///< complete but for GeometryData::geometry
-    int mesh = kNone;           ///< where the geometry comes from: a mesh, a panel or another node
+    scene::SceneParts::PartNode part;  ///< complete but for GeometryData::geometry
+    int mesh = scene::kNone;           ///< where the geometry comes from: a mesh, a panel or another node
     std::optional<Panel> panel;
-    std::optional<Id> geometry_of;
+    std::optional<scene::Id> geometry_of;
     double tolerance = 1;  ///< factor on the permitted error
     double detail = 0;     ///< triangles: where fewer are asked for, its geometry is left out
 };
 
 struct CageScene {
-    std::vector<Material> materials;
+    std::vector<scene::Material> materials;
     std::vector<Cage> meshes;
     std::vector<Skin> skins;
     std::vector<CageNode> nodes;

@@ -17,32 +17,34 @@ namespace vrut {
 
 namespace {
 
-std::string name_of(const Node& node) { return "node " + std::to_string(node.id) + " \"" + node.name + "\""; }
+std::string name_of(const scene::Node& node) {
+    return "node " + std::to_string(node.id) + " \"" + node.name + "\"";
+}
 
 /// The tree alone, to see which nodes show.
-Scene tree_of(const CageScene& cages) {
-    SceneParts parts;
+scene::Scene tree_of(const CageScene& cages) {
+    scene::SceneParts parts;
     parts.materials = cages.materials;
     for (const CageNode& node : cages.nodes) parts.nodes.push_back(node.part);
-    auto scene = Scene::build(std::move(parts));
+    auto scene = scene::Scene::build(std::move(parts));
     if (!scene) throw std::runtime_error(scene.error().message);
     return *std::move(scene);
 }
 
 /// Ids of the nodes that show at first.
-std::map<Id, bool> shown_ids(const Scene& scene) {
+std::map<scene::Id, bool> shown_ids(const scene::Scene& scene) {
     std::vector<bool> shown(scene.nodes().size(), true);
-    std::map<Id, bool> result;
+    std::map<scene::Id, bool> result;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const Node& node = scene.nodes()[i];
+        const scene::Node& node = scene.nodes()[i];
         shown[i] = shown[i] && node.active;
         result[node.id] = shown[i];
         for (std::size_t k = 0; k < node.children.size(); ++k) {
             bool chosen = shown[i];
-            if (const auto* data = std::get_if<SwitchData>(&node.data); data != nullptr)
-                chosen = chosen && (data->active_child == SwitchData::kAllChildren ||
+            if (const auto* data = std::get_if<scene::SwitchData>(&node.data); data != nullptr)
+                chosen = chosen && (data->active_child == scene::SwitchData::kAllChildren ||
                                     data->active_child == static_cast<int>(k));
-            if (node.type == NodeType::lod) chosen = chosen && k == 0;
+            if (node.type == scene::NodeType::lod) chosen = chosen && k == 0;
             shown[static_cast<std::size_t>(node.children[k])] = chosen;
         }
     }
@@ -159,10 +161,10 @@ private:
 
 /// A geometry of the result: of a mesh, or of a panel of one node.
 struct BodyPart {
-    int mesh = kNone;
+    int mesh = scene::kNone;
     const CageNode* panel = nullptr;
     double uses = 0;  // shown nodes that have it
-    Geometry geometry;
+    scene::Geometry geometry;
 };
 
 /// A skin that is in use, with its panels.
@@ -179,7 +181,7 @@ public:
           asked_(triangles),
           tree_(tree_of(cages_)),
           shown_(shown_ids(tree_)),
-          world_(world_matrices(tree_, file_states(tree_))) {
+          world_(scene::world_matrices(tree_, scene::file_states(tree_))) {
         for (const CageNode& node : cages_.nodes) by_id_[node.part.node.id] = &node;
         for (const CageNode& node : cages_.nodes) add_use(node);
         for (auto& [number, skin] : skins_) add_skin(number, skin);
@@ -199,7 +201,7 @@ public:
             refine_to(refinement.count() + (asked_ < kFew ? 0.4 * missing + 0.005 * asked_ : missing));
         }
         for (BodyPart& part : parts_)
-            if (part.mesh != kNone) {
+            if (part.mesh != scene::kNone) {
                 const bool textured = !cages_.meshes[static_cast<std::size_t>(part.mesh)].texcoords.empty();
                 part.geometry = geometry_of(*refined_[part_of_mesh_.at(part.mesh).second].mesh, textured);
             }
@@ -218,7 +220,7 @@ private:
     /// Where the node's geometry comes from; null where it has none.
     const CageNode* source_of(const CageNode& node) const {
         const CageNode& source = node.geometry_of ? *by_id_.at(*node.geometry_of) : node;
-        return source.mesh != kNone || source.panel ? &source : nullptr;
+        return source.mesh != scene::kNone || source.panel ? &source : nullptr;
     }
 
     void add_use(const CageNode& node) {
@@ -262,9 +264,9 @@ private:
         double margin = 0, tolerance = kAnyTolerance, uses = 0;
         for (const BodyPart* part : skin.panels) {
             const Panel& panel = *part->panel->panel;
-            if (const Node& node = part->panel->part.node; !is_finite(from_car(node)))
+            if (const scene::Node& node = part->panel->part.node; !scene::is_finite(from_car(node)))
                 throw std::runtime_error(name_of(node) + ": its place in the car has no inverse");
-            if (panel.cut == kNone)
+            if (panel.cut == scene::kNone)
                 rest_kept = true;
             else
                 kept[static_cast<std::size_t>(panel.cut)] = true;
@@ -315,14 +317,14 @@ private:
         part.geometry = shell_of(sheet, panel, tolerance, from_car(part.panel->part.node), textured);
     }
 
-    glm::dmat4 from_car(const Node& node) const {
+    glm::dmat4 from_car(const scene::Node& node) const {
         return glm::inverse(world_[static_cast<std::size_t>(tree_.find_node(node.id))]);
     }
 
     std::vector<std::string> lost() const {
         std::vector<std::string> names;
         for (const CageNode& node : cages_.nodes) {
-            const bool has_own = node.mesh != kNone || node.panel;
+            const bool has_own = node.mesh != scene::kNone || node.panel;
             if (has_own && part_of(node).geometry.triangles.empty()) names.push_back(name_of(node.part.node));
         }
         return names;
@@ -334,21 +336,21 @@ private:
         return source.panel ? *part_of_panel_.at(source.part.node.id) : *part_of_mesh_.at(source.mesh).first;
     }
 
-    Scene assemble() {
-        SceneParts result;
+    scene::Scene assemble() {
+        scene::SceneParts result;
         result.materials = cages_.materials;
-        std::map<const BodyPart*, Index> place;
+        std::map<const BodyPart*, scene::Index> place;
         for (BodyPart& part : parts_) {
-            place[&part] = static_cast<Index>(result.geometries.size());
+            place[&part] = static_cast<scene::Index>(result.geometries.size());
             result.geometries.push_back(std::move(part.geometry));
-            result.geometries.back().id = static_cast<Id>(result.geometries.size());
+            result.geometries.back().id = static_cast<scene::Id>(result.geometries.size());
         }
         for (const CageNode& node : cages_.nodes) {
             result.nodes.push_back(node.part);
             if (source_of(node) == nullptr) continue;
-            std::get<GeometryData>(result.nodes.back().node.data).geometry = place.at(&part_of(node));
+            std::get<scene::GeometryData>(result.nodes.back().node.data).geometry = place.at(&part_of(node));
         }
-        auto scene = Scene::build(std::move(result));
+        auto scene = scene::Scene::build(std::move(result));
         if (!scene) throw std::runtime_error(scene.error().message);
         return *std::move(scene);
     }
@@ -359,23 +361,23 @@ private:
 
     CageScene cages_;
     double asked_;
-    Scene tree_;
-    std::map<Id, bool> shown_;
+    scene::Scene tree_;
+    std::map<scene::Id, bool> shown_;
     std::vector<glm::dmat4> world_;
-    std::map<Id, const CageNode*> by_id_;
+    std::map<scene::Id, const CageNode*> by_id_;
     std::deque<BodyPart> parts_;
     std::deque<AdaptiveMesh> meshes_;
     std::vector<RefinedPart> refined_;
     std::map<int, std::pair<BodyPart*, std::size_t>> part_of_mesh_;  // and its place among the refined
-    std::map<Id, BodyPart*> part_of_panel_;
+    std::map<scene::Id, BodyPart*> part_of_panel_;
     std::map<int, SkinInWork> skins_;
 };
 
 /// The node stays, as a group: its name and number are what scripts and logs use.
 void leave_out(CageNode& node) {
-    node.part.node.type = NodeType::assembly;
+    node.part.node.type = scene::NodeType::assembly;
     node.part.node.data = {};
-    node.mesh = kNone;
+    node.mesh = scene::kNone;
     node.panel = {};
     node.geometry_of = {};
 }
@@ -389,18 +391,18 @@ CageScene without_detail(CageScene cages, double triangles) {
         std::vector<Cut> kept;
         for (Cut& cut : skin.cuts) {
             const bool fine = cut.detail > triangles;
-            places.push_back(fine ? kNone : static_cast<int>(kept.size()));
+            places.push_back(fine ? scene::kNone : static_cast<int>(kept.size()));
             if (!fine) kept.push_back(std::move(cut));
         }
         skin.cuts = std::move(kept);
     }
-    std::set<Id> left_out;
+    std::set<scene::Id> left_out;
     for (CageNode& node : cages.nodes) {
         bool fine = node.detail > triangles;
-        if (node.panel && node.panel->cut != kNone) {
+        if (node.panel && node.panel->cut != scene::kNone) {
             int& cut = node.panel->cut;
             cut = place_of_cut[static_cast<std::size_t>(node.panel->skin)][static_cast<std::size_t>(cut)];
-            fine = fine || cut == kNone;
+            fine = fine || cut == scene::kNone;
         }
         if (!fine) continue;
         left_out.insert(node.part.node.id);

@@ -10,7 +10,7 @@
 namespace vrut {
 
 struct SubdividedScene {
-    Scene scene;
+    scene::Scene scene;
     double shown = 0;      ///< triangles: of a switch those of its active child, of a lod those of its first
     double vertices = 0;   ///< of all geometries
     double tolerance = 0;  ///< the error above which everything was refined, in metres

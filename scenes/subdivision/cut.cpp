@@ -168,12 +168,12 @@ double PanelField::at(const glm::dvec3& point, const glm::dvec3& normal) const {
         return slope > 0 ? distance.value / std::max(slope, 0.2) : distance.value;
     };
     double field = -1e300;
-    if (keep_ != kNone) {
+    if (keep_ != scene::kNone) {
         const CutShape& cut = cuts_[static_cast<std::size_t>(keep_)];
         field = along(cut.at(point, kFar)) + (grow_ > 0 ? -grow_ : cut.gap() / 2 + margin_);
         if (field > kFar) return field;
     }
-    const std::size_t before = keep_ == kNone ? cuts_.size() : static_cast<std::size_t>(keep_);
+    const std::size_t before = keep_ == scene::kNone ? cuts_.size() : static_cast<std::size_t>(keep_);
     for (std::size_t i = 0; i < before; ++i) {
         const double limit = cuts_[i].gap() / 2 + margin_;
         field = std::max(field, limit - along(cuts_[i].at(point, kFar + limit)));

@@ -16,8 +16,8 @@ int fail(const std::string& sentence) {
 
 int run(const std::string& cage_file, double triangles, const std::string& output) {
     const auto start = std::chrono::steady_clock::now();
-    if (const auto fault = vrut::file_error(cage_file)) return fail(cage_file + ": " + *fault);
-    const auto text = vrut::read_bytes(cage_file);
+    if (const auto fault = vrut::base::file_error(cage_file)) return fail(cage_file + ": " + *fault);
+    const auto text = vrut::base::read_bytes(cage_file);
     if (!text) return fail(cage_file + ": " + text.error());
     const auto cages = vrut::read_cage_scene(*text);
     if (!cages) return fail(cage_file + ": " + cages.error());
@@ -27,9 +27,10 @@ int run(const std::string& cage_file, double triangles, const std::string& outpu
     for (const std::string& name : result->lost)
         std::cerr << cage_file << ": nothing is left of " << name << std::endl;
     std::ofstream out(output, std::ios::binary);
-    vrut::write_vrut_text(result->scene, out,
-                          "Made by subdivide from " + std::filesystem::path(cage_file).filename().string() +
-                              ": change that, not this.");
+    vrut::io::write_vrut_text(result->scene, out,
+                              "Made by subdivide from " +
+                                  std::filesystem::path(cage_file).filename().string() +
+                                  ": change that, not this.");
     out.close();
     if (!out) return fail(output + ": cannot be written");
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;

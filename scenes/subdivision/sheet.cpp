@@ -71,7 +71,7 @@ void GeometryBuilder::add(const std::array<Vertex, 3>& corners) {
     geometry_.triangles.emplace_back(number_of(placed[0]), number_of(placed[1]), number_of(placed[2]));
 }
 
-Geometry geometry_of(const AdaptiveMesh& mesh, bool textured) {
+scene::Geometry geometry_of(const AdaptiveMesh& mesh, bool textured) {
     const SharedCorners shared(mesh);
     GeometryBuilder builder(textured);
     for (const int t : mesh.order()) {

@@ -16,7 +16,7 @@ struct SharedCorners {
 
 /// Triangles as a scene holds them: vertices are split where edges are hard, none is unused, and no triangle
 /// is without area.
-Geometry geometry_of(const AdaptiveMesh& mesh, bool textured);
+scene::Geometry geometry_of(const AdaptiveMesh& mesh, bool textured);
 
 /// Gathers triangles into a geometry. Vertices with the same number and normal become one.
 class GeometryBuilder {
@@ -30,7 +30,7 @@ public:
     /// Leaves out what has no area; normals that lean away from their triangle become its own. Positions
     /// become multiples of a micrometre.
     void add(const std::array<Vertex, 3>& corners);
-    Geometry take() { return std::move(geometry_); }
+    scene::Geometry take() { return std::move(geometry_); }
 
 private:
     struct Key {
@@ -44,7 +44,7 @@ private:
     unsigned number_of(const Vertex& vertex);
 
     bool textured_;
-    Geometry geometry_;
+    scene::Geometry geometry_;
     std::unordered_map<Key, unsigned, Hash> numbers_;
 };
 

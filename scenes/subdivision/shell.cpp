@@ -47,7 +47,7 @@ public:
           ways_(ways_out(sheet)),
           builder_(textured) {}
 
-    Geometry build(double tolerance) {
+    scene::Geometry build(double tolerance) {
         for (const auto& triangle : sheet_.triangles) {
             std::array<GeometryBuilder::Vertex, 3> front, back;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -140,8 +140,8 @@ private:
 
 }  // namespace
 
-Geometry shell_of(const Sheet& sheet, const Panel& panel, double tolerance, const glm::dmat4& from_car,
-                  bool textured) {
+scene::Geometry shell_of(const Sheet& sheet, const Panel& panel, double tolerance, const glm::dmat4& from_car,
+                         bool textured) {
     return Shell(sheet, panel, from_car, textured).build(tolerance);
 }
 

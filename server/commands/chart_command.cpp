@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kLargestSide = 8192;
 
-void require_size(const ChartArguments& arguments, const Renderer& renderer) {
+void require_size(const ChartArguments& arguments, const renderer::Renderer& renderer) {
     const int most = std::min(kLargestSide, renderer.max_size());
     if (std::max(arguments.width, arguments.height) > most)
         throw std::runtime_error("--size: pictures of up to " + std::to_string(most) +
@@ -54,13 +54,14 @@ std::vector<Experiment> triangle_experiments(const ChartArguments& arguments, ob
         Experiment experiment;
         experiment.chart = "triangles";
         experiment.method = std::to_string(count) + " every triangle";
-        View& home = experiment.subject.home;
+        plan::View& home = experiment.subject.home;
         experiment.subject.name = "rings";
         home.scene = rings(count);
         home.levels = detail_levels_of(home.scene);
         home.width = arguments.width;
         home.height = arguments.height;
-        home.camera = home_camera(home.scene->bounds, static_cast<double>(home.width) / home.height);
+        home.camera =
+            navigation::home_camera(home.scene->bounds, static_cast<double>(home.width) / home.height);
         experiment.frames = arguments.frames;
         experiment.settings = {{.jpeg_quality = 0}};
         list.push_back(experiment);
@@ -75,7 +76,7 @@ std::vector<Experiment> triangle_experiments(const ChartArguments& arguments, ob
 /// The whole run: what there is to measure, and how far it is.
 class Run {
 public:
-    Run(const ChartArguments& arguments, Renderer& renderer, Rows& rows)
+    Run(const ChartArguments& arguments, renderer::Renderer& renderer, Rows& rows)
         : laboratory_(renderer, rows, VRUT_VERSION, machine()), rows_(rows) {
         observe::Progress progress;
         for (const fs::path& scene : arguments.scenes) {
@@ -204,7 +205,7 @@ void print(const protocol::LevelTable& table) {
 }
 
 void calibrate_scene(const ChartArguments& arguments) {
-    Renderer renderer(arguments.device);
+    renderer::Renderer renderer(arguments.device);
     require_size(arguments, renderer);
     Subject subject;
     protocol::LevelTable table;
@@ -233,7 +234,7 @@ void chart_command(ChartArguments arguments) {
     require_gnuplot();
     for (const fs::path& scene : arguments.scenes)
         if (!fs::is_regular_file(scene)) throw std::runtime_error(scene.string() + ": there is no such file");
-    Renderer renderer(arguments.device);
+    renderer::Renderer renderer(arguments.device);
     require_size(arguments, renderer);
     make_folder(arguments.out);
     Rows rows(arguments.out / "measurements.csv");

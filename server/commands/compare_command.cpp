@@ -15,17 +15,18 @@ namespace vrut::server::commands {
 
 namespace {
 
-Image read(const std::filesystem::path& path) {
-    auto image = read_image_file(path);
+scene::Image read(const std::filesystem::path& path) {
+    auto image = io::read_image_file(path);
     if (!image) throw std::runtime_error(path.string() + ": " + image.error());
     return *std::move(image);
 }
 
-std::string size_of(const Image& image) {
+std::string size_of(const scene::Image& image) {
     return std::to_string(image.width) + " x " + std::to_string(image.height);
 }
 
-protocol::CompareReport report_of(const Image& image, const Difference& difference, const FlipSummary& flip) {
+protocol::CompareReport report_of(const scene::Image& image, const compare::Difference& difference,
+                                  const compare::FlipSummary& flip) {
     protocol::CompareReport report;
     report.width = image.width;
     report.height = image.height;
@@ -62,15 +63,16 @@ void print(const protocol::CompareReport& report) {
 void compare_command(const CompareArguments& arguments) {
     if (!arguments.map.empty() && arguments.map.extension() != ".png")
         throw std::runtime_error(arguments.map.string() + ": the map's name ends in .png");
-    const Image a = read(arguments.a), b = read(arguments.b);
+    const scene::Image a = read(arguments.a), b = read(arguments.b);
     if (a.width != b.width || a.height != b.height)
         throw std::runtime_error("pictures of different sizes cannot be compared: " + arguments.a.string() +
                                  " is " + size_of(a) + " pixels, " + arguments.b.string() + " is " +
                                  size_of(b));
-    const std::vector<float> errors = flip(a, b);
+    const std::vector<float> errors = compare::flip(a, b);
     if (!arguments.map.empty())
-        base::write_file(arguments.map, encode_png(grey_map(errors, a.width, a.height)));
-    const protocol::CompareReport report = report_of(a, difference(a, b), summary_of(errors));
+        base::write_file(arguments.map, io::encode_png(compare::grey_map(errors, a.width, a.height)));
+    const protocol::CompareReport report =
+        report_of(a, compare::difference(a, b), compare::summary_of(errors));
     if (arguments.json)
         std::cout << protocol::encode(report) << std::endl;
     else

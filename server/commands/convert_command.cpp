@@ -32,10 +32,10 @@ std::string material_library(const std::string& line) {
 
 /// The files beside a scene's own that it is read from and that might be written over: pictures, and the
 /// materials of OBJ.
-std::vector<std::filesystem::path> files_beside(const std::filesystem::path& in, const Scene& scene) {
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& in, const scene::Scene& scene) {
     std::vector<std::filesystem::path> files;
-    for (const Texture& texture : scene.textures()) files.push_back(in.parent_path() / texture.file);
-    if (lower_extension(in) != ".obj") return files;
+    for (const scene::Texture& texture : scene.textures()) files.push_back(in.parent_path() / texture.file);
+    if (io::lower_extension(in) != ".obj") return files;
     std::ifstream stream(in);
     for (std::string line; std::getline(stream, line);)
         if (const std::string library = material_library(line); !library.empty())
@@ -49,9 +49,9 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
     const auto scene =
         scenes::import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
-    auto lost =
-        write_scene(*scene, arguments.out, shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),
-                    files_beside(arguments.in, *scene));
+    auto lost = io::write_scene(*scene, arguments.out,
+                                shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),
+                                files_beside(arguments.in, *scene));
     if (!lost) throw std::runtime_error(lost.error());
     std::vector<std::string> notices = scene->notices();
     notices.insert(notices.end(), lost->begin(), lost->end());
@@ -61,9 +61,9 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
 }  // namespace
 
 void convert_command(const ConvertArguments& arguments) {
-    if (!has_writer(arguments.out))
+    if (!io::has_writer(arguments.out))
         throw std::invalid_argument(arguments.out.string() + ": a converted scene's name ends in one of " +
-                                    written_extensions());
+                                    io::written_extensions());
     std::error_code error;
     if (std::filesystem::equivalent(arguments.in, arguments.out, error))
         throw std::invalid_argument(arguments.out.string() + ": a scene is not converted into its own file");

@@ -25,10 +25,10 @@ std::string printable(const std::string& name) {
 }
 
 /// Depth first, as a tree is read; without recursion, since a scene may be a chain of a million nodes.
-std::vector<protocol::NodeReport> list_nodes(const PlacedScene& placed) {
-    const Scene& scene = *placed.scene;
+std::vector<protocol::NodeReport> list_nodes(const scene::PlacedScene& placed) {
+    const scene::Scene& scene = *placed.scene;
     struct Place {
-        Index node;
+        scene::Index node;
         int depth;
     };
     std::vector<protocol::NodeReport> list;
@@ -36,13 +36,13 @@ std::vector<protocol::NodeReport> list_nodes(const PlacedScene& placed) {
     while (!open.empty()) {
         const Place place = open.back();
         open.pop_back();
-        const Node& node = scene.nodes()[static_cast<std::size_t>(place.node)];
-        const auto* data = std::get_if<GeometryData>(&node.data);
+        const scene::Node& node = scene.nodes()[static_cast<std::size_t>(place.node)];
+        const auto* data = std::get_if<scene::GeometryData>(&node.data);
         const std::uint64_t triangles =
-            data && data->geometry != kNone
+            data && data->geometry != scene::kNone
                 ? scene.geometries()[static_cast<std::size_t>(data->geometry)].triangles.size()
                 : 0;
-        list.push_back({node.id, node.name, std::string(name_of(node.type)), triangles,
+        list.push_back({node.id, node.name, std::string(scene::name_of(node.type)), triangles,
                         placed.nodes[static_cast<std::size_t>(place.node)].active, place.depth});
         for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
             open.push_back({*child, place.depth + 1});
@@ -73,7 +73,7 @@ void info_command(const InfoArguments& arguments) {
     auto scene =
         scenes::import_scene(arguments.scene, observe::loading_bar(arguments.scene.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
-    const PlacedScene placed = place(*std::move(scene));
+    const scene::PlacedScene placed = scene::place(*std::move(scene));
     const protocol::SceneState state =
         *room::starting_state(placed, 1, scenes::all_notices(*placed.scene)).scene.value;
     const auto nodes = list_nodes(placed);

@@ -197,7 +197,7 @@ void add_info(CLI::App& app, commands::InfoArguments& arguments) {
 void add_convert(CLI::App& app, commands::ConvertArguments& arguments) {
     CLI::App* command = app.add_subcommand("convert", "Write a scene in another format");
     command->add_option("in", arguments.in, "Scene file, of any format that is read")->required();
-    command->add_option("out", arguments.out, "File to write, ending in " + vrut::written_extensions())
+    command->add_option("out", arguments.out, "File to write, ending in " + vrut::io::written_extensions())
         ->required();
     command->callback([&arguments] { commands::convert_command(arguments); });
 }

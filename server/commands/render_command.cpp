@@ -41,7 +41,7 @@ void patch(room::Room& room, const std::string& option, const std::string& text)
 }
 
 /// The camera that the options give: the file's members, then the single ones.
-Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
+scene::Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
     protocol::CameraOverlay overlay;
     if (!arguments.camera_file.empty()) {
         auto camera = protocol::parse_camera(read_text(arguments.camera_file));
@@ -59,7 +59,7 @@ Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
     return *camera;
 }
 
-View view_of(const RenderArguments& arguments) {
+plan::View view_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
@@ -72,7 +72,7 @@ View view_of(const RenderArguments& arguments) {
     patch(room, "--set", arguments.set.empty() ? "{}" : arguments.set);
     for (const auto& [option, text] : arguments.patches) patch(room, option, text);
 
-    View view = room.visible();
+    plan::View view = room.visible();
     view.camera = wanted_camera(arguments, room);
     view.width = arguments.width;
     view.height = arguments.height;
@@ -82,13 +82,13 @@ View view_of(const RenderArguments& arguments) {
 }
 
 /// Node ids as 24-bit RGB, white for none. Throws std::runtime_error where one is too high.
-Image picture_of_ids(const View& view, const std::vector<Index>& nodes) {
-    constexpr Id kNobody = 0xffffff;
-    Image image;
+scene::Image picture_of_ids(const plan::View& view, const std::vector<scene::Index>& nodes) {
+    constexpr scene::Id kNobody = 0xffffff;
+    scene::Image image;
     image.resize(view.width, view.height);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        Id id = kNobody;
-        if (nodes[i] != kNone) {
+        scene::Id id = kNobody;
+        if (nodes[i] != scene::kNone) {
             id = view.scene->scene->nodes()[static_cast<std::size_t>(nodes[i])].id;
             if (id >= kNobody)
                 throw std::runtime_error("--ids: node " + std::to_string(id) +
@@ -101,39 +101,40 @@ Image picture_of_ids(const View& view, const std::vector<Index>& nodes) {
     return image;
 }
 
-void write_picture(const RenderArguments& arguments, const Image& image) {
+void write_picture(const RenderArguments& arguments, const scene::Image& image) {
     base::write_file(arguments.output,
                      arguments.output.extension() == ".png"
-                         ? encode_png(image)
+                         ? io::encode_png(image)
                          : engine::JpegEncoder().encode(image, arguments.jpeg_quality, false));
 }
 
-void write_ids(const RenderArguments& arguments, const View& view, const std::vector<Index>& nodes) {
-    base::write_file(arguments.ids, encode_png(picture_of_ids(view, nodes)));
+void write_ids(const RenderArguments& arguments, const plan::View& view,
+               const std::vector<scene::Index>& nodes) {
+    base::write_file(arguments.ids, io::encode_png(picture_of_ids(view, nodes)));
 }
 
-void trace_picture(const RenderArguments& arguments, const View& view) {
-    const ReferenceImage picture = trace(view);
+void trace_picture(const RenderArguments& arguments, const plan::View& view) {
+    const reference::ReferenceImage picture = reference::trace(view);
     if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
-    write_picture(arguments, image_of(picture));
+    write_picture(arguments, reference::image_of(picture));
     if (!arguments.unrounded.empty())
         base::write_file(arguments.unrounded,
                          engine::encode_pfm(picture.width, picture.height, picture.color));
 }
 
-void draw_picture(const RenderArguments& arguments, View view) {
+void draw_picture(const RenderArguments& arguments, plan::View view) {
     if (view.detail > 0) {
-        const auto levels = std::make_shared<const DetailLevels>(view.scene->scene);
+        const auto levels = std::make_shared<const mesh::DetailLevels>(view.scene->scene);
         levels->wait();
         view.levels = levels;
     }
-    Renderer renderer(arguments.device);
+    renderer::Renderer renderer(arguments.device);
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
                                  " pixels a side");
     if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
-    Image image;
-    FrameStats stats;
+    scene::Image image;
+    plan::FrameStats stats;
     renderer.render(view, image, stats);
     write_picture(arguments, image);
     if (arguments.stats)
@@ -149,7 +150,7 @@ void render_command(const RenderArguments& arguments) {
     const std::string extension = arguments.output.extension().string();
     if (extension != ".png" && extension != ".jpg" && extension != ".jpeg")
         throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
-    const View view = view_of(arguments);
+    const plan::View view = view_of(arguments);
     if (arguments.reference)
         trace_picture(arguments, view);
     else

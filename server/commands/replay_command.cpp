@@ -72,12 +72,12 @@ public:
         const protocol::Quality quality =
             engine::quality_of(engine::kRefined, room.view_size(), limits, true);
         const engine::PictureSize size = engine::picture_size(room.view_size(), quality.scale);
-        View view = room.visible();
+        plan::View view = room.visible();
         view.width = size.width;
         view.height = size.height;
         view.samples = engine::kRefinedSamples.front();
-        Image image;
-        FrameStats stats;
+        scene::Image image;
+        plan::FrameStats stats;
         renderer_.render(view, image, stats);
         protocol::FrameHeader header = room::header_of(room.state(), view, room.view_size());
         header.frame = frame;
@@ -95,7 +95,7 @@ public:
 
 private:
     fs::path folder_;
-    Renderer renderer_;
+    renderer::Renderer renderer_;
     engine::JpegEncoder jpeg_;
 };
 

@@ -105,7 +105,7 @@ void serve_command(const ServeArguments& arguments) {
     const std::string name = path.filename().string();
     auto scene = scenes::load_scene(path, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
-    const Scene& read = *scene->placed->scene;
+    const scene::Scene& read = *scene->placed->scene;
     for (const std::string& notice : scene->notices)
         observe::log_warning("notice", {{"scene", name}, {"text", notice}});
     observe::log_info(

@@ -59,7 +59,7 @@ bool Encoder::is_free() const {
     return !slot_;
 }
 
-void Encoder::offer(Picture picture, Image image) {
+void Encoder::offer(Picture picture, scene::Image image) {
     {
         const std::lock_guard lock(mutex_);
         assert(!slot_);
@@ -68,22 +68,22 @@ void Encoder::offer(Picture picture, Image image) {
     condition_.notify_one();
 }
 
-Image Encoder::take_spare() {
+scene::Image Encoder::take_spare() {
     const std::lock_guard lock(mutex_);
     return std::exchange(spare_, {});
 }
 
-void Encoder::give_spare(Image image) {
+void Encoder::give_spare(scene::Image image) {
     const std::lock_guard lock(mutex_);
     spare_ = std::move(image);
 }
 
-std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& image) {
+std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const scene::Image& image) {
     const base::Clock::time_point start = base::Clock::now();
     std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
     const protocol::Quality& quality = picture.header.quality;
     if (picture.format == protocol::ImageFormat::png) {
-        encoded->file = encode_png(image);
+        encoded->file = io::encode_png(image);
         encoded->header_offset = kPngTextOffset;
     } else {
         if (!jpeg_) jpeg_.emplace();
@@ -107,7 +107,7 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const Image& i
 
 void Encoder::run() {
     for (;;) {
-        std::optional<std::pair<Picture, Image>> job;
+        std::optional<std::pair<Picture, scene::Image>> job;
         watchdog_.idle();
         {
             std::unique_lock lock(mutex_);

@@ -34,14 +34,14 @@ public:
     /// How long it has worked at one picture; 0 while it has none. From any thread.
     base::Clock::duration busy_for() const { return watchdog_.busy_for(); }
     /// Only while is_free().
-    void offer(Picture picture, Image image);
+    void offer(Picture picture, scene::Image image);
     /// An image to draw into, used before where possible: its pages are there already.
-    Image take_spare();
-    void give_spare(Image image);
+    scene::Image take_spare();
+    void give_spare(scene::Image image);
 
 private:
     void run();
-    std::shared_ptr<EncodedPicture> encode(Picture& picture, const Image& image);
+    std::shared_ptr<EncodedPicture> encode(Picture& picture, const scene::Image& image);
 
     observe::Metrics& metrics_;
     std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded_;
@@ -49,8 +49,8 @@ private:
     std::function<void(Picture, std::string)> on_failed_;
     mutable std::mutex mutex_;
     std::condition_variable condition_;
-    std::optional<std::pair<Picture, Image>> slot_;
-    Image spare_;
+    std::optional<std::pair<Picture, scene::Image>> slot_;
+    scene::Image spare_;
     bool closed_ = false;
     base::Watchdog watchdog_;
     std::optional<JpegEncoder> jpeg_;

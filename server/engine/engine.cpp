@@ -29,15 +29,15 @@ std::optional<base::Clock::time_point> earlier(std::optional<base::Clock::time_p
 
 FrameRendererFactory gl_renderer(std::optional<int> device) {
     return [device] {
-        auto renderer = std::make_shared<Renderer>(device);
+        auto renderer = std::make_shared<renderer::Renderer>(device);
         for (const std::string& sentence : renderer->rejected())
             observe::log_warning("device_passed_over", {{"reason", sentence}});
         observe::log_info("drawing", {{"renderer", renderer->description()}});
         return FrameRenderer{renderer->description(),
                              renderer->software(),
                              renderer->max_size(),
-                             [renderer](const View& view) { renderer->upload(view); },
-                             [renderer](RenderJob& rendering) { return renderer->step(rendering); },
+                             [renderer](const plan::View& view) { renderer->upload(view); },
+                             [renderer](plan::RenderJob& rendering) { return renderer->step(rendering); },
                              [renderer] { return renderer->gl_objects(); }};
     };
 }
@@ -145,14 +145,14 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     room_.emplace(with_notices(scene), std::move(options));
     try {
         if (renderer_.upload) renderer_.upload(room_->visible());
-    } catch (const OutOfMemory& error) {
+    } catch (const vrut::base::OutOfMemory& error) {
         throw std::runtime_error(scene.name + ": " + error.what());
     }
 
     // Drivers compile programs and states when they are first used; better now than under the first finger.
-    View small = room_->visible();
+    plan::View small = room_->visible();
     small.width = small.height = 64;
-    RenderJob first(std::move(small));
+    plan::RenderJob first(std::move(small));
     while (!renderer_.step(first)) {
     }
     draws_ = true;
@@ -300,7 +300,7 @@ void Engine::make_detail_levels() {
     const auto simplifies = [](const protocol::Level& level) { return level.quality.detail > 0; };
     if (!placed || std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies)) return;
     try {
-        detail_ = std::make_shared<const DetailLevels>(placed->scene);
+        detail_ = std::make_shared<const mesh::DetailLevels>(placed->scene);
     } catch (const std::exception& error) {  // no memory, or no thread
         observe::log_warning("no_coarser_surfaces", {{"reason", error.what()}});
         scene_since_ = std::numeric_limits<std::int64_t>::max();  // it is not tried again for this scene
@@ -376,7 +376,7 @@ void Engine::handle_message(const MessageReceived& received, const protocol::Cli
                                  {message.id, code::out_of_range,
                                   "'width' x 'height' must be at most " + std::to_string(limits_.max_pixels) +
                                       " pixels, each side at most " + std::to_string(limits_.max_side)});
-    const View before = room_->visible();
+    const plan::View before = room_->visible();
     const protocol::Resize size_before = room_->view_size();
     const bool accepted = room_->handle_message(received.client, message, time_of(received.arrival));
     if (room_->visible() != before || room_->view_size() != size_before) {

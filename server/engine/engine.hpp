@@ -117,16 +117,16 @@ private:
     /// The frame that is being drawn.
     struct FrameUnderWay {
         Picture picture;
-        View visible;
+        plan::View visible;
         protocol::Resize view_size;
         int refined_samples = 0;  ///< 0: an interactive one
         std::size_t level = 0;
-        RenderJob rendering;
+        plan::RenderJob rendering;
     };
     struct Snapshot {
         room::PictureOrder order;
-        std::optional<RenderJob> rendering = {};  ///< none: not begun
-        int losses = 0;                           ///< of the context, while it was drawn
+        std::optional<plan::RenderJob> rendering = {};  ///< none: not begun
+        int losses = 0;                                 ///< of the context, while it was drawn
     };
     /// The graphics driver is lost, and started again at a time.
     struct Renewal {
@@ -191,13 +191,13 @@ private:
 
     // --- what draws, and what fails in it
     enum class Drawn { part, whole, lost };
-    Drawn draw(RenderJob& rendering);
+    Drawn draw(plan::RenderJob& rendering);
     void lose_renderer(const std::string& why);
     void renew_renderer();
     void show_arrived();
     void show(const scenes::SceneLoaded& loaded, std::optional<std::string> rejected);
     struct Failed {
-        View visible;
+        plan::View visible;
         protocol::Resize view_size;
     };
     void draw_smaller(const Failed& what, const PictureSize& size, const std::string& why);
@@ -256,7 +256,7 @@ private:
     std::optional<base::Clock::time_point> newest_input_;  ///< arrival of the last message that changed it
     struct NewestFrame {
         std::int64_t frame = 0;
-        View visible;
+        plan::View visible;
         protocol::Resize view_size;
         int refined_samples = 0;  ///< 0: an interactive one
     } newest_, before_newest_;
@@ -264,9 +264,9 @@ private:
     std::int64_t next_frame_ = 1;
     std::deque<FrameInFlight> in_flight_;  ///< the last interactive ones
     std::optional<LevelChoice> choice_;
-    std::vector<protocol::Level> refined_levels_;  ///< of the table
-    std::shared_ptr<const DetailLevels> detail_;   ///< null until the scene's first frame was encoded
-    std::int64_t scene_since_ = 1;                 ///< first frame of the scene shown
+    std::vector<protocol::Level> refined_levels_;       ///< of the table
+    std::shared_ptr<const mesh::DetailLevels> detail_;  ///< null until the scene's first frame was encoded
+    std::int64_t scene_since_ = 1;                      ///< first frame of the scene shown
 
     std::thread thread_;  // last: it uses all of the above
 };

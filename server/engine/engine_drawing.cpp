@@ -14,7 +14,9 @@ constexpr std::size_t kFramesRemembered = 64;
 /// Of snapshots under way, beside the largest of them: each pixel takes 20 bytes.
 constexpr double kPixelsUnderWay = 1 << 21;
 /// Whatever its nodes' states are.
-std::shared_ptr<const Scene> scene_of(const View& view) { return view.scene ? view.scene->scene : nullptr; }
+std::shared_ptr<const scene::Scene> scene_of(const plan::View& view) {
+    return view.scene ? view.scene->scene : nullptr;
+}
 
 double pixels_of(const PictureSize& size) { return static_cast<double>(size.width) * size.height; }
 
@@ -125,7 +127,7 @@ std::size_t Engine::choose_level() {
 /// An interactive frame is finished though the camera has moved on: else a camera that never stops would show
 /// none.
 bool Engine::is_outdated(const FrameUnderWay& frame) const {
-    const View& now = room_->visible();
+    const plan::View& now = room_->visible();
     if (scene_of(now) != scene_of(frame.visible)) return true;
     return frame.refined_samples > 0 && (now != frame.visible || room_->view_size() != frame.view_size);
 }
@@ -151,8 +153,8 @@ void Engine::begin_frame(int refined_samples) {
         still ? refined_quality(refined_samples)
               : quality_of(choice_->levels()[level].quality, view_size, pixel_budget_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
-    const View visible = room_->visible();
-    View view = visible;
+    const plan::View visible = room_->visible();
+    plan::View view = visible;
     view.width = size.width;
     view.height = size.height;
     view.samples = quality.samples;
@@ -174,7 +176,7 @@ void Engine::begin_frame(int refined_samples) {
     }
     try {
         frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
-                                     RenderJob(std::move(view), encoder_.take_spare())});
+                                     plan::RenderJob(std::move(view), encoder_.take_spare())});
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }
@@ -183,7 +185,7 @@ void Engine::begin_frame(int refined_samples) {
 void Engine::draw_frame() {
     try {
         if (draw(frame_->rendering) == Drawn::whole) finish_frame();
-    } catch (const OutOfMemory& error) {
+    } catch (const vrut::base::OutOfMemory& error) {
         const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
         draw_smaller({frame.visible, frame.view_size},
                      {frame.rendering.view.width, frame.rendering.view.height}, error.what());
@@ -212,7 +214,7 @@ void Engine::finish_frame() {
     newest_ = {header.frame, frame.visible, frame.view_size, frame.refined_samples};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
-    const FrameStats& stats = frame.rendering.stats;
+    const plan::FrameStats& stats = frame.rendering.stats;
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
     count_frame(header, metrics_, stats_);
@@ -250,12 +252,12 @@ void Engine::draw_snapshot() {
     Drawn drawn = Drawn::part;
     try {
         if (!snapshot.rendering) {
-            View view = snapshot.order.view;
+            plan::View view = snapshot.order.view;
             view.samples = kRefined.samples;
             snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
         }
         drawn = draw(*snapshot.rendering);
-    } catch (const OutOfMemory& error) {
+    } catch (const vrut::base::OutOfMemory& error) {
         return reject(snapshot, error.what());
     } catch (const std::bad_alloc&) {
         return reject(snapshot, "there is no memory to draw it");

@@ -44,7 +44,7 @@ void Engine::check_files() {
 }
 
 void Engine::handle(const FileWorkDone& done) {
-    const View before = room_->visible();
+    const plan::View before = room_->visible();
     const protocol::Resize size_before = room_->view_size();
     done.use();
     if (room_->visible() != before || room_->view_size() != size_before) last_change_ = base::Clock::now();

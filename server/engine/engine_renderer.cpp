@@ -21,7 +21,7 @@ constexpr std::int64_t kFewestPixels = 4096;  // of a live picture
 }  // namespace
 
 /// One step.
-Engine::Drawn Engine::draw(RenderJob& rendering) {
+Engine::Drawn Engine::draw(plan::RenderJob& rendering) {
     const int samples = rendering.stats.samples;
     const int readbacks = rendering.stats.readbacks;
     try {
@@ -33,7 +33,7 @@ Engine::Drawn Engine::draw(RenderJob& rendering) {
         draws_ = true;
         tries_ = 0;
         return Drawn::whole;
-    } catch (const ContextLost& lost) {
+    } catch (const vrut::base::ContextLost& lost) {
         lose_renderer(lost.what());
         return Drawn::lost;
     }
@@ -70,9 +70,9 @@ void Engine::show_arrived() {
         const scenes::LoadedScene& next = *arrived_->scene;
         try {
             renderer_.upload(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
-        } catch (const OutOfMemory& error) {
+        } catch (const vrut::base::OutOfMemory& error) {
             rejected = next.name + ": " + error.what();
-        } catch (const ContextLost& lost) {
+        } catch (const vrut::base::ContextLost& lost) {
             lose_renderer(lost.what());
             if (++arrival_losses_ < kMostLosses) return;
             rejected = next.name + ": the graphics driver is lost whenever it gets this scene";

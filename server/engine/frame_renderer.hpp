@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-namespace vrut {
+namespace vrut::plan {
 struct RenderJob;
 struct View;
-}  // namespace vrut
+}  // namespace vrut::plan
 
 namespace vrut::server::engine {
 
@@ -18,9 +18,9 @@ struct FrameRenderer {
     bool software = false;
     int max_size = 16384;
     /// As Renderer::take; empty: there is nothing to be taken.
-    std::function<void(const View&)> upload = {};
+    std::function<void(const plan::View&)> upload = {};
     /// As Renderer::step.
-    std::function<bool(RenderJob&)> step = {};
+    std::function<bool(plan::RenderJob&)> step = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any
 };
 using FrameRendererFactory = std::function<FrameRenderer()>;

@@ -15,7 +15,7 @@ JpegEncoder::JpegEncoder() : handle_(tjInitCompress()) {
 
 JpegEncoder::~JpegEncoder() { tjDestroy(handle_); }
 
-std::vector<std::uint8_t> JpegEncoder::encode(const Image& image, int quality, bool subsampled) {
+std::vector<std::uint8_t> JpegEncoder::encode(const scene::Image& image, int quality, bool subsampled) {
     const int sampling = subsampled ? TJSAMP_420 : TJSAMP_444;
     // What the worst picture needs is many times what most take: it is kept for the next, and the file
     // copied.

@@ -21,7 +21,7 @@ public:
     JpegEncoder& operator=(const JpegEncoder&) = delete;
 
     /// `quality` 1 to 100; 4:2:0 when `subsampled`, else 4:4:4. Throws std::runtime_error.
-    std::vector<std::uint8_t> encode(const Image& image, int quality, bool subsampled);
+    std::vector<std::uint8_t> encode(const scene::Image& image, int quality, bool subsampled);
 
 private:
     void* handle_;

@@ -56,7 +56,8 @@ std::vector<Candidate> candidates_of(std::span<const Setting> settings, std::spa
                                      std::span<const Error> errors) {
     std::vector<Candidate> all;
     for (std::size_t i = 0; i < settings.size(); ++i)
-        if (settings[i].samples == 1 && settings[i].jpeg_quality > 0 && settings[i].methods == Methods{})
+        if (settings[i].samples == 1 && settings[i].jpeg_quality > 0 &&
+            settings[i].methods == plan::Methods{})
             all.push_back(
                 {i, {latency_cost(costs[i].ms.median, costs[i].bytes.median), errors[i].flip.mean}});
     std::vector<Tradeoff> tradeoffs;
@@ -79,7 +80,7 @@ std::string reason_of(const std::vector<Candidate>& levels, std::size_t k) {
 
 /// Every setting is drawn once, from the cheapest on; those that time does not allow are given up, but never
 /// the last, the most accurate.
-std::vector<Setting> affordable(Studio& studio, const View& home, std::vector<Setting> settings,
+std::vector<Setting> affordable(Studio& studio, const plan::View& home, std::vector<Setting> settings,
                                 double& seconds_a_round) {
     const Stopwatch watch;
     const auto try_one = [&](const Setting& setting) {
@@ -102,10 +103,10 @@ std::vector<Setting> affordable(Studio& studio, const View& home, std::vector<Se
 
 /// The picture at rest, judged by one of kMostJudgeSamples samples; none where it takes too long, by the
 /// seconds of a sample.
-std::optional<protocol::Level> still_level(Studio& studio, const View& home, double sample_seconds) {
+std::optional<protocol::Level> still_level(Studio& studio, const plan::View& home, double sample_seconds) {
     const Setting still = setting_of(engine::kRefined);
     if (sample_seconds * still.samples > kMostStillSeconds) return std::nullopt;
-    const std::vector<Image> judge{studio.exact_picture(home, kMostJudgeSamples)};
+    const std::vector<scene::Image> judge{studio.exact_picture(home, kMostJudgeSamples)};
     protocol::Level level;
     level.quality = engine::kRefined;
     level.quality.error = studio.errors({&home, 1}, {&still, 1}, judge).front().flip.mean;
@@ -139,7 +140,7 @@ std::vector<protocol::Level> choose_levels(std::span<const Setting> settings, st
     return levels;
 }
 
-protocol::LevelTable calibrate(const View& home, Renderer& renderer, const PartDone& done) {
+protocol::LevelTable calibrate(const plan::View& home, renderer::Renderer& renderer, const PartDone& done) {
     const auto part = [&](double from, double to) {
         return [&done, from, to](double fraction) {
             if (done) done(std::lerp(from, to, fraction));
@@ -159,13 +160,13 @@ protocol::LevelTable calibrate(const View& home, Renderer& renderer, const PartD
         std::clamp(static_cast<int>(kCostSeconds / std::max(round, 1e-3)), kFewestFrames, kMostFrames);
     const std::vector<Cost> costs = studio.costs(home, settings, frames, part(0.2, 0.5));
 
-    std::vector<View> views = judged_views(home, kViews);
+    std::vector<plan::View> views = judged_views(home, kViews);
     const Stopwatch trial;
-    const std::vector<Image> first{studio.exact_picture(views.front(), 1)};
+    const std::vector<scene::Image> first{studio.exact_picture(views.front(), 1)};
     studio.errors({views.data(), 1}, {settings.data(), 1}, first);
     if (trial.seconds() * kViews * static_cast<double>(settings.size()) > 2 * kErrorSeconds) views.resize(1);
-    std::vector<Image> judges;
-    for (const View& view : views) {
+    std::vector<scene::Image> judges;
+    for (const plan::View& view : views) {
         judges.push_back(studio.exact_picture(view, samples));
         part(0.5, 0.65)(static_cast<double>(judges.size()) / static_cast<double>(views.size()));
     }

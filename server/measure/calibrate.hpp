@@ -24,6 +24,7 @@ std::vector<protocol::Level> choose_levels(std::span<const Setting> settings, st
 /// chooses; last comes the picture at rest, where it takes less than a second. Takes about 20 s where the
 /// processor draws, and less on faster machines; where pictures take seconds it measures fewer, and longer.
 /// Knows nothing of files: the table's scene is left empty.
-protocol::LevelTable calibrate(const View& home, Renderer& renderer, const PartDone& done = {});
+protocol::LevelTable calibrate(const plan::View& home, renderer::Renderer& renderer,
+                               const PartDone& done = {});
 
 }  // namespace vrut::server::measure

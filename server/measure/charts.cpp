@@ -205,17 +205,19 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
          "Ringed: glass that is right at each pixel. Sorted by parts it is wrong wherever panes cross.",
          kTime,
          [](const Row& row) {
-             return row.setting.methods.transparency == Methods::Transparency::exact ? "right at each pixel"
-                                                                                     : "sorted by parts";
+             return row.setting.methods.transparency == plan::Methods::Transparency::exact
+                        ? "right at each pixel"
+                        : "sorted by parts";
          },
-         [](const Row& row) { return row.setting.methods == Methods{}; }},
+         [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
         {"lighting", "lighting",
          "Ringed: Phong's equation at each pixel. At vertices alone highlights of large triangles are lost.",
          kTime,
          [](const Row& row) {
-             return row.setting.methods.light == Methods::Lighting::pixel ? "at each pixel" : "at vertices";
+             return row.setting.methods.light == plan::Methods::Lighting::pixel ? "at each pixel"
+                                                                                : "at vertices";
          },
-         [](const Row& row) { return row.setting.methods == Methods{}; }},
+         [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
         {"detail", "level of detail",
          "Ringed: " + (smooth ? moving + ", and " : std::string()) +
              "every triangle, for the picture at rest.",
@@ -261,8 +263,8 @@ std::string judge_sentence(const SceneRows& scene, const std::string& chart) {
 /// Whether the setting is what others are judged by, so that no error of its own is known.
 bool is_judge(const SceneRows& scene, const Row& row) {
     const Setting& setting = row.setting;
-    return !scene.traced && setting.samples == 1 && setting.detail == 0 && setting.methods == Methods{} &&
-           setting.jpeg_quality == 0 && row.chart != "antialiasing";
+    return !scene.traced && setting.samples == 1 && setting.detail == 0 &&
+           setting.methods == plan::Methods{} && setting.jpeg_quality == 0 && row.chart != "antialiasing";
 }
 
 Plot picking_plot(const SceneRows& scene, std::vector<std::string>& sentences) {

@@ -27,13 +27,13 @@ std::vector<Setting> only(double scale, double detail) {
 
 }  // namespace
 
-View in_mode(View view, const Mode& mode) {
+plan::View in_mode(plan::View view, const Mode& mode) {
     view.mode = mode.mode;
     view.wireframe = mode.wireframe;
     return view;
 }
 
-bool has_thin_lines(const Mode& mode) { return mode.wireframe || mode.mode == DrawMode::stylized; }
+bool has_thin_lines(const Mode& mode) { return mode.wireframe || mode.mode == plan::DrawMode::stylized; }
 
 bool is_traced(const Subject& subject) {
     return subject.home.scene->scene->triangle_count() <= kTracedTriangles;
@@ -95,13 +95,13 @@ Row Laboratory::row_of(const Experiment& experiment, const Setting& setting) con
     return row;
 }
 
-std::vector<Image> Laboratory::judges(const Experiment& experiment, std::span<const View> views,
-                                      const PartDone& done) {
+std::vector<scene::Image> Laboratory::judges(const Experiment& experiment, std::span<const plan::View> views,
+                                             const PartDone& done) {
     const bool many = experiment.judge == Experiment::Judge::many_samples;
     const bool traced = !many && is_traced(experiment.subject);
-    std::vector<Image> judges;
-    for (const View& view : views) {
-        judges.push_back(traced ? image_of(trace(view_with(view, {})))
+    std::vector<scene::Image> judges;
+    for (const plan::View& view : views) {
+        judges.push_back(traced ? reference::image_of(reference::trace(view_with(view, {})))
                                 : studio_.exact_picture(view, many ? kJudgeSamples : 1));
         if (done) done(static_cast<double>(judges.size()) / static_cast<double>(views.size()));
     }
@@ -113,14 +113,14 @@ void Laboratory::run(const Experiment& experiment, const PartDone& done) {
     for (const Setting& setting : experiment.settings)
         if (!rows_.has(row_of(experiment, setting))) settings.push_back(setting);
     if (settings.empty()) return;
-    const View home = in_mode(experiment.subject.home, experiment.mode);
+    const plan::View home = in_mode(experiment.subject.home, experiment.mode);
     const bool judged = experiment.judge != Experiment::Judge::none;
     const std::vector<Cost> costs =
         studio_.costs(home, settings, experiment.frames, part_of(done, 0, judged ? 0.4 : 1));
     std::vector<Error> errors;
     if (judged) {
-        const std::vector<View> views = judged_views(home, kJudgedViews);
-        const std::vector<Image> truth = judges(experiment, views, part_of(done, 0.4, 0.5));
+        const std::vector<plan::View> views = judged_views(home, kJudgedViews);
+        const std::vector<scene::Image> truth = judges(experiment, views, part_of(done, 0.4, 0.5));
         errors = studio_.errors(views, settings, truth, part_of(done, 0.5, 1));
     }
     for (std::size_t i = 0; i < settings.size(); ++i) {

@@ -14,19 +14,20 @@ namespace vrut::server::measure {
 /// A scene as it is measured.
 struct Subject {
     std::string name, sha256;
-    View home;  ///< of the size that is measured
+    plan::View home;  ///< of the size that is measured
 };
 
 /// The four ways to draw, by the names that charts give them.
 struct Mode {
     const char* name;
-    DrawMode mode;
+    plan::DrawMode mode;
     bool wireframe;
 };
-inline constexpr std::array kModes{
-    Mode{"realistic", DrawMode::realistic, false}, Mode{"realistic wireframe", DrawMode::realistic, true},
-    Mode{"stylized", DrawMode::stylized, false}, Mode{"stylized wireframe", DrawMode::stylized, true}};
-View in_mode(View view, const Mode& mode);
+inline constexpr std::array kModes{Mode{"realistic", plan::DrawMode::realistic, false},
+                                   Mode{"realistic wireframe", plan::DrawMode::realistic, true},
+                                   Mode{"stylized", plan::DrawMode::stylized, false},
+                                   Mode{"stylized wireframe", plan::DrawMode::stylized, true}};
+plan::View in_mode(plan::View view, const Mode& mode);
 
 /// True if quality_of() of engine/frame_quality.hpp always sends this mode in 4:4:4.
 bool has_thin_lines(const Mode& mode);
@@ -61,13 +62,13 @@ std::vector<Experiment> sizes_of(const Subject& subject, int frames);
 /// Triangle counts of the generated scenes, from 20,000 up to `most`.
 std::vector<std::uint64_t> triangle_counts(std::uint64_t most);
 /// Rings of `triangles` triangles, all in view.
-std::shared_ptr<const PlacedScene> rings(std::uint64_t triangles);
+std::shared_ptr<const scene::PlacedScene> rings(std::uint64_t triangles);
 
 /// What measures, and keeps what was measured.
 class Laboratory {
 public:
     /// `machine`: its processor.
-    Laboratory(Renderer& renderer, Rows& rows, std::string version, std::string machine)
+    Laboratory(renderer::Renderer& renderer, Rows& rows, std::string version, std::string machine)
         : renderer_(renderer),
           studio_(renderer),
           rows_(rows),
@@ -88,10 +89,10 @@ public:
 
 private:
     Row picking_row(const Subject& subject, const std::string& method) const;
-    std::vector<Image> judges(const Experiment& experiment, std::span<const View> views,
-                              const PartDone& done);
+    std::vector<scene::Image> judges(const Experiment& experiment, std::span<const plan::View> views,
+                                     const PartDone& done);
 
-    Renderer& renderer_;
+    renderer::Renderer& renderer_;
     Studio studio_;
     Rows& rows_;
     std::string version_, machine_;

@@ -80,23 +80,23 @@ Spread spread_of(std::vector<double> values) {
             percentile(values, 0.95)};
 }
 
-View on_orbit(const View& home, int step, int steps) {
-    View view = home;
-    view.camera = rotated(home.camera, 360.0 * step / steps, 0, true);
+plan::View on_orbit(const plan::View& home, int step, int steps) {
+    plan::View view = home;
+    view.camera = navigation::rotated(home.camera, 360.0 * step / steps, 0, true);
     return view;
 }
 
-std::vector<View> judged_views(const View& home, int count) {
-    std::vector<View> views;
+std::vector<plan::View> judged_views(const plan::View& home, int count) {
+    std::vector<plan::View> views;
     views.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) views.push_back(on_orbit(home, i, count));
     return views;
 }
 
-Image resized(const Image& image, int width, int height) {
+scene::Image resized(const scene::Image& image, int width, int height) {
     if (image.width == width && image.height == height) return image;
     const std::vector<Place> columns = places(image.width, width), rows = places(image.height, height);
-    Image result;
+    scene::Image result;
     result.resize(width, height);
     std::uint8_t* next = result.rgba.data();
     for (const Place& row : rows)
@@ -114,7 +114,7 @@ Image resized(const Image& image, int width, int height) {
     return result;
 }
 
-double Studio::draw(const View& view) {
+double Studio::draw(const plan::View& view) {
     drawn_ = view;
     for (int i = 0; i < kMostTries; ++i) {
         stats_ = {};
@@ -124,19 +124,19 @@ double Studio::draw(const View& view) {
     return stats_.render_ms + stats_.readback_ms;
 }
 
-void Studio::make_buffers(const View& view) {
+void Studio::make_buffers(const plan::View& view) {
     if (!drawn_ || drawn_->width != view.width || drawn_->height != view.height) draw(view);
 }
 
-std::vector<Cost> Studio::costs(const View& home, std::span<const Setting> settings, int frames,
+std::vector<Cost> Studio::costs(const plan::View& home, std::span<const Setting> settings, int frames,
                                 const PartDone& done) {
     const auto drawings = drawings_of(settings);
     std::vector<Cost> costs(settings.size());
     std::vector<std::vector<double>> ms(settings.size()), bytes(settings.size());
     for (int frame = 0; frame < frames; ++frame) {
-        const View view = on_orbit(home, frame, frames);
+        const plan::View view = on_orbit(home, frame, frames);
         for (std::size_t k = 0; k < drawings.size(); ++k) {
-            const View wanted = view_with(view, settings[drawings[k].front()]);
+            const plan::View wanted = view_with(view, settings[drawings[k].front()]);
             make_buffers(wanted);
             const double drawn = draw(wanted);
             for (const std::size_t i : drawings[k]) {
@@ -159,34 +159,35 @@ std::vector<Cost> Studio::costs(const View& home, std::span<const Setting> setti
     return costs;
 }
 
-Image Studio::picture(const View& view, const Setting& setting) {
-    if (const View wanted = view_with(view, setting); wanted != drawn_) draw(wanted);
+scene::Image Studio::picture(const plan::View& view, const Setting& setting) {
+    if (const plan::View wanted = view_with(view, setting); wanted != drawn_) draw(wanted);
     if (setting.jpeg_quality == 0) return image_;
     const auto file = jpeg_.encode(image_, setting.jpeg_quality, setting.subsampled);
-    auto decoded = decode_image({reinterpret_cast<const char*>(file.data()), file.size()});
+    auto decoded = io::decode_image({reinterpret_cast<const char*>(file.data()), file.size()});
     if (!decoded) throw std::runtime_error("a picture that was encoded cannot be read: " + decoded.error());
     return *std::move(decoded);
 }
 
-Image Studio::exact_picture(const View& view, int samples) {
+scene::Image Studio::exact_picture(const plan::View& view, int samples) {
     Setting exact;
     exact.samples = samples;
     exact.jpeg_quality = 0;
     return picture(view, exact);
 }
 
-std::vector<Error> Studio::errors(std::span<const View> views, std::span<const Setting> settings,
-                                  std::span<const Image> judges, const PartDone& done) {
+std::vector<Error> Studio::errors(std::span<const plan::View> views, std::span<const Setting> settings,
+                                  std::span<const scene::Image> judges, const PartDone& done) {
     std::vector<Error> errors(settings.size());
     std::vector<std::vector<double>> means(settings.size());
     std::size_t count = 0;
     for (std::size_t v = 0; v < views.size(); ++v)
         for (const auto& drawing : drawings_of(settings))
             for (const std::size_t i : drawing) {
-                const Image shown =
+                const scene::Image shown =
                     resized(picture(views[v], settings[i]), judges[v].width, judges[v].height);
-                means[i].push_back(mean_of(flip(shown, judges[v])));
-                errors[i].maximum = std::max(errors[i].maximum, difference(shown, judges[v]).maximum());
+                means[i].push_back(mean_of(compare::flip(shown, judges[v])));
+                errors[i].maximum =
+                    std::max(errors[i].maximum, compare::difference(shown, judges[v]).maximum());
                 if (done)
                     done(static_cast<double>(++count) / static_cast<double>(views.size() * settings.size()));
             }

@@ -24,10 +24,10 @@ struct Spread {
 Spread spread_of(std::vector<double> values);
 
 /// `home` on its way around what it turns about: step `step` of `steps`.
-View on_orbit(const View& home, int step, int steps);
+plan::View on_orbit(const plan::View& home, int step, int steps);
 
 /// The picture in another size, each pixel from the four nearest, as a page enlarges it.
-Image resized(const Image& image, int width, int height);
+scene::Image resized(const scene::Image& image, int width, int height);
 
 /// What pictures cost, drawn, read back and encoded one after the other, as frame headers report it.
 struct Cost {
@@ -44,36 +44,36 @@ struct Error {
 /// Draws and encodes as a server would, in one thread.
 class Studio {
 public:
-    explicit Studio(Renderer& renderer) : renderer_(renderer) {}
+    explicit Studio(renderer::Renderer& renderer) : renderer_(renderer) {}
 
     /// Of `frames` pictures of each setting, on one turn around `home`: those of all settings from one place,
     /// then from the next, so that whatever else the machine does befalls all alike. Drawings are shared by
     /// settings that differ in their encoding. Pictures that bring something to the GPU are drawn again, and
     /// the first of another size than the last, as a server that stays at a level makes no buffers.
-    std::vector<Cost> costs(const View& home, std::span<const Setting> settings, int frames,
+    std::vector<Cost> costs(const plan::View& home, std::span<const Setting> settings, int frames,
                             const PartDone& done = {});
     /// Of each setting's pictures of `views`, enlarged to the size of their judges, one for each view.
-    std::vector<Error> errors(std::span<const View> views, std::span<const Setting> settings,
-                              std::span<const Image> judges, const PartDone& done = {});
+    std::vector<Error> errors(std::span<const plan::View> views, std::span<const Setting> settings,
+                              std::span<const scene::Image> judges, const PartDone& done = {});
 
     /// What a page would show of a view: encoded, and decoded again.
-    Image picture(const View& view, const Setting& setting);
+    scene::Image picture(const plan::View& view, const Setting& setting);
     /// Every triangle, the exact methods, `samples` samples, not encoded.
-    Image exact_picture(const View& view, int samples);
+    scene::Image exact_picture(const plan::View& view, int samples);
 
 private:
-    double draw(const View& view);
+    double draw(const plan::View& view);
     /// Draws where the last picture was of another size.
-    void make_buffers(const View& view);
+    void make_buffers(const plan::View& view);
 
-    Renderer& renderer_;
+    renderer::Renderer& renderer_;
     engine::JpegEncoder jpeg_;
-    std::optional<View> drawn_;  ///< what `image_` shows
-    Image image_;
-    FrameStats stats_;
+    std::optional<plan::View> drawn_;  ///< what `image_` shows
+    scene::Image image_;
+    plan::FrameStats stats_;
 };
 
 /// From a few places of the orbit, as pictures are judged from.
-std::vector<View> judged_views(const View& home, int count);
+std::vector<plan::View> judged_views(const plan::View& home, int count);
 
 }  // namespace vrut::server::measure

@@ -23,9 +23,9 @@ glm::dvec2 point_of(int i) {
     return 2.0 * part - 1.0;
 }
 
-Ray ray_through(const View& view, const glm::dvec2& point) {
+mesh::Ray ray_through(const plan::View& view, const glm::dvec2& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    return {view.camera.eye, direction_through(view.camera, aspect, point)};
+    return {view.camera.eye, scene::direction_through(view.camera, aspect, point)};
 }
 
 /// Möller and Trumbore's test, in world space.
@@ -33,7 +33,7 @@ struct Crossing {
     double distance = 0;
     bool front = false;
 };
-std::optional<Crossing> cross(const Ray& ray, const std::array<glm::dvec3, 3>& corner) {
+std::optional<Crossing> cross(const mesh::Ray& ray, const std::array<glm::dvec3, 3>& corner) {
     const glm::dvec3 a = corner[1] - corner[0], b = corner[2] - corner[0];
     const glm::dvec3 p = glm::cross(ray.direction, b);
     const double determinant = glm::dot(a, p);
@@ -49,21 +49,22 @@ std::optional<Crossing> cross(const Ray& ray, const std::array<glm::dvec3, 3>& c
 }
 
 template <class Number>
-Id id_of(const PlacedScene& placed, Number node) {
+scene::Id id_of(const scene::PlacedScene& placed, Number node) {
     return placed.scene->nodes()[static_cast<std::size_t>(node)].id;
 }
 
 /// The node in front, by asking every triangle that is drawn: the judge, with nothing to go wrong in.
-Index ask_all(const PlacedScene& placed, const Ray& ray) {
-    const std::vector<bool> shown = shown_nodes(placed, ray.origin);
-    Index nearest = kNone;
+scene::Index ask_all(const scene::PlacedScene& placed, const mesh::Ray& ray) {
+    const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
+    scene::Index nearest = scene::kNone;
     double distance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data);
-        if (!shown[i] || !data || data->geometry == kNone) continue;
-        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+        const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[i].data);
+        if (!shown[i] || !data || data->geometry == scene::kNone) continue;
+        const scene::Geometry& geometry =
+            placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const glm::dmat4& world = placed.world[i];
-        const double turned = relative_determinant(glm::dmat3(world));
+        const double turned = scene::relative_determinant(glm::dmat3(world));
         const bool both =
             placed.scene->material(placed.nodes[i].material).two_sided || !(std::abs(turned) > 1e-12);
         for (const glm::uvec3& triangle : geometry.triangles) {
@@ -74,11 +75,11 @@ Index ask_all(const PlacedScene& placed, const Ray& ray) {
             const auto crossing = cross(ray, corners);
             if (!crossing || crossing->distance > distance) continue;
             if (!both && crossing->front != (turned > 0)) continue;
-            if (crossing->distance == distance && nearest != kNone &&
+            if (crossing->distance == distance && nearest != scene::kNone &&
                 id_of(placed, i) < id_of(placed, nearest))
                 continue;  // of equally near ones that of the higher id is in front
             distance = crossing->distance;
-            nearest = static_cast<Index>(i);
+            nearest = static_cast<scene::Index>(i);
         }
     }
     return nearest;
@@ -96,13 +97,13 @@ struct Answers {
         return answer;
     }
     /// Every move of the view needs another picture of ids.
-    std::vector<Index> draw(Renderer& renderer, const View& view) {
+    std::vector<scene::Index> draw(renderer::Renderer& renderer, const plan::View& view) {
         return ask([&] { return renderer.node_ids(view); });
     }
 };
 
 /// What the picture of ids has at a point.
-Index at_point(const std::vector<Index>& ids, const View& view, const glm::dvec2& point) {
+scene::Index at_point(const std::vector<scene::Index>& ids, const plan::View& view, const glm::dvec2& point) {
     const auto pixel = [](double part, int count) {
         return std::clamp(static_cast<int>(part * count), 0, count - 1);
     };
@@ -132,19 +133,20 @@ void Laboratory::run_picking(const Subject& subject, const PartDone& done) {
     auto& [ray, ids, small_ids, all] = answers;
     renderer_.node_ids(subject.home);  // everything comes to the GPU
     for (int v = 0; v < kViews; ++v) {
-        const View view = on_orbit(subject.home, v, kViews);
-        const View small = view_with(view, {.scale = 0.5});
-        std::vector<Index> pictures[2];
+        const plan::View view = on_orbit(subject.home, v, kViews);
+        const plan::View small = view_with(view, {.scale = 0.5});
+        std::vector<scene::Index> pictures[2];
         for (int i = 0; i < kPictures; ++i) {
             pictures[0] = ids.draw(renderer_, view);
             pictures[1] = small_ids.draw(renderer_, small);
         }
         for (int i = 0; i < kPicksInView; ++i) {
             const glm::dvec2 point = point_of(v * kPicksInView + i);
-            const Index truth = all.ask([&] { return ask_all(*view.scene, ray_through(view, point)); });
-            const Index met = ray.ask([&] {
-                const auto hit = pick(*view.scene, ray_through(view, point), false);
-                return hit ? hit->node : kNone;
+            const scene::Index truth =
+                all.ask([&] { return ask_all(*view.scene, ray_through(view, point)); });
+            const scene::Index met = ray.ask([&] {
+                const auto hit = mesh::pick(*view.scene, ray_through(view, point), false);
+                return hit ? hit->node : scene::kNone;
             });
             ray.wrong += met != truth;
             ids.wrong += at_point(pictures[0], view, point) != truth;

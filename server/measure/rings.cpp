@@ -12,8 +12,8 @@ namespace {
 constexpr unsigned kAround = 100, kAcross = 100;  // of a ring: 20,000 triangles
 constexpr double kRadius = 0.36, kThickness = 0.12;
 
-Geometry ring() {
-    Geometry geometry;
+scene::Geometry ring() {
+    scene::Geometry geometry;
     geometry.id = 1;
     for (unsigned i = 0; i < kAround; ++i)
         for (unsigned k = 0; k < kAcross; ++k) {
@@ -41,24 +41,24 @@ std::vector<std::uint64_t> triangle_counts(std::uint64_t most) {
     return counts;
 }
 
-std::shared_ptr<const PlacedScene> rings(std::uint64_t triangles) {
-    SceneParts parts;
+std::shared_ptr<const scene::PlacedScene> rings(std::uint64_t triangles) {
+    scene::SceneParts parts;
     parts.name = "Rings";
     parts.geometries.push_back(ring());
     const auto count = static_cast<unsigned>(triangles / parts.geometries.front().triangles.size());
     const auto in_row = static_cast<unsigned>(std::ceil(std::sqrt(count)));
     for (unsigned i = 0; i < count; ++i) {
-        SceneParts::PartNode part;
+        scene::SceneParts::PartNode part;
         part.node.id = i + 1;
         part.node.name = "Ring";
-        part.node.type = NodeType::geometry;
+        part.node.type = scene::NodeType::geometry;
         part.node.matrix[3] = glm::dvec4(i % in_row, 0, i / in_row, 1);
-        part.node.data = GeometryData{0, kNone};
+        part.node.data = scene::GeometryData{0, scene::kNone};
         parts.nodes.push_back(std::move(part));
     }
-    auto scene = Scene::build(std::move(parts));
+    auto scene = scene::Scene::build(std::move(parts));
     if (!scene) throw std::logic_error(scene.error().message);
-    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
 }  // namespace vrut::server::measure

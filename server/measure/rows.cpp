@@ -32,8 +32,8 @@ std::string one_line(std::string text) {
 
 std::vector<std::string> key_fields(const Row& row) {
     const Setting& setting = row.setting;
-    const bool vertex = setting.methods.light == Methods::Lighting::vertex;
-    const bool sorted = setting.methods.transparency == Methods::Transparency::sorted;
+    const bool vertex = setting.methods.light == plan::Methods::Lighting::vertex;
+    const bool sorted = setting.methods.transparency == plan::Methods::Transparency::sorted;
     return {row.chart,
             one_line(row.scene),
             row.sha256,
@@ -170,8 +170,8 @@ std::optional<Row> row_of(std::string_view line) {
     row.setting.scale = numbers.take();
     row.setting.samples = numbers.take<int>();
     row.setting.detail = numbers.take();
-    if ((*fields)[13] == "vertex") row.setting.methods.light = Methods::Lighting::vertex;
-    if ((*fields)[14] == "sorted") row.setting.methods.transparency = Methods::Transparency::sorted;
+    if ((*fields)[13] == "vertex") row.setting.methods.light = plan::Methods::Lighting::vertex;
+    if ((*fields)[14] == "sorted") row.setting.methods.transparency = plan::Methods::Transparency::sorted;
     numbers.skip(2);
     row.setting.jpeg_quality = numbers.take<int>();
     row.setting.subsampled = (*fields)[16] == "4:2:0";

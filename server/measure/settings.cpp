@@ -43,8 +43,8 @@ std::string name_of(const Setting& setting) {
     std::string name = "scale " + number(setting.scale) + ", " + std::to_string(setting.samples) +
                        (setting.samples == 1 ? " sample" : " samples");
     if (setting.detail > 0) name += ", detail " + number(setting.detail);
-    if (setting.methods.light == Methods::Lighting::vertex) name += ", light at vertices";
-    if (setting.methods.transparency == Methods::Transparency::sorted) name += ", glass sorted";
+    if (setting.methods.light == plan::Methods::Lighting::vertex) name += ", light at vertices";
+    if (setting.methods.transparency == plan::Methods::Transparency::sorted) name += ", glass sorted";
     if (setting.jpeg_quality > 0)
         name += ", JPEG " + std::to_string(setting.jpeg_quality) + (setting.subsampled ? " 4:2:0" : " 4:4:4");
     return name;
@@ -68,7 +68,7 @@ Setting setting_of(const protocol::Quality& quality) {
             quality.jpeg_quality, quality.subsampling == protocol::Quality::Subsampling::yuv420};
 }
 
-View view_with(View view, const Setting& setting) {
+plan::View view_with(plan::View view, const Setting& setting) {
     const auto scaled = [&](int side) {
         return std::max(1, static_cast<int>(std::lround(side * setting.scale)));
     };
@@ -80,17 +80,18 @@ View view_with(View view, const Setting& setting) {
     return view;
 }
 
-std::shared_ptr<const DetailLevels> detail_levels_of(const std::shared_ptr<const PlacedScene>& scene) {
-    auto levels = std::make_shared<const DetailLevels>(scene->scene);
+std::shared_ptr<const mesh::DetailLevels> detail_levels_of(
+    const std::shared_ptr<const scene::PlacedScene>& scene) {
+    auto levels = std::make_shared<const mesh::DetailLevels>(scene->scene);
     levels->wait();
     return levels;
 }
 
-bool has_levels(const View& view) {
+bool has_levels(const plan::View& view) {
     if (!view.levels) return false;
     const std::size_t count = view.levels->scene()->geometries().size();
     for (std::size_t i = 0; i < count; ++i)
-        if (!view.levels->of(static_cast<Index>(i)).empty()) return true;
+        if (!view.levels->of(static_cast<scene::Index>(i)).empty()) return true;
     return false;
 }
 
@@ -107,8 +108,8 @@ std::vector<Setting> product(bool with_detail) {
         settings.push_back({1, samples, 0, {}, samples == 16 ? 90 : 85, false});
     for (const Setting& setting : encodings()) add(settings, setting);
     Setting vertex, sorted;
-    vertex.methods.light = Methods::Lighting::vertex;
-    sorted.methods.transparency = Methods::Transparency::sorted;
+    vertex.methods.light = plan::Methods::Lighting::vertex;
+    sorted.methods.transparency = plan::Methods::Transparency::sorted;
     settings.push_back(vertex);
     settings.push_back(sorted);
     return settings;
@@ -150,13 +151,13 @@ std::vector<Setting> sample_counts() {
 
 std::vector<Setting> lights() {
     std::vector<Setting> settings(2, not_encoded());
-    settings.front().methods.light = Methods::Lighting::vertex;
+    settings.front().methods.light = plan::Methods::Lighting::vertex;
     return settings;
 }
 
 std::vector<Setting> transparencies() {
     std::vector<Setting> settings(2, not_encoded());
-    settings.front().methods.transparency = Methods::Transparency::sorted;
+    settings.front().methods.transparency = plan::Methods::Transparency::sorted;
     return settings;
 }
 

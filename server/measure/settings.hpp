@@ -14,7 +14,7 @@ struct Setting {
     double scale = 1;   ///< of width and height
     int samples = 1;    ///< in a pixel
     double detail = 0;  ///< View::detail: pixels of error allowed in the meshes
-    Methods methods = {};
+    plan::Methods methods = {};
     int jpeg_quality = 85;    ///< 0: the picture is not encoded
     bool subsampled = false;  ///< 4:2:0, else 4:4:4
 
@@ -27,12 +27,13 @@ std::string name_of(const Setting& setting);
 protocol::Quality quality_of(const Setting& setting);
 Setting setting_of(const protocol::Quality& quality);
 /// `view` as `setting` has it drawn.
-View view_with(View view, const Setting& setting);
+plan::View view_with(plan::View view, const Setting& setting);
 
 /// The levels of detail of a scene, all of them made: takes seconds where it has many triangles.
-std::shared_ptr<const DetailLevels> detail_levels_of(const std::shared_ptr<const PlacedScene>& scene);
+std::shared_ptr<const mesh::DetailLevels> detail_levels_of(
+    const std::shared_ptr<const scene::PlacedScene>& scene);
 /// Whether any geometry has a coarser surface: else `detail` changes nothing.
-bool has_levels(const View& view);
+bool has_levels(const plan::View& view);
 
 /// Scale, samples, detail and JPEG together, as far as they make pictures for a view that moves, then each
 /// alone from the ordinary picture.

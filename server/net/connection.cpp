@@ -184,7 +184,7 @@ void Connection::on_received(std::size_t size) {
              protocol::error_code::bad_message,
              "the message is longer than " + std::to_string(protocol::kMaxMessageBytes) + " bytes"},
             close_code::too_big);
-    else if (find_invalid_utf8(text) !=
+    else if (vrut::base::find_invalid_utf8(text) !=
              std::string_view::npos)  // Beast overlooks it where an empty fragment ends it
         reject_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
                          close_code::bad_payload);

@@ -65,11 +65,11 @@ void Room::update_visible() {
     auto markers = visible_.markers;
     if (shown_markers_ != state_.markers || visible_.scene != scene_) {
         shown_markers_ = state_.markers;
-        std::vector<PlacedMarker> changed = markers_of(*shown_markers_, *scene_);
+        std::vector<plan::PlacedMarker> changed = markers_of(*shown_markers_, *scene_);
         if (changed.empty())
             markers.reset();
         else if (!markers || *markers != changed)
-            markers = std::make_shared<const std::vector<PlacedMarker>>(std::move(changed));
+            markers = std::make_shared<const std::vector<plan::PlacedMarker>>(std::move(changed));
     }
     visible_ = view_of(state_, scene_);
     visible_.markers = std::move(markers);
@@ -131,9 +131,9 @@ void Room::advance(SessionTime at) {
     update_visible();
     if (ms < flight_->path.duration()) return;
     // Where it was to end at a camera node, the camera stands there now.
-    const std::optional<Id> node = flight_->asked.keyframes.back().camera.node;
-    const Index index = node ? scene_->scene->find_node(*node) : kNone;
-    if (index != kNone && camera_at(*scene_, index) == camera())
+    const std::optional<scene::Id> node = flight_->asked.keyframes.back().camera.node;
+    const scene::Index index = node ? scene_->scene->find_node(*node) : scene::kNone;
+    if (index != scene::kNone && scene::camera_at(*scene_, index) == camera())
         state_.camera = state_at_node(camera(), *scene_, index);
     end_flight(true);
 }
@@ -294,9 +294,9 @@ void Room::use_holders_size() {
 
 // --- the camera
 
-NavigationContext Room::navigation_context() const {
+navigation::NavigationContext Room::navigation_context() const {
     const protocol::NavigationState& navigation = state_.navigation;
-    NavigationContext context;
+    navigation::NavigationContext context;
     context.width = view_size_.width;
     context.height = view_size_.height;
     context.bounds = scene_->bounds;
@@ -304,22 +304,22 @@ NavigationContext Room::navigation_context() const {
     context.rotate_speed = navigation.rotate_speed;
     context.pan_speed = navigation.pan_speed;
     context.zoom_speed = navigation.zoom_speed;
-    context.style = static_cast<NavigationStyle>(navigation.style);
+    context.style = static_cast<navigation::NavigationStyle>(navigation.style);
     return context;
 }
 
-void Room::drag_camera(const Camera& moved) {
+void Room::drag_camera(const scene::Camera& moved) {
     // A move beyond what a patch may say, or double hold, is not made.
     const auto is_far = [](const glm::dvec3& point) {
         return std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)}) > protocol::kFarthest;
     };
-    if (moved == camera() || !is_valid_pose(moved, 0)) return;
+    if (moved == camera() || !scene::is_valid_pose(moved, 0)) return;
     if (is_far(moved.eye) || is_far(moved.focus) || is_far(moved.center)) return;
     state_.camera = state_of(moved, scene_->bounds);
     at_home_ = false;
 }
 
-void Room::move_camera(const Camera& moved) {
+void Room::move_camera(const scene::Camera& moved) {
     drag_camera(moved);
     gestures_.restart(camera());
 }

@@ -38,7 +38,7 @@ struct Answer {
 /// A picture that somebody asked for beside the live one, as things stood then.
 struct PictureOrder {
     std::string client;
-    View view;                     ///< with its size in pixels
+    plan::View view;               ///< with its size in pixels
     protocol::FrameHeader header;  ///< but for number, quality and times
     protocol::ImageFormat format = protocol::ImageFormat::jpeg;
     int jpeg_quality = 90;
@@ -89,12 +89,12 @@ public:
     /// To be called first, if at all: as things stood when a recording began.
     tl::expected<void, protocol::Error> restore(const protocol::LogHeader& header);
 
-    const PlacedScene& scene() const { return *scene_; }
+    const scene::PlacedScene& scene() const { return *scene_; }
     const protocol::State& state() const { return state_; }
     /// CSS size of the view.
     const protocol::Resize& view_size() const { return view_size_; }
     /// What is to be seen, but for size and samples.
-    const View& visible() const { return visible_; }
+    const plan::View& visible() const { return visible_; }
     bool flies() const { return flight_.has_value(); }
     std::optional<std::string> holder() const { return steering_.holder(); }
     const std::string& scene_name() const { return loaded_.name; }
@@ -129,7 +129,7 @@ private:
         bool is_input() const { return traits.weight == protocol::Weight::stream && !message.id; }
     };
     struct InFlight {
-        CameraPath path;
+        navigation::CameraPath path;
         std::string client;
         std::int64_t id = 0;  ///< 0: none
         SessionTime start{0};
@@ -189,24 +189,24 @@ private:
     /// What the view showed, or shows.
     struct Frame {
         std::int64_t number = 0;
-        Camera camera;
+        scene::Camera camera;
         protocol::Resize view_size;
     };
     Frame present() const { return {0, camera(), view_size_}; }
     /// Null where it is not remembered.
     const Frame* find_frame(std::int64_t number) const;
     /// What of the present scene lies under a point of a frame's view, in CSS pixels.
-    std::optional<Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
-    void apply(Click::Operation operation, const std::optional<Hit>& hit);
-    void select(Index node);
-    std::vector<std::string> path_of(Index node) const;
+    std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
+    void apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit);
+    void select(scene::Index node);
+    std::vector<std::string> path_of(scene::Index node) const;
 
     // --- patches
     std::optional<protocol::Error> use_nodes(protocol::State& next,
-                                             std::shared_ptr<const PlacedScene>& placed);
-    std::optional<protocol::Error> use_camera(protocol::State& next, const PlacedScene& placed,
+                                             std::shared_ptr<const scene::PlacedScene>& placed);
+    std::optional<protocol::Error> use_camera(protocol::State& next, const scene::PlacedScene& placed,
                                               const nlohmann::json& patch);
-    std::optional<protocol::Error> use_views(protocol::State& next, const PlacedScene& placed) const;
+    std::optional<protocol::Error> use_views(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
 
     // --- recordings
@@ -219,18 +219,18 @@ private:
     void press_anew(const std::string& client);
 
     // --- the camera
-    Camera camera() const { return camera_of(state_.camera); }
+    scene::Camera camera() const { return camera_of(state_.camera); }
     double aspect() const { return view_size_.width / view_size_.height; }
-    NavigationContext navigation_context() const;
+    navigation::NavigationContext navigation_context() const;
     /// From a drag: it goes on from where it began.
-    void drag_camera(const Camera& camera);
+    void drag_camera(const scene::Camera& camera);
     /// From anything else: drags begin anew there.
-    void move_camera(const Camera& camera);
+    void move_camera(const scene::Camera& camera);
     void end_flight(bool completed);
 
     RoomOptions options_;
     scenes::LoadedScene loaded_;
-    std::shared_ptr<const PlacedScene> scene_;  ///< with its nodes as they stand now
+    std::shared_ptr<const scene::PlacedScene> scene_;  ///< with its nodes as they stand now
     protocol::Resize view_size_;
     protocol::State starting_, state_;
     std::shared_ptr<const protocol::StateDocument> document_;
@@ -240,15 +240,15 @@ private:
     std::vector<PictureOrder> orders_;
     std::map<std::string, Client> clients_;
     Steering steering_;
-    Gestures gestures_;
-    Clicks clicks_;
+    navigation::Gestures gestures_;
+    navigation::Clicks clicks_;
     std::optional<InFlight> flight_;
     SessionTime time_{0};    ///< of what happens now
     bool accepted_ = false;  ///< the message in hand
     bool size_waits_ =
         false;  ///< for the press that took control to end: it is measured in the view that it began in
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
-    View visible_;
+    plan::View visible_;
     protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_
     std::deque<Frame> frames_;                             ///< the last kFramesRemembered
     std::int64_t newest_request_ = 0, newest_recording_ = 0;

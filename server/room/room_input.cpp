@@ -15,12 +15,12 @@ namespace {
 constexpr std::size_t kLongestPath = 32;
 constexpr double kLeastDeterminant = 1e-12;  // below it a node is flattened, as for the picture
 
-PointerInput input_of(const std::string& client, const protocol::Pointer& pointer) {
-    PointerInput input;
-    input.action = static_cast<PointerInput::Action>(pointer.event);
+navigation::PointerInput input_of(const std::string& client, const protocol::Pointer& pointer) {
+    navigation::PointerInput input;
+    input.action = static_cast<navigation::PointerInput::Action>(pointer.event);
     input.client = client;
     input.pointer = pointer.pointer_id;
-    input.device = static_cast<PointerInput::Device>(pointer.pointer_type);
+    input.device = static_cast<navigation::PointerInput::Device>(pointer.pointer_type);
     input.x = pointer.x;
     input.y = pointer.y;
     input.button = pointer.button;
@@ -40,10 +40,10 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
                        clicks_.is_pressed(received.client, pointer.pointer_id);
     if (!known || !may_steer(received)) return;
     steer(received);
-    const PointerInput input = input_of(received.client, pointer);
-    const NavigationContext context = navigation_context();
+    const navigation::PointerInput input = input_of(received.client, pointer);
+    const navigation::NavigationContext context = navigation_context();
     drag_camera(gestures_.pointer(input, camera(), context));
-    if (const std::optional<Click> click =
+    if (const std::optional<navigation::Click> click =
             clicks_.pointer(input, {pointer.time_stamp, time_}, context.style)) {
         const Frame* seen = pointer.frame ? find_frame(*pointer.frame) : nullptr;
         if (!seen && !frames_.empty()) seen = &frames_.back();  // not told, or long forgotten
@@ -53,13 +53,14 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
 
 void Room::apply(const Received& received, const protocol::Wheel& wheel) {
     steer(received);
-    const WheelInput input{wheel.delta_y, static_cast<WheelInput::Unit>(wheel.delta_mode)};
-    move_camera(vrut::wheel(input, camera(), navigation_context()));
+    const navigation::WheelInput input{wheel.delta_y,
+                                       static_cast<navigation::WheelInput::Unit>(wheel.delta_mode)};
+    move_camera(navigation::wheel(input, camera(), navigation_context()));
 }
 
 void Room::apply(const Received& received, const protocol::Key& key) {
-    using Kind = KeyOperation::Kind;
-    const KeyInput input{key.key, key.modifiers.shift, key.code};
+    using Kind = navigation::KeyOperation::Kind;
+    const navigation::KeyInput input{key.key, key.modifiers.shift, key.code};
     if (!key.down) {
         accepted_ = steering_.holder() == received.client;
         return gestures_.key_up(received.client, input);
@@ -67,20 +68,22 @@ void Room::apply(const Received& received, const protocol::Key& key) {
     const bool flew = flies();
     steer(received);
     gestures_.key_down(received.client, input);
-    const std::optional<KeyOperation> operation = key_operation(input);
+    const std::optional<navigation::KeyOperation> operation = navigation::key_operation(input);
     if (!operation) return;
     protocol::RendererState& renderer = state_.renderer;
-    if (operation->kind == Kind::escape && !flew) select(kNone);
+    if (operation->kind == Kind::escape && !flew) select(scene::kNone);
     if (operation->kind == Kind::toggle_wireframe) renderer.wireframe = !renderer.wireframe;
     if (operation->kind == Kind::toggle_stylized)
         renderer.mode = renderer.mode == protocol::DrawMode::stylized ? protocol::DrawMode::realistic
                                                                       : protocol::DrawMode::stylized;
-    NavigationContext context = navigation_context();
+    navigation::NavigationContext context = navigation_context();
     if (operation->kind == Kind::fit && state_.selection.node) {
-        const Bounds selected = subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
+        const math::Bounds selected =
+            scene::subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
         if (!selected.empty()) context.bounds = selected;
     }
-    move_camera(apply_key_operation(*operation, camera(), camera_of(state_.views->at("home")), context));
+    move_camera(
+        navigation::apply_key_operation(*operation, camera(), camera_of(state_.views->at("home")), context));
 }
 
 void Room::apply(const Received& received, const protocol::Pick& pick) {
@@ -91,20 +94,20 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
         return reject(received, code::unknown_frame,
                       "frame " + std::to_string(*pick.frame) + " is not among the last " +
                           std::to_string(kFramesRemembered) + " of the view; snapshots are not remembered");
-    const std::optional<Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
+    const std::optional<mesh::Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
     if (pick.then) {
         steer(received);
-        apply(*pick.then == Then::select   ? Click::Operation::select
-              : *pick.then == Then::center ? Click::Operation::set_center
-                                           : Click::Operation::look_at,
+        apply(*pick.then == Then::select   ? navigation::Click::Operation::select
+              : *pick.then == Then::center ? navigation::Click::Operation::set_center
+                                           : navigation::Click::Operation::look_at,
               hit);
     }
     protocol::Picked picked;
     if (hit) {
-        const Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
+        const scene::Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
         picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
         const glm::dmat4& world_from_node = scene_->world[static_cast<std::size_t>(hit->node)];
-        if (std::abs(relative_determinant(glm::dmat3(world_from_node))) > kLeastDeterminant) {
+        if (std::abs(scene::relative_determinant(glm::dmat3(world_from_node))) > kLeastDeterminant) {
             const glm::dvec3 local(glm::inverse(world_from_node) * glm::dvec4(hit->point, 1));
             if (std::isfinite(local.x + local.y + local.z)) picked.local = local;
         }
@@ -118,35 +121,36 @@ const Room::Frame* Room::find_frame(std::int64_t number) const {
     return found == frames_.end() ? nullptr : &*found;
 }
 
-std::optional<Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
+std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, bool through) const {
     const protocol::Resize& size = seen.view_size;
     const glm::dvec2 point(2 * x / size.width - 1, 2 * y / size.height - 1);
-    return vrut::pick(
-        *scene_, {seen.camera.eye, direction_through(seen.camera, size.width / size.height, point)}, through);
+    return mesh::pick(
+        *scene_, {seen.camera.eye, scene::direction_through(seen.camera, size.width / size.height, point)},
+        through);
 }
 
-void Room::apply(Click::Operation operation, const std::optional<Hit>& hit) {
-    if (operation == Click::Operation::select) return select(hit ? hit->node : kNone);
+void Room::apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit) {
+    if (operation == navigation::Click::Operation::select) return select(hit ? hit->node : scene::kNone);
     if (!hit) return;
-    Camera moved = camera();
+    scene::Camera moved = camera();
     moved.center = hit->point;
-    if (operation == Click::Operation::look_at) {
+    if (operation == navigation::Click::Operation::look_at) {
         moved.eye += hit->point - moved.focus;
         moved.focus = hit->point;
     }
     move_camera(moved);
 }
 
-void Room::select(Index node) {
+void Room::select(scene::Index node) {
     state_.selection = {};
-    if (node == kNone) return;
-    const Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
+    if (node == scene::kNone) return;
+    const scene::Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
     state_.selection = {selected.id, selected.name, path_of(node)};
 }
 
-std::vector<std::string> Room::path_of(Index node) const {
+std::vector<std::string> Room::path_of(scene::Index node) const {
     std::vector<std::string> path;
-    for (; node != kNone && path.size() < kLongestPath;
+    for (; node != scene::kNone && path.size() < kLongestPath;
          node = scene_->scene->nodes()[static_cast<std::size_t>(node)].parent)
         path.push_back(scene_->scene->nodes()[static_cast<std::size_t>(node)].name);
     std::reverse(path.begin(), path.end());

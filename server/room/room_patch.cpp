@@ -22,7 +22,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
             "what the patch touches has changed since revision " + std::to_string(*patch.if_revision));
     auto next = protocol::patched(state_, starting_, *patch.patch);
     if (!next) return reject(received, next.error().code.c_str(), next.error().message);
-    std::shared_ptr<const PlacedScene> placed = scene_;
+    std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
     if (!error) error = use_camera(*next, *placed, *patch.patch);
     if (!error) error = use_views(*next, *placed);
@@ -31,31 +31,32 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
 
     const protocol::ViewState home = state_.views->at("home");
     if (camera_of(next->camera) != camera() || next->views->at("home") != home) at_home_ = false;
-    const std::optional<Id> selected = next->selection.node;
+    const std::optional<scene::Id> selected = next->selection.node;
     steer(received);  // which may bring another size, and so another home
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
     state_ = *std::move(next);
     scene_ = std::move(placed);
-    select(selected ? scene_->scene->find_node(*selected) : kNone);
+    select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     gestures_.restart(camera());
     answer(received);
 }
 
-std::optional<Error> Room::use_nodes(protocol::State& next, std::shared_ptr<const PlacedScene>& placed) {
+std::optional<Error> Room::use_nodes(protocol::State& next,
+                                     std::shared_ptr<const scene::PlacedScene>& placed) {
     if (next.nodes == state_.nodes) return std::nullopt;
     auto states = node_states(*scene_->scene, next.nodes);
     if (!states) return states.error();
     if (*states != scene_->nodes)
-        placed = std::make_shared<const PlacedScene>(place(scene_->scene, *std::move(states)));
+        placed = std::make_shared<const scene::PlacedScene>(scene::place(scene_->scene, *std::move(states)));
     count_classes(next, *placed);
     return std::nullopt;
 }
 
 /// The camera node that is named first, what else is named over it. A camera that stands at a node goes on
 /// to where that is moved.
-std::optional<Error> Room::use_camera(protocol::State& next, const PlacedScene& placed,
+std::optional<Error> Room::use_camera(protocol::State& next, const scene::PlacedScene& placed,
                                       const nlohmann::json& patch) {
     const protocol::NamedCameraMembers named = protocol::named_camera_members(patch);
     const bool pose_named = named.eye || named.focus || named.up || named.center || named.fov;
@@ -70,8 +71,8 @@ std::optional<Error> Room::use_camera(protocol::State& next, const PlacedScene& 
     overlay.up = given(named.up, next.camera.up);
     overlay.center = given(named.center, next.camera.center);
     overlay.fov = given(named.fov, next.camera.fov);
-    const std::optional<Id> node = next.camera.node;
-    Camera pose = camera();
+    const std::optional<scene::Id> node = next.camera.node;
+    scene::Camera pose = camera();
     if (overlay.node || pose_named) {
         auto laid = overlaid(pose, overlay, placed, "camera");
         if (!laid) return laid.error();
@@ -79,33 +80,34 @@ std::optional<Error> Room::use_camera(protocol::State& next, const PlacedScene& 
     }
     next.camera = state_of(pose, placed.bounds);
     if (!node) return std::nullopt;
-    const Index index = placed.scene->find_node(*node);
-    if (index != kNone && camera_at(placed, index) == pose) next.camera = state_at_node(pose, placed, index);
+    const scene::Index index = placed.scene->find_node(*node);
+    if (index != scene::kNone && scene::camera_at(placed, index) == pose)
+        next.camera = state_at_node(pose, placed, index);
     return std::nullopt;
 }
 
-std::optional<Error> Room::use_views(protocol::State& next, const PlacedScene& placed) const {
+std::optional<Error> Room::use_views(protocol::State& next, const scene::PlacedScene& placed) const {
     if (next.views == state_.views) return std::nullopt;
     auto views = *next.views;
     for (auto& [name, view] : views) {
         const auto before = state_.views->find(name);
         if (before != state_.views->end() && before->second == view) continue;
-        const Camera pose = camera_of(view);
-        if (!is_valid_pose(pose, placed.bounds.radius()))
+        const scene::Camera pose = camera_of(view);
+        if (!scene::is_valid_pose(pose, placed.bounds.radius()))
             return Error{{},
                          code::out_of_range,
                          "'views." + name.substr(0, 40) +
                              "': eye and focus must be apart, and up neither zero nor along the view"};
-        view = view_state_of(with_orthogonal_up(pose));
+        view = view_state_of(scene::with_orthogonal_up(pose));
     }
     next.views.set(std::move(views));
     return std::nullopt;
 }
 
 std::optional<Error> Room::check_names(const protocol::State& next) const {
-    const auto unknown = [&](const std::optional<Id>& node,
+    const auto unknown = [&](const std::optional<scene::Id>& node,
                              const std::string& where) -> std::optional<Error> {
-        if (!node || scene_->scene->find_node(*node) != kNone) return std::nullopt;
+        if (!node || scene_->scene->find_node(*node) != scene::kNone) return std::nullopt;
         return Error{{}, code::unknown_node, where + ": there is no node " + std::to_string(*node)};
     };
     if (auto error = unknown(next.selection.node, "'selection.node'")) return error;

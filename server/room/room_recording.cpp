@@ -101,14 +101,14 @@ void Room::press_anew(const std::string& client) {
         record(client, message);
         apply({client, message}, payload);
     };
-    for (const Gestures::HeldKey& held : gestures_.held_keys()) {
-        const KeyInput input = held.input();
+    for (const navigation::Gestures::HeldKey& held : gestures_.held_keys()) {
+        const navigation::KeyInput input = held.input();
         protocol::Key key;
         key.key = input.key;
         key.code = input.code;
         again(key);
     }
-    for (const PointerInput& pressed : gestures_.pressed()) {
+    for (const navigation::PointerInput& pressed : gestures_.pressed()) {
         protocol::Pointer pointer;
         pointer.event = protocol::Pointer::Event::down;
         pointer.pointer_id = pressed.pointer;
@@ -117,7 +117,7 @@ void Room::press_anew(const std::string& client) {
         pointer.y = pressed.y;
         pointer.button = pressed.button;
         pointer.buttons = pressed.buttons;
-        const ModifierKeys& keys = pressed.modifiers;
+        const navigation::ModifierKeys& keys = pressed.modifiers;
         pointer.modifiers = {keys.ctrl, keys.shift, keys.alt, keys.meta};
         again(pointer);
     }

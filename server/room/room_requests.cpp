@@ -24,23 +24,24 @@ template void Room::answer_with(const Received&, const protocol::SceneList&);
 
 void Room::apply(const Received& received, const protocol::Navigate& navigate) {
     steer(received);
-    Camera moved = rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
-    moved = panned(moved, navigate.pan.x, navigate.pan.y);
-    move_camera(zoomed(moved, navigate.zoom, scene_->bounds.radius()));
+    scene::Camera moved =
+        navigation::rotated(camera(), navigate.rotate.x, navigate.rotate.y, state_.navigation.keep_upright);
+    moved = navigation::panned(moved, navigate.pan.x, navigate.pan.y);
+    move_camera(navigation::zoomed(moved, navigate.zoom, scene_->bounds.radius()));
     answer(received);
 }
 
 void Room::apply(const Received& received, const protocol::Fit& fit) {
-    Bounds bounds = scene_->bounds;
+    math::Bounds bounds = scene_->bounds;
     if (fit.node) {
-        const Index node = scene_->scene->find_node(*fit.node);
+        const scene::Index node = scene_->scene->find_node(*fit.node);
         const std::string name = "node " + std::to_string(*fit.node);
-        if (node == kNone) return reject(received, code::unknown_node, "there is no " + name);
-        bounds = subtree_bounds(*scene_, node);
+        if (node == scene::kNone) return reject(received, code::unknown_node, "there is no " + name);
+        bounds = scene::subtree_bounds(*scene_, node);
         if (bounds.empty()) return reject(received, code::failed, "nothing of " + name + " is to be seen");
     }
     steer(received);
-    move_camera(fitted(camera(), bounds, aspect()));
+    move_camera(navigation::fitted(camera(), bounds, aspect()));
     answer(received);
 }
 
@@ -49,10 +50,11 @@ void Room::apply(const Received& received, const protocol::Fit& fit) {
 namespace {
 
 /// The keyframes' cameras: each is laid over the one before, the first over `from`.
-tl::expected<std::vector<CameraKeyframe>, Error> keyframes_of(const protocol::Fly& fly, const Camera& from,
-                                                              const PlacedScene& placed) {
-    std::vector<CameraKeyframe> keyframes;
-    Camera before = from;
+tl::expected<std::vector<navigation::CameraKeyframe>, Error> keyframes_of(const protocol::Fly& fly,
+                                                                          const scene::Camera& from,
+                                                                          const scene::PlacedScene& placed) {
+    std::vector<navigation::CameraKeyframe> keyframes;
+    scene::Camera before = from;
     for (const protocol::Fly::Keyframe& keyframe : fly.keyframes) {
         auto laid = overlaid(before, keyframe.camera, placed,
                              "keyframes[" + std::to_string(keyframes.size()) + "].camera");
@@ -68,11 +70,11 @@ tl::expected<std::vector<CameraKeyframe>, Error> keyframes_of(const protocol::Fl
 void Room::apply(const Received& received, const protocol::Fly& fly) {
     auto keyframes = keyframes_of(fly, camera(), *scene_);
     if (!keyframes) return reject(received, keyframes.error().code.c_str(), keyframes.error().message);
-    const Camera before = camera();
+    const scene::Camera before = camera();
     steer(received);  // which may bring another size, and so another home
     if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
     if (!keyframes) return answer(received);  // whose poses do not fit to that: it stays there
-    flight_.emplace(InFlight{{camera(), *keyframes, static_cast<Easing>(fly.easing)},
+    flight_.emplace(InFlight{{camera(), *keyframes, static_cast<navigation::Easing>(fly.easing)},
                              received.client,
                              received.message.id.value_or(0),
                              time_,
@@ -96,7 +98,7 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
     renderer.show_selection = snapshot.renderer.show_selection.value_or(renderer.show_selection);
     accepted_ = true;
     if (!received.message.id) return;  // nobody could tell the picture from a frame
-    View view = view_of(state, scene_);
+    plan::View view = view_of(state, scene_);
     view.markers = visible_.markers;
     view.width = snapshot.width;
     view.height = snapshot.height;
@@ -109,7 +111,7 @@ void Room::apply(const Received& received, const protocol::Snapshot& snapshot) {
 }
 
 PictureOrder Room::order(int width, int height) {
-    View view = visible_;
+    plan::View view = visible_;
     view.width = width;
     view.height = height;
     PictureOrder order{{}, view, header_of(state_, view, view_size_)};
@@ -148,15 +150,16 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (!state) return tl::unexpected(state.error());
     auto nodes = node_states(*scene_->scene, state->nodes);
     if (!nodes) return tl::unexpected(nodes.error());
-    scene_ = std::make_shared<const PlacedScene>(place(scene_->scene, *std::move(nodes)));
+    scene_ = std::make_shared<const scene::PlacedScene>(scene::place(scene_->scene, *std::move(nodes)));
     view_size_ = header.view;
     at_home_ = header.at_home;
     state_ = *std::move(state);
     count_classes(state_, *scene_);
-    const std::optional<Id> node = state_.camera.node, selected = state_.selection.node;
-    const Index at = node ? scene_->scene->find_node(*node) : kNone;
-    state_.camera = at != kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
-    select(selected ? scene_->scene->find_node(*selected) : kNone);
+    const std::optional<scene::Id> node = state_.camera.node, selected = state_.selection.node;
+    const scene::Index at = node ? scene_->scene->find_node(*node) : scene::kNone;
+    state_.camera =
+        at != scene::kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
+    select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
     steering_ = Steering(state_.control.holder, state_.control.kept, time_);
     for (const protocol::LogHeader::Client& client : header.clients)
         clients_[client.client] = {client.role, client.wanted, client.name};
@@ -166,13 +169,13 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
         const auto keyframes = keyframes_of(flight->fly, camera_of(flight->from), *scene_);
         if (!keyframes) return tl::unexpected(keyframes.error());
         const SessionTime since(std::llround(flight->since * 1000));
-        flight_.emplace(
-            InFlight{{camera_of(flight->from), *keyframes, static_cast<Easing>(flight->fly.easing)},
-                     flight->client,
-                     flight->id,
-                     time_ - since,
-                     flight->from,
-                     flight->fly});
+        flight_.emplace(InFlight{
+            {camera_of(flight->from), *keyframes, static_cast<navigation::Easing>(flight->fly.easing)},
+            flight->client,
+            flight->id,
+            time_ - since,
+            flight->from,
+            flight->fly});
     }
     gestures_.restart(camera());
     update_visible();

@@ -13,87 +13,89 @@ using protocol::Error;
 
 namespace {
 
-std::optional<std::string> picture_of(const BackgroundData& data, const Scene& scene) {
+std::optional<std::string> picture_of(const scene::BackgroundData& data, const scene::Scene& scene) {
     if (data.cube_map) return (*data.cube_map)[0];
     const std::string& image = scene.material(data.material).image;
     return image.empty() ? std::nullopt : std::optional(image);
 }
 
-void add_backgrounds(const PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
+void add_backgrounds(const scene::PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
     auto items = *backgrounds.items;
-    Id first = -1;
+    scene::Id first = -1;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
-        const Node& node = placed.scene->nodes()[i];
-        const auto* data = std::get_if<BackgroundData>(&node.data);
+        const scene::Node& node = placed.scene->nodes()[i];
+        const auto* data = std::get_if<scene::BackgroundData>(&node.data);
         if (!data) continue;
         const glm::dvec4 color = glm::min(placed.scene->material(data->material).diffuse, glm::dvec4(1));
         items[std::to_string(node.id)] = {node.name, color, picture_of(*data, *placed.scene)};
-        if (is_shown(placed, static_cast<Index>(i)) && (first < 0 || node.id < first)) first = node.id;
+        if (scene::is_shown(placed, static_cast<scene::Index>(i)) && (first < 0 || node.id < first))
+            first = node.id;
     }
     backgrounds.items.set(std::move(items));
     if (first >= 0) backgrounds.active = std::to_string(first);
 }
 
-const char* name_of(LightData::Type type) {
+const char* name_of(scene::LightData::Type type) {
     switch (type) {
-        case LightData::Type::point:
+        case scene::LightData::Type::point:
             return "point";
-        case LightData::Type::directional:
+        case scene::LightData::Type::directional:
             return "directional";
-        case LightData::Type::spot:
+        case scene::LightData::Type::spot:
             return "spot";
     }
     return "";
 }
 
-void add_lights(const Scene& scene, protocol::LightsState& lights) {
+void add_lights(const scene::Scene& scene, protocol::LightsState& lights) {
     auto items = *lights.items;
     items["headlight"] = {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}};
-    for (const Node& node : scene.nodes())
-        if (const auto* data = std::get_if<LightData>(&node.data))
+    for (const scene::Node& node : scene.nodes())
+        if (const auto* data = std::get_if<scene::LightData>(&node.data))
             items[std::to_string(node.id)] = {node.name, name_of(data->type), data->color, data->attenuation};
     lights.items.set(std::move(items));
 }
 
-protocol::Shared<protocol::Names> camera_names(const Scene& scene) {
+protocol::Shared<protocol::Names> camera_names(const scene::Scene& scene) {
     protocol::Names names;
-    for (const Node& node : scene.nodes())
-        if (node.type == NodeType::camera) names[std::to_string(node.id)] = {node.name};
+    for (const scene::Node& node : scene.nodes())
+        if (node.type == scene::NodeType::camera) names[std::to_string(node.id)] = {node.name};
     return {std::make_shared<const protocol::Names>(std::move(names))};
 }
 
-protocol::Shared<protocol::Names> material_names(const Scene& scene) {
+protocol::Shared<protocol::Names> material_names(const scene::Scene& scene) {
     protocol::Names names;
-    for (const Material& material : scene.materials()) names[std::to_string(material.id)] = {material.name};
+    for (const scene::Material& material : scene.materials())
+        names[std::to_string(material.id)] = {material.name};
     return {std::make_shared<const protocol::Names>(std::move(names))};
 }
 
 /// A node by its id as a member's name; kNone where there is none.
-Index find_node(const Scene& scene, const std::string& key) {
-    Id id = -1;
+scene::Index find_node(const scene::Scene& scene, const std::string& key) {
+    scene::Id id = -1;
     const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), id);
     const bool canonical =
         error == std::errc() && end == key.data() + key.size() && std::to_string(id) == key;
-    return canonical ? scene.find_node(id) : kNone;
+    return canonical ? scene.find_node(id) : scene::kNone;
 }
 
-Index find_material(const Scene& scene, Id id) {
+scene::Index find_material(const scene::Scene& scene, scene::Id id) {
     const auto& materials = scene.materials();
     const auto found = std::find_if(materials.begin(), materials.end(),
-                                    [&](const Material& material) { return material.id == id; });
-    return found == materials.end() ? kNone : static_cast<Index>(found - materials.begin());
+                                    [&](const scene::Material& material) { return material.id == id; });
+    return found == materials.end() ? scene::kNone : static_cast<scene::Index>(found - materials.begin());
 }
 
 /// One node's override, checked and put into its state; what equals the file's is cleared.
-std::optional<Error> apply(protocol::NodeOverride& change, const Scene& scene, const Node& node,
-                           NodeState& state) {
+std::optional<Error> apply(protocol::NodeOverride& change, const scene::Scene& scene, const scene::Node& node,
+                           scene::NodeState& state) {
     const std::string path = "'nodes." + std::to_string(node.id) + ".";
     const auto use = [](auto& wanted, auto& value) {
         if (!wanted) return;
         if (value == static_cast<std::decay_t<decltype(value)>>(*wanted)) wanted.reset();
     };
     if (change.active_child) {
-        const bool is_switch = std::holds_alternative<SwitchData>(node.data);
+        const bool is_switch = std::holds_alternative<scene::SwitchData>(node.data);
         if (!is_switch || *change.active_child >= static_cast<int>(node.children.size()))
             return Error{{},
                          code::out_of_range,
@@ -102,12 +104,12 @@ std::optional<Error> apply(protocol::NodeOverride& change, const Scene& scene, c
                                               " children, counted from 0"
                                         : "the node is no switch")};
     }
-    Index material = state.material;
+    scene::Index material = state.material;
     if (change.material) {
-        if (!std::holds_alternative<GeometryData>(node.data))
+        if (!std::holds_alternative<scene::GeometryData>(node.data))
             return Error{{}, code::out_of_range, path + "material': the node has no geometry"};
         material = find_material(scene, *change.material);
-        if (material == kNone)
+        if (material == scene::kNone)
             return Error{{},
                          code::unknown_node,
                          path + "material': there is no material " + std::to_string(*change.material)};
@@ -130,9 +132,10 @@ std::optional<Error> apply(protocol::NodeOverride& change, const Scene& scene, c
 
 }  // namespace
 
-protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices) {
+protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
+                               std::vector<std::string> notices) {
     protocol::State state;
-    const Scene& scene = *placed.scene;
+    const scene::Scene& scene = *placed.scene;
     state.scene.value = std::make_shared<const protocol::SceneState>(
         protocol::SceneState{.name = scene.name(),
                              .nodes = scene.nodes().size(),
@@ -145,42 +148,43 @@ protocol::State starting_state(const PlacedScene& placed, double aspect, std::ve
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
     state.views.set("home", home_view(placed, aspect));
-    const Index node = first_camera_node(placed);
-    state.camera = node != kNone ? state_at_node(*camera_at(placed, node), placed, node)
-                                 : state_of(camera_of(state.views->at("home")), placed.bounds);
+    const scene::Index node = scene::first_camera_node(placed);
+    state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
+                                        : state_of(camera_of(state.views->at("home")), placed.bounds);
     add_lights(scene, state.lights);
     add_backgrounds(placed, state.backgrounds);
     count_classes(state, placed);
     return state;
 }
 
-void count_classes(protocol::State& state, const PlacedScene& placed) {
-    const ClassCounts counts = count_classes(placed);
+void count_classes(protocol::State& state, const scene::PlacedScene& placed) {
+    const plan::ClassCounts counts = plan::count_classes(placed);
     state.renderer.solid = counts.solid;
     state.renderer.transparent = counts.transparent;
     state.renderer.reflective = counts.reflective;
 }
 
-protocol::ViewState home_view(const PlacedScene& placed, double aspect) {
-    const Index node = first_camera_node(placed);
-    return view_state_of(node != kNone ? fitted(*camera_at(placed, node), placed.bounds, aspect)
-                                       : home_camera(placed.bounds, aspect));
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect) {
+    const scene::Index node = scene::first_camera_node(placed);
+    return view_state_of(node != scene::kNone
+                             ? navigation::fitted(*scene::camera_at(placed, node), placed.bounds, aspect)
+                             : navigation::home_camera(placed.bounds, aspect));
 }
 
-Camera camera_of(const protocol::CameraState& state) {
+scene::Camera camera_of(const protocol::CameraState& state) {
     return {state.eye, state.focus, state.up, state.center, state.fov};
 }
 
-Camera camera_of(const protocol::ViewState& view) {
+scene::Camera camera_of(const protocol::ViewState& view) {
     return {view.eye, view.focus, view.up, view.center, view.fov};
 }
 
-protocol::ViewState view_state_of(const Camera& camera) {
+protocol::ViewState view_state_of(const scene::Camera& camera) {
     return {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
 }
 
-protocol::CameraState state_of(const Camera& camera, const Bounds& bounds) {
-    const ClipRange range = fit_clip_range(camera, bounds);
+protocol::CameraState state_of(const scene::Camera& camera, const math::Bounds& bounds) {
+    const scene::ClipRange range = scene::fit_clip_range(camera, bounds);
     protocol::CameraState state;
     state.eye = camera.eye;
     state.focus = camera.focus;
@@ -192,56 +196,59 @@ protocol::CameraState state_of(const Camera& camera, const Bounds& bounds) {
     return state;
 }
 
-protocol::CameraState state_at_node(const Camera& camera, const PlacedScene& placed, Index node) {
+protocol::CameraState state_at_node(const scene::Camera& camera, const scene::PlacedScene& placed,
+                                    scene::Index node) {
     protocol::CameraState state = state_of(camera, placed.bounds);
-    const Node& camera_node = placed.scene->nodes()[static_cast<std::size_t>(node)];
+    const scene::Node& camera_node = placed.scene->nodes()[static_cast<std::size_t>(node)];
     state.node = camera_node.id;
     state.name = camera_node.name;
     return state;
 }
 
-tl::expected<Camera, Error> node_camera(const PlacedScene& placed, Id node, const std::string& what) {
-    const Index index = placed.scene->find_node(node);
-    if (index == kNone || placed.scene->nodes()[static_cast<std::size_t>(index)].type != NodeType::camera)
+tl::expected<scene::Camera, Error> node_camera(const scene::PlacedScene& placed, scene::Id node,
+                                               const std::string& what) {
+    const scene::Index index = placed.scene->find_node(node);
+    if (index == scene::kNone ||
+        placed.scene->nodes()[static_cast<std::size_t>(index)].type != scene::NodeType::camera)
         return tl::unexpected(
             Error{{}, code::unknown_node, what + ": there is no camera node " + std::to_string(node)});
-    const std::optional<Camera> camera = camera_at(placed, index);
+    const std::optional<scene::Camera> camera = scene::camera_at(placed, index);
     if (!camera)
         return tl::unexpected(
             Error{{}, code::failed, what + ": camera node " + std::to_string(node) + " sees nothing"});
     return *camera;
 }
 
-tl::expected<Camera, Error> overlaid(const Camera& base, const protocol::CameraOverlay& overlay,
-                                     const PlacedScene& placed, const std::string& what) {
-    Camera camera = base;
+tl::expected<scene::Camera, Error> overlaid(const scene::Camera& base, const protocol::CameraOverlay& overlay,
+                                            const scene::PlacedScene& placed, const std::string& what) {
+    scene::Camera camera = base;
     if (overlay.node) {
         auto at_node = node_camera(placed, *overlay.node, what + ".node");
         if (!at_node) return at_node;
         camera = *at_node;
     }
-    const Camera before = camera;
+    const scene::Camera before = camera;
     camera.eye = overlay.eye.value_or(camera.eye);
     camera.focus = overlay.focus.value_or(camera.focus);
     camera.up = overlay.up.value_or(camera.up);
     camera.center = overlay.center.value_or(camera.center);
     camera.fov = overlay.fov.value_or(camera.fov);
-    if (!overlay.up && (overlay.eye || overlay.focus)) camera = with_roll_of(before, camera);
-    if (!is_valid_pose(camera, placed.bounds.radius()))
+    if (!overlay.up && (overlay.eye || overlay.focus)) camera = scene::with_roll_of(before, camera);
+    if (!scene::is_valid_pose(camera, placed.bounds.radius()))
         return tl::unexpected(
             Error{{},
                   code::out_of_range,
                   what + ": eye and focus must be apart, and up neither zero nor along the view"});
-    return with_orthogonal_up(camera);
+    return scene::with_orthogonal_up(camera);
 }
 
-tl::expected<std::vector<NodeState>, Error> node_states(
-    const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
-    std::vector<NodeState> states = file_states(scene);
+tl::expected<std::vector<scene::NodeState>, Error> node_states(
+    const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
+    std::vector<scene::NodeState> states = scene::file_states(scene);
     auto changes = *overrides;
     for (auto& [key, change] : changes) {
-        const Index index = find_node(scene, key);
-        if (index == kNone)
+        const scene::Index index = find_node(scene, key);
+        if (index == scene::kNone)
             return tl::unexpected(
                 Error{{}, code::unknown_node, "'nodes': there is no node " + key.substr(0, 40)});
         const auto place = static_cast<std::size_t>(index);
@@ -256,24 +263,26 @@ tl::expected<std::vector<NodeState>, Error> node_states(
 namespace {
 
 /// The active one, if its subtree is; its colour is the state's.
-Background background_of(const protocol::BackgroundsState& backgrounds, const PlacedScene& placed) {
-    const Index node = find_node(*placed.scene, backgrounds.active);
-    if (!is_shown(placed, node)) return {glm::dvec3(backgrounds.color), kNone, {}};
-    const auto& data = std::get<BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
+plan::Background background_of(const protocol::BackgroundsState& backgrounds,
+                               const scene::PlacedScene& placed) {
+    const scene::Index node = find_node(*placed.scene, backgrounds.active);
+    if (!scene::is_shown(placed, node)) return {glm::dvec3(backgrounds.color), scene::kNone, {}};
+    const auto& data =
+        std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
     return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),
             placed.scene->material(data.material).texture, data.cube_textures};
 }
 
 }  // namespace
 
-std::vector<PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
-                                     const PlacedScene& placed) {
-    std::vector<PlacedMarker> result;
+std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
+                                           const scene::PlacedScene& placed) {
+    std::vector<plan::PlacedMarker> result;
     for (const auto& [name, marker] : markers) {
         glm::dvec3 point = marker.point;
         if (marker.node) {
-            const Index node = placed.scene->find_node(*marker.node);
-            if (!is_shown(placed, node)) continue;
+            const scene::Index node = placed.scene->find_node(*marker.node);
+            if (!scene::is_shown(placed, node)) continue;
             point = glm::dvec3(placed.world[static_cast<std::size_t>(node)] * glm::dvec4(point, 1));
         }
         const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
@@ -282,15 +291,15 @@ std::vector<PlacedMarker> markers_of(const std::map<std::string, protocol::Marke
     return result;
 }
 
-View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed) {
-    View view;
+plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::PlacedScene> placed) {
+    plan::View view;
     view.camera = camera_of(state.camera);
     const protocol::LightState& light = state.lights.items->at(state.lights.active);
-    if (const Index node = find_node(*placed->scene, state.lights.active); node != kNone)
-        view.light = light_of(*placed, node);
+    if (const scene::Index node = find_node(*placed->scene, state.lights.active); node != scene::kNone)
+        view.light = scene::light_of(*placed, node);
     view.light.color = light.color;
     view.light.attenuation = light.attenuation;
-    view.mode = static_cast<DrawMode>(state.renderer.mode);
+    view.mode = static_cast<plan::DrawMode>(state.renderer.mode);
     view.wireframe = state.renderer.wireframe;
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
@@ -299,20 +308,20 @@ View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> pl
     return view;
 }
 
-protocol::FrameHeader header_of(const protocol::State& state, const View& view,
+protocol::FrameHeader header_of(const protocol::State& state, const plan::View& view,
                                 const protocol::Resize& view_size) {
     protocol::FrameHeader header;
     header.camera.pose = state.camera;
     header.camera.pose.name.reset();  // of any length; the node's id says it
-    header.camera.view_matrix = view_from_world(view.camera);
-    header.camera.projection_matrix = clip_from_view(
+    header.camera.view_matrix = scene::view_from_world(view.camera);
+    header.camera.projection_matrix = scene::clip_from_view(
         view.camera, static_cast<double>(view.width) / view.height, {state.camera.near, state.camera.far});
     header.width = view.width;
     header.height = view.height;
     header.view = view_size;
     header.renderer = {state.renderer.mode, state.renderer.wireframe, state.renderer.show_selection};
     if (view.markers)
-        for (const PlacedMarker& marker : *view.markers) header.markers[marker.name] = marker.point;
+        for (const plan::PlacedMarker& marker : *view.markers) header.markers[marker.name] = marker.point;
     return header;
 }
 

@@ -10,42 +10,46 @@
 namespace vrut::server::room {
 
 /// The state that a scene starts with, its camera at home for a view of `aspect`.
-protocol::State starting_state(const PlacedScene& placed, double aspect, std::vector<std::string> notices);
+protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
+                               std::vector<std::string> notices);
 /// What `fit` gives at loading.
-protocol::ViewState home_view(const PlacedScene& placed, double aspect);
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect);
 
-Camera camera_of(const protocol::CameraState& state);
-Camera camera_of(const protocol::ViewState& view);
-protocol::ViewState view_state_of(const Camera& camera);
+scene::Camera camera_of(const protocol::CameraState& state);
+scene::Camera camera_of(const protocol::ViewState& view);
+protocol::ViewState view_state_of(const scene::Camera& camera);
 /// Near and far are refitted to the scene; the camera stands at no node.
-protocol::CameraState state_of(const Camera& camera, const Bounds& bounds);
+protocol::CameraState state_of(const scene::Camera& camera, const math::Bounds& bounds);
 /// The same at camera node `node`.
-protocol::CameraState state_at_node(const Camera& camera, const PlacedScene& placed, Index node);
+protocol::CameraState state_at_node(const scene::Camera& camera, const scene::PlacedScene& placed,
+                                    scene::Index node);
 
 /// The camera of a camera node where it is now, or what is wrong with `node`. `what` names the culprit.
-tl::expected<Camera, protocol::Error> node_camera(const PlacedScene& placed, Id node,
-                                                  const std::string& what);
+tl::expected<scene::Camera, protocol::Error> node_camera(const scene::PlacedScene& placed, scene::Id node,
+                                                         const std::string& what);
 /// `base` with the members of `overlay`, a valid pose with orthogonal up, or what is wrong; where `up` is not
 /// given the roll of `base` is kept.
-tl::expected<Camera, protocol::Error> overlaid(const Camera& base, const protocol::CameraOverlay& overlay,
-                                               const PlacedScene& placed, const std::string& what);
+tl::expected<scene::Camera, protocol::Error> overlaid(const scene::Camera& base,
+                                                      const protocol::CameraOverlay& overlay,
+                                                      const scene::PlacedScene& placed,
+                                                      const std::string& what);
 
 /// How many of its nodes are solid, transparent and reflective, into the state.
-void count_classes(protocol::State& state, const PlacedScene& placed);
+void count_classes(protocol::State& state, const scene::PlacedScene& placed);
 
 /// The states of a scene's nodes with `overrides`, or what is wrong with those. What equals the file's
 /// disappears from `overrides`.
-tl::expected<std::vector<NodeState>, protocol::Error> node_states(
-    const Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
+tl::expected<std::vector<scene::NodeState>, protocol::Error> node_states(
+    const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides);
 
 /// The signs of `markers`, in world space; of those whose node shows and that lie within the range of double.
-std::vector<PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
-                                     const PlacedScene& placed);
+std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
+                                           const scene::PlacedScene& placed);
 /// What of the state and the scene is to be seen, but for size, samples and marks. The background is the
 /// active one, if its subtree is active, else the plain colour.
-View view_of(const protocol::State& state, std::shared_ptr<const PlacedScene> placed);
+plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::PlacedScene> placed);
 /// What a picture says of itself, but for its number, revision, quality and times.
-protocol::FrameHeader header_of(const protocol::State& state, const View& view,
+protocol::FrameHeader header_of(const protocol::State& state, const plan::View& view,
                                 const protocol::Resize& view_size);
 
 }  // namespace vrut::server::room

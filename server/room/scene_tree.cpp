@@ -11,18 +11,20 @@ constexpr std::size_t kMostNodes = 500, kMostBytes = std::size_t{64} * 1024;  //
 constexpr int kMostVisited = 5'000;
 constexpr std::size_t kMostChoiceBytes = std::size_t{16} * 1024;  // of one switch
 
-const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_cast<std::size_t>(index)]; }
+const scene::Node& at(const scene::Scene& scene, scene::Index index) {
+    return scene.nodes()[static_cast<std::size_t>(index)];
+}
 
 /// A place in the walk below `top`, depth first, children by rising id.
 struct Walk {
-    const Scene& scene;
-    Index top = kNone;
+    const scene::Scene& scene;
+    scene::Index top = scene::kNone;
     int max_depth = 0;
-    Index node = kNone;  // kNone: at the end
+    scene::Index node = scene::kNone;  // kNone: at the end
     int depth = 0;
 
     void next() {
-        const Node& here = at(scene, node);
+        const scene::Node& here = at(scene, node);
         if (depth < max_depth && !here.children.empty()) {
             node = here.children.front();
             ++depth;
@@ -30,22 +32,22 @@ struct Walk {
         }
         for (; node != top; node = at(scene, node).parent, --depth) {
             const auto& siblings = at(scene, at(scene, node).parent).children;
-            const Id id = at(scene, node).id;
-            const auto after =
-                std::upper_bound(siblings.begin(), siblings.end(), id,
-                                 [&](Id wanted, Index sibling) { return wanted < at(scene, sibling).id; });
+            const scene::Id id = at(scene, node).id;
+            const auto after = std::upper_bound(
+                siblings.begin(), siblings.end(), id,
+                [&](scene::Id wanted, scene::Index sibling) { return wanted < at(scene, sibling).id; });
             if (after != siblings.end()) {
                 node = *after;
                 return;
             }
         }
-        node = kNone;
+        node = scene::kNone;
     }
 };
 
 /// How far `node` lies below `top`; none where it does not.
-std::optional<int> depth_below(const Scene& scene, Index top, Index node) {
-    for (int depth = 0; node != kNone; node = at(scene, node).parent, ++depth)
+std::optional<int> depth_below(const scene::Scene& scene, scene::Index top, scene::Index node) {
+    for (int depth = 0; node != scene::kNone; node = at(scene, node).parent, ++depth)
         if (node == top) return depth;
     return std::nullopt;
 }
@@ -57,19 +59,19 @@ bool holds(const std::string& name, const std::string& part) {
                        [](char a, char b) { return lower(a) == lower(b); }) != name.end();
 }
 
-bool is_wanted(const Node& node, const protocol::Tree& tree) {
+bool is_wanted(const scene::Node& node, const protocol::Tree& tree) {
     using Only = protocol::Tree::Only;
-    if (tree.only == Only::switches && node.type != NodeType::switch_) return false;
+    if (tree.only == Only::switches && node.type != scene::NodeType::switch_) return false;
     if (tree.only == Only::hinges && !node.hinge) return false;
     return tree.search.empty() || holds(node.name, tree.search);
 }
 
 /// The children's names; none where there are too many of them, or too much to read.
-std::optional<std::vector<std::string>> choices_of(const Scene& scene, const Node& node) {
+std::optional<std::vector<std::string>> choices_of(const scene::Scene& scene, const scene::Node& node) {
     if (node.children.size() > protocol::kMaxChoices) return std::nullopt;
     std::vector<std::string> names;
     std::size_t bytes = 0;
-    for (const Index child : node.children) {
+    for (const scene::Index child : node.children) {
         bytes += at(scene, child).name.size();
         if (bytes > kMostChoiceBytes) return std::nullopt;
         names.push_back(at(scene, child).name);
@@ -77,28 +79,28 @@ std::optional<std::vector<std::string>> choices_of(const Scene& scene, const Nod
     return names;
 }
 
-protocol::TreeNode describe(const PlacedScene& placed, Index index) {
-    const Scene& scene = *placed.scene;
-    const Node& node = at(scene, index);
-    const NodeState& state = placed.nodes[static_cast<std::size_t>(index)];
+protocol::TreeNode describe(const scene::PlacedScene& placed, scene::Index index) {
+    const scene::Scene& scene = *placed.scene;
+    const scene::Node& node = at(scene, index);
+    const scene::NodeState& state = placed.nodes[static_cast<std::size_t>(index)];
     protocol::TreeNode described;
     described.id = node.id;
     described.name = node.name;
-    described.type = name_of(node.type);
-    if (node.parent != kNone) described.parent = at(scene, node.parent).id;
+    described.type = scene::name_of(node.type);
+    if (node.parent != scene::kNone) described.parent = at(scene, node.parent).id;
     described.active = state.active;
     described.children = node.children.size();
     if (state.matrix != glm::dmat4(1)) described.matrix = state.matrix;
-    if (node.hinge) described.hinge = {unit_axis(*node.hinge), node.hinge->degrees, node.matrix};
-    if (const auto* data = std::get_if<SwitchData>(&node.data)) {
+    if (node.hinge) described.hinge = {scene::unit_axis(*node.hinge), node.hinge->degrees, node.matrix};
+    if (const auto* data = std::get_if<scene::SwitchData>(&node.data)) {
         described.active_child = data->active_child;
         described.choices = choices_of(scene, node);
     }
-    if (const auto* data = std::get_if<GeometryData>(&node.data)) {
-        if (data->geometry != kNone)
+    if (const auto* data = std::get_if<scene::GeometryData>(&node.data)) {
+        if (data->geometry != scene::kNone)
             described.triangles =
                 scene.geometries()[static_cast<std::size_t>(data->geometry)].triangles.size();
-        if (state.material != kNone)
+        if (state.material != scene::kNone)
             described.material = scene.materials()[static_cast<std::size_t>(state.material)].id;
     }
     return described;
@@ -112,22 +114,22 @@ std::size_t size_of(const protocol::TreeNode& node) {
     return bytes;
 }
 
-protocol::Error unknown(Id node, const std::string& why) {
+protocol::Error unknown(scene::Id node, const std::string& why) {
     return {{}, protocol::error_code::unknown_node, why + " " + std::to_string(node)};
 }
 
 }  // namespace
 
-tl::expected<protocol::TreePage, protocol::Error> tree_page(const PlacedScene& placed,
+tl::expected<protocol::TreePage, protocol::Error> tree_page(const scene::PlacedScene& placed,
                                                             const protocol::Tree& tree) {
-    const Scene& scene = *placed.scene;
-    const Index top = scene.find_node(tree.node.value_or(0));
-    if (top == kNone) return tl::unexpected(unknown(*tree.node, "there is no node"));
+    const scene::Scene& scene = *placed.scene;
+    const scene::Index top = scene.find_node(tree.node.value_or(0));
+    if (top == scene::kNone) return tl::unexpected(unknown(*tree.node, "there is no node"));
     const int all = std::numeric_limits<int>::max();
     Walk walk{scene, top, tree.depth.value_or(tree.search.empty() && !tree.only ? 1 : all), top};
     if (tree.after) {
-        const Index after = scene.find_node(*tree.after);
-        const auto depth = after == kNone ? std::nullopt : depth_below(scene, top, after);
+        const scene::Index after = scene.find_node(*tree.after);
+        const auto depth = after == scene::kNone ? std::nullopt : depth_below(scene, top, after);
         if (!depth || *depth > walk.max_depth)
             return tl::unexpected(unknown(*tree.after, "'after': there is no such node below:"));
         walk.node = after;
@@ -136,8 +138,8 @@ tl::expected<protocol::TreePage, protocol::Error> tree_page(const PlacedScene& p
     }
     protocol::TreePage page;
     std::size_t bytes = 0;
-    Index last = kNone;
-    for (int visited = 0; walk.node != kNone; walk.next(), ++visited) {
+    scene::Index last = scene::kNone;
+    for (int visited = 0; walk.node != scene::kNone; walk.next(), ++visited) {
         if (visited == kMostVisited || page.nodes.size() == kMostNodes || bytes > kMostBytes) {
             page.next = at(scene, last).id;
             break;

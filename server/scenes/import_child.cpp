@@ -68,9 +68,9 @@ void run_import_process(char** argv) try {
     const SandboxGaps gaps = enter_sandbox(argv[2]);
     if (gaps.files) report(kFilesOpen);
     if (gaps.system_calls) report(kCallsOpen);
-    PartsResult parts = read_scene_parts(argv[2], report);
+    io::PartsResult parts = io::read_scene_parts(argv[2], report);
     report(kReady);
-    serialize_parts(std::move(parts), write_all);
+    io::serialize_parts(std::move(parts), write_all);
     _exit(0);
 } catch (const std::bad_alloc&) {
     _exit(kOutOfMemory);

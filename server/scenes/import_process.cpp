@@ -163,7 +163,7 @@ std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20
 /// The reading of one file in a child process, as long as the object lives.
 class Import {
 public:
-    Import(const std::filesystem::path& path, const ReadProgress& progress, const ImportLimits& limits)
+    Import(const std::filesystem::path& path, const io::ReadProgress& progress, const ImportLimits& limits)
         : path_(path),
           progress_(progress),
           limits_(limits),
@@ -174,10 +174,12 @@ public:
         pipe_.in.close();
     }
 
-    PartsResult read() try {
-        const ByteSource source = [this](void* to, std::size_t size) { fill(static_cast<char*>(to), size); };
+    io::PartsResult read() try {
+        const io::ByteSource source = [this](void* to, std::size_t size) {
+            fill(static_cast<char*>(to), size);
+        };
         for (double report = 0; report != kReady; source(&report, sizeof report)) handle(report);
-        return deserialize_parts(source, limits_.bytes, path_.string());
+        return io::deserialize_parts(source, limits_.bytes, path_.string());
     } catch (const Fault& fault) {
         return tl::unexpected(path_.string() + ": " + fault.what());
     }
@@ -239,7 +241,7 @@ private:
     }
 
     const std::filesystem::path& path_;
-    const ReadProgress& progress_;
+    const io::ReadProgress& progress_;
     const ImportLimits limits_;
     const base::Clock::time_point end_;
     double fraction_ = 0;
@@ -270,13 +272,13 @@ std::string out_of_memory(const std::filesystem::path& path) {
     return path.string() + ": there is not enough memory for it" + kMemoryRemedy;
 }
 
-ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& progress,
-                        const std::optional<ImportLimits>& limits) try {
-    if (!has_foreign_reader(path)) return read_scene(path, progress);
+io::ReadResult import_scene(const std::filesystem::path& path, const io::ReadProgress& progress,
+                            const std::optional<ImportLimits>& limits) try {
+    if (!io::has_foreign_reader(path)) return io::read_scene(path, progress);
     Import reading(path, progress, limits ? *limits : import_limits(path));
     auto parts = reading.read();
     if (!parts) return tl::unexpected(parts.error());
-    return build_scene(*std::move(parts), path.string());  // while the child ends
+    return io::build_scene(*std::move(parts), path.string());  // while the child ends
 } catch (const std::bad_alloc&) {
     return tl::unexpected(out_of_memory(path));
 }

@@ -23,8 +23,8 @@ ImportLimits import_limits(const std::filesystem::path& path);
 /// As read_scene(), but what a foreign library reads is read by a child process, so that nothing which the
 /// file does to it ends this one. Throws what `progress` throws, the child being ended first, and
 /// std::system_error where no process can be started.
-ReadResult import_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
-                        const std::optional<ImportLimits>& limits = {});
+io::ReadResult import_scene(const std::filesystem::path& path, const io::ReadProgress& progress = {},
+                            const std::optional<ImportLimits>& limits = {});
 
 /// Says that there is not enough memory for the scene in `path`, and what to do.
 std::string out_of_memory(const std::filesystem::path& path);

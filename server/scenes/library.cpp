@@ -18,7 +18,7 @@ namespace vrut::server::scenes {
 namespace fs = std::filesystem;
 
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
-                                                  const ReadProgress& progress,
+                                                  const io::ReadProgress& progress,
                                                   const std::optional<ImportLimits>& limits) try {
     constexpr std::chrono::milliseconds kBetweenPolls{50};
     base::AbandonableTask<std::string> sum(
@@ -33,7 +33,7 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     loaded.sha256 = sum.get();
     if (progress) progress(1);
     loaded.notices = all_notices(*scene);
-    loaded.placed = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
     if (const std::size_t bytes = most_state_bytes(loaded); bytes > kMaxStateBytes)
         return tl::unexpected(path.string() + ": its cameras, lights, materials and backgrounds take " +
                               std::to_string(bytes) + " bytes in the state that clients get, and at most " +
@@ -65,7 +65,7 @@ tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) 
 /// What is opened is the link's target, which may have another ending.
 bool SceneLibrary::leads_to_scene(const std::string& link) const {
     const auto file = find(link);
-    return file && has_reader(*file);
+    return file && io::has_reader(*file);
 }
 
 std::vector<std::string> SceneLibrary::names() const {
@@ -80,13 +80,14 @@ std::vector<std::string> SceneLibrary::names() const {
             ++entries;
             const fs::path below = folders.front() / entry->path().filename();
             const std::string name = below.generic_string();
-            if (name.size() > protocol::kMaxSceneName || find_invalid_utf8(name) != std::string_view::npos)
+            if (name.size() > protocol::kMaxSceneName ||
+                vrut::base::find_invalid_utf8(name) != std::string_view::npos)
                 continue;  // no message can ask for it
             std::error_code ignored;
             const bool link = entry->is_symlink(ignored);
             if (!link && entry->is_directory(ignored))
                 folders.push_back(below);
-            else if (link ? leads_to_scene(name) : has_reader(below) && entry->is_regular_file(ignored))
+            else if (link ? leads_to_scene(name) : io::has_reader(below) && entry->is_regular_file(ignored))
                 names.push_back(name);
         }
     }

@@ -16,7 +16,7 @@ namespace vrut::server::scenes {
 /// Reads a scene file in a process of its own (import_scene()), or fails with one sentence. `name` is the
 /// name that the client asked for.
 tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& path, const std::string& name,
-                                                  const ReadProgress& progress = {},
+                                                  const io::ReadProgress& progress = {},
                                                   const std::optional<ImportLimits>& limits = {});
 
 /// The folder of scenes that clients may open.

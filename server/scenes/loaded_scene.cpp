@@ -6,9 +6,9 @@
 
 namespace vrut::server::scenes {
 
-std::vector<std::string> all_notices(const Scene& scene) {
+std::vector<std::string> all_notices(const scene::Scene& scene) {
     std::vector<std::string> notices = scene.notices();
-    for (std::string& notice : unsupported_features(scene)) notices.push_back(std::move(notice));
+    for (std::string& notice : plan::unsupported_features(scene)) notices.push_back(std::move(notice));
     return notices;
 }
 
@@ -24,10 +24,10 @@ std::size_t json_bytes(std::string_view text) {
     return bytes;
 }
 
-std::size_t bytes_of(const Node& node, const Scene& scene) {
-    if (node.type == NodeType::camera) return kNameBytes + json_bytes(node.name);
-    if (std::holds_alternative<LightData>(node.data)) return kLightBytes + json_bytes(node.name);
-    const auto* background = std::get_if<BackgroundData>(&node.data);
+std::size_t bytes_of(const scene::Node& node, const scene::Scene& scene) {
+    if (node.type == scene::NodeType::camera) return kNameBytes + json_bytes(node.name);
+    if (std::holds_alternative<scene::LightData>(node.data)) return kLightBytes + json_bytes(node.name);
+    const auto* background = std::get_if<scene::BackgroundData>(&node.data);
     if (!background) return 0;
     const std::string& image =
         background->cube_map ? background->cube_map->front() : scene.material(background->material).image;
@@ -37,10 +37,10 @@ std::size_t bytes_of(const Node& node, const Scene& scene) {
 }  // namespace
 
 std::size_t most_state_bytes(const LoadedScene& loaded) {
-    const Scene& scene = *loaded.placed->scene;
+    const scene::Scene& scene = *loaded.placed->scene;
     std::size_t bytes = 0;
-    for (const Node& node : scene.nodes()) bytes += bytes_of(node, scene);
-    for (const Material& material : scene.materials()) bytes += kNameBytes + json_bytes(material.name);
+    for (const scene::Node& node : scene.nodes()) bytes += bytes_of(node, scene);
+    for (const scene::Material& material : scene.materials()) bytes += kNameBytes + json_bytes(material.name);
     for (const std::string& notice : loaded.notices) bytes += json_bytes(notice) + 1;
     return bytes;
 }

@@ -14,12 +14,12 @@ namespace vrut::server::scenes {
 struct LoadedScene {
     std::string name;    ///< by which it was asked for
     std::string sha256;  ///< of its file, in hexadecimal
-    std::shared_ptr<const PlacedScene> placed;
+    std::shared_ptr<const scene::PlacedScene> placed;
     std::vector<std::string> notices;
 };
 
 /// What the reader reported about a scene, and which of its features are not drawn.
-std::vector<std::string> all_notices(const Scene& scene);
+std::vector<std::string> all_notices(const scene::Scene& scene);
 
 /// An upper bound of the bytes that cameras, lights, materials, backgrounds and notices take in `state`.
 std::size_t most_state_bytes(const LoadedScene& scene);

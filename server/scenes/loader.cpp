@@ -38,8 +38,8 @@ struct SceneLoader::Listener {
 namespace {
 
 /// Reports how far the reading is, until it is given up.
-ReadProgress progress_of(const std::string& name, std::function<void(SceneLoading)> report,
-                         const std::stop_token& stop) {
+io::ReadProgress progress_of(const std::string& name, std::function<void(SceneLoading)> report,
+                             const std::stop_token& stop) {
     return [name, report = std::move(report), stop, last = base::Clock::now()](double fraction) mutable {
         constexpr std::chrono::milliseconds kBetweenReports{100};
         if (stop.stop_requested()) throw Closing();
@@ -51,7 +51,7 @@ ReadProgress progress_of(const std::string& name, std::function<void(SceneLoadin
 
 /// Throws what `progress` throws, unless it is a std::exception.
 SceneLoaded load(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
-                 const ReadProgress& progress, const std::optional<ImportLimits>& limits) try {
+                 const io::ReadProgress& progress, const std::optional<ImportLimits>& limits) try {
     SceneLoaded loaded{name, load_scene(path, name, progress, limits)};
     progress(1);
     if (loaded.scene) loaded.levels = levels_of(loaded.scene->sha256, renderer);

@@ -59,7 +59,7 @@ double linear(double displayed) {
 
 /// The peer's: ambient 0.25, diffuse 0.75, specular 0.5, all of the file's colour, which it shows as it is;
 /// power 40.
-Material peers_material(Material material) {
+scene::Material peers_material(scene::Material material) {
     const glm::dvec3 color(linear(material.diffuse.r), linear(material.diffuse.g),
                            linear(material.diffuse.b));
     material.ambient = glm::dvec4(0.25 * color, 1);
@@ -71,39 +71,39 @@ Material peers_material(Material material) {
     return material;
 }
 
-std::shared_ptr<const PlacedScene> load(const std::string& file) {
-    auto parts = read_scene_parts(file);
+std::shared_ptr<const scene::PlacedScene> load(const std::string& file) {
+    auto parts = io::read_scene_parts(file);
     if (!parts) throw std::runtime_error(parts.error());
-    for (Material& material : parts->materials) material = peers_material(material);
-    auto scene = build_scene(*std::move(parts), file);
+    for (scene::Material& material : parts->materials) material = peers_material(material);
+    auto scene = io::build_scene(*std::move(parts), file);
     if (!scene) throw std::runtime_error(scene.error());
-    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
 /// Sixty steps around the model.
-Camera camera_at(int step) {
-    constexpr double kRise = 18 * kRadiansPerDegree, kRadius = 6.2;
+scene::Camera camera_at(int step) {
+    constexpr double kRise = 18 * scene::kRadiansPerDegree, kRadius = 6.2;
     const double turn = step * 2 * std::numbers::pi / 60;
-    Camera camera;
+    scene::Camera camera;
     camera.focus = {0, 0.6, 0};
     camera.eye = camera.focus + kRadius * glm::dvec3(std::cos(kRise) * std::cos(turn), std::sin(kRise),
                                                      std::cos(kRise) * std::sin(turn));
     camera.fov = 30;
-    return with_orthogonal_up(camera);
+    return scene::with_orthogonal_up(camera);
 }
 
 class Bench {
 public:
-    Bench(std::shared_ptr<const PlacedScene> scene, int width, int height, int steps)
+    Bench(std::shared_ptr<const scene::PlacedScene> scene, int width, int height, int steps)
         : width_(width), height_(height), steps_(steps) {
         view_.scene = std::move(scene);
         view_.background.color = {0.9, 0.92, 0.95};
         view_.light.headlight = false;
-        view_.light.type = LightData::Type::directional;
+        view_.light.type = scene::LightData::Type::directional;
         view_.light.direction = -glm::normalize(glm::dvec3(4, 8, 4.5));
     }
 
-    void make_levels() { view_.levels = std::make_shared<const DetailLevels>(view_.scene->scene); }
+    void make_levels() { view_.levels = std::make_shared<const mesh::DetailLevels>(view_.scene->scene); }
 
     /// In milliseconds, and as the server's quality of stills encodes it.
     double first_picture() {
@@ -112,13 +112,13 @@ public:
         return milliseconds_since(start);
     }
 
-    void use(const Methods& methods) { view_.methods = methods; }
+    void use(const plan::Methods& methods) { view_.methods = methods; }
 
     void frames(double detail, double scale, int quality) {
         std::vector<double> draw_ms, readback_ms, encode_ms, frame_ms, bytes, triangles;
         for (int step = -2; step < steps_; ++step) {
             const auto start = Clock::now();
-            const Image& image = draw(step, detail, scale);
+            const scene::Image& image = draw(step, detail, scale);
             const auto drawn = Clock::now();
             const std::size_t size = jpeg_.encode(image, quality, true).size();
             if (step < 0) continue;  // warming up
@@ -138,18 +138,18 @@ public:
         use({});
         double psnr = std::numeric_limits<double>::infinity(), share = 0;
         for (int step = 0; step < 60; step += 12) {
-            const Image every = draw(step, 0, 1);
-            const Difference off = difference(every, draw(step, detail, 1));
+            const scene::Image every = draw(step, 0, 1);
+            const compare::Difference off = compare::difference(every, draw(step, detail, 1));
             psnr = std::min(psnr, off.psnr());
             share = std::max(share, off.share_above(8));
         }
         std::cout << "psnr " << psnr << " above8 " << 100 * share << std::endl;
     }
 
-    void picture(const std::string& file) { write_file(file, encode_png(draw(7, 0, 1))); }
+    void picture(const std::string& file) { write_file(file, io::encode_png(draw(7, 0, 1))); }
 
 private:
-    const Image& draw(int step, double detail, double scale) {
+    const scene::Image& draw(int step, double detail, double scale) {
         view_.camera = camera_at(step);
         view_.detail = detail;
         view_.width = static_cast<int>(std::lround(width_ * scale));
@@ -160,18 +160,18 @@ private:
     }
 
     int width_, height_, steps_;
-    View view_;
-    Renderer renderer_;
+    plan::View view_;
+    renderer::Renderer renderer_;
     JpegEncoder jpeg_;
-    Image image_;
-    FrameStats stats_;
+    scene::Image image_;
+    plan::FrameStats stats_;
 };
 
-Methods methods_of(std::istream& words) {
-    Methods methods;
+plan::Methods methods_of(std::istream& words) {
+    plan::Methods methods;
     for (std::string word; words >> word;) {
-        if (word == "sorted") methods.transparency = Methods::Transparency::sorted;
-        if (word == "vertex") methods.light = Methods::Lighting::vertex;
+        if (word == "sorted") methods.transparency = plan::Methods::Transparency::sorted;
+        if (word == "vertex") methods.light = plan::Methods::Lighting::vertex;
     }
     return methods;
 }

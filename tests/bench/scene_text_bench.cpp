@@ -87,9 +87,9 @@ void convert(const std::string& from, const std::string& to) {
 }
 
 /// Vertices of a position and a normal, in float, and triangles of three indices.
-double drawn_megabytes(const Scene& scene) {
+double drawn_megabytes(const scene::Scene& scene) {
     double bytes = 0;
-    for (const Geometry& geometry : scene.geometries())
+    for (const scene::Geometry& geometry : scene.geometries())
         bytes += 24 * static_cast<double>(geometry.positions.size()) +
                  12 * static_cast<double>(geometry.triangles.size());
     return bytes / (1 << 20);
@@ -106,7 +106,7 @@ void measure(const Work& work) {
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     std::cout << "ms " << took.count() << " cpu " << processor_milliseconds() - cpu_before << " peak "
               << peak_megabytes() - before;
-    if constexpr (std::is_same_v<decltype(result), const Scene>)
+    if constexpr (std::is_same_v<decltype(result), const scene::Scene>)
         std::cout << " drawn " << drawn_megabytes(result) << " triangles " << result.triangle_count();
     std::cout << std::endl;
 }
@@ -126,8 +126,8 @@ bool import(const std::string& file) {
 void run(const std::vector<std::string>& words) {
     const std::string& file = words[1];
     if (words[0] == "convert" && words.size() == 3) return convert(file, words[2]);
-    if (words[0] == "ours") return measure([&] { return good(read_scene(file)); });
-    if (words[0] == "parts") return measure([&] { return good(read_vrut_file(file)).nodes.size(); });
+    if (words[0] == "ours") return measure([&] { return good(io::read_scene(file)); });
+    if (words[0] == "parts") return measure([&] { return good(io::read_vrut_file(file)).nodes.size(); });
     if (words[0] == "peer") return measure([&] { return import(file); });
     if (words[0] == "sum") return measure([&] { return sha256_of(file); });
     throw std::runtime_error("what is '" + words[0] + "'?");

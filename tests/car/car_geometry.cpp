@@ -10,7 +10,9 @@ namespace vrut {
 
 namespace {
 
-const Node& at(const Scene& scene, Index index) { return scene.nodes()[static_cast<std::size_t>(index)]; }
+const scene::Node& at(const scene::Scene& scene, scene::Index index) {
+    return scene.nodes()[static_cast<std::size_t>(index)];
+}
 
 std::array<std::array<unsigned, 2>, 3> edges_of(const glm::uvec3& t) {
     return {{{t.x, t.y}, {t.y, t.z}, {t.z, t.x}}};
@@ -18,20 +20,20 @@ std::array<std::array<unsigned, 2>, 3> edges_of(const glm::uvec3& t) {
 
 }  // namespace
 
-std::string path_of(const Scene& scene, Index node) {
+std::string path_of(const scene::Scene& scene, scene::Index node) {
     std::string path;
-    for (; at(scene, node).parent != kNone; node = at(scene, node).parent)
+    for (; at(scene, node).parent != scene::kNone; node = at(scene, node).parent)
         path = at(scene, node).name + (path.empty() ? "" : "/") + path;
     return path;
 }
 
-Index node_at(const Scene& scene, const std::string& path) {
+scene::Index node_at(const scene::Scene& scene, const std::string& path) {
     for (std::size_t i = 1; i < scene.nodes().size(); ++i)
-        if (path_of(scene, static_cast<Index>(i)) == path) return static_cast<Index>(i);
-    return kNone;
+        if (path_of(scene, static_cast<scene::Index>(i)) == path) return static_cast<scene::Index>(i);
+    return scene::kNone;
 }
 
-Surface welded(const std::vector<const Geometry*>& geometries) {
+Surface welded(const std::vector<const scene::Geometry*>& geometries) {
     Surface surface;
     std::map<std::tuple<double, double, double>, unsigned> known;
     const auto corner = [&](const glm::dvec3& p) {
@@ -40,7 +42,7 @@ Surface welded(const std::vector<const Geometry*>& geometries) {
         if (is_new) surface.points.push_back(p);
         return found->second;
     };
-    for (const Geometry* geometry : geometries)
+    for (const scene::Geometry* geometry : geometries)
         for (const glm::uvec3& t : geometry->triangles)
             surface.triangles.emplace_back(corner(geometry->positions[t.x]), corner(geometry->positions[t.y]),
                                            corner(geometry->positions[t.z]));

@@ -9,16 +9,16 @@
 namespace vrut {
 
 /// Names from below the root, as "Body/Doors/Front left".
-std::string path_of(const Scene& scene, Index node);
+std::string path_of(const scene::Scene& scene, scene::Index node);
 /// kNone where there is none.
-Index node_at(const Scene& scene, const std::string& path);
+scene::Index node_at(const scene::Scene& scene, const std::string& path);
 
 /// A surface whose corners are one where their positions are the same to the last bit.
 struct Surface {
     std::vector<glm::dvec3> points;
     std::vector<glm::uvec3> triangles;
 };
-Surface welded(const std::vector<const Geometry*>& geometries);
+Surface welded(const std::vector<const scene::Geometry*>& geometries);
 
 /// What a closed, oriented surface does not have.
 struct OpenEdges {

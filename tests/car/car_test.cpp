@@ -18,11 +18,11 @@ using namespace vrut;
 
 namespace {
 
-const Scene& car(const std::string& level) {
-    static std::map<std::string, Scene> cars;
+const scene::Scene& car(const std::string& level) {
+    static std::map<std::string, scene::Scene> cars;
     auto found = cars.find(level);
     if (found == cars.end()) {
-        auto scene = read_scene(VRUT_CARS "/" + level + ".vrut");
+        auto scene = io::read_scene(VRUT_CARS "/" + level + ".vrut");
         REQUIRE_MESSAGE(scene, scene.error());
         found = cars.emplace(level, *std::move(scene)).first;
     }
@@ -31,20 +31,21 @@ const Scene& car(const std::string& level) {
 
 struct CarPart {
     std::string path;  ///< of the first node that has it
-    const Node* node = nullptr;
-    const Geometry* geometry = nullptr;
-    const Material* material = nullptr;
-    Index index = kNone;
+    const scene::Node* node = nullptr;
+    const scene::Geometry* geometry = nullptr;
+    const scene::Material* material = nullptr;
+    scene::Index index = scene::kNone;
 };
 
 /// Each geometry once.
-std::vector<CarPart> parts_of(const Scene& scene) {
+std::vector<CarPart> parts_of(const scene::Scene& scene) {
     std::vector<CarPart> parts;
-    std::set<Index> seen;
+    std::set<scene::Index> seen;
     for (std::size_t i = 0; i < scene.nodes().size(); ++i) {
-        const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
-        if (data == nullptr || data->geometry == kNone || !seen.insert(data->geometry).second) continue;
-        parts.push_back({path_of(scene, static_cast<Index>(i)), &scene.nodes()[i],
+        const auto* data = std::get_if<scene::GeometryData>(&scene.nodes()[i].data);
+        if (data == nullptr || data->geometry == scene::kNone || !seen.insert(data->geometry).second)
+            continue;
+        parts.push_back({path_of(scene, static_cast<scene::Index>(i)), &scene.nodes()[i],
                          &scene.geometries()[static_cast<std::size_t>(data->geometry)],
                          &scene.material(data->material), data->geometry});
     }
@@ -57,14 +58,14 @@ std::string text_of(const glm::dvec3& p) {
     return text.data();
 }
 
-glm::dvec3 cross_of(const Geometry& geometry, const glm::uvec3& t) {
+glm::dvec3 cross_of(const scene::Geometry& geometry, const glm::uvec3& t) {
     return glm::cross(geometry.positions[t.y] - geometry.positions[t.x],
                       geometry.positions[t.z] - geometry.positions[t.x]);
 }
 
 double degrees_between(const glm::dvec3& a, const glm::dvec3& b) {
     return std::acos(std::clamp(glm::dot(glm::normalize(a), glm::normalize(b)), -1.0, 1.0)) /
-           kRadiansPerDegree;
+           scene::kRadiansPerDegree;
 }
 
 /// Sheets that are looked at from one side only, and lie in a plane.
@@ -82,27 +83,27 @@ bool is_sheet(const std::string& path) {
 
 /// Trim without a back, pipes that end in others, panes of an outer and an inner sheet, lenses: no opening of
 /// theirs is seen (pictures.test.js).
-bool may_be_open(const Scene& scene, const CarPart& part) {
+bool may_be_open(const scene::Scene& scene, const CarPart& part) {
     return !part.path.starts_with("Body/") || part.path.find("/Trim/") != std::string::npos ||
            scene.is_transparent(*part.material);
 }
 
 /// What closes a panel from behind: "X liner" beside "X", be X a switch of paints. kNone where it has none.
-Index liner_of(const Scene& scene, const CarPart& part) {
+scene::Index liner_of(const scene::Scene& scene, const CarPart& part) {
     for (std::string path = part.path; !path.empty(); path.resize(path.find_last_of('/'))) {
-        if (const Index node = node_at(scene, path + " liner"); node != kNone) return node;
+        if (const scene::Index node = node_at(scene, path + " liner"); node != scene::kNone) return node;
         if (path.find('/') == std::string::npos) break;
     }
-    return kNone;
+    return scene::kNone;
 }
 
-const Geometry* geometry_at(const Scene& scene, Index node) {
-    if (node == kNone) return nullptr;
-    const auto* data = std::get_if<GeometryData>(&scene.nodes()[static_cast<std::size_t>(node)].data);
+const scene::Geometry* geometry_at(const scene::Scene& scene, scene::Index node) {
+    if (node == scene::kNone) return nullptr;
+    const auto* data = std::get_if<scene::GeometryData>(&scene.nodes()[static_cast<std::size_t>(node)].data);
     return data == nullptr ? nullptr : &scene.geometries()[static_cast<std::size_t>(data->geometry)];
 }
 
-glm::dvec3 area_of(const Geometry& geometry) {
+glm::dvec3 area_of(const scene::Geometry& geometry) {
     glm::dvec3 area(0);
     for (const glm::uvec3& t : geometry.triangles) area += cross_of(geometry, t) / 2.0;
     return area;
@@ -111,17 +112,18 @@ glm::dvec3 area_of(const Geometry& geometry) {
 const std::vector<std::string> kLevels{"car-20k", "car"};
 
 /// How far what is at and below a node reaches in a direction, with the node opened by its hinge.
-double reach_of(const Scene& scene, Index top, double part, const glm::dvec3& direction) {
-    std::vector<NodeState> states = file_states(scene);
+double reach_of(const scene::Scene& scene, scene::Index top, double part, const glm::dvec3& direction) {
+    std::vector<scene::NodeState> states = scene::file_states(scene);
     const auto place = static_cast<std::size_t>(top);
-    const Hinge& hinge = *scene.nodes()[place].hinge;
-    states[place].matrix =
-        glm::rotate(states[place].matrix, part * hinge.degrees * kRadiansPerDegree, unit_axis(hinge));
-    const std::vector<glm::dmat4> world = world_matrices(scene, states);
-    const std::vector<bool> below = subtree(scene, top);
+    const scene::Hinge& hinge = *scene.nodes()[place].hinge;
+    states[place].matrix = glm::rotate(states[place].matrix, part * hinge.degrees * scene::kRadiansPerDegree,
+                                       scene::unit_axis(hinge));
+    const std::vector<glm::dmat4> world = scene::world_matrices(scene, states);
+    const std::vector<bool> below = scene::subtree(scene, top);
     double reach = -1e9;
     for (std::size_t i = 0; i < world.size(); ++i) {
-        const Geometry* geometry = below[i] ? geometry_at(scene, static_cast<Index>(i)) : nullptr;
+        const scene::Geometry* geometry =
+            below[i] ? geometry_at(scene, static_cast<scene::Index>(i)) : nullptr;
         if (geometry == nullptr) continue;
         for (const glm::dvec3& position : geometry->positions)
             reach = std::max(reach, glm::dot(direction, glm::dvec3(world[i] * glm::dvec4(position, 1))));
@@ -137,7 +139,7 @@ TEST_CASE(
         for (const CarPart& part : parts_of(car(level))) {
             CAPTURE(level);
             CAPTURE(part.path);
-            const Geometry& geometry = *part.geometry;
+            const scene::Geometry& geometry = *part.geometry;
             CHECK(!geometry.triangles.empty());
             CHECK(geometry.normals.size() == geometry.positions.size());
             std::set<std::array<std::array<double, 3>, 3>> known;
@@ -174,7 +176,7 @@ TEST_CASE("every corner's normal is on the front side of its triangles") {
         for (const CarPart& part : parts_of(car(level))) {
             CAPTURE(level);
             CAPTURE(part.path);
-            const Geometry& geometry = *part.geometry;
+            const scene::Geometry& geometry = *part.geometry;
             int beyond = 0;
             double worst = 0, area = 0;
             glm::dvec3 where(0);
@@ -204,10 +206,11 @@ TEST_CASE(
                 continue;
             CAPTURE(level);
             CAPTURE(part.path);
-            std::vector<const Geometry*> halves{part.geometry};
-            const Index liner = liner_of(car(level), part);
+            std::vector<const scene::Geometry*> halves{part.geometry};
+            const scene::Index liner = liner_of(car(level), part);
             if (geometry_at(car(level), liner) != nullptr) halves.push_back(geometry_at(car(level), liner));
-            const bool left_out = liner != kNone && halves.size() == 1;  // where there are few triangles
+            const bool left_out =
+                liner != scene::kNone && halves.size() == 1;  // where there are few triangles
             const Surface surface = welded(halves);
             const OpenEdges edges = open_edges(surface);
             CHECK_MESSAGE(edges.crowded == 0, "at " << text_of(edges.at));
@@ -222,12 +225,12 @@ TEST_CASE(
 TEST_CASE("each window is a sheet outside and one inside") {
     for (const std::string& level : kLevels) {
         CAPTURE(level);
-        const Scene& scene = car(level);
+        const scene::Scene& scene = car(level);
         int panes = 0;
         for (const CarPart& part : parts_of(scene)) {
             if (!part.material->name.starts_with("Glass") || part.path.ends_with(" inside")) continue;
             CAPTURE(part.path);
-            const Geometry* inside = geometry_at(scene, node_at(scene, part.path + " inside"));
+            const scene::Geometry* inside = geometry_at(scene, node_at(scene, part.path + " inside"));
             REQUIRE(inside != nullptr);
             const glm::dvec3 out = area_of(*part.geometry), in = area_of(*inside);
             CHECK(degrees_between(out, -in) < 2);
@@ -241,7 +244,7 @@ TEST_CASE("each window is a sheet outside and one inside") {
 TEST_CASE("sheets are flat, and so are the mirrors, and nothing else is a mirror") {
     for (const std::string& level : kLevels) {
         CAPTURE(level);
-        const Scene& scene = car(level);
+        const scene::Scene& scene = car(level);
         int sheets = 0, mirrors = 0;
         for (const CarPart& part : parts_of(scene)) {
             CAPTURE(part.path);
@@ -249,8 +252,8 @@ TEST_CASE("sheets are flat, and so are the mirrors, and nothing else is a mirror
                 ++sheets;
                 CHECK(unevenness(welded({part.geometry})) < 1e-6);
             }
-            const auto* data = std::get_if<GeometryData>(&part.node->data);
-            const bool mirror = is_mirror(scene, part.index, data->material);
+            const auto* data = std::get_if<scene::GeometryData>(&part.node->data);
+            const bool mirror = plan::is_mirror(scene, part.index, data->material);
             // A mirror costs a drawing of all that it shows.
             CHECK(mirror == (part.material->reflectivity > 0.5 && part.material->name.starts_with("Mirror")));
             mirrors += mirror;
@@ -264,12 +267,12 @@ TEST_CASE("sheets are flat, and so are the mirrors, and nothing else is a mirror
 TEST_CASE("every node has a path of its own") {
     for (const std::string& level : kLevels) {
         CAPTURE(level);
-        const Scene& scene = car(level);
+        const scene::Scene& scene = car(level);
         std::set<std::string> paths;
         for (std::size_t i = 1; i < scene.nodes().size(); ++i) {
             CHECK(!scene.nodes()[i].name.empty());
             CHECK(scene.nodes()[i].name.find('/') == std::string::npos);
-            const std::string path = path_of(scene, static_cast<Index>(i));
+            const std::string path = path_of(scene, static_cast<scene::Index>(i));
             CHECK_MESSAGE(paths.insert(path).second, path << " is there twice");
         }
     }
@@ -337,7 +340,7 @@ TEST_CASE("what a presenter would ask for is there") {
     }
     for (const std::string& level : kLevels)
         for (const std::string& path : wanted)
-            CHECK_MESSAGE(node_at(car(level), path) != kNone, level << ": " << path);
+            CHECK_MESSAGE(node_at(car(level), path) != scene::kNone, level << ": " << path);
 }
 
 TEST_CASE("doors, bonnet and boot lid open outwards by their hinges, and nothing else has one") {
@@ -355,17 +358,17 @@ TEST_CASE("doors, bonnet and boot lid open outwards by their hinges, and nothing
                                   {"Body/Boot lid", {1, 0, 0}, back, 0.4}};
     for (const std::string& level : kLevels) {
         CAPTURE(level);
-        const Scene& scene = car(level);
-        CHECK(std::count_if(scene.nodes().begin(), scene.nodes().end(), [](const Node& node) {
+        const scene::Scene& scene = car(level);
+        CHECK(std::count_if(scene.nodes().begin(), scene.nodes().end(), [](const scene::Node& node) {
                   return node.hinge.has_value();
               }) == static_cast<long>(all.size()));
         for (const Hinged& hinged : all) {
             CAPTURE(hinged.path);
-            const Index index = node_at(scene, hinged.path);
-            REQUIRE(index != kNone);
-            const Node& node = scene.nodes()[static_cast<std::size_t>(index)];
+            const scene::Index index = node_at(scene, hinged.path);
+            REQUIRE(index != scene::kNone);
+            const scene::Node& node = scene.nodes()[static_cast<std::size_t>(index)];
             REQUIRE(node.hinge);
-            CHECK(unit_axis(*node.hinge) == hinged.axis);
+            CHECK(scene::unit_axis(*node.hinge) == hinged.axis);
             double reach = reach_of(scene, index, 0, hinged.outwards);
             const double closed = reach;
             for (const double part : {0.25, 0.5, 0.75, 1.0}) {  // further at every step
@@ -379,13 +382,13 @@ TEST_CASE("doors, bonnet and boot lid open outwards by their hinges, and nothing
 }
 
 TEST_CASE("what turns has its origin where it turns, and a matrix that leaves its size") {
-    const Scene& scene = car("car-20k");
+    const scene::Scene& scene = car("car-20k");
     for (const std::string path :
          {"Body/Doors/Front left", "Body/Doors/Front right", "Body/Doors/Rear left", "Body/Doors/Rear right",
           "Body/Bonnet", "Body/Boot lid", "Wheels/Front left", "Wheels/Rear right", "Interior/Steering"}) {
         CAPTURE(path);
-        const Index index = node_at(scene, path);
-        REQUIRE(index != kNone);
+        const scene::Index index = node_at(scene, path);
+        REQUIRE(index != scene::kNone);
         const glm::dmat3 axes(scene.nodes()[static_cast<std::size_t>(index)].matrix);
         CHECK(std::abs(glm::determinant(axes) - 1) < 1e-5);
         for (int k = 0; k < 3; ++k) CHECK(std::abs(glm::length(axes[k]) - 1) < 1e-5);

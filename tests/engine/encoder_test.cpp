@@ -15,8 +15,8 @@ using namespace vrut::server::engine;
 namespace {
 
 /// Which hardly any encoder makes smaller. It repeats itself.
-Image noise(int width, int height) {
-    Image image;
+scene::Image noise(int width, int height) {
+    scene::Image image;
     image.resize(width, height);
     const auto piece = image.rgba.begin() + (1 << 20);
     std::generate(image.rgba.begin(), piece, [random = std::minstd_rand()]() mutable {

@@ -262,7 +262,7 @@ TEST_CASE("a picture that cannot be drawn is told, and ends nothing") {
     std::atomic<bool> broken{false};
     const FrameRendererFactory factory = [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
+        renderer.step = [&, step = renderer.step](plan::RenderJob& rendering) {
             if (broken) throw std::runtime_error("the table of colours is gone");
             return step(rendering);
         };
@@ -287,7 +287,7 @@ TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
     std::atomic<bool> broken{false};
     const FrameRendererFactory factory = [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
+        renderer.step = [&, step = renderer.step](plan::RenderJob& rendering) {
             const bool whole = step(rendering);
             if (whole && broken) rendering.image.resize(0, 0);  // no encoder takes that
             return whole;
@@ -311,7 +311,7 @@ TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
 TEST_CASE("if the last refinement cannot be encoded, who comes later sees the one before it") {
     const FrameRendererFactory factory = [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
+        renderer.step = [&, step = renderer.step](plan::RenderJob& rendering) {
             const bool whole = step(rendering);
             if (whole && rendering.view.samples == server::engine::kRefinedSamples.back())
                 rendering.image.resize(0, 0);

@@ -16,8 +16,8 @@ using namespace vrut::server::engine;
 namespace {
 
 /// Lower half red, upper half blue.
-Image two_halves(int width, int height) {
-    Image image;
+scene::Image two_halves(int width, int height) {
+    scene::Image image;
     image.resize(width, height);
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         const bool low = i < image.rgba.size() / 2;
@@ -43,8 +43,8 @@ std::vector<std::uint8_t> decode_jpeg(const std::vector<std::uint8_t>& jpeg, int
 }  // namespace
 
 TEST_CASE("a PNG is exact, opaque and upright") {
-    const Image image = two_halves(5, 4);
-    const std::vector<std::uint8_t> png = encode_png(image);
+    const scene::Image image = two_halves(5, 4);
+    const std::vector<std::uint8_t> png = io::encode_png(image);
     png_image header{};
     header.version = PNG_IMAGE_VERSION;
     REQUIRE(png_image_begin_read_from_memory(&header, png.data(), png.size()));
@@ -60,7 +60,7 @@ TEST_CASE("a PNG is exact, opaque and upright") {
 }
 
 TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in it") {
-    const Image image = two_halves(64, 48);
+    const scene::Image image = two_halves(64, 48);
     for (const bool subsampled : {false, true}) {
         std::vector<std::uint8_t> jpeg = JpegEncoder().encode(image, 90, subsampled);
         const auto comment = protocol::comment_segment("{\"frame\":1}");
@@ -77,15 +77,15 @@ TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in 
 }
 
 TEST_CASE("a picture without pixels is no JPEG, and that is said") {
-    CHECK_THROWS_WITH(JpegEncoder().encode(Image{}, 90, false),
+    CHECK_THROWS_WITH(JpegEncoder().encode(scene::Image{}, 90, false),
                       "a picture of 0 x 0 pixels cannot be encoded as JPEG");
 }
 
 TEST_CASE("one pixel, and a line of them, can be encoded") {
     for (const auto& [width, height] : {std::pair{1, 1}, {1, 8192}, {8192, 1}}) {
-        const Image image = two_halves(width, height);
+        const scene::Image image = two_halves(width, height);
         CHECK(JpegEncoder().encode(image, 75, true).size() > 100);
-        CHECK(encode_png(image).size() > 50);
+        CHECK(io::encode_png(image).size() > 50);
     }
 }
 

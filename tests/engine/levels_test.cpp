@@ -30,8 +30,8 @@ constexpr const char *kScene = "ab12", *kRenderer = "a renderer that waits";
 FrameRendererFactory renderer_that_waits(const std::atomic<double>& whole_ms) {
     return [&whole_ms] {
         FrameRenderer renderer{kRenderer, false, 16384, {}};
-        renderer.step = [&whole_ms](RenderJob& rendering) {
-            const View& view = rendering.view;
+        renderer.step = [&whole_ms](plan::RenderJob& rendering) {
+            const plan::View& view = rendering.view;
             rendering.stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
             std::this_thread::sleep_for(
                 std::chrono::duration<double, std::milli>(rendering.stats.render_ms / view.samples));

@@ -39,12 +39,12 @@ public:
             }
             ++made;
             FrameRenderer renderer = FakeRenderer{.takes = 2ms}.factory()();
-            renderer.step = [this, step = renderer.step](RenderJob& rendering) {
+            renderer.step = [this, step = renderer.step](plan::RenderJob& rendering) {
                 const bool whole = step(rendering);
                 const bool second = whole || rendering.samples > 1;
                 if (rendering.view.height == resets_at_height || (second && resets.exchange(false))) {
                     rendering.image.rgba.assign(rendering.image.rgba.size(), 0xEE);
-                    throw ContextLost("the driver has reset itself");
+                    throw vrut::base::ContextLost("the driver has reset itself");
                 }
                 return whole;
             };

@@ -20,7 +20,7 @@ struct Turns {
 FrameRendererFactory renderer_of_turns(Turns& turns) {
     return [&] {
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
+        renderer.step = [&, step = renderer.step](plan::RenderJob& rendering) {
             const int width = rendering.view.width;
             if (width >= kOther && !turns.small_is_drawn) {
                 turns.begun |= width == kLarge ? 1 : 2;

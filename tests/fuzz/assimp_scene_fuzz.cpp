@@ -14,9 +14,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         std::filesystem::temp_directory_path() /
         ("vrut-fuzz-" + std::to_string(getpid()) + (bytes.starts_with("glTF") ? ".glb" : ".gltf"));
     std::ofstream(path, std::ios::binary) << bytes;
-    auto parts = vrut::read_assimp_scene(path, vrut::AssimpFormat::gltf);
-    auto scene = parts ? vrut::build_scene(*std::move(parts), "fuzz.gltf") : tl::unexpected(parts.error());
-    if (scene) vrut::place(*std::move(scene));
+    auto parts = vrut::io::read_assimp_scene(path, vrut::io::AssimpFormat::gltf);
+    auto scene =
+        parts ? vrut::io::build_scene(*std::move(parts), "fuzz.gltf") : tl::unexpected(parts.error());
+    if (scene) vrut::scene::place(*std::move(scene));
     std::filesystem::remove(path);
     return 0;
 }

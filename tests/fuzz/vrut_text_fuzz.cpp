@@ -10,12 +10,12 @@ using namespace vrut;
 
 namespace {
 
-ReadResult read(std::string_view text) { return read_vrut_text(text, "fuzz.vrut"); }
+vrut::io::ReadResult read(std::string_view text) { return vrut::io::read_vrut_text(text, "fuzz.vrut"); }
 
-std::string written(const ReadResult& scene) {
+std::string written(const vrut::io::ReadResult& scene) {
     if (!scene) return scene.error();
     std::ostringstream out;
-    write_vrut_text(*scene, out);
+    vrut::io::write_vrut_text(*scene, out);
     return out.str();
 }
 
@@ -30,11 +30,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     auto scene = read(text);
     const std::string once = written(scene);
     if (scene) check(written(read(once)) == once);
-    if (size % 16 == 0 && size < kChunkBytes) {
+    if (size % 16 == 0 && size < vrut::io::kChunkBytes) {
         // The same where the second chunk begins in the middle of it.
-        const std::string space(kChunkBytes - size / 2, ' ');
+        const std::string space(vrut::io::kChunkBytes - size / 2, ' ');
         check(written(read(space + std::string(text))) == once);
     }
-    if (scene) place(*std::move(scene));
+    if (scene) vrut::scene::place(*std::move(scene));
     return 0;
 }

@@ -30,19 +30,19 @@ constexpr double kShareBeyond = 1e-4;
 
 /// A surface that a pixel shows something of.
 struct SeenSurface {
-    Tracer::VisibleHit layer;
-    SurfaceInteraction interaction;
+    reference::Tracer::VisibleHit layer;
+    reference::SurfaceInteraction interaction;
     glm::dvec3 face{0};  ///< normal of the triangle's plane
 };
 using SurfaceStack = std::vector<SeenSurface>;
 
-SurfaceStack stack_at(const Tracer& tracer, const glm::dvec2& raster) {
+SurfaceStack stack_at(const reference::Tracer& tracer, const glm::dvec2& raster) {
     SurfaceStack stack;
-    for (const Tracer::VisibleHit& layer : tracer.hits_at(raster)) {
-        const TracedInstance& part = tracer.parts()[layer.hit.part];
+    for (const reference::Tracer::VisibleHit& layer : tracer.hits_at(raster)) {
+        const reference::TracedInstance& part = tracer.parts()[layer.hit.part];
         const glm::uvec3& at = part.geometry->triangles[layer.hit.triangle];
         const glm::dvec3& a = part.positions[at.x];
-        stack.push_back({layer, interaction_of(part, layer.hit, layer.ray),
+        stack.push_back({layer, reference::interaction_of(part, layer.hit, layer.ray),
                          glm::normalize(glm::cross(part.positions[at.y] - a, part.positions[at.z] - a))});
     }
     return stack;
@@ -84,7 +84,7 @@ bool is_interior(const SurfaceStack* stack, int width) {
     return true;
 }
 
-bool is_one_node(const Index* node, int width) {
+bool is_one_node(const scene::Index* node, int width) {
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
             if (node[dy * width + dx] != *node) return false;
@@ -103,13 +103,14 @@ void for_each_row(int rows, const std::function<void(int)>& work) {
 }
 
 /// Texels in the longer side of a pixel.
-double texels(const Image& image, const std::array<glm::dvec2, 2>& change) {
+double texels(const scene::Image& image, const std::array<glm::dvec2, 2>& change) {
     const glm::dvec2 size(image.width, image.height);
     return std::max(glm::length(change[0] * size), glm::length(change[1] * size));
 }
 
 /// The same of a cube map, seen in a direction that changes so.
-double texels(const Image& side, const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) {
+double texels(const scene::Image& side, const glm::dvec3& direction,
+              const std::array<glm::dvec3, 2>& change) {
     const glm::dvec3 size = glm::abs(direction);
     const double largest = std::max({size.x, size.y, size.z});
     return side.width / 2.0 * std::max(glm::length(change[0]), glm::length(change[1])) / (largest * largest);
@@ -117,14 +118,15 @@ double texels(const Image& side, const glm::dvec3& direction, const std::array<g
 
 PixelClass filtered(double texels) { return texels > 1 ? PixelClass::minified : PixelClass::magnified; }
 
-const Image& image_of(const View& view, Index texture) {
+const scene::Image& image_of(const plan::View& view, scene::Index texture) {
     return view.scene->scene->textures()[static_cast<std::size_t>(texture)].image;
 }
 
-PixelClass kind_of_surface(const View& view, const TracedInstance& part, const SeenSurface& seen) {
+PixelClass kind_of_surface(const plan::View& view, const reference::TracedInstance& part,
+                           const SeenSurface& seen) {
     PixelClass kind = part.transparent ? PixelClass::glass : PixelClass::opaque;
     if (part.mirror || seen.layer.reflected) kind = std::max(kind, PixelClass::mirror);
-    if (part.material->texture != kNone)
+    if (part.material->texture != scene::kNone)
         kind = std::max(kind,
                         filtered(texels(image_of(view, part.material->texture), seen.interaction.duv_dxy)));
     if (part.material->reflectivity > 0 && !part.mirror && view.background.cube_map) {
@@ -134,28 +136,29 @@ PixelClass kind_of_surface(const View& view, const TracedInstance& part, const S
             change[i] = glm::reflect(seen.layer.ray.ddirection_dxy[i], n) -
                         2.0 * (glm::dot(d, seen.interaction.dn_dxy[i]) * n +
                                glm::dot(d, n) * seen.interaction.dn_dxy[i]);
-        const Image& side = image_of(view, view.background.cube_map->front());
+        const scene::Image& side = image_of(view, view.background.cube_map->front());
         kind = std::max(kind, filtered(texels(side, glm::reflect(d, n), change)));
     }
     return kind;
 }
 
-PixelClass kind_of_background(const View& view, const Tracer& tracer, const glm::dvec2& raster) {
+PixelClass kind_of_background(const plan::View& view, const reference::Tracer& tracer,
+                              const glm::dvec2& raster) {
     if (!view.scene) return PixelClass::opaque;
     if (view.background.cube_map) {
         const auto ray = tracer.generate_ray(raster);
         return filtered(
             texels(image_of(view, view.background.cube_map->front()), ray.direction, ray.ddirection_dxy));
     }
-    if (view.background.texture == kNone) return PixelClass::opaque;
+    if (view.background.texture == scene::kNone) return PixelClass::opaque;
     return filtered(texels(image_of(view, view.background.texture),
                            {glm::dvec2(1.0 / view.width, 0), glm::dvec2(0, 1.0 / view.height)}));
 }
 
-PixelClass kind_of(const View& view, const Tracer& tracer, const glm::dvec2& raster,
+PixelClass kind_of(const plan::View& view, const reference::Tracer& tracer, const glm::dvec2& raster,
                    const SurfaceStack& stack) {
     const auto opaque = [&](const SeenSurface& seen) {
-        const TracedInstance& part = tracer.parts()[seen.layer.hit.part];
+        const reference::TracedInstance& part = tracer.parts()[seen.layer.hit.part];
         return !part.transparent && !(part.mirror && !seen.layer.reflected);
     };
     const bool to_the_background = std::none_of(stack.begin(), stack.end(), opaque);
@@ -166,7 +169,7 @@ PixelClass kind_of(const View& view, const Tracer& tracer, const glm::dvec2& ras
 }
 
 /// How far the pixel drawn at `at` is off, of 255.
-glm::dvec3 off_at(const JudgedReference& judge, const Image& drawn, std::size_t at) {
+glm::dvec3 off_at(const JudgedReference& judge, const scene::Image& drawn, std::size_t at) {
     const std::uint8_t* rgba = &drawn.rgba[4 * at];
     return glm::dvec3(rgba[0], rgba[1], rgba[2]) - 255.0 * judge.picture.color[at];
 }
@@ -175,7 +178,7 @@ double largest(const glm::dvec3& off) {
     return std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)});
 }
 
-std::string describe(const JudgedReference& judge, const Image& drawn, std::size_t at) {
+std::string describe(const JudgedReference& judge, const scene::Image& drawn, std::size_t at) {
     const int x = static_cast<int>(at) % drawn.width, row = static_cast<int>(at) / drawn.width;
     const glm::dvec3 expected = 255.0 * judge.picture.color[at];
     const std::uint8_t* rgba = &drawn.rgba[4 * at];
@@ -193,9 +196,9 @@ std::string name_of(PixelClass kind) {
     return names[static_cast<std::size_t>(kind)];
 }
 
-JudgedReference judge_of(const View& view) {
-    JudgedReference judge{trace(view), {}, {}, {}};
-    const Tracer tracer(view);
+JudgedReference judge_of(const plan::View& view) {
+    JudgedReference judge{reference::trace(view), {}, {}, {}};
+    const reference::Tracer tracer(view);
     const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
     std::vector<SurfaceStack> stacks(width * height);
     judge.kind.resize(stacks.size());
@@ -221,15 +224,15 @@ JudgedReference judge_of(const View& view) {
 double interior_share(const JudgedReference& judge) {
     double surfaces = 0, interior = 0;
     for (std::size_t i = 0; i < judge.picture.node.size(); ++i) {
-        if (judge.picture.node[i] == kNone) continue;
+        if (judge.picture.node[i] == scene::kNone) continue;
         ++surfaces;
         if (judge.interior[i]) ++interior;
     }
     return interior / surfaces;
 }
 
-Agreement agreement(const JudgedReference& judge, const Image& drawn, const std::vector<bool>& hidden,
-                    const std::vector<Id>& nodes, const std::vector<Id>& expected) {
+Agreement agreement(const JudgedReference& judge, const scene::Image& drawn, const std::vector<bool>& hidden,
+                    const std::vector<scene::Id>& nodes, const std::vector<scene::Id>& expected) {
     Agreement result;
     result.pixels = static_cast<int>(judge.picture.color.size());
     for (std::size_t i = 0; i < judge.picture.color.size(); ++i) {

@@ -17,7 +17,7 @@ std::string name_of(PixelClass kind);
 
 /// A picture that drawings are judged by.
 struct JudgedReference {
-    ReferenceImage picture;
+    reference::ReferenceImage picture;
     std::vector<PixelClass> kind;  ///< of each pixel
     /// Where the pixel and those around it show the same surfaces, through glass and in mirrors too, without
     /// an outline, a crease or a seam between them.
@@ -25,7 +25,7 @@ struct JudgedReference {
     /// Where the pixel and those around it show one node in front.
     std::vector<bool> one_node;
 };
-JudgedReference judge_of(const View& view);
+JudgedReference judge_of(const plan::View& view);
 /// Of the pixels that show a surface, the share that is interior.
 double interior_share(const JudgedReference& judge);
 
@@ -47,8 +47,8 @@ struct Agreement {
 
 /// `nodes` are the ids drawn at each pixel, -1 for none, and `expected` those of the judge; pixels in
 /// `hidden` are passed over where colours are compared.
-Agreement agreement(const JudgedReference& judge, const Image& drawn, const std::vector<bool>& hidden,
-                    const std::vector<Id>& nodes, const std::vector<Id>& expected);
+Agreement agreement(const JudgedReference& judge, const scene::Image& drawn, const std::vector<bool>& hidden,
+                    const std::vector<scene::Id>& nodes, const std::vector<scene::Id>& expected);
 
 /// What of it is not as it must be; empty where all is well.
 std::string violations(const Agreement& agreement);

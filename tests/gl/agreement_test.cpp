@@ -29,56 +29,59 @@ std::vector<fs::path> teaching_scenes() {
 }
 
 /// As it starts, but under the scene's own light where it has one.
-View view_of_file(const fs::path& path, int width, int height) {
-    auto scene = read_scene(path);
+plan::View view_of_file(const fs::path& path, int width, int height) {
+    auto scene = io::read_scene(path);
     REQUIRE_MESSAGE(scene, scene.error());
-    View view;
-    view.scene = std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    plan::View view;
+    view.scene = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
     view.width = width;
     view.height = height;
-    const PlacedScene& placed = *view.scene;
+    const scene::PlacedScene& placed = *view.scene;
     const auto& nodes = placed.scene->nodes();
-    view.camera = home_camera(placed.bounds, static_cast<double>(width) / height);
-    if (const Index camera = first_camera_node(placed); camera != kNone)
-        view.camera = *camera_at(placed, camera);
+    view.camera = navigation::home_camera(placed.bounds, static_cast<double>(width) / height);
+    if (const scene::Index camera = scene::first_camera_node(placed); camera != scene::kNone)
+        view.camera = *scene::camera_at(placed, camera);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const auto node = static_cast<Index>(i);
-        if (std::holds_alternative<LightData>(nodes[i].data)) view.light = light_of(placed, node);
-        if (const auto* data = std::get_if<BackgroundData>(&nodes[i].data)) {
-            const Material& material = placed.scene->material(data->material);
+        const auto node = static_cast<scene::Index>(i);
+        if (std::holds_alternative<scene::LightData>(nodes[i].data))
+            view.light = scene::light_of(placed, node);
+        if (const auto* data = std::get_if<scene::BackgroundData>(&nodes[i].data)) {
+            const scene::Material& material = placed.scene->material(data->material);
             view.background = {glm::dvec3(material.diffuse), material.texture, data->cube_textures};
         }
     }
     return view;
 }
 
-std::vector<Id> ids_of(const View& view, const std::vector<Index>& nodes, Id divisor) {
-    std::vector<Id> ids;
+std::vector<scene::Id> ids_of(const plan::View& view, const std::vector<scene::Index>& nodes,
+                              scene::Id divisor) {
+    std::vector<scene::Id> ids;
     ids.reserve(nodes.size());
-    for (const Index node : nodes)
-        ids.push_back(
-            node == kNone ? -1 : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id / divisor);
+    for (const scene::Index node : nodes)
+        ids.push_back(node == scene::kNone
+                          ? -1
+                          : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id / divisor);
     return ids;
 }
 
 /// Where the stylized drawing may have edges, which the reference leaves out.
-std::vector<bool> edges_of(RendererFixture& studio, View view) {
+std::vector<bool> edges_of(RendererFixture& studio, plan::View view) {
     const std::size_t pixels = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
     std::vector<bool> edges(pixels);
-    if (view.mode == DrawMode::realistic) return edges;
+    if (view.mode == plan::DrawMode::realistic) return edges;
     view.wireframe = true;
     view.background = {};
-    const Image image = studio.draw(view.scene, view);
+    const scene::Image image = studio.draw(view.scene, view);
     for (std::size_t i = 0; i < pixels; ++i)
         edges[i] = glm::ivec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) !=
-                   bytes_of(kDefaultBackground);
+                   bytes_of(plan::kDefaultBackground);
     return edges;
 }
 
 /// Draws a variant of the scene that is judged. All numbers are printed where VRUT_AGREEMENT is set.
 void check_drawing(RendererFixture& studio, const std::string& what, const SceneVariant& variant,
-                   const JudgedReference& judge, const std::vector<Id>& expected) {
-    const std::vector<Index> nodes = studio.renderer().node_ids(variant.view);
+                   const JudgedReference& judge, const std::vector<scene::Id>& expected) {
+    const std::vector<scene::Index> nodes = studio.renderer().node_ids(variant.view);
     const Agreement result =
         agreement(judge, studio.draw(variant.view.scene, variant.view), edges_of(studio, variant.view),
                   ids_of(variant.view, nodes, variant.ids), expected);
@@ -88,16 +91,17 @@ void check_drawing(RendererFixture& studio, const std::string& what, const Scene
 }
 
 /// Draws the scene as it is and in all its variants, each in both modes, against one reference.
-void check_agreement(RendererFixture& studio, const std::string& name, View view) {
-    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
+void check_agreement(RendererFixture& studio, const std::string& name, plan::View view) {
+    for (const plan::DrawMode mode : {plan::DrawMode::realistic, plan::DrawMode::stylized}) {
         view.mode = mode;
         const JudgedReference judge = judge_of(view);
         CHECK_MESSAGE(interior_share(judge) > kLeastInterior, name);
-        const std::vector<Id> expected = ids_of(view, judge.picture.node, 1);
+        const std::vector<scene::Id> expected = ids_of(view, judge.picture.node, 1);
         std::vector<SceneVariant> variants = variants_of(view);
         variants.insert(variants.begin(), {"as it is", view});
         for (const SceneVariant& variant : variants)
-            check_drawing(studio, name + (mode == DrawMode::stylized ? ", stylized, " : ", ") + variant.name,
+            check_drawing(studio,
+                          name + (mode == plan::DrawMode::stylized ? ", stylized, " : ", ") + variant.name,
                           variant, judge, expected);
     }
 }
@@ -105,20 +109,20 @@ void check_agreement(RendererFixture& studio, const std::string& name, View view
 }  // namespace
 
 TEST_CASE("a drawing that is off is told") {
-    const View view = view_of_file(VRUT_SCENES "/teaching/materials.vrut", 160, 120);
+    const plan::View view = view_of_file(VRUT_SCENES "/teaching/materials.vrut", 160, 120);
     const JudgedReference judge = judge_of(view);
-    const std::vector<Id> ids = ids_of(view, judge.picture.node, 1);
+    const std::vector<scene::Id> ids = ids_of(view, judge.picture.node, 1);
     const std::vector<bool> nothing(ids.size());
-    const Image right = image_of(judge.picture);
+    const scene::Image right = reference::image_of(judge.picture);
     CHECK(violations(agreement(judge, right, nothing, ids, ids)).empty());
 
     const auto at = static_cast<std::size_t>(std::find(judge.interior.begin(), judge.interior.end(), true) -
                                              judge.interior.begin());
-    Image wrong = right;
+    scene::Image wrong = right;
     for (std::size_t i = 0; i < 4; ++i) wrong.rgba[4 * (at + i)] -= 2;
     CHECK_FALSE(violations(agreement(judge, wrong, nothing, ids, ids)).empty());
 
-    std::vector<Id> others = ids;
+    std::vector<scene::Id> others = ids;
     others[at] = 77;
     CHECK(violations(agreement(judge, right, nothing, others, ids)).empty());
     others[at + 1] = others[at + 2] = 77;
@@ -149,7 +153,7 @@ TEST_CASE("models of other programs are drawn as the reference has them") {
          {"bmw_m6/bmw_m6.glb", "hatchback/hatchback/meshes/hatchback.obj", "jeep/2013_ASCII/jeep1.fbx",
           "jeep/2013_BINARY/jeep1.fbx", "racing/vehicle-motorcycle.glb", "racing/vehicle-truck-green.glb",
           "racing/vehicle-truck-red.glb"}) {
-        const View view = view_of_file(fs::path(models) / file, 640, 400);
+        const plan::View view = view_of_file(fs::path(models) / file, 640, 400);
         const JudgedReference judge = judge_of(view);
         check_drawing(studio, file, {"as it is", view}, judge, ids_of(view, judge.picture.node, 1));
     }

@@ -5,41 +5,49 @@ using namespace vrut;
 
 namespace {
 
-std::array<Image, 6> six(int size, Image (*make)(int, int, unsigned) = noise) {
-    std::array<Image, 6> images;
+std::array<scene::Image, 6> six(int size, scene::Image (*make)(int, int, unsigned) = noise) {
+    std::array<scene::Image, 6> images;
     for (unsigned i = 0; i < 6; ++i) images[i] = make(size, size, 10 * (i + 1));
     return images;
 }
 
 /// The parts before backgrounds that `view` is given to show.
-std::shared_ptr<const PlacedScene> scene_with(const std::vector<Image>& images,
-                                              const std::vector<Part>& given = {}) {
-    SceneParts parts;
-    for (const Image& image : images) parts.textures.push_back({"background.png", image, false});
+std::shared_ptr<const scene::PlacedScene> scene_with(const std::vector<scene::Image>& images,
+                                                     const std::vector<Part>& given = {}) {
+    scene::SceneParts parts;
+    for (const scene::Image& image : images) parts.textures.push_back({"background.png", image, false});
     for (const Part& part : given) {
-        const auto index = static_cast<Index>(parts.geometries.size());
+        const auto index = static_cast<scene::Index>(parts.geometries.size());
         parts.materials.push_back(part.material);
         parts.geometries.push_back(part.geometry);
-        parts.nodes.push_back(
-            {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{index, index}},
-             0});
+        parts.nodes.push_back({scene::Node{part.id,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           part.matrix,
+                                           scene::GeometryData{index, index}},
+                               0});
     }
-    return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    return std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
 }
 
-View before_picture(View view) {
+plan::View before_picture(plan::View view) {
     view.background.texture = 0;
     return view;
 }
 
-View in_panorama(View view) {
+plan::View in_panorama(plan::View view) {
     view.background.cube_map = {0, 1, 2, 3, 4, 5};
     return view;
 }
 
-std::vector<Image> listed(const std::array<Image, 6>& images) { return {images.begin(), images.end()}; }
+std::vector<scene::Image> listed(const std::array<scene::Image, 6>& images) {
+    return {images.begin(), images.end()};
+}
 
-TextureMismatch check_picture(const Image& image, const View& view, RendererFixture& studio) {
+TextureMismatch check_picture(const scene::Image& image, const plan::View& view, RendererFixture& studio) {
     const ExpectedTexture texture(image);
     const double w = view.width, h = view.height;
     return deviation(studio.draw(scene_with({image}), before_picture(view)), [&](double x, double y) {
@@ -47,7 +55,7 @@ TextureMismatch check_picture(const Image& image, const View& view, RendererFixt
     });
 }
 
-TextureMismatch check_environment(const std::array<Image, 6>& images, const View& view,
+TextureMismatch check_environment(const std::array<scene::Image, 6>& images, const plan::View& view,
                                   RendererFixture& studio) {
     const ExpectedEnvironment panorama(images);
     return deviation(studio.draw(scene_with(listed(images)), in_panorama(view)), [&](double x, double y) {
@@ -57,12 +65,12 @@ TextureMismatch check_environment(const std::array<Image, 6>& images, const View
     });
 }
 
-View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int width, int height) {
-    View view;
+plan::View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int width, int height) {
+    plan::View view;
     view.camera.eye = {0, 0, 0};
     view.camera.focus = direction;
     view.camera.up = up;
-    view.camera = with_orthogonal_up(view.camera);
+    view.camera = scene::with_orthogonal_up(view.camera);
     view.camera.fov = fov;
     view.width = width;
     view.height = height;
@@ -73,8 +81,8 @@ View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int 
 
 TEST_CASE("a background picture fills the view, upright") {
     RendererFixture studio;
-    const Image image = noise(48, 32);
-    View view = view_from({1, 2, 3});
+    const scene::Image image = noise(48, 32);
+    plan::View view = view_from({1, 2, 3});
     view.width = image.width;
     view.height = image.height;
     CHECK(studio.draw(scene_with({image}), before_picture(view)).rgba == image.rgba);
@@ -88,7 +96,7 @@ TEST_CASE("a background picture is stretched, its edges clamped, and filtered") 
             CAPTURE(size.x);
             CAPTURE(size.y);
             CAPTURE(picture.x);
-            View view = view_from({1, 2, 3});
+            plan::View view = view_from({1, 2, 3});
             view.width = picture.x;
             view.height = picture.y;
             const TextureMismatch off = check_picture(noise(size.x, size.y), view, studio);
@@ -98,11 +106,11 @@ TEST_CASE("a background picture is stretched, its edges clamped, and filtered") 
 
 TEST_CASE("each picture of a panorama is what a camera with 90 degrees sees") {
     RendererFixture studio;
-    const std::array<Image, 6> images = six(32);
+    const std::array<scene::Image, 6> images = six(32);
     for (std::size_t i = 0; i < 6; ++i) {
         CAPTURE(i);
         const auto& [view, up] = ExpectedEnvironment::kFaces[i];
-        const Image found =
+        const scene::Image found =
             studio.draw(scene_with(listed(images)), in_panorama(looking(view, up, 90, 32, 32)));
         CHECK(deviation(found, [&](double x, double y) {
                   return glm::dvec3(pixel_of(images[i], static_cast<int>(x), static_cast<int>(y))) / 255.0;
@@ -121,7 +129,7 @@ TEST_CASE("a panorama is filtered across its edges and corners") {
                     CAPTURE(x);
                     CAPTURE(y);
                     CAPTURE(z);
-                    const View view = looking({x, y, z}, {0.1, 1, 0.2}, 40, 48, 48);
+                    const plan::View view = looking({x, y, z}, {0.1, 1, 0.2}, 40, 48, 48);
                     const TextureMismatch off = check_environment(six(size), view, studio);
                     CHECK_MESSAGE(off.worst <= 2, off.where);
                 }
@@ -139,7 +147,7 @@ TEST_CASE("a panorama is minified by the pixel's longer side, in any direction")
                 CAPTURE(size);
                 CAPTURE(fov);
                 CAPTURE(direction.x);
-                const View view = looking(direction, {0.1, 1, 0.2}, fov, 96, 64);
+                const plan::View view = looking(direction, {0.1, 1, 0.2}, fov, 96, 64);
                 const TextureMismatch off = check_environment(six(size), view, studio);
                 CHECK(off.rms <= 1);
                 CHECK_MESSAGE(off.worst <= 3, off.where);
@@ -148,13 +156,13 @@ TEST_CASE("a panorama is minified by the pixel's longer side, in any direction")
 
 TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
     RendererFixture studio;
-    View view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 60, 96, 64));
+    plan::View view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 60, 96, 64));
     const auto scene = scene_with(listed(six(16, cloudy)));
-    const Image at_origin = studio.draw(scene, view);
+    const scene::Image at_origin = studio.draw(scene, view);
     view.camera.eye += glm::dvec3(128, -512, 64);
     view.camera.focus += glm::dvec3(128, -512, 64);
     view.background.texture = 2;
-    const Image elsewhere = studio.draw(scene, view);
+    const scene::Image elsewhere = studio.draw(scene, view);
     CHECK(deviation(elsewhere, [&](double x, double y) {
               return glm::dvec3(pixel_of(at_origin, static_cast<int>(x), static_cast<int>(y))) / 255.0;
           }).worst <= 1);
@@ -162,25 +170,34 @@ TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
 
 TEST_CASE("the samples of a pixel see the background where they see what stands before it") {
     RendererFixture studio;
-    const Image image = noise(48, 32);
-    View view = pixel_view(96, 64);
+    const scene::Image image = noise(48, 32);
+    plan::View view = pixel_view(96, 64);
     view.light.headlight = false;
-    view.light.type = LightData::Type::directional;
+    view.light.type = scene::LightData::Type::directional;
     // A board that fills the view with the same picture.
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.textures = {{"board.png", image, false}};
     parts.geometries = {rectangle(-96, -64, 192, 128, view)};
     for (const glm::dvec3& position : parts.geometries[0].positions)
         parts.geometries[0].texcoords.emplace_back(glm::dvec2(position) / glm::dvec2(96, 64) + 0.5);
     parts.materials.resize(1);
     parts.materials[0].texture = 0;
-    parts.nodes = {{Node{1, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, 0}}, 0}};
-    const auto board = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    parts.nodes = {{scene::Node{1,
+                                {},
+                                scene::NodeType::geometry,
+                                scene::kNone,
+                                {},
+                                true,
+                                glm::dmat4(1),
+                                scene::GeometryData{0, 0}},
+                    0}};
+    const auto board =
+        std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
     for (const int samples : {1, 3, 5}) {
         CAPTURE(samples);
         view.samples = samples;
-        const Image wanted = studio.draw(board, view),
-                    found = studio.draw(scene_with({image}), before_picture(view));
+        const scene::Image wanted = studio.draw(board, view),
+                           found = studio.draw(scene_with({image}), before_picture(view));
         const TextureMismatch off = deviation(found, [&](double x, double y) -> std::optional<glm::dvec3> {
             if (x < 2 || x > 94 || y < 2 || y > 62) return std::nullopt;  // clamped there, not repeated
             return glm::dvec3(pixel_of(wanted, static_cast<int>(x), static_cast<int>(y))) / 255.0;
@@ -190,9 +207,9 @@ TEST_CASE("the samples of a pixel see the background where they see what stands 
     // A panorama against the same seen with more pixels, each of whose centres is a sample.
     view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 80, 32, 32));
     const auto scene = scene_with(listed(six(16)));
-    View fine = view;
+    plan::View fine = view;
     fine.width = fine.height = 32 * 8;
-    const Image finer = studio.draw(scene, fine);
+    const scene::Image finer = studio.draw(scene, fine);
     view.samples = 64;
     const TextureMismatch off = deviation(studio.draw(scene, view), [&](double x, double y) {
         glm::dvec3 sum(0);
@@ -209,18 +226,18 @@ TEST_CASE("backgrounds stand behind everything and cost one pass where they are 
     RendererFixture studio;
     const std::vector<Part> parts{{1, quad(0.01), material_of({0.5, 0.6, 0.7}), moved_by({0, 0, 4.9})},
                                   {2, quad(400), material_of({0.9, 0.2, 0.1}), moved_by({2000, 0, -5000})}};
-    const View plain = view_from({0, 0, 5});
+    const plan::View plain = view_from({0, 0, 5});
     const auto scene = scene_with(listed(six(4)), parts), empty = scene_with(listed(six(4)));
-    const Image before_colour = studio.draw(scene, plain);
+    const scene::Image before_colour = studio.draw(scene, plain);
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.uploads == 2);
-    const long objects = live_gl_objects();
-    for (const View& view : {before_picture(plain), in_panorama(plain)}) {
-        const Image background = studio.draw(empty, view);
+    const long objects = gl::live_gl_objects();
+    for (const plan::View& view : {before_picture(plain), in_panorama(plain)}) {
+        const scene::Image background = studio.draw(empty, view);
         CHECK(studio.stats.passes == 1);
         CHECK(studio.stats.draws == 1);
         CHECK(studio.stats.uploads == 1);
-        const Image found = studio.draw(scene, view);
+        const scene::Image found = studio.draw(scene, view);
         CHECK(studio.stats.passes == 2);
         CHECK(studio.stats.draws == 3);
         int fronts = 0, wrong = 0;
@@ -236,7 +253,7 @@ TEST_CASE("backgrounds stand behind everything and cost one pass where they are 
     studio.draw(scene, plain);
     CHECK(studio.stats.passes == 1);
     // The panorama, a program for it and one for pictures, a sampler, and an array without attributes.
-    CHECK(live_gl_objects() == objects + 5);
+    CHECK(gl::live_gl_objects() == objects + 5);
     // Pictures are the scene's: without one there is the colour.
     CHECK(pixel_of(studio.draw(nullptr, in_panorama(plain)), 5, 5) == glm::ivec3(230, 235, 242));
     CHECK(studio.stats.passes == 0);
@@ -244,10 +261,10 @@ TEST_CASE("backgrounds stand behind everything and cost one pass where they are 
 
 TEST_CASE("the stylized drawing and the wireframe have the background, too") {
     RendererFixture studio;
-    const auto scene = scene_with({noise(96, 64)}, {{1, quad(1), Material(), glm::dmat4(1)}});
+    const auto scene = scene_with({noise(96, 64)}, {{1, quad(1), scene::Material(), glm::dmat4(1)}});
     for (const bool wireframe : {false, true}) {
-        View view = before_picture(view_from({0, 0, 5}));
-        view.mode = wireframe ? DrawMode::realistic : DrawMode::stylized;
+        plan::View view = before_picture(view_from({0, 0, 5}));
+        view.mode = wireframe ? plan::DrawMode::realistic : plan::DrawMode::stylized;
         view.wireframe = wireframe;
         CHECK(pixel_of(studio.draw(scene, view), 3, 4) == pixel_of(noise(96, 64), 3, 4));
     }

@@ -16,26 +16,27 @@ using namespace vrut;
 
 namespace {
 
-const Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
+const scene::Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
 
-Material seen_through(Material material) {
+scene::Material seen_through(scene::Material material) {
     material.diffuse.a = 0.4;
     return material;
 }
 
-Material mirroring(Material material) {
+scene::Material mirroring(scene::Material material) {
     material.reflectivity = 0.9;
     return material;
 }
 
 /// A square in the plane z = 0 of many triangles.
-Geometry sheet(double half, unsigned cells) {
+scene::Geometry sheet(double half, unsigned cells) {
     return surface(cells, cells,
                    [&](double u, double v) { return half * glm::dvec3(2 * u - 1, 2 * v - 1, 0); });
 }
 
-View simplified(View view, const std::shared_ptr<const PlacedScene>& scene, double pixels = 0.5) {
-    const auto levels = std::make_shared<const DetailLevels>(scene->scene);
+plan::View simplified(plan::View view, const std::shared_ptr<const scene::PlacedScene>& scene,
+                      double pixels = 0.5) {
+    const auto levels = std::make_shared<const mesh::DetailLevels>(scene->scene);
     levels->wait();
     view.scene = scene;
     view.levels = levels;
@@ -43,11 +44,11 @@ View simplified(View view, const std::shared_ptr<const PlacedScene>& scene, doub
     return view;
 }
 
-View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
-    View view;
+plan::View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    plan::View view;
     view.camera.eye = eye;
     view.camera.focus = focus;
-    view.camera = with_orthogonal_up(view.camera);
+    view.camera = scene::with_orthogonal_up(view.camera);
     view.width = 480;
     view.height = 320;
     view.samples = 4;
@@ -60,14 +61,14 @@ struct Saving {
 };
 
 /// Draws with and without levels and compares.
-Saving check(View view, const std::shared_ptr<const PlacedScene>& scene, double pixels = 0.5) {
-    Renderer renderer;
-    Image whole, coarse;
-    FrameStats all, left;
+Saving check(plan::View view, const std::shared_ptr<const scene::PlacedScene>& scene, double pixels = 0.5) {
+    renderer::Renderer renderer;
+    scene::Image whole, coarse;
+    plan::FrameStats all, left;
     view.scene = scene;
     renderer.render(view, whole, all);
     renderer.render(simplified(view, scene, pixels), coarse, left);
-    const Difference apart = difference(whole, coarse);
+    const compare::Difference apart = compare::difference(whole, coarse);
     CHECK(apart.psnr() >= 45);
     CHECK(apart.share_above(8) <= 0.002);
     CHECK(renderer.take_messages().empty());
@@ -77,7 +78,7 @@ Saving check(View view, const std::shared_ptr<const PlacedScene>& scene, double 
 }  // namespace
 
 TEST_CASE("with fewer triangles the picture hardly changes") {
-    const View view = view_from({1, 2, 6});
+    const plan::View view = view_from({1, 2, 6});
     const auto ball = scene_of({{1, sphere(1.5, 100), kPaint, glm::dmat4(1)}});
     CHECK(check(view, ball).left() < 0.55);
     const auto flat = scene_of({{1, sphere(1.5, 100, false), kPaint, glm::dmat4(1)}});
@@ -92,25 +93,25 @@ TEST_CASE("with fewer triangles the picture hardly changes") {
 }
 
 TEST_CASE("in a better order every triangle is drawn, and the picture stays as it is") {
-    Geometry shuffled = sphere(1, 60);
+    scene::Geometry shuffled = sphere(1, 60);
     std::shuffle(shuffled.triangles.begin(), shuffled.triangles.end(), std::mt19937(1));
     const auto scene = scene_of({{1, shuffled, kPaint, glm::dmat4(1)},
                                  {2, shuffled, seen_through(kPaint), moved_by({1.5, 0, 1})},
                                  {3, sheet(3, 4), mirroring(kPaint), moved_by({0, 0, -1.5})}});
-    View view = view_from({1, 2, 6});
-    Renderer renderer;
-    for (const Index selected : {kNone, scene->scene->find_node(1)}) {
+    plan::View view = view_from({1, 2, 6});
+    renderer::Renderer renderer;
+    for (const scene::Index selected : {scene::kNone, scene->scene->find_node(1)}) {
         view.scene = scene;
         view.selected = selected;
         view.levels = nullptr;
-        Image before, after;
-        FrameStats all, same;
+        scene::Image before, after;
+        plan::FrameStats all, same;
         renderer.render(view, before, all);
         view = simplified(view, scene, 0);
         renderer.render(view, after, same);
-        CHECK(difference(before, after).maximum() == 0);
+        CHECK(compare::difference(before, after).maximum() == 0);
         CHECK(same.triangles == all.triangles);
-        for (const DrawItem& item : plan_frame(view).scene.opaque) {
+        for (const plan::DrawItem& item : plan::plan_frame(view).scene.opaque) {
             REQUIRE(item.level != nullptr);
             CHECK(item.level->number == 0);
         }
@@ -118,19 +119,19 @@ TEST_CASE("in a better order every triangle is drawn, and the picture stays as i
 }
 
 TEST_CASE("the car with fewer triangles") {
-    auto read = read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
+    auto read = io::read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
     REQUIRE(read);
-    const auto car = std::make_shared<const PlacedScene>(place(*std::move(read)));
+    const auto car = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(read)));
     CHECK(check(view_from({4, 2, 5}, {0, 0.7, 0}), car).left() < 1);
 }
 
 TEST_CASE("a selected part among simplified ones is drawn whole") {
     const auto scene = scene_of(
         {{1, sphere(1, 60), kPaint, glm::dmat4(1)}, {2, sphere(1, 60), kPaint, moved_by({1.5, 0, -1})}});
-    View view = view_from({1, 2, 6});
+    plan::View view = view_from({1, 2, 6});
     view.selected = scene->scene->find_node(2);
     CHECK(check(view, scene).left() < 0.9);
-    const FramePlan plan = plan_frame(simplified(view, scene));
+    const plan::FramePlan plan = plan::plan_frame(simplified(view, scene));
     REQUIRE(plan.selected.size() == 1);
     CHECK(plan.selected[0].level == nullptr);
     REQUIRE(plan.scene.opaque.size() == 1);
@@ -138,28 +139,36 @@ TEST_CASE("a selected part among simplified ones is drawn whole") {
 }
 
 TEST_CASE("parts in one place have one level, glass and solid, painted and plain") {
-    const auto twins = [](Geometry geometry, const Material& one, const Material& other) {
+    const auto twins = [](scene::Geometry geometry, const scene::Material& one,
+                          const scene::Material& other) {
         geometry.texcoords.resize(geometry.positions.size());
-        SceneParts parts;
+        scene::SceneParts parts;
         parts.geometries = {geometry};
         parts.materials = {one, other};
-        Image white;
+        scene::Image white;
         white.resize(1, 1);
         white.rgba = {255, 255, 255, 255};
         parts.textures = {{"white.png", white, false}};
-        for (Id id = 1; id <= 3; ++id) {
+        for (scene::Id id = 1; id <= 3; ++id) {
             const glm::dmat4 matrix = id < 3 ? glm::dmat4(1) : moved_by({2.5, 0, -2});
-            parts.nodes.push_back(
-                {Node{id, {}, NodeType::geometry, kNone, {}, true, matrix, GeometryData{0, id == 2 ? 1 : 0}},
-                 0});
+            parts.nodes.push_back({scene::Node{id,
+                                               {},
+                                               scene::NodeType::geometry,
+                                               scene::kNone,
+                                               {},
+                                               true,
+                                               matrix,
+                                               scene::GeometryData{0, id == 2 ? 1 : 0}},
+                                   0});
         }
-        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+        return std::make_shared<const scene::PlacedScene>(
+            scene::place(*scene::Scene::build(std::move(parts))));
     };
-    const Material blue = material_of({0.1, 0.1, 0.9});
-    Material painted = blue;
+    const scene::Material blue = material_of({0.1, 0.1, 0.9});
+    scene::Material painted = blue;
     painted.texture = 0;
     constexpr double kFine = 0.25;  // most of these outlines are dark against a light background
-    const View view = view_from({1, 2, 6});
+    const plan::View view = view_from({1, 2, 6});
     CHECK(check(view, twins(sphere(1, 100), kPaint, seen_through(blue)), kFine).left() < 0.6);
     CHECK(check(view, twins(sphere(1, 100), seen_through(blue), kPaint), kFine).left() < 0.6);
     CHECK(check(view, twins(sphere(1, 100), seen_through(kPaint), seen_through(blue)), kFine).left() < 0.6);
@@ -170,14 +179,14 @@ TEST_CASE("parts in one place have one level, glass and solid, painted and plain
 }
 
 TEST_CASE("what is painted on a part stays where it is") {
-    Geometry painted = sheet(1.5, 40);
+    scene::Geometry painted = sheet(1.5, 40);
     for (const glm::dvec3& p : painted.positions)
         painted.texcoords.emplace_back(p.x + 0.2 * std::sin(5 * p.y), p.y + 0.2 * std::sin(5 * p.x));
-    Image stripes;
+    scene::Image stripes;
     stripes.resize(8, 8);
     for (std::size_t i = 0; i < stripes.rgba.size(); ++i)
         stripes.rgba[i] = i % 4 == 3 || i / 8 % 2 == 0 ? 255 : 0;
-    Material material = kPaint;
+    scene::Material material = kPaint;
     material.texture = 0;
     const auto scene = scene_of({{1, painted, material, glm::dmat4(1)}}, {{"stripes.png", stripes, false}});
     CHECK(check(view_from({1, 2, 6}), scene).left() == 1);
@@ -185,16 +194,16 @@ TEST_CASE("what is painted on a part stays where it is") {
 
 TEST_CASE("a level is chosen by what its error is in the picture") {
     const auto scene = scene_of({{1, sphere(1, 60), kPaint, glm::dmat4(1)}});
-    View view = simplified(view_from({0, 0, 6}), scene);
+    plan::View view = simplified(view_from({0, 0, 6}), scene);
     const auto chosen = [&](double distance, double detail) {
         view.camera.eye = {0, 0, distance};
         view.detail = detail;
-        const FramePlan plan = plan_frame(view);
+        const plan::FramePlan plan = plan::plan_frame(view);
         if (plan.scene.opaque.empty()) return -1;
-        const DetailLevel* level = plan.scene.opaque[0].level;
+        const mesh::DetailLevel* level = plan.scene.opaque[0].level;
         if (!level) return 0;
         // Straight ahead, the nearest point is this far away.
-        const double pixels = view.height / 2.0 / std::tan(view.camera.fov * kRadiansPerDegree / 2);
+        const double pixels = view.height / 2.0 / std::tan(view.camera.fov * scene::kRadiansPerDegree / 2);
         CHECK(level->error * pixels / (distance - 1) <= detail);
         return level->number;
     };
@@ -211,25 +220,25 @@ TEST_CASE("a level is chosen by what its error is in the picture") {
     CHECK(chosen(1.01, 0.5) <= chosen(3, 0.5));
     CHECK(chosen(0.5, 1000) == 0);  // within the box
     view.wireframe = true;
-    CHECK(plan_frame(view).edges[0].level == nullptr);
+    CHECK(plan::plan_frame(view).edges[0].level == nullptr);
     view.wireframe = false;
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     view.camera.eye = {0, 0, 6};
-    CHECK(plan_frame(view).scene.opaque[0].level == nullptr);
+    CHECK(plan::plan_frame(view).scene.opaque[0].level == nullptr);
 }
 
 TEST_CASE("no step in a part is seen longer than is said of it") {
-    View view = view_from({0, 0, 0}, {0, 0, -1});
-    const Bounds box{{2, -1, -1}, {4, 1, 1}};
+    plan::View view = view_from({0, 0, 0}, {0, 0, -1});
+    const math::Bounds box{{2, -1, -1}, {4, 1, 1}};
     const glm::dmat4 matrix = moved_by({0, 0, -6}) * turned_by(20, {0, 1, 0}) * scaled_by({1, 2, 0.5});
-    const double most = max_screen_space_scale(matrix, box, view);
-    const glm::dmat4 clip = reversed_clip_from_view(view, 0.1);
+    const double most = plan::max_screen_space_scale(matrix, box, view);
+    const glm::dmat4 clip = plan::reversed_clip_from_view(view, 0.1);
     const auto pixel = [&](const glm::dvec3& at) {
         const glm::dvec4 p = clip * matrix * glm::dvec4(at, 1);
         return glm::dvec2(p) / p.w * glm::dvec2(view.width, view.height) / 2.0;
     };
     double longest = 0;
-    for (const glm::dvec3& corner : corners(box))
+    for (const glm::dvec3& corner : math::corners(box))
         for (const glm::dvec3& step :
              {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}, {0.6, 0, 0.8}, {0.6, 0, -0.8}}) {
             const glm::dvec3 to = corner + 1e-4 * step * glm::sign(box.center() - corner + 1e-9);
@@ -237,58 +246,58 @@ TEST_CASE("no step in a part is seen longer than is said of it") {
         }
     CHECK(longest <= most * 1.001);
     CHECK(longest > most / 3);
-    CHECK(std::isinf(max_screen_space_scale(glm::dmat4(1), {glm::dvec3(-1), glm::dvec3(1)}, view)));
+    CHECK(std::isinf(plan::max_screen_space_scale(glm::dmat4(1), {glm::dvec3(-1), glm::dvec3(1)}, view)));
 }
 
 namespace {
 
-Material two_sided(Material material) {
+scene::Material two_sided(scene::Material material) {
     material.two_sided = true;
     return material;
 }
 
 /// Draws every triangle with and without what is known about closed parts.
-FramePlan check_backs(View view, const std::shared_ptr<const PlacedScene>& scene) {
-    Renderer renderer;
-    Image all, left;
-    FrameStats stats;
+plan::FramePlan check_backs(plan::View view, const std::shared_ptr<const scene::PlacedScene>& scene) {
+    renderer::Renderer renderer;
+    scene::Image all, left;
+    plan::FrameStats stats;
     view.scene = scene;
     renderer.render(view, all, stats);
     view = simplified(view, scene, 0);
     renderer.render(view, left, stats);
-    CHECK(difference(all, left).share_above(1) == 0);
-    return plan_frame(view);
+    CHECK(compare::difference(all, left).share_above(1) == 0);
+    return plan::plan_frame(view);
 }
 
 }  // namespace
 
 TEST_CASE("backs of closed parts are left out where they are hidden") {
-    const auto cull_mode = [](const FramePlan& plan) { return plan.scene.opaque.at(0).cull_mode; };
-    const Geometry whole = welded(sphere(1, 12));
+    const auto cull_mode = [](const plan::FramePlan& plan) { return plan.scene.opaque.at(0).cull_mode; };
+    const scene::Geometry whole = welded(sphere(1, 12));
     const auto ball = scene_of({{1, whole, two_sided(kPaint), glm::dmat4(1)}});
-    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), ball)) == CullMode::hidden_back);
-    CHECK(cull_mode(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == CullMode::none);
-    CHECK(cull_mode(check_backs(view_from({0, 0, 1 + 1e-7}), ball)) == CullMode::none);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), ball)) == plan::CullMode::hidden_back);
+    CHECK(cull_mode(check_backs(view_from({0, 0, 0.5}, {1, 0, 0}), ball)) == plan::CullMode::none);
+    CHECK(cull_mode(check_backs(view_from({0, 0, 1 + 1e-7}), ball)) == plan::CullMode::none);
     const auto plain = scene_of({{1, whole, kPaint, glm::dmat4(1)}});
-    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), plain)) == CullMode::back);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), plain)) == plan::CullMode::back);
     const auto turned = scene_of({{1, turned_inside_out(whole), two_sided(kPaint), glm::dmat4(1)}});
-    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), turned)) == CullMode::none);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), turned)) == plan::CullMode::none);
     const auto flat = scene_of({{1, whole, two_sided(kPaint), scaled_by({1, 1, 0})}});
-    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), flat)) == CullMode::none);
-    Geometry dark = whole;  // the normals face inwards, and are turned to the viewer
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), flat)) == plan::CullMode::none);
+    scene::Geometry dark = whole;  // the normals face inwards, and are turned to the viewer
     for (glm::vec3& normal : dark.normals) normal = -normal;
     const auto other = scene_of({{1, dark, two_sided(kPaint), scaled_by({-1, 1, 2})}});
-    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), other)) == CullMode::hidden_back);
+    CHECK(cull_mode(check_backs(view_from({1, 2, 5}), other)) == plan::CullMode::hidden_back);
 }
 
 TEST_CASE("what a mirror cuts is drawn from both sides in it") {
     const auto scene = scene_of({{1, welded(sphere(0.7, 24)), two_sided(kPaint), moved_by({0, 0, 1.2})},
                                  {2, welded(sphere(0.7, 24)), two_sided(kPaint), moved_by({1, 1, 0.3})},
                                  {3, sheet(2, 4), mirroring(kPaint), glm::dmat4(1)}});
-    const FramePlan plan = check_backs(view_from({1, 2, 6}), scene);
+    const plan::FramePlan plan = check_backs(view_from({1, 2, 6}), scene);
     REQUIRE(plan.scene.mirrors.size() == 1);
     const auto& reflected = plan.scene.mirrors[0].reflected.opaque;
     REQUIRE(reflected.size() == 2);
-    CHECK(reflected[0].cull_mode == CullMode::hidden_back);
-    CHECK(reflected[1].cull_mode == CullMode::none);
+    CHECK(reflected[0].cull_mode == plan::CullMode::hidden_back);
+    CHECK(reflected[1].cull_mode == plan::CullMode::none);
 }

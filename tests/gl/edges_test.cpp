@@ -15,7 +15,7 @@ const glm::ivec3 kBlueEdge{140, 199, 255}, kMarked{255, 153, 0};
 using Pixels = std::set<std::pair<int, int>>;
 
 template <class Wanted>
-Pixels pixels_that(const Image& image, const Wanted& wanted) {
+Pixels pixels_that(const scene::Image& image, const Wanted& wanted) {
     Pixels pixels;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
@@ -23,15 +23,15 @@ Pixels pixels_that(const Image& image, const Wanted& wanted) {
     return pixels;
 }
 
-Pixels pixels_of(const Image& image, const glm::ivec3& color) {
+Pixels pixels_of(const scene::Image& image, const glm::ivec3& color) {
     return pixels_that(image, [&](const glm::ivec3& pixel) { return pixel == color; });
 }
 
 /// In pixels from the picture's top left.
-glm::dvec2 seen(const View& view, const glm::dvec3& point) {
+glm::dvec2 seen(const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip =
-        clip_from_view(view.camera, aspect, {0.1, 100}) * view_from_world(view.camera) * glm::dvec4(point, 1);
+    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+                            scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     return {(clip.x / clip.w + 1) / 2 * view.width, (1 - clip.y / clip.w) / 2 * view.height};
 }
 
@@ -41,8 +41,8 @@ double distance(const glm::dvec2& point, const glm::dvec2& a, const glm::dvec2& 
 }
 
 /// A square of n x n cells with its own corners for each triangle, as many files have them.
-Geometry grid(double half, int n) {
-    Geometry geometry;
+scene::Geometry grid(double half, int n) {
+    scene::Geometry geometry;
     const auto at = [&](int i, int k) {
         return glm::dvec3(-half + 2 * half * i / n, -half + 2 * half * k / n, 0);
     };
@@ -64,16 +64,16 @@ Geometry grid(double half, int n) {
 }
 
 /// From 60 degrees off the +z axis.
-Light slanted() {
-    Light light;
+scene::Light slanted() {
+    scene::Light light;
     light.headlight = false;
-    light.type = LightData::Type::directional;
+    light.type = scene::LightData::Type::directional;
     light.direction = -glm::normalize(glm::dvec3(0, std::sqrt(3.0), 1));
     return light;
 }
 
-View wire_from(const glm::dvec3& eye) {
-    View view = view_from(eye);
+plan::View wire_from(const glm::dvec3& eye) {
+    plan::View view = view_from(eye);
     view.width = 240;
     view.height = 160;
     view.wireframe = true;
@@ -84,8 +84,8 @@ View wire_from(const glm::dvec3& eye) {
 
 TEST_CASE("each edge is drawn once, however many triangles share it") {
     RendererFixture studio;
-    const View view = wire_from({1, 2, 5});
-    const auto edges = [&](const Geometry& geometry) {
+    const plan::View view = wire_from({1, 2, 5});
+    const auto edges = [&](const scene::Geometry& geometry) {
         studio.draw(scene_of({{1, geometry, material_of({1, 0, 0}), glm::dmat4(1)}}), view);
         CHECK(studio.stats.triangles == 0);
         return studio.stats.edges;
@@ -95,13 +95,13 @@ TEST_CASE("each edge is drawn once, however many triangles share it") {
     CHECK(edges(box({1, 1, 1})) == 12 + 6);
     CHECK(edges(grid(1, 1)) == 5);
     CHECK(edges(grid(1, 4)) == 20 + 20 + 16);
-    Geometry degenerate = quad(1);
+    scene::Geometry degenerate = quad(1);
     degenerate.triangles = {{0, 0, 0}};
     CHECK(edges(degenerate) == 0);
     degenerate.triangles = {{0, 0, 1}, {0, 1, 2}};
     CHECK(edges(degenerate) == 3);
     // Close is not the same.
-    Geometry close = quad(1, false);
+    scene::Geometry close = quad(1, false);
     close.positions.push_back(close.positions[2] + glm::dvec3(1e-9, 0, 0));
     close.triangles = {{0, 1, 2}, {0, 4, 3}};
     CHECK(edges(close) == 6);
@@ -109,12 +109,12 @@ TEST_CASE("each edge is drawn once, however many triangles share it") {
 
 TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
     RendererFixture studio;
-    const Geometry geometry = box({1, 0.7, 0.9});
+    const scene::Geometry geometry = box({1, 0.7, 0.9});
     const auto scene = scene_of({{1, geometry, material_of({0.5, 0.2, 0.1}), glm::dmat4(1)}});
     for (const glm::dvec3& eye : {glm::dvec3(2, 1.5, 4), glm::dvec3(-3, 2, 1), glm::dvec3(0.1, -4, 0.3)}) {
-        const View view = wire_from(eye);
+        const plan::View view = wire_from(eye);
         const Pixels drawn = pixels_that(studio.draw(scene, view), [](const glm::ivec3& pixel) {
-            return pixel != bytes_of(kDefaultBackground);
+            return pixel != bytes_of(plan::kDefaultBackground);
         });
         CHECK(drawn.size() > 200);
         struct ExpectedLine {
@@ -154,10 +154,10 @@ TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
 TEST_CASE("realistic edges have their material's colour under the light, from both sides") {
     RendererFixture studio;
     const auto scene = scene_of({{1, quad(1.5), material_of({0.8, 0.4, 0.2}), glm::dmat4(1)}});
-    View view = wire_from({1, 0.5, 4});
+    plan::View view = wire_from({1, 0.5, 4});
     view.light = slanted();
-    const auto is_drawn = [](const glm::ivec3& pixel) { return pixel != bytes_of(kDefaultBackground); };
-    Image image = studio.draw(scene, view);
+    const auto is_drawn = [](const glm::ivec3& pixel) { return pixel != bytes_of(plan::kDefaultBackground); };
+    scene::Image image = studio.draw(scene, view);
     CHECK(pixels_of(image, {102, 51, 26}).size() > 200);
     CHECK(pixels_of(image, {102, 51, 26}) == pixels_that(image, is_drawn));
     // Behind it the light is on the other side; with the light there too, it is as bright.
@@ -170,7 +170,7 @@ TEST_CASE("realistic edges have their material's colour under the light, from bo
     CHECK(pixels_of(image, {102, 51, 26}).size() > 200);
     CHECK(pixels_of(image, {102, 51, 26}) == pixels_that(image, is_drawn));
     // A normal that is not there is the viewer's direction.
-    Geometry flat = quad(1.5);
+    scene::Geometry flat = quad(1.5);
     flat.normals.assign(4, glm::vec3(1, 0, 0));
     view = wire_from({0, 0, 4});
     image = studio.draw(scene_of({{1, flat, material_of({0.8, 0.4, 0.2}), scaled_by({1, 1, 0})}}), view);
@@ -179,11 +179,11 @@ TEST_CASE("realistic edges have their material's colour under the light, from bo
 
 TEST_CASE("of edges at equal depth those of the higher id are in front") {
     RendererFixture studio;
-    const View view = wire_from({1, 0.5, 4});
-    Material red = material_of({0, 0, 0}), green = red;
+    const plan::View view = wire_from({1, 0.5, 4});
+    scene::Material red = material_of({0, 0, 0}), green = red;
     red.emission = {1, 0, 0, 1};
     green.emission = {0, 1, 0, 1};
-    const auto both = [&](Id red_id, Id green_id) {
+    const auto both = [&](scene::Id red_id, scene::Id green_id) {
         return studio.draw(
             scene_of({{red_id, quad(1), red, glm::dmat4(1)}, {green_id, quad(1), green, glm::dmat4(1)}}),
             view);
@@ -195,17 +195,17 @@ TEST_CASE("of edges at equal depth those of the higher id are in front") {
 
 TEST_CASE("stylized: dark blue faces under the light, light blue edges, whatever the material") {
     RendererFixture studio;
-    Material loud = material_of({1, 0, 0}, {1, 1, 1}, 3);
+    scene::Material loud = material_of({1, 0, 0}, {1, 1, 1}, 3);
     loud.emission = {0.5, 0, 0, 1};
     const auto scene = scene_of({{1, quad(1.5), loud, glm::dmat4(1)}});
-    View view = wire_from({1, 0.5, 4});
+    plan::View view = wire_from({1, 0.5, 4});
     view.wireframe = false;
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     view.light = slanted();
-    const Image image = studio.draw(scene, view);
+    const scene::Image image = studio.draw(scene, view);
     // 0.03 0.05 0.15 + half of 0.10 0.18 0.45
     const Pixels faces = pixels_of(image, {20, 36, 96}), edges = pixels_of(image, kBlueEdge),
-                 background = pixels_of(image, bytes_of(kDefaultBackground));
+                 background = pixels_of(image, bytes_of(plan::kDefaultBackground));
     CHECK(faces.size() > 2000);
     CHECK(edges.size() > 200);
     CHECK(faces.size() + edges.size() + background.size() == 240 * 160);
@@ -216,11 +216,11 @@ TEST_CASE("stylized: dark blue faces under the light, light blue edges, whatever
     CHECK(pixels_of(studio.draw(scene, view), kBlueEdge) == edges);
     CHECK(studio.stats.passes == 1);
     // From behind there is no face, and its edges are there.
-    View behind = wire_from({1, 0.5, -4});
+    plan::View behind = wire_from({1, 0.5, -4});
     behind.wireframe = false;
-    behind.mode = DrawMode::stylized;
-    const Image back = studio.draw(scene, behind);
-    CHECK(pixels_of(back, kBlueEdge).size() + pixels_of(back, bytes_of(kDefaultBackground)).size() ==
+    behind.mode = plan::DrawMode::stylized;
+    const scene::Image back = studio.draw(scene, behind);
+    CHECK(pixels_of(back, kBlueEdge).size() + pixels_of(back, bytes_of(plan::kDefaultBackground)).size() ==
           240 * 160);
 }
 
@@ -234,10 +234,10 @@ TEST_CASE("edges do not fight with their faces, at any tilt and distance") {
             const auto scene = scene_of({{1, grid(away, 6), material_of({1, 1, 1}),
                                           moved_by({0, 0, -3 * away}) * turned_by(-tilt, {1, 0.3, 0})},
                                          {2, quad(1e-3), material_of({1, 1, 1}), moved_by({1, 0, -0.01})}});
-            View view = view_from({0, 0, 0}, {0, 0, -1});
+            plan::View view = view_from({0, 0, 0}, {0, 0, -1});
             view.width = 240;
             view.height = 160;
-            view.mode = DrawMode::stylized;
+            view.mode = plan::DrawMode::stylized;
             const Pixels with_faces = pixels_of(studio.draw(scene, view), kBlueEdge);
             view.wireframe = true;
             const Pixels alone = pixels_of(studio.draw(scene, view), kBlueEdge);
@@ -248,8 +248,8 @@ TEST_CASE("edges do not fight with their faces, at any tilt and distance") {
 
 TEST_CASE("stylized faces hide the edges behind them") {
     RendererFixture studio;
-    View view = view_from({0.3, 0.2, 4});
-    view.mode = DrawMode::stylized;
+    plan::View view = view_from({0.3, 0.2, 4});
+    view.mode = plan::DrawMode::stylized;
     const auto edges = [&](const std::vector<Part>& parts) {
         return pixels_of(studio.draw(scene_of(parts), view), kBlueEdge);
     };
@@ -265,21 +265,21 @@ TEST_CASE("stylized faces hide the edges behind them") {
 
 TEST_CASE("what is selected in a wireframe has its edges in the mark's colour, over everything") {
     RendererFixture studio;
-    View view = wire_from({0, 0, 5});
-    Material black = material_of({0, 0, 0});
+    plan::View view = wire_from({0, 0, 5});
+    scene::Material black = material_of({0, 0, 0});
     const auto scene = scene_of({{1, quad(1), black, glm::dmat4(1)},
                                  {2, quad(1), black, moved_by({0, 0, 1})},
                                  {3, grid(1.5, 9), black, moved_by({0, 0, 1.5})}});
     const auto alone = scene_of({{1, quad(1), black, glm::dmat4(1)}});
     const Pixels edges = pixels_of(studio.draw(alone, view), {0, 0, 0});
     CHECK(edges.size() > 200);
-    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
+    for (const plan::DrawMode mode : {plan::DrawMode::realistic, plan::DrawMode::stylized}) {
         view.mode = mode;
         view.selected = scene->scene->find_node(1);
         CHECK(pixels_of(studio.draw(scene, view), kMarked) == edges);
         CHECK(studio.stats.passes == 2);
         CHECK(studio.stats.draws == 3);
-        view.selected = kNone;
+        view.selected = scene::kNone;
         CHECK(pixels_of(studio.draw(scene, view), kMarked).empty());
         CHECK(studio.stats.passes == 1);
     }
@@ -287,24 +287,25 @@ TEST_CASE("what is selected in a wireframe has its edges in the mark's colour, o
 
 namespace {
 
-std::shared_ptr<const Scene> car_scene() {
-    auto scene = read_scene(VRUT_CARS "/car-20k.vrut");
+std::shared_ptr<const scene::Scene> car_scene() {
+    auto scene = io::read_scene(VRUT_CARS "/car-20k.vrut");
     REQUIRE(scene);
-    return place(*std::move(scene)).scene;
+    return scene::place(*std::move(scene)).scene;
 }
 
 /// The car, of which only what is opaque and no mirror shows, and windows where they are asked for.
-std::shared_ptr<const PlacedScene> shown_parts(const std::shared_ptr<const Scene>& scene, bool windows) {
-    std::vector<NodeState> states = file_states(*scene);
+std::shared_ptr<const scene::PlacedScene> shown_parts(const std::shared_ptr<const scene::Scene>& scene,
+                                                      bool windows) {
+    std::vector<scene::NodeState> states = scene::file_states(*scene);
     for (std::size_t i = 0; i < states.size(); ++i) {
-        const auto* data = std::get_if<GeometryData>(&scene->nodes()[i].data);
+        const auto* data = std::get_if<scene::GeometryData>(&scene->nodes()[i].data);
         if (!data) continue;
-        const Material& material = scene->material(data->material);
-        if (is_mirror(*scene, data->geometry, data->material) ||
+        const scene::Material& material = scene->material(data->material);
+        if (plan::is_mirror(*scene, data->geometry, data->material) ||
             (scene->is_transparent(material) && !(windows && material.name.starts_with("Glass"))))
             states[i].active = false;
     }
-    return std::make_shared<const PlacedScene>(place(scene, std::move(states)));
+    return std::make_shared<const scene::PlacedScene>(scene::place(scene, std::move(states)));
 }
 
 }  // namespace
@@ -312,25 +313,26 @@ std::shared_ptr<const PlacedScene> shown_parts(const std::shared_ptr<const Scene
 TEST_CASE("a car's opaque parts take one pass, and what is not wanted costs nothing") {
     const auto car = shown_parts(car_scene(), false);
     RendererFixture studio;
-    View view = view_from({3, 2, 5}, {0, 0.7, 0});
+    plan::View view = view_from({3, 2, 5}, {0, 0.7, 0});
     studio.draw(car, view);
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.edges == 0);
-    View planned = view;
+    plan::View planned = view;
     planned.scene = car;
-    const DrawLists lists = plan_frame(planned).scene;
+    const plan::DrawLists lists = plan::plan_frame(planned).scene;
     CHECK(lists.transparent.empty());  // nothing is blended
     CHECK(lists.mirrors.empty());      // nor drawn into another target
     const int draws = studio.stats.draws;
     const std::uint64_t triangles = studio.stats.triangles;
     std::uint64_t shown = 0;
-    const std::vector<bool> shows = shown_nodes(*car, view.camera.eye);
+    const std::vector<bool> shows = scene::shown_nodes(*car, view.camera.eye);
     for (std::size_t i = 0; i < shows.size(); ++i)
-        if (const auto* data = std::get_if<GeometryData>(&car->scene->nodes()[i].data); data && shows[i])
+        if (const auto* data = std::get_if<scene::GeometryData>(&car->scene->nodes()[i].data);
+            data && shows[i])
             shown += car->scene->geometries()[static_cast<std::size_t>(data->geometry)].triangles.size();
     CHECK(triangles == shown);  // none of a paint or rim that the switches do not choose
     CHECK(triangles < car->scene->triangle_count());
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     view.wireframe = true;
     studio.draw(car, view);
     CHECK(studio.stats.passes == 1);
@@ -338,9 +340,9 @@ TEST_CASE("a car's opaque parts take one pass, and what is not wanted costs noth
     CHECK(studio.stats.triangles == 0);
     CHECK(studio.stats.edges > triangles);  // half as many again, were every edge shared by two
     CHECK(studio.stats.edges < 2 * triangles);
-    CHECK(live_gl_objects() > objects);
+    CHECK(gl::live_gl_objects() > objects);
     view.wireframe = false;
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     studio.draw(car, view);
     CHECK(studio.stats.passes == 2);
     CHECK(studio.stats.draws == 2 * draws);
@@ -350,14 +352,14 @@ TEST_CASE("a car's opaque parts take one pass, and what is not wanted costs noth
 TEST_CASE("a car's windows cost one pass, and a draw each") {
     const auto scene = car_scene();
     RendererFixture studio;
-    View view = view_from({3, 2, 5}, {0, 0.7, 0});
+    plan::View view = view_from({3, 2, 5}, {0, 0.7, 0});
     studio.draw(shown_parts(scene, false), view);
     const int draws = studio.stats.draws;
     view.scene = shown_parts(scene, true);
     studio.draw(view.scene, view);
     CHECK(studio.stats.passes == 2);
     int windows = 0;
-    for (const TransparentGroup& group : plan_frame(view).scene.transparent)
+    for (const plan::TransparentGroup& group : plan::plan_frame(view).scene.transparent)
         windows += static_cast<int>(group.items.size());
     CHECK(windows >= 8);
     CHECK(studio.stats.draws == draws + windows);

@@ -6,21 +6,29 @@ using namespace vrut;
 
 namespace {
 
-std::array<Image, 6> six(int size, Image (*make)(int, int, unsigned) = cloudy) {
-    std::array<Image, 6> images;
+std::array<scene::Image, 6> six(int size, scene::Image (*make)(int, int, unsigned) = cloudy) {
+    std::array<scene::Image, 6> images;
     for (unsigned i = 0; i < 6; ++i) images[i] = make(size, size, 10 * (i + 1));
     return images;
 }
 
 /// One part, and a panorama for it to reflect.
-std::shared_ptr<const PlacedScene> scene_of(const Part& part, const std::array<Image, 6>& images) {
-    SceneParts parts;
-    for (const Image& image : images) parts.textures.push_back({"face.png", image, false});
+std::shared_ptr<const scene::PlacedScene> scene_of(const Part& part,
+                                                   const std::array<scene::Image, 6>& images) {
+    scene::SceneParts parts;
+    for (const scene::Image& image : images) parts.textures.push_back({"face.png", image, false});
     parts.materials = {part.material};
     parts.geometries = {part.geometry};
-    parts.nodes = {
-        {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{0, 0}}, 0}};
-    return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    parts.nodes = {{scene::Node{part.id,
+                                {},
+                                scene::NodeType::geometry,
+                                scene::kNone,
+                                {},
+                                true,
+                                part.matrix,
+                                scene::GeometryData{0, 0}},
+                    0}};
+    return std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
 }
 
 /// What a triangle of the part shows at the place where rays meet its plane.
@@ -60,7 +68,7 @@ struct SphereFacet {
 
 class Chrome {
 public:
-    Chrome(const Part& part, const std::array<Image, 6>& images, const View& view)
+    Chrome(const Part& part, const std::array<scene::Image, 6>& images, const plan::View& view)
         : panorama_(images), view_(view), material_(part.material) {
         for (const glm::uvec3& triangle : part.geometry.triangles) facets_.emplace_back(part, triangle);
     }
@@ -102,26 +110,26 @@ private:
     }
 
     ExpectedEnvironment panorama_;
-    View view_;
-    Material material_;
+    plan::View view_;
+    scene::Material material_;
     std::vector<SphereFacet> facets_;
 };
 
-Material chrome(double reflectivity) {
-    Material material = material_of({0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}, 20);
+scene::Material chrome(double reflectivity) {
+    scene::Material material = material_of({0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}, 20);
     material.reflectivity = reflectivity;
     return material;
 }
 
-View in_panorama(View view) {
+plan::View in_panorama(plan::View view) {
     view.background.cube_map = {0, 1, 2, 3, 4, 5};
     return view;
 }
 
-TextureMismatch check(const Part& part, const std::array<Image, 6>& images, const View& view,
+TextureMismatch check(const Part& part, const std::array<scene::Image, 6>& images, const plan::View& view,
                       RendererFixture& studio) {
     const Chrome expected(part, images, view);
-    const Image image = studio.draw(scene_of(part, images), in_panorama(view));
+    const scene::Image image = studio.draw(scene_of(part, images), in_panorama(view));
     return deviation(image, [&](double x, double y) { return expected.at(x, y); });
 }
 
@@ -135,7 +143,7 @@ TEST_CASE("a chrome ball reflects the panorama") {
             CAPTURE(reflectivity);
             const Part ball{1, sphere(1, 12), chrome(reflectivity),
                             moved_by({1, -0.5, 0.3}) * turned_by(40, {0, 1, 0})};
-            View view = view_from({2.5, 1.5, 3.5}, {1, -0.5, 0.3});
+            plan::View view = view_from({2.5, 1.5, 3.5}, {1, -0.5, 0.3});
             const TextureMismatch off = check(ball, six(size), view, studio);
             CHECK(off.pixels > 500);
             CHECK(off.rms <= 1);
@@ -144,7 +152,7 @@ TEST_CASE("a chrome ball reflects the panorama") {
 
 TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirrored as it may be") {
     RendererFixture studio;
-    const std::array<Image, 6> images = six(32, noise);
+    const std::array<scene::Image, 6> images = six(32, noise);
     for (const double x : {1.0, -1.0}) {
         const Part part{1, box({1, 0.7, 0.8}), chrome(0.6), turned_by(30, {0, 1, 0}) * scaled_by({x, 1, 1})};
         const TextureMismatch off = check(part, images, view_from({2, 1.5, 3}), studio);
@@ -155,33 +163,33 @@ TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirro
 
 TEST_CASE("a surface's own colour is clamped before the panorama is mixed in") {
     RendererFixture studio;
-    Material bright = chrome(0.5);
+    scene::Material bright = chrome(0.5);
     bright.emission = {3, 3, 3, 1};
-    Image grey;
+    scene::Image grey;
     grey.resize(1, 1);
     grey.rgba = {51, 51, 51, 255};
-    std::array<Image, 6> images;
+    std::array<scene::Image, 6> images;
     images.fill(grey);
-    const Image image = studio.draw(scene_of({1, sphere(1, 8), bright, glm::dmat4(1)}, images),
-                                    in_panorama(view_from({0, 0, 3})));
+    const scene::Image image = studio.draw(scene_of({1, sphere(1, 8), bright, glm::dmat4(1)}, images),
+                                           in_panorama(view_from({0, 0, 3})));
     CHECK(pixel_of(image, 48, 32) == glm::ivec3(153));
 }
 
 TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
     RendererFixture studio;
-    const std::array<Image, 6> images = six(8);
-    const View plain = view_from({1, 1, 4});
-    const auto picture = [&](const Geometry& geometry, double reflectivity, const View& view) {
+    const std::array<scene::Image, 6> images = six(8);
+    const plan::View plain = view_from({1, 1, 4});
+    const auto picture = [&](const scene::Geometry& geometry, double reflectivity, const plan::View& view) {
         return studio.draw(scene_of({1, geometry, chrome(reflectivity), glm::dmat4(1)}, images), view);
     };
-    const Geometry ball = sphere(1, 8);
-    const Image matte = picture(ball, 0, plain);
-    const long objects = live_gl_objects();
+    const scene::Geometry ball = sphere(1, 8);
+    const scene::Image matte = picture(ball, 0, plain);
+    const long objects = gl::live_gl_objects();
     CHECK(picture(ball, 0.5, plain).rgba == matte.rgba);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
     CHECK(studio.stats.uploads == 1);
-    View stylized = in_panorama(plain);
-    stylized.mode = DrawMode::stylized;
+    plan::View stylized = in_panorama(plain);
+    stylized.mode = plan::DrawMode::stylized;
     CHECK(picture(ball, 0.5, stylized).rgba == picture(ball, 0, stylized).rgba);
     CHECK(picture(ball, 0.5, in_panorama(plain)).rgba != picture(ball, 0, in_panorama(plain)).rgba);
     // One pass for the background, one for the ball.
@@ -190,10 +198,10 @@ TEST_CASE("what reflects no panorama is plain, and pays nothing for it") {
 
 TEST_CASE("the reference renderer sees the same textures, backgrounds and reflections") {
     RendererFixture studio;
-    SceneParts parts;
-    for (const Image& image : six(128)) parts.textures.push_back({"face.png", image, false});
+    scene::SceneParts parts;
+    for (const scene::Image& image : six(128)) parts.textures.push_back({"face.png", image, false});
     parts.textures.push_back({"board.png", cloudy(200, 133), false});
-    Image lace = cloudy(60, 40);
+    scene::Image lace = cloudy(60, 40);
     for (std::size_t i = 3; i < lace.rgba.size(); i += 4) lace.rgba[i] = lace.rgba[i - 1];
     parts.textures.push_back({"lace.png", lace, true});
     parts.geometries = {sphere(0.8, 16), quad(3), box({0.4, 0.4, 0.4}), quad(0.7)};
@@ -208,20 +216,27 @@ TEST_CASE("the reference renderer sees the same textures, backgrounds and reflec
     const glm::dmat4 places[] = {moved_by({0, 0.8, 0}), turned_by(-90, {1, 0, 0}),
                                  moved_by({1.3, 0.4, 0.6}) * turned_by(30, {0, 1, 0}),
                                  moved_by({-0.5, 0.7, 1.5})};
-    for (Index i = 0; i < 4; ++i)
-        parts.nodes.push_back(
-            {Node{i + 1, {}, NodeType::geometry, kNone, {}, true, places[i], GeometryData{i, i}}, 0});
-    View view = view_from({2, 1.7, 4}, {0, 0.4, 0});
+    for (scene::Index i = 0; i < 4; ++i)
+        parts.nodes.push_back({scene::Node{i + 1,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           places[i],
+                                           scene::GeometryData{i, i}},
+                               0});
+    plan::View view = view_from({2, 1.7, 4}, {0, 0.4, 0});
     view.width = 240;
     view.height = 160;
-    view.scene = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    view.scene = std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
     for (const bool all_around : {true, false}) {
         view.background = {};
         if (all_around)
             view.background.cube_map = {0, 1, 2, 3, 4, 5};
         else
             view.background.texture = 6;
-        const ReferenceImage reference = trace(view);
+        const reference::ReferenceImage reference = reference::trace(view);
         const auto at = [&](int x, int y) {
             return static_cast<std::size_t>(view.height - 1 - y) * static_cast<std::size_t>(view.width) +
                    static_cast<std::size_t>(x);

@@ -6,19 +6,19 @@
 
 namespace vrut {
 
-glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3& eye, const glm::dvec3& point,
-                 const glm::dvec3& normal) {
+glm::dvec3 phong(const scene::Material& material, const scene::Light& light, const glm::dvec3& eye,
+                 const glm::dvec3& point, const glm::dvec3& normal) {
     const glm::dvec3 to_eye = glm::normalize(eye - point);
     glm::dvec3 to_light = -light.direction;
     double intensity = 1;
-    if (light.headlight || light.type != LightData::Type::directional) {
+    if (light.headlight || light.type != scene::LightData::Type::directional) {
         const glm::dvec3 position = light.headlight ? eye : light.position;
         const glm::dvec3 coefficients =
             light.attenuation == glm::dvec3(0) ? glm::dvec3(1, 0, 0) : light.attenuation;
         const double d = glm::distance(position, point);
         intensity = 1 / std::max(coefficients.x + coefficients.y * d + coefficients.z * d * d, 1e-6);
         to_light = (position - point) / d;
-        if (!light.headlight && light.type == LightData::Type::spot) {
+        if (!light.headlight && light.type == scene::LightData::Type::spot) {
             const auto cosine = [](double degrees) { return std::cos(degrees * std::numbers::pi / 180); };
             intensity *= glm::smoothstep(cosine(light.angle / 2), cosine(0.45 * light.angle),
                                          glm::dot(-to_light, light.direction));
@@ -36,20 +36,21 @@ glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3&
                       0.0, 1.0);
 }
 
-ExpectedImage::ExpectedImage(const PlacedScene& placed, const View& view) : view_(view) {
-    const std::vector<bool> shown = shown_nodes(placed, view.camera.eye);
+ExpectedImage::ExpectedImage(const scene::PlacedScene& placed, const plan::View& view) : view_(view) {
+    const std::vector<bool> shown = scene::shown_nodes(placed, view.camera.eye);
     std::vector<std::size_t> order(shown.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
     const auto id = [&](std::size_t i) { return placed.scene->nodes()[i].id; };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return id(a) < id(b); });
     for (const std::size_t i : order)
-        if (const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[i].data); data && shown[i])
+        if (const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[i].data);
+            data && shown[i])
             add(placed, i, *data);
 }
 
-void ExpectedImage::add(const PlacedScene& placed, std::size_t node, const GeometryData& data) {
-    const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
-    const Material& material = placed.scene->material(placed.nodes[node].material);
+void ExpectedImage::add(const scene::PlacedScene& placed, std::size_t node, const scene::GeometryData& data) {
+    const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
+    const scene::Material& material = placed.scene->material(placed.nodes[node].material);
     const glm::dmat4& world = placed.world[node];
     const glm::dmat3 linear(world);
     // Eq. 6.3 itself: test scenes whose matrix has no inverse are judged by hand.
@@ -59,9 +60,9 @@ void ExpectedImage::add(const PlacedScene& placed, std::size_t node, const Geome
     for (const glm::uvec3& indices : geometry.triangles) {
         const auto position = [&](int k) { return geometry.positions[indices[k]]; };
         const glm::dvec3 face = glm::cross(position(1) - position(0), position(2) - position(0));
-        ExpectedTriangle triangle{{}, material, smooth_surface, material.two_sided, mirrored, kNone};
+        ExpectedTriangle triangle{{}, material, smooth_surface, material.two_sided, mirrored, scene::kNone};
         if (material.reflectivity > 0 && placed.scene->plane(data.geometry)) {
-            triangle.mirror = static_cast<Index>(node);
+            triangle.mirror = static_cast<scene::Index>(node);
             triangle.both_sides = true;
         }
         bool flat = true;
@@ -89,7 +90,7 @@ void ExpectedImage::add(const PlacedScene& placed, std::size_t node, const Geome
 }
 
 ExpectedImage::Seen ExpectedImage::at(double x, double y) const {
-    const Camera& camera = view_.camera;
+    const scene::Camera& camera = view_.camera;
     const glm::dvec3 view = glm::normalize(camera.focus - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(view, camera.up)), up = glm::cross(right, view);
     const double half_height = std::tan(camera.fov * std::numbers::pi / 360);
@@ -97,20 +98,20 @@ ExpectedImage::Seen ExpectedImage::at(double x, double y) const {
     const glm::dvec3 ray =
         view + right * ((x - view_.width / 2.0) * pixel) + up * ((view_.height / 2.0 - y) * pixel);
 
-    return along(camera.eye, ray, kNone);
+    return along(camera.eye, ray, scene::kNone);
 }
 
 ExpectedImage::Seen ExpectedImage::along(const glm::dvec3& origin, const glm::dvec3& ray,
-                                         Index from_mirror) const {
-    Light light = view_.light;
+                                         scene::Index from_mirror) const {
+    scene::Light light = view_.light;
     if (light.headlight) {
         light.headlight = false;
-        light.type = LightData::Type::point;
+        light.type = scene::LightData::Type::point;
         light.position = view_.camera.eye;
     }
     std::vector<ExpectedHit> hits;
     for (const ExpectedTriangle& triangle : triangles_) {
-        if (from_mirror != kNone && triangle.mirror == from_mirror) continue;
+        if (from_mirror != scene::kNone && triangle.mirror == from_mirror) continue;
         const auto& [a, b, c] = triangle.corners;
         // Möller and Trumbore: origin + t ray = a + u (b - a) + v (c - a)
         const glm::dvec3 ab = b.position - a.position, ac = c.position - a.position;
@@ -127,9 +128,9 @@ ExpectedImage::Seen ExpectedImage::along(const glm::dvec3& origin, const glm::dv
         const glm::dvec3 point = origin + ray * t;
         glm::dvec3 normal = glm::normalize(a.normal * (1 - u - v) + b.normal * u + c.normal * v);
         if (triangle.both_sides && glm::dot(normal, ray) > 0) normal = -normal;
-        const Material& material = triangle.material;
+        const scene::Material& material = triangle.material;
         Seen seen{triangle.surface, phong(material, light, origin, point, normal)};
-        if (triangle.mirror != kNone && from_mirror == kNone) {
+        if (triangle.mirror != scene::kNone && from_mirror == scene::kNone) {
             const glm::dvec3 face = glm::normalize(glm::cross(ab, ac));
             const Seen there = along(point, glm::reflect(ray, face), triangle.mirror);
             seen.surface = ((seen.surface + 1) * 1000 + there.surface + 1) % 1'000'003;
@@ -172,7 +173,7 @@ std::optional<ExpectedImage::Seen> ExpectedImage::pixel(int x, int y) const {
     return center;
 }
 
-ImageMismatch difference(const ExpectedImage& expected, const Image& image) {
+ImageMismatch difference(const ExpectedImage& expected, const scene::Image& image) {
     ImageMismatch result;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
@@ -195,7 +196,7 @@ ImageMismatch difference(const ExpectedImage& expected, const Image& image) {
     return result;
 }
 
-glm::ivec3 pixel_of(const Image& image, int x, int y) {
+glm::ivec3 pixel_of(const scene::Image& image, int x, int y) {
     const std::uint8_t* bytes = image.rgba.data() + (static_cast<std::size_t>(image.height - 1 - y) *
                                                          static_cast<std::size_t>(image.width) +
                                                      static_cast<std::size_t>(x)) *

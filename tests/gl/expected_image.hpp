@@ -10,14 +10,14 @@
 namespace vrut {
 
 /// The colour that the Phong equations give at a point of a surface, in double.
-glm::dvec3 phong(const Material& material, const Light& light, const glm::dvec3& eye, const glm::dvec3& point,
-                 const glm::dvec3& normal);
+glm::dvec3 phong(const scene::Material& material, const scene::Light& light, const glm::dvec3& eye,
+                 const glm::dvec3& point, const glm::dvec3& normal);
 
 /// What a view of a scene shows, computed ray by ray without any of the renderer: opaque surfaces, and flat
 /// mirrors, in which mirrors are ordinary surfaces.
 class ExpectedImage {
 public:
-    ExpectedImage(const PlacedScene& placed, const View& view);
+    ExpectedImage(const scene::PlacedScene& placed, const plan::View& view);
 
     struct Seen {
         /// Which faces or smooth parts, one behind the other, and in a mirror what is seen there; -1 for the
@@ -37,23 +37,23 @@ private:
     };
     struct ExpectedTriangle {
         ExpectedVertex corners[3];
-        Material material;
+        scene::Material material;
         int surface = -1;
         bool both_sides = false;
         bool mirrored = false;
-        Index mirror = kNone;  ///< the node of a flat mirror
+        scene::Index mirror = scene::kNone;  ///< the node of a flat mirror
     };
     struct ExpectedHit {
         double distance = 0;
         Seen seen;
         double alpha = 1;
     };
-    Seen along(const glm::dvec3& origin, const glm::dvec3& ray, Index from_mirror) const;
+    Seen along(const glm::dvec3& origin, const glm::dvec3& ray, scene::Index from_mirror) const;
     /// In any order, those of the same distance by rising id.
     Seen composited(std::vector<ExpectedHit> hits) const;
-    void add(const PlacedScene& placed, std::size_t node, const GeometryData& data);
+    void add(const scene::PlacedScene& placed, std::size_t node, const scene::GeometryData& data);
 
-    View view_;
+    plan::View view_;
     std::vector<ExpectedTriangle> triangles_;
     int surfaces_ = 0;
 };
@@ -66,10 +66,10 @@ struct ImageMismatch {
 };
 
 /// Compares all pixels but those at outlines and edges.
-ImageMismatch difference(const ExpectedImage& expected, const Image& image);
+ImageMismatch difference(const ExpectedImage& expected, const scene::Image& image);
 
 /// The bytes at a pixel, y from the top.
-glm::ivec3 pixel_of(const Image& image, int x, int y);
+glm::ivec3 pixel_of(const scene::Image& image, int x, int y);
 glm::ivec3 bytes_of(const glm::dvec3& color);
 
 }  // namespace vrut

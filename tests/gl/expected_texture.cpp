@@ -24,7 +24,7 @@ int wrapped(int i, int count, bool repeat) {
 
 }  // namespace
 
-ExpectedTexture::ExpectedTexture(const Image& image) {
+ExpectedTexture::ExpectedTexture(const scene::Image& image) {
     ExpectedMipLevel first{{image.width, image.height}, {}};
     for (std::size_t i = 0; i < image.rgba.size(); i += 4)
         first.texels.push_back(glm::dvec3(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]) / 255.0);
@@ -98,7 +98,7 @@ glm::dvec2 uv_on(const ExpectedEnvironment::ExpectedFace& face, const glm::dvec3
 
 }  // namespace
 
-ExpectedEnvironment::ExpectedEnvironment(const std::array<Image, 6>& images)
+ExpectedEnvironment::ExpectedEnvironment(const std::array<scene::Image, 6>& images)
     : faces_(images.begin(), images.end()) {}
 
 glm::dvec3 ExpectedEnvironment::texel(std::size_t face, int level, const glm::ivec2& at) const {
@@ -149,21 +149,22 @@ double expected_level(const glm::dvec2& across, const glm::dvec2& up) {
     return std::log2(std::max({1.0, glm::length(across), glm::length(up)}));
 }
 
-Image noise(int width, int height, unsigned seed) {
+scene::Image noise(int width, int height, unsigned seed) {
     std::mt19937 random(seed);
-    Image image;
+    scene::Image image;
     image.resize(width, height);
     for (std::size_t i = 0; i < image.rgba.size(); ++i)
         image.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(random() >> 24);
     return image;
 }
 
-Image cloudy(int width, int height, unsigned seed) {
-    Image image;
+scene::Image cloudy(int width, int height, unsigned seed) {
+    scene::Image image;
     image.resize(width, height);
     std::vector<double> sums(image.rgba.size(), 0);
     for (int cell = std::max(width, height); cell >= 1; cell /= 2) {
-        const Image layer = noise(width / cell + 1, height / cell + 1, seed + static_cast<unsigned>(cell));
+        const scene::Image layer =
+            noise(width / cell + 1, height / cell + 1, seed + static_cast<unsigned>(cell));
         for (std::size_t i = 0; i < sums.size(); ++i) {
             const auto texel = static_cast<int>(i / 4);
             const int x = texel % width / cell, y = texel / width / cell;
@@ -176,7 +177,7 @@ Image cloudy(int width, int height, unsigned seed) {
     return image;
 }
 
-TextureMismatch deviation(const Image& image,
+TextureMismatch deviation(const scene::Image& image,
                           const std::function<std::optional<glm::dvec3>(double x, double y)>& expected) {
     TextureMismatch result;
     for (int y = 0; y < image.height; ++y)
@@ -195,8 +196,8 @@ TextureMismatch deviation(const Image& image,
     return result;
 }
 
-glm::dvec3 ray_through(const View& view, double x, double y) {
-    const Camera& camera = view.camera;
+glm::dvec3 ray_through(const plan::View& view, double x, double y) {
+    const scene::Camera& camera = view.camera;
     const glm::dvec3 forward = glm::normalize(camera.focus - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up)), up = glm::cross(right, forward);
     const double pixel = 2 * std::tan(camera.fov * std::numbers::pi / 360) / view.height;

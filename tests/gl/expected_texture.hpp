@@ -13,7 +13,7 @@ namespace vrut {
 /// What a texture shows, in double: bilinear, and trilinear between levels that are box filtered.
 class ExpectedTexture {
 public:
-    explicit ExpectedTexture(const Image& image);
+    explicit ExpectedTexture(const scene::Image& image);
 
     /// RGB, 0 to 1. The pixel reaches from `place` by `across` and by `up`; (0, 0) is the bottom left, (1, 1)
     /// the top right.
@@ -36,7 +36,7 @@ private:
 /// A panorama of six pictures px nx py ny pz nz, each seen by a camera with 90° at the origin.
 class ExpectedEnvironment {
 public:
-    explicit ExpectedEnvironment(const std::array<Image, 6>& images);
+    explicit ExpectedEnvironment(const std::array<scene::Image, 6>& images);
 
     /// RGB, 0 to 1, in a direction of any length, which changes by `across` and `up` over the pixel.
     glm::dvec3 at(const glm::dvec3& direction, const glm::dvec3& across, const glm::dvec3& up) const;
@@ -58,9 +58,9 @@ private:
 double expected_level(const glm::dvec2& across, const glm::dvec2& up);
 
 /// Every texel different and unlike its neighbours.
-Image noise(int width, int height, unsigned seed = 1);
+scene::Image noise(int width, int height, unsigned seed = 1);
 /// As if many such were laid over each other, from coarse to fine: what a photograph is like.
-Image cloudy(int width, int height, unsigned seed = 1);
+scene::Image cloudy(int width, int height, unsigned seed = 1);
 
 /// Of 255: the largest difference of a channel, and the root of the mean square.
 struct TextureMismatch {
@@ -69,10 +69,10 @@ struct TextureMismatch {
     int pixels = 0;
 };
 /// Compares each pixel for which something is expected; x and y from the top left, centres at halves.
-TextureMismatch deviation(const Image& image,
+TextureMismatch deviation(const scene::Image& image,
                           const std::function<std::optional<glm::dvec3>(double x, double y)>& expected);
 
 /// World space direction, not unit, from the eye through a place of the picture in pixels from its top left.
-glm::dvec3 ray_through(const View& view, double x, double y);
+glm::dvec3 ray_through(const plan::View& view, double x, double y);
 
 }  // namespace vrut

@@ -9,20 +9,20 @@ using namespace vrut;
 
 namespace {
 
-const Material kPaint = material_of({0.7, 0.5, 0.3}, {0.2, 0.3, 0.4}, 12);
+const scene::Material kPaint = material_of({0.7, 0.5, 0.3}, {0.2, 0.3, 0.4}, 12);
 
-std::shared_ptr<const PlacedScene> read(const std::string& text) {
-    auto scene = read_vrut_text(text, "test.vrut");
+std::shared_ptr<const scene::PlacedScene> read(const std::string& text) {
+    auto scene = io::read_vrut_text(text, "test.vrut");
     REQUIRE_MESSAGE(scene.has_value(), scene.error());
-    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
 /// In all ways in which a view can be drawn.
 template <class Draw>
-void in_all_modes(View view, Index selected, const Draw& draw) {
-    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized})
+void in_all_modes(plan::View view, scene::Index selected, const Draw& draw) {
+    for (const plan::DrawMode mode : {plan::DrawMode::realistic, plan::DrawMode::stylized})
         for (const bool wireframe : {false, true})
-            for (const Index node : {kNone, selected}) {
+            for (const scene::Index node : {scene::kNone, selected}) {
                 view.mode = mode;
                 view.wireframe = wireframe;
                 view.selected = node;
@@ -33,20 +33,23 @@ void in_all_modes(View view, Index selected, const Draw& draw) {
             }
 }
 
-glm::ivec3 middle(const Image& image) { return pixel_of(image, image.width / 2, image.height / 2); }
+glm::ivec3 middle(const scene::Image& image) { return pixel_of(image, image.width / 2, image.height / 2); }
 
 }  // namespace
 
 TEST_CASE("an empty scene is its background, in every mode and with anything selected") {
     RendererFixture studio;
     for (const bool only_groups : {false, true}) {
-        SceneParts parts;
+        scene::SceneParts parts;
         if (only_groups)
-            parts.nodes.push_back({Node{1, {}, NodeType::assembly, kNone, {}, true, glm::dmat4(0), {}}, 0});
-        const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
-        in_all_modes(view_from({0, 0, 5}), 0, [&](const View& view) {
-            const Image image = studio.draw(scene, view);
-            CHECK(middle(image) == bytes_of(kDefaultBackground));
+            parts.nodes.push_back(
+                {scene::Node{1, {}, scene::NodeType::assembly, scene::kNone, {}, true, glm::dmat4(0), {}},
+                 0});
+        const auto scene =
+            std::make_shared<const scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
+        in_all_modes(view_from({0, 0, 5}), 0, [&](const plan::View& view) {
+            const scene::Image image = studio.draw(scene, view);
+            CHECK(middle(image) == bytes_of(plan::kDefaultBackground));
             CHECK(studio.stats.passes == 0);
         });
     }
@@ -64,12 +67,12 @@ TEST_CASE("a chain of a million nodes is read, drawn in every mode, selected and
     RendererFixture studio;
     auto scene = read(text);
     CHECK(scene->nodes.size() == std::size_t{kCount} + 1);
-    in_all_modes(view_from({0, 0, 5}), scene->scene->find_node(1), [&](const View& view) {
-        const Image image = studio.draw(scene, view);
+    in_all_modes(view_from({0, 0, 5}), scene->scene->find_node(1), [&](const plan::View& view) {
+        const scene::Image image = studio.draw(scene, view);
         CHECK(studio.stats.draws >= 1);
-        CHECK((middle(image) == bytes_of(kDefaultBackground)) == view.wireframe);
+        CHECK((middle(image) == bytes_of(plan::kDefaultBackground)) == view.wireframe);
     });
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     view.markers = markers_at({{0, 0, 0}});
     CHECK(middle(studio.draw(scene, view)) == glm::ivec3(204, 10, 82));
     studio.draw(scene_of({}), view);  // another scene: the chain goes
@@ -83,12 +86,12 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
     for (const int width : {1, 8192}) {
         const int height = 8192 / width;
         CAPTURE(width);
-        View view = view_from({0.5, 0.4, 5});
+        plan::View view = view_from({0.5, 0.4, 5});
         view.width = width;
         view.height = height;
         view.markers = markers_at({{0, 0, 0}});
-        in_all_modes(view, 1, [&](const View& shown) {
-            const Image image = studio.draw(scene, shown);
+        in_all_modes(view, 1, [&](const plan::View& shown) {
+            const scene::Image image = studio.draw(scene, shown);
             CHECK(image.rgba.size() == std::size_t{8192} * 4);
             CHECK(studio.stats.passes >= 2);
         });
@@ -96,7 +99,7 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
         view.samples = 3;
         studio.draw(scene, view);
         view.samples = 1;
-        const Image image = studio.draw(scene, view);
+        const scene::Image image = studio.draw(scene, view);
         const ExpectedImage expected(*scene, view);
         int compared = 0;
         for (int i = 0; i < 8192; i += 97) {
@@ -114,8 +117,8 @@ TEST_CASE("views of 1 x 8192 and 8192 x 1, in every mode, are those columns and 
 TEST_CASE("from inside a body its own faces do not show, and what is in it does") {
     RendererFixture studio;
     const Part within{2, sphere(0.3, 8), kPaint, moved_by({0, 0, -1})};
-    const View view = view_from({0, 0, 0.5}, {0, 0, -1});
-    for (const Geometry& body : {box({2, 2, 2}), sphere(2, 8)}) {
+    const plan::View view = view_from({0, 0, 0.5}, {0, 0, -1});
+    for (const scene::Geometry& body : {box({2, 2, 2}), sphere(2, 8)}) {
         const auto scene = scene_of({{1, body, material_of({1, 0, 0}), glm::dmat4(1)}, within});
         CHECK(studio.draw(scene, view).rgba == studio.draw(scene_of({within}), view).rgba);
         CHECK(studio.check(scene, view).surfaces > 100);
@@ -124,7 +127,7 @@ TEST_CASE("from inside a body its own faces do not show, and what is in it does"
             scene_of({{1, turned_inside_out(body), material_of({1, 0, 0}), glm::dmat4(1)}, within});
         const ImageMismatch result = studio.check(room, view);
         CHECK(result.surfaces == result.compared);
-        View marked = view;
+        plan::View marked = view;
         marked.selected = 1;
         CHECK(studio.draw(scene, marked).rgba.size() == 96 * 64 * 4);
     }
@@ -132,8 +135,8 @@ TEST_CASE("from inside a body its own faces do not show, and what is in it does"
 
 TEST_CASE("near and far a million apart: at every distance between, the nearer of two hides the other") {
     RendererFixture studio;
-    const Material red = material_of({1, 0, 0}), green = material_of({0, 1, 0});
-    View view = view_from({0, 0, 0}, {0, 0, -1});
+    const scene::Material red = material_of({1, 0, 0}), green = material_of({0, 1, 0});
+    plan::View view = view_from({0, 0, 0}, {0, 0, -1});
     for (const double distance : {1.5, 10.0, 1e3, 1e5, 9e5}) {
         CAPTURE(distance);
         for (const bool red_first : {false, true}) {
@@ -155,7 +158,7 @@ TEST_CASE("the narrowest and the widest field of view") {
     const auto scene = scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}});
     for (const double fov : {1.0, 170.0}) {
         CAPTURE(fov);
-        View view = view_from({0, 0, fov < 90 ? 200 : 1.7});
+        plan::View view = view_from({0, 0, fov < 90 ? 200 : 1.7});
         view.camera.fov = fov;
         CHECK(studio.check(scene, view).surfaces > 20);
     }
@@ -167,8 +170,8 @@ TEST_CASE("positions beyond all that is drawn, and matrices that go there, harm 
 geometry 1 vertices 3 -1 -1 0 1 -1 0 0 1 0 triangles 1 0 1 2 end
 node 1 "Plain" geometry geometry 1 end
 )";
-    const View view = view_from({0, 0, 5});
-    const Image plain = studio.draw(read(good), view);
+    const plan::View view = view_from({0, 0, 5});
+    const scene::Image plain = studio.draw(read(good), view);
     // Geometry of the largest coordinates, scaled; matrices whose product no double holds; and those that
     // leave nothing.
     const std::string far = "geometry 2 vertices 3 0 0 0 1e15 0 0 0 1e15 0 triangles 1 0 1 2 end\n",
@@ -185,23 +188,23 @@ node 1 "Plain" geometry geometry 1 end
               "node 2 \"Odd\" geometry geometry 1 matrix 1e-300 0 0 0 0 1e-300 0 0 0 0 1e-300 0 0 0 0 1 "
               "end")}) {
         CAPTURE(odd);
-        in_all_modes(view, 2, [&](const View& shown) { studio.draw(read(good + odd), shown); });
+        in_all_modes(view, 2, [&](const plan::View& shown) { studio.draw(read(good + odd), shown); });
         CHECK(studio.draw(read(good + odd), view).rgba == plain.rgba);
     }
     for (const std::string number : {"nan", "inf", "-inf", "1e999", "1e16", "0x10"}) {
         CAPTURE(number);
-        CHECK_FALSE(read_vrut_text("vrut-text 1\ngeometry 1 vertices 1 " + number + " 0 0 end\n", "t"));
-        CHECK_FALSE(read_vrut_text(
+        CHECK_FALSE(io::read_vrut_text("vrut-text 1\ngeometry 1 vertices 1 " + number + " 0 0 end\n", "t"));
+        CHECK_FALSE(io::read_vrut_text(
             "vrut-text 1\nnode 1 \"N\" assembly matrix " + number + " 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 end\n",
             "t"));
     }
     // Numbers that no file can hold, from a host: not drawn either.
     for (const double number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-        Geometry odd = quad(1);
+        scene::Geometry odd = quad(1);
         odd.positions[2].y = number;
         odd.bounds.max.y = number;
         const auto scene = scene_of({{1, odd, kPaint, glm::dmat4(1)}});
-        CHECK(middle(studio.draw(scene, view)) == bytes_of(kDefaultBackground));
+        CHECK(middle(studio.draw(scene, view)) == bytes_of(plan::kDefaultBackground));
         CHECK(studio.stats.draws == 0);
     }
 }
@@ -213,32 +216,32 @@ TEST_CASE("what a driver complains of fails a test" * doctest::should_fail()) {
 
 TEST_CASE("a GL object that is not given back fails a test" * doctest::should_fail()) {
     struct Leak {
-        Leak() { detail::count_gl_object(1); }
-        ~Leak() { detail::count_gl_object(-1); }
+        Leak() { gl::detail::count_gl_object(1); }
+        ~Leak() { gl::detail::count_gl_object(-1); }
     } const leak;
     const RendererFixture studio;
 }
 
 TEST_CASE("GL objects of every kind are counted, moved and not copied") {
     const RendererFixture studio;
-    const long before = live_gl_objects();
+    const long before = gl::live_gl_objects();
     const auto lives_once = [&](auto handle) {
         using Handle = decltype(handle);
         CHECK_FALSE(std::is_copy_constructible_v<Handle>);
         CHECK_FALSE(std::is_copy_assignable_v<Handle>);
-        CHECK(live_gl_objects() == before + 1);
+        CHECK(gl::live_gl_objects() == before + 1);
         Handle other = std::move(handle);
-        CHECK(live_gl_objects() == before + 1);
+        CHECK(gl::live_gl_objects() == before + 1);
         CHECK(!handle);  // NOLINT(bugprone-use-after-move)
         other = Handle();
-        CHECK(live_gl_objects() == before);
+        CHECK(gl::live_gl_objects() == before);
     };
-    lives_once(make_buffer("numbers", &before, sizeof before));
-    lives_once(make_dynamic_buffer("numbers", 16));
-    lives_once(make_vertex_array());
-    lives_once(make_renderbuffer(GL_RGBA8, 2, 2));
-    lives_once(make_texture(GL_RGBA8, 2, 2));
-    lives_once(make_framebuffer());
-    lives_once(GlShader(glCreateShader(GL_VERTEX_SHADER)));
-    lives_once(GlProgram(glCreateProgram()));
+    lives_once(gl::make_buffer("numbers", &before, sizeof before));
+    lives_once(gl::make_dynamic_buffer("numbers", 16));
+    lives_once(gl::make_vertex_array());
+    lives_once(gl::make_renderbuffer(GL_RGBA8, 2, 2));
+    lives_once(gl::make_texture(GL_RGBA8, 2, 2));
+    lives_once(gl::make_framebuffer());
+    lives_once(gl::GlShader(glCreateShader(GL_VERTEX_SHADER)));
+    lives_once(gl::GlProgram(glCreateProgram()));
 }

@@ -52,7 +52,7 @@ struct Faulty {
     ~Faulty() {
         gl_faults::heal();
         server.reset();
-        CHECK(live_gl_objects() == 0);
+        CHECK(gl::live_gl_objects() == 0);
     }
     Faulty(const Faulty&) = delete;
     Faulty& operator=(const Faulty&) = delete;
@@ -94,7 +94,7 @@ TEST_CASE("a driver that resets itself is started anew, and all that was on the 
     Faulty faulty;
     faulty.move_and_look();
     faulty.client->wait_for_still();
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     for (int i = 1; i <= 3; ++i) {
         CAPTURE(i);
         gl_faults::reset_after(0);
@@ -107,20 +107,21 @@ TEST_CASE("a driver that resets itself is started anew, and all that was on the 
         gl_faults::heal();
     }
     faulty.client->wait_for_still();
-    CHECK(live_gl_objects() > 0);
-    CHECK(live_gl_objects() <= objects);  // what moving pictures of other levels needed may not be there yet
+    CHECK(gl::live_gl_objects() > 0);
+    CHECK(gl::live_gl_objects() <=
+          objects);  // what moving pictures of other levels needed may not be there yet
     CHECK(faulty.has_notice("driver"));
 }
 
 TEST_CASE("a scene for which there is no memory is refused, and the one before goes on") {
     Faulty faulty;
     const Json scene = faulty.client->state["scene"];
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     gl_faults::limit_memory(gl_faults::memory_used() + 100'000);
     const Json loading = faulty.open_large();
     CHECK(loading["refused"].get<std::string>().find("large.vrut: the graphics driver has no memory for") ==
           0);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
     faulty.move_and_look();
     CHECK(faulty.client->wait_for_still()["quality"]["scale"] == 1.0);
     CHECK(faulty.client->state["scene"] == scene);
@@ -208,5 +209,5 @@ TEST_CASE("a first scene for which there is no memory is told at once") {
     CHECK_THROWS_WITH(Server(options, scene_of(square_text(100), "large.vrut"), gl_renderer(std::nullopt)),
                       doctest::Contains("large.vrut: the graphics driver has no memory for"));
     gl_faults::heal();
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
 }

@@ -8,19 +8,19 @@ using namespace vrut;
 
 namespace {
 
-std::shared_ptr<const PlacedScene> placed(const std::string& file) {
-    auto scene = read_scene(file);
+std::shared_ptr<const scene::PlacedScene> placed(const std::string& file) {
+    auto scene = io::read_scene(file);
     REQUIRE_MESSAGE(scene, scene.error());
-    return std::make_shared<PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
 }  // namespace
 
 TEST_CASE("a scene in glTF is drawn as the same scene in scene text") {
     RendererFixture studio;
-    const View view = view_from({0, 0.5, 6.4});
-    const Image text = studio.draw(placed(VRUT_SCENES "/teaching/texture.vrut"), view);
-    const Image gltf = studio.draw(placed(VRUT_TEST_DATA "/texture.gltf"), view);
+    const plan::View view = view_from({0, 0.5, 6.4});
+    const scene::Image text = studio.draw(placed(VRUT_SCENES "/teaching/texture.vrut"), view);
+    const scene::Image gltf = studio.draw(placed(VRUT_TEST_DATA "/texture.gltf"), view);
     REQUIRE(gltf.rgba.size() == text.rgba.size());
     const auto pixel = [&](int x, int y) {
         return &gltf.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +

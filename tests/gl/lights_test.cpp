@@ -6,17 +6,19 @@ using namespace vrut;
 
 namespace {
 
-constexpr LightData::Type kPoint = LightData::Type::point, kDirectional = LightData::Type::directional,
-                          kSpot = LightData::Type::spot;
+constexpr scene::LightData::Type kPoint = scene::LightData::Type::point,
+                                 kDirectional = scene::LightData::Type::directional,
+                                 kSpot = scene::LightData::Type::spot;
 
-Material rich(double shininess) {
-    Material material = material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, shininess);
+scene::Material rich(double shininess) {
+    scene::Material material = material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, shininess);
     material.ambient = {0.05, 0.1, 0.02, 1};
     return material;
 }
 
-Light light_at(LightData::Type type, const glm::dvec3& position, const glm::dvec3& towards = glm::dvec3(0)) {
-    Light light;
+scene::Light light_at(scene::LightData::Type type, const glm::dvec3& position,
+                      const glm::dvec3& towards = glm::dvec3(0)) {
+    scene::Light light;
     light.type = type;
     light.headlight = false;
     light.position = position;
@@ -25,15 +27,15 @@ Light light_at(LightData::Type type, const glm::dvec3& position, const glm::dvec
 }
 
 /// A plate whose diffuse colour is 0.8 0.4 0.2, without highlights.
-std::shared_ptr<const PlacedScene> plate(double half = 3) {
+std::shared_ptr<const scene::PlacedScene> plate(double half = 3) {
     return scene_of({{1, quad(half), material_of({0.8, 0.4, 0.2}), glm::dmat4(1)}});
 }
 
 /// At the pixel nearest to where a point of the scene is seen.
-glm::ivec3 seen_at(const Image& image, const View& view, const glm::dvec3& point) {
+glm::ivec3 seen_at(const scene::Image& image, const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip =
-        clip_from_view(view.camera, aspect, {0.1, 100}) * view_from_world(view.camera) * glm::dvec4(point, 1);
+    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+                            scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     return pixel_of(image, static_cast<int>((clip.x / clip.w + 1) / 2 * view.width),
                     static_cast<int>((1 - clip.y / clip.w) / 2 * view.height));
 }
@@ -49,11 +51,11 @@ void check_color(const glm::ivec3& is, const glm::ivec3& should) {
 
 TEST_CASE("lights of each kind, computed and drawn") {
     RendererFixture studio;
-    for (const LightData::Type type : {kPoint, kDirectional, kSpot})
+    for (const scene::LightData::Type type : {kPoint, kDirectional, kSpot})
         for (const double shininess : {0.0, 1.0, 40.0}) {
             CAPTURE(static_cast<int>(type));
             CAPTURE(shininess);
-            View view = view_from({1, 1.5, 5});
+            plan::View view = view_from({1, 1.5, 5});
             for (const glm::dvec3& at : {glm::dvec3(2, 1, 3), glm::dvec3(-1, 0.5, 2), glm::dvec3(0, 0, 9)}) {
                 view.light = light_at(type, at, {0.3, 0.1, 0});
                 view.light.color = {0.9, 0.7, 0.5, 0.1};
@@ -69,10 +71,10 @@ TEST_CASE("lights of each kind, computed and drawn") {
 
 TEST_CASE("a point light: by hand") {
     RendererFixture studio;
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     view.light = light_at(kPoint, {0, 0, 2});
     view.light.attenuation = {0, 0, 0.5};  // 1 / (0.5 * 4) straight below
-    const Image image = studio.draw(plate(), view);
+    const scene::Image image = studio.draw(plate(), view);
     check_color(seen_at(image, view, {0, 0, 0}), {102, 51, 26});
     // At 2 to the side: the distance's square is 8, the cosine 1 / sqrt 2: 0.8 / 4 / 1.4142.
     check_color(seen_at(image, view, {2, 0, 0}), {36, 18, 9});
@@ -83,9 +85,9 @@ TEST_CASE("a point light: by hand") {
 
 TEST_CASE("a directional light shines alike everywhere, whatever its attenuation and place") {
     RendererFixture studio;
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     view.light = light_at(kDirectional, {0, std::sqrt(3.0), 1});  // 60 degrees off the normal
-    const Image image = studio.draw(plate(), view);
+    const scene::Image image = studio.draw(plate(), view);
     for (const glm::dvec3& point : {glm::dvec3(0, 0, 0), glm::dvec3(2, 0, 0), glm::dvec3(-2, -2, 0)})
         check_color(seen_at(image, view, point), {102, 51, 26});
     view.light.attenuation = {9, 7, 5};
@@ -96,14 +98,14 @@ TEST_CASE("a directional light shines alike everywhere, whatever its attenuation
 
 TEST_CASE("a spot's edge is the smoothstep between nine tenths of its cone and the cone") {
     RendererFixture studio;
-    View view = view_from({0, 0, 12});
+    plan::View view = view_from({0, 0, 12});
     view.camera.fov = 25;
     view.width = 960;
     view.height = 640;
     view.light = light_at(kSpot, {0, 0, 4});
     view.light.angle = 60;
     const auto at = [](double degrees) { return glm::dvec3(4 * std::tan(glm::radians(degrees)), 0, 0); };
-    const Image image = studio.draw(plate(), view);
+    const scene::Image image = studio.draw(plate(), view);
     check_color(seen_at(image, view, {0.01, 0.01, 0}), {204, 102, 51});
     CHECK(seen_at(image, view, at(26)).r > 175);  // 204 times the cosine alone
     CHECK(seen_at(image, view, at(31)) == glm::ivec3(0));
@@ -123,7 +125,7 @@ TEST_CASE("a spot's edge is the smoothstep between nine tenths of its cone and t
 
 TEST_CASE("spots as narrow and as wide as can be") {
     RendererFixture studio;
-    View view = view_from({0, 0, 12});
+    plan::View view = view_from({0, 0, 12});
     view.light = light_at(kSpot, {0, 0, 4});
     // A tenth of a degree, looked at where it ends: 3.1 to 3.5 thousandths beside its middle.
     view.camera.eye.x = view.camera.focus.x = 0.0033;
@@ -131,7 +133,7 @@ TEST_CASE("spots as narrow and as wide as can be") {
     view.light.angle = 0.1;
     const ImageMismatch narrow = studio.check(plate(), view);
     CHECK(narrow.surfaces == view.width * view.height);
-    const Image image = studio.draw(plate(), view);
+    const scene::Image image = studio.draw(plate(), view);
     int steps = 0;
     for (int x = 1; x < view.width; ++x) steps += pixel_of(image, x, 32) != pixel_of(image, x - 1, 32);
     CHECK(steps > 20);
@@ -141,15 +143,15 @@ TEST_CASE("spots as narrow and as wide as can be") {
     view.light.angle = 0;
     CHECK(seen_at(studio.draw(plate(), view), view, {0.5, 0.5, 0}) == glm::ivec3(0));
     view.light.angle = 360;
-    const Image all = studio.draw(plate(), view);
+    const scene::Image all = studio.draw(plate(), view);
     view.light.type = kPoint;
-    const Image point = studio.draw(plate(), view);
+    const scene::Image point = studio.draw(plate(), view);
     check_color(seen_at(all, view, {1, 1, 0}), seen_at(point, view, {1, 1, 0}));
 }
 
 TEST_CASE("lights at odd places") {
     RendererFixture studio;
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     // On the surface itself, and beyond what float can square.
     view.light = light_at(kPoint, {0, 0, 0}, {0, 0, 1});
     check_color(seen_at(studio.draw(plate(), view), view, {1, 1, 0}), {0, 0, 0});
@@ -164,17 +166,21 @@ TEST_CASE("lights at odd places") {
 }
 
 TEST_CASE("the light of a node: where it stands, along its own -z, as the file says") {
-    SceneParts parts;
-    LightData data{kSpot, {1, 0.5, 0.25, 1}, {1, 2, 3}, 33};
-    const auto add = [&](Id id, Id parent, const glm::dmat4& matrix, decltype(Node::data) what) {
-        const NodeType type = std::holds_alternative<LightData>(what) ? NodeType::light : NodeType::assembly;
-        parts.nodes.push_back({Node{id, {}, type, kNone, {}, false, matrix, std::move(what)}, parent});
+    scene::SceneParts parts;
+    scene::LightData data{kSpot, {1, 0.5, 0.25, 1}, {1, 2, 3}, 33};
+    const auto add = [&](scene::Id id, scene::Id parent, const glm::dmat4& matrix,
+                         decltype(scene::Node::data) what) {
+        const scene::NodeType type = std::holds_alternative<scene::LightData>(what)
+                                         ? scene::NodeType::light
+                                         : scene::NodeType::assembly;
+        parts.nodes.push_back(
+            {scene::Node{id, {}, type, scene::kNone, {}, false, matrix, std::move(what)}, parent});
     };
-    add(1, 0, moved_by({1, 2, 3}), GroupData{});
+    add(1, 0, moved_by({1, 2, 3}), scene::GroupData{});
     add(2, 1, turned_by(90, {0, 1, 0}) * scaled_by({1, 1, 5}), data);
     add(3, 1, scaled_by({0, 0, 0}), data);
-    const PlacedScene placed = place(*Scene::build(std::move(parts)));
-    const Light light = light_of(placed, placed.scene->find_node(2));
+    const scene::PlacedScene placed = scene::place(*scene::Scene::build(std::move(parts)));
+    const scene::Light light = scene::light_of(placed, placed.scene->find_node(2));
     CHECK(light.type == kSpot);
     CHECK_FALSE(light.headlight);
     CHECK(light.color == glm::dvec4(1, 0.5, 0.25, 1));
@@ -182,5 +188,5 @@ TEST_CASE("the light of a node: where it stands, along its own -z, as the file s
     CHECK(light.angle == 33);
     CHECK(light.position == glm::dvec3(1, 2, 3));
     CHECK(glm::distance(light.direction, glm::dvec3(-1, 0, 0)) < 1e-12);
-    CHECK(light_of(placed, placed.scene->find_node(3)).direction == glm::dvec3(0, 0, -1));
+    CHECK(scene::light_of(placed, placed.scene->find_node(3)).direction == glm::dvec3(0, 0, -1));
 }

@@ -10,14 +10,14 @@ struct Healed {
     ~Healed() { gl_faults::heal(); }
 };
 
-std::shared_ptr<const PlacedScene> two_parts() {
-    const Material paint = material_of({0.7, 0.5, 0.3});
+std::shared_ptr<const scene::PlacedScene> two_parts() {
+    const scene::Material paint = material_of({0.7, 0.5, 0.3});
     return scene_of(
         {{1, sphere(1, 8), paint, moved_by({-1, 0, 0})}, {2, box({1, 1, 1}), paint, moved_by({1, 0, 0})}});
 }
 
-View view_of(const std::shared_ptr<const PlacedScene>& scene) {
-    View view = view_from({0, 1, 5});
+plan::View view_of(const std::shared_ptr<const scene::PlacedScene>& scene) {
+    plan::View view = view_from({0, 1, 5});
     view.scene = scene;
     view.samples = 4;
     return view;
@@ -27,49 +27,49 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene) {
 
 TEST_CASE("a picture in whose midst the driver resets itself is not had, and a new renderer draws it") {
     const Healed healed;
-    const View view = view_of(two_parts());
-    Image expected, image;
-    FrameStats stats;
+    const plan::View view = view_of(two_parts());
+    scene::Image expected, image;
+    plan::FrameStats stats;
     {
-        Renderer renderer;
+        renderer::Renderer renderer;
         renderer.render(view, expected, stats);
         const int draws = stats.draws;
         REQUIRE(draws >= 8);
         for (const int before : {0, 1, draws / 2, draws - 1}) {
             CAPTURE(before);
             gl_faults::heal();
-            Renderer other;
+            renderer::Renderer other;
             other.render(view, image, stats);
             gl_faults::reset_after(before);
-            CHECK_THROWS_AS(other.render(view, image, stats), ContextLost);
+            CHECK_THROWS_AS(other.render(view, image, stats), base::ContextLost);
         }
     }
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
     gl_faults::heal();
-    Renderer renderer;
+    renderer::Renderer renderer;
     renderer.render(view, image, stats);
     CHECK(image.rgba == expected.rgba);
 }
 
 TEST_CASE("what was begun before the driver reset itself goes on in a new renderer, or is begun anew") {
     const Healed healed;
-    const View view = view_of(two_parts());
-    Image expected;
-    FrameStats stats;
-    RenderJob rendering(view);
+    const plan::View view = view_of(two_parts());
+    scene::Image expected;
+    plan::FrameStats stats;
+    plan::RenderJob rendering(view);
     {
-        Renderer renderer;
+        renderer::Renderer renderer;
         renderer.render(view, expected, stats);
         CHECK_FALSE(renderer.step(rendering));
         CHECK_FALSE(renderer.step(rendering));
         gl_faults::reset_after(1);
-        CHECK_THROWS_AS(renderer.step(rendering), ContextLost);
+        CHECK_THROWS_AS(renderer.step(rendering), base::ContextLost);
         CHECK(rendering.samples == 2);
     }
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
     gl_faults::heal();
-    Renderer renderer;
-    RenderJob anew(view, std::move(rendering.image));
+    renderer::Renderer renderer;
+    plan::RenderJob anew(view, std::move(rendering.image));
     rendering.image.resize(view.width, view.height);
     while (!renderer.step(anew)) CHECK(anew.samples < view.samples);
     CHECK(anew.image.rgba == expected.rgba);
@@ -80,48 +80,48 @@ TEST_CASE("what was begun before the driver reset itself goes on in a new render
 
 TEST_CASE("a sample of which a part is drawn is lost with the driver, and drawn again whole") {
     const Healed healed;
-    Material glass = material_of({0.7, 0.5, 0.3});
+    scene::Material glass = material_of({0.7, 0.5, 0.3});
     glass.diffuse.a = 0.1;
     std::vector<Part> panes;
     for (int i = 0; i < 1000; ++i) panes.push_back({i + 1, quad(2), glass, moved_by({0, 0, -0.001 * i})});
-    View view = view_of(scene_of(panes));
+    plan::View view = view_of(scene_of(panes));
     view.width = view.height = 128;
     view.samples = 2;
-    Image expected;
-    FrameStats stats;
-    RenderJob rendering(view);
+    scene::Image expected;
+    plan::FrameStats stats;
+    plan::RenderJob rendering(view);
     {
-        Renderer renderer;
+        renderer::Renderer renderer;
         renderer.render(view, expected, stats);
         while (rendering.stats.draws < 1100) CHECK_FALSE(renderer.step(rendering));
         REQUIRE(rendering.stats.draws < 1900);  // in the midst of the second
         gl_faults::reset_after(1);
-        CHECK_THROWS_AS(renderer.step(rendering), ContextLost);
+        CHECK_THROWS_AS(renderer.step(rendering), base::ContextLost);
     }
     gl_faults::heal();
     CHECK(rendering.samples == 1);
-    Renderer renderer;
+    renderer::Renderer renderer;
     while (!renderer.step(rendering)) CHECK(rendering.samples == 1);
     CHECK(rendering.image.rgba == expected.rgba);
 }
 
 TEST_CASE("shaders that a lost context does not compile are no fault of ours") {
     const Healed healed;
-    View view = view_of(two_parts());
-    Image image;
-    FrameStats stats;
-    Renderer renderer;
+    plan::View view = view_of(two_parts());
+    scene::Image image;
+    plan::FrameStats stats;
+    renderer::Renderer renderer;
     renderer.render(view, image, stats);
     gl_faults::reset_after(0);
     view.wireframe = true;  // with programs of its own
-    CHECK_THROWS_AS(renderer.render(view, image, stats), ContextLost);
+    CHECK_THROWS_AS(renderer.render(view, image, stats), base::ContextLost);
 }
 
 TEST_CASE("the numbers of nodes that a lost context has drawn are not had") {
     const Healed healed;
-    const View view = view_of(two_parts());
-    Renderer renderer;
+    const plan::View view = view_of(two_parts());
+    renderer::Renderer renderer;
     REQUIRE_FALSE(renderer.node_ids(view).empty());
     gl_faults::reset_after(1);
-    CHECK_THROWS_AS(renderer.node_ids(view), ContextLost);
+    CHECK_THROWS_AS(renderer.node_ids(view), base::ContextLost);
 }

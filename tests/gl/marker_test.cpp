@@ -10,26 +10,26 @@ using namespace vrut;
 namespace {
 
 const glm::ivec3 kSign{204, 10, 82}, kRim{255, 255, 255};
-const Material kPaint = material_of({0.2, 0.3, 0.4});
+const scene::Material kPaint = material_of({0.2, 0.3, 0.4});
 
-glm::dvec3 at_pixel(double x, double y, const View& view) {
+glm::dvec3 at_pixel(double x, double y, const plan::View& view) {
     return {x - view.width / 2.0, view.height / 2.0 - y, 0};
 }
 
 /// A view of height 600, in which a sign's radius is 5 and its rim 1 wide, before black.
-View view_with_mark(double x, double y) {
-    View view = pixel_view(80, 600);
+plan::View view_with_mark(double x, double y) {
+    plan::View view = pixel_view(80, 600);
     view.background.color = {0, 0, 0};
     view.markers = markers_at({at_pixel(x, y, view)});
     return view;
 }
 
-std::shared_ptr<const PlacedScene> nothing() { return scene_of({}); }
+std::shared_ptr<const scene::PlacedScene> nothing() { return scene_of({}); }
 
 /// How much of a sign shows over black at a place, from 0 to 1.
-double opacity(const Image& image, int x, int y) { return pixel_of(image, x, y).r / 204.0; }
+double opacity(const scene::Image& image, int x, int y) { return pixel_of(image, x, y).r / 204.0; }
 
-double drawn_area(const Image& image) {
+double drawn_area(const scene::Image& image) {
     double area = 0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) area += pixel_of(image, x, y) != glm::ivec3(0);
@@ -41,7 +41,7 @@ struct MarkerPixel {
 };
 
 /// A point of some triangle, as a picking ray would find it.
-MarkerPixel spot_on(const Geometry& geometry, std::mt19937& random) {
+MarkerPixel spot_on(const scene::Geometry& geometry, std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0, 1);
     const auto triangle = static_cast<std::size_t>(random() % geometry.triangles.size());
     const auto corner = [&](int k) { return geometry.positions[geometry.triangles[triangle][k]]; };
@@ -56,10 +56,10 @@ glm::dvec3 direction(std::mt19937& random) {
 }
 
 /// The sign's colour at a point that is drawn somewhere in the picture.
-glm::ivec3 color_at(const Image& image, const View& view, const glm::dvec3& point) {
+glm::ivec3 color_at(const scene::Image& image, const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip =
-        clip_from_view(view.camera, aspect, {0.1, 100}) * view_from_world(view.camera) * glm::dvec4(point, 1);
+    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+                            scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     const glm::dvec2 pixel{(clip.x / clip.w + 1) / 2 * view.width, (1 - clip.y / clip.w) / 2 * view.height};
     const int x = std::clamp(static_cast<int>(pixel.x), 0, view.width - 1);
     return pixel_of(image, x, std::clamp(static_cast<int>(pixel.y), 0, view.height - 1));
@@ -71,9 +71,9 @@ TEST_CASE("a marker is a round sign of one colour with a rim, on light and on da
     RendererFixture studio;
     for (const double level : {0.0, 1.0}) {
         CAPTURE(level);
-        View view = view_with_mark(40.5, 300.5);
+        plan::View view = view_with_mark(40.5, 300.5);
         view.background.color = glm::dvec3(level);
-        const Image image = studio.draw(nothing(), view);
+        const scene::Image image = studio.draw(nothing(), view);
         int signs = 0, rims = 0, others = 0;
         for (int y = 0; y < 600; ++y)
             for (int x = 0; x < 80; ++x) {
@@ -96,7 +96,7 @@ TEST_CASE("markers move by parts of a pixel, and cover as much everywhere") {
     int last = 0;
     double least = 1e9, most = 0;
     for (const double part : {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}) {
-        const Image image = studio.draw(nothing(), view_with_mark(40 + part, 300.5));
+        const scene::Image image = studio.draw(nothing(), view_with_mark(40 + part, 300.5));
         const int right = pixel_of(image, 45, 300).g;
         CHECK((right > last || part == 0));
         last = right;
@@ -112,17 +112,17 @@ TEST_CASE("markers move by parts of a pixel, and cover as much everywhere") {
 
 TEST_CASE("a sign is as large at all distances, and in proportion to the picture's height") {
     RendererFixture studio;
-    View view = view_with_mark(40.5, 300.5);
+    plan::View view = view_with_mark(40.5, 300.5);
     const std::vector<std::uint8_t> first = studio.draw(nothing(), view).rgba;
     const glm::dvec3 from_eye = view.markers->front().point - view.camera.eye;
     for (const double factor : {1e-9, 1e-3, 0.3, 7.0, 1e4, 1e9}) {
         view.markers = markers_at({view.camera.eye + from_eye * factor});
-        const Image image = studio.draw(nothing(), view);
+        const scene::Image image = studio.draw(nothing(), view);
         CHECK(image.rgba == first);
     }
     for (const int height : {100, 360, 600, 1200, 2400}) {
         CAPTURE(height);
-        View other = pixel_view(200, height);
+        plan::View other = pixel_view(200, height);
         other.background.color = {0, 0, 0};
         other.markers = markers_at({{0, 0, 0}});
         const double radius = std::max(3.0, height / 120.0);
@@ -133,9 +133,9 @@ TEST_CASE("a sign is as large at all distances, and in proportion to the picture
 
 TEST_CASE("a marker fades behind what is opaque, little by little at its edge") {
     RendererFixture studio;
-    View view = pixel_view(200, 600);
+    plan::View view = pixel_view(200, 600);
     view.background.color = {0, 0, 0};
-    const Material black = material_of({0, 0, 0});
+    const scene::Material black = material_of({0, 0, 0});
     view.markers = markers_at({{0, 0, -100}});
     const Part wall{2, quad(200), black, moved_by({0, 0, -100})};
     std::vector<double> seen;
@@ -162,13 +162,13 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
         CHECK(opacity(studio.draw(curtain, view), 100, 300) ==
               doctest::Approx(depth < 0 ? 0.3 : 1).epsilon(0.02));
     }
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     view.markers = markers_at({{20, 5, 0}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) == kSign);
     view.markers = markers_at({{20, 5, -10}});
     CHECK(pixel_of(studio.draw(curtain, view), 120, 295) != kSign);
     // Nothing hides anything in a wireframe.
-    for (const DrawMode mode : {DrawMode::realistic, DrawMode::stylized}) {
+    for (const plan::DrawMode mode : {plan::DrawMode::realistic, plan::DrawMode::stylized}) {
         view.mode = mode;
         view.wireframe = true;
         CHECK(pixel_of(studio.draw(curtain, view), 120, 295) == kSign);
@@ -177,12 +177,12 @@ TEST_CASE("a marker fades behind what is opaque, little by little at its edge") 
 
 TEST_CASE("glass covers no marker") {
     RendererFixture studio;
-    Material glass = material_of({0, 0, 0});
-    View view = pixel_view(200, 600);
+    scene::Material glass = material_of({0, 0, 0});
+    plan::View view = pixel_view(200, 600);
     view.markers = markers_at({{0, 0, -10}});
     for (const double alpha : {0.99, 1.0}) {
         glass.diffuse.a = alpha;
-        const Image image = studio.draw(scene_of({{1, quad(200), glass, glm::dmat4(1)}}), view);
+        const scene::Image image = studio.draw(scene_of({{1, quad(200), glass, glm::dmat4(1)}}), view);
         CHECK((pixel_of(image, 100, 300) == kSign) == (alpha < 1));
     }
 }
@@ -190,7 +190,7 @@ TEST_CASE("glass covers no marker") {
 TEST_CASE("no surface hides a marker that lies on it, from near, from far, and at a glance") {
     RendererFixture studio;
     std::mt19937 random(5);
-    for (const Geometry& geometry : {sphere(1, 12), box({1, 0.6, 0.8}), sphere(1, 4, false)}) {
+    for (const scene::Geometry& geometry : {sphere(1, 12), box({1, 0.6, 0.8}), sphere(1, 4, false)}) {
         const auto scene = scene_of({{1, geometry, kPaint, turned_by(20, {0, 0, 1})}});
         for (std::size_t round = 0; round < 150; ++round) {
             const double distance = std::array{1e-3, 0.1, 1.0, 10.0, 1e4}[round % 5];
@@ -203,9 +203,9 @@ TEST_CASE("no surface hides a marker that lies on it, from near, from far, and a
             if (glm::dot(way, spot.normal) < 0.009) continue;
             const glm::dmat3 turn(turned_by(20, {0, 0, 1}));
             const glm::dvec3 point = turn * spot.point;
-            View view = view_from(point + turn * way * distance, point);
+            plan::View view = view_from(point + turn * way * distance, point);
             view.height = 300;
-            view.mode = round % 2 ? DrawMode::realistic : DrawMode::stylized;
+            view.mode = round % 2 ? plan::DrawMode::realistic : plan::DrawMode::stylized;
             view.markers = markers_at({point});
             CAPTURE(round);
             CAPTURE(distance);
@@ -218,10 +218,10 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
     RendererFixture studio;
     std::mt19937 random(6);
     const glm::dvec3 half{1, 0.6, 0.8};
-    const Geometry room = turned_inside_out(box(half));
+    const scene::Geometry room = turned_inside_out(box(half));
     for (int round = 0; round < 200; ++round) {
         const glm::dvec3 point = spot_on(room, random).point;
-        View view = view_from(direction(random) * half * 0.95, point);
+        plan::View view = view_from(direction(random) * half * 0.95, point);
         view.height = 300;
         view.markers = markers_at({point});
         CAPTURE(round);
@@ -229,7 +229,7 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
               kSign);
     }
     // In a corner, where all three walls come nearer.
-    View view = view_from({0.5, -0.4, 0.5}, {-0.999, 0.599, -0.799});
+    plan::View view = view_from({0.5, -0.4, 0.5}, {-0.999, 0.599, -0.799});
     view.height = 300;
     view.markers = markers_at({-half * glm::dvec3(1, -1, 1)});
     CHECK(color_at(studio.draw(scene_of({{1, room, kPaint, glm::dmat4(1)}}), view), view,
@@ -239,11 +239,11 @@ TEST_CASE("no wall of a room hides a marker that lies on it") {
 TEST_CASE("what marks take: nothing where none shows, else one pass and a draw for 256") {
     RendererFixture studio;
     const auto scene = scene_of({{1, quad(100), kPaint, glm::dmat4(1)}});
-    View view = pixel_view(80, 600);
-    const Image plain = studio.draw(scene, view);
-    const auto draw = [&](std::vector<PlacedMarker> markers) {
-        view.markers = std::make_shared<const std::vector<PlacedMarker>>(std::move(markers));
-        const Image image = studio.draw(scene, view);
+    plan::View view = pixel_view(80, 600);
+    const scene::Image plain = studio.draw(scene, view);
+    const auto draw = [&](std::vector<plan::PlacedMarker> markers) {
+        view.markers = std::make_shared<const std::vector<plan::PlacedMarker>>(std::move(markers));
+        const scene::Image image = studio.draw(scene, view);
         return image.rgba == plain.rgba;
     };
     CHECK(studio.stats.passes == 1);
@@ -259,19 +259,19 @@ TEST_CASE("what marks take: nothing where none shows, else one pass and a draw f
     CHECK(studio.stats.passes == 1);
     CHECK(studio.stats.draws == 1);
     for (const auto& [count, draws] : {std::pair{1, 1}, {256, 1}, {257, 2}}) {
-        CHECK_FALSE(draw(std::vector<PlacedMarker>(static_cast<std::size_t>(count))));
+        CHECK_FALSE(draw(std::vector<plan::PlacedMarker>(static_cast<std::size_t>(count))));
         CHECK(studio.stats.passes == 2);
         CHECK(studio.stats.draws == 1 + draws);
         CHECK(studio.stats.triangles == 2);
     }
-    CHECK(plan_frame(view).markers.empty());  // a view without a scene
+    CHECK(plan::plan_frame(view).markers.empty());  // a view without a scene
     CHECK(draw({}));
 }
 
 TEST_CASE("markers at the picture's border are cut off there, and nearer ones lie over farther ones") {
     RendererFixture studio;
-    View view = view_with_mark(-2.5, 300.5);
-    const Image image = studio.draw(nothing(), view);
+    plan::View view = view_with_mark(-2.5, 300.5);
+    const scene::Image image = studio.draw(nothing(), view);
     CHECK(pixel_of(image, 0, 300) == kSign);
     CHECK(drawn_area(image) > 10);
     CHECK(drawn_area(image) < 30);
@@ -293,16 +293,17 @@ TEST_CASE("markers in pictures a pixel wide or high, and with many samples") {
     for (const glm::ivec2 size : {glm::ivec2(1, 8192), {8192, 1}, {1, 1}}) {
         const int width = size.x, height = size.y;
         CAPTURE(width);
-        View view = pixel_view(width, height);
+        plan::View view = pixel_view(width, height);
         view.background.color = {0, 0, 0};
         view.markers = markers_at({{0, 0, 0}});
-        const Image image = studio.draw(nothing(), view);
+        const scene::Image image = studio.draw(nothing(), view);
         CHECK(pixel_of(image, width / 2, height / 2) == kSign);
         CHECK(drawn_area(image) ==
               doctest::Approx(std::min(width * height, std::max(6, height / 60))).epsilon(0.2));
     }
-    View view = view_with_mark(40.5, 300.5);
+    plan::View view = view_with_mark(40.5, 300.5);
     view.samples = 16;
-    const Image image = studio.draw(scene_of({{1, quad(300), material_of({0, 0, 0}), glm::dmat4(1)}}), view);
+    const scene::Image image =
+        studio.draw(scene_of({{1, quad(300), material_of({0, 0, 0}), glm::dmat4(1)}}), view);
     for (int y = 297; y <= 303; ++y) CHECK(pixel_of(image, 40, y) == kSign);
 }

@@ -8,7 +8,7 @@ using namespace vrut;
 namespace {
 
 /// The channel furthest off, of 255.
-int apart(const Image& a, const Image& b) {
+int apart(const scene::Image& a, const scene::Image& b) {
     REQUIRE(a.rgba.size() == b.rgba.size());
     int worst = 0;
     for (std::size_t k = 0; k < a.rgba.size(); ++k) worst = std::max(worst, std::abs(a.rgba[k] - b.rgba[k]));
@@ -16,7 +16,7 @@ int apart(const Image& a, const Image& b) {
 }
 
 /// Part of the pixels with a channel off by more than 3 of 255.
-double share_off(const Image& a, const Image& b) {
+double share_off(const scene::Image& a, const scene::Image& b) {
     REQUIRE(a.rgba.size() == b.rgba.size());
     std::size_t off = 0;
     for (std::size_t k = 0; k < a.rgba.size(); k += 4) {
@@ -26,17 +26,17 @@ double share_off(const Image& a, const Image& b) {
     return static_cast<double>(off) / static_cast<double>(a.width * a.height);
 }
 
-View lit_at_vertices(View view) {
-    view.methods.light = Methods::Lighting::vertex;
+plan::View lit_at_vertices(plan::View view) {
+    view.methods.light = plan::Methods::Lighting::vertex;
     return view;
 }
 
-View sorted(View view) {
-    view.methods.transparency = Methods::Transparency::sorted;
+plan::View sorted(plan::View view) {
+    view.methods.transparency = plan::Methods::Transparency::sorted;
     return view;
 }
 
-View lit_by(LightData::Type type, View view) {
+plan::View lit_by(scene::LightData::Type type, plan::View view) {
     view.light.headlight = false;
     view.light.type = type;
     view.light.position = {3, 2, 4};
@@ -45,10 +45,10 @@ View lit_by(LightData::Type type, View view) {
     return view;
 }
 
-Material shiny() { return material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, 10); }
+scene::Material shiny() { return material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, 10); }
 
-Material glass(const glm::dvec3& color, double alpha) {
-    Material material;
+scene::Material glass(const glm::dvec3& color, double alpha) {
+    scene::Material material;
     material.emission = {color, 1};
     material.diffuse = {0, 0, 0, alpha};
     material.two_sided = true;
@@ -58,23 +58,24 @@ Material glass(const glm::dvec3& color, double alpha) {
 }  // namespace
 
 TEST_CASE("by default nothing is spared") {
-    CHECK(View().methods == Methods{Methods::Lighting::pixel, Methods::Transparency::exact});
+    CHECK(plan::View().methods ==
+          plan::Methods{plan::Methods::Lighting::pixel, plan::Methods::Transparency::exact});
 }
 
 TEST_CASE("light at the vertices comes close to light at the pixels where triangles are small") {
     RendererFixture studio;
-    Material both_sides = shiny();
+    scene::Material both_sides = shiny();
     both_sides.two_sided = true;
-    const View view = view_from({0, 1, 4});
+    const plan::View view = view_from({0, 1, 4});
     for (const bool inside_out : {false, true}) {
-        Geometry ball = sphere(1.5, 90);
+        scene::Geometry ball = sphere(1.5, 90);
         if (inside_out) ball = turned_inside_out(ball);
         const auto scene = scene_of({{1, ball, inside_out ? both_sides : shiny(), glm::dmat4(1)}});
-        for (const View& lit :
-             {view, lit_by(LightData::Type::point, view), lit_by(LightData::Type::directional, view)}) {
-            const Image at_pixels = studio.draw(scene, lit);
-            CHECK(pixel_of(at_pixels, 48, 32) != bytes_of(kDefaultBackground));
-            const Image at_vertices = studio.draw(scene, lit_at_vertices(lit));
+        for (const plan::View& lit : {view, lit_by(scene::LightData::Type::point, view),
+                                      lit_by(scene::LightData::Type::directional, view)}) {
+            const scene::Image at_pixels = studio.draw(scene, lit);
+            CHECK(pixel_of(at_pixels, 48, 32) != bytes_of(plan::kDefaultBackground));
+            const scene::Image at_vertices = studio.draw(scene, lit_at_vertices(lit));
             CHECK(at_vertices.rgba != at_pixels.rgba);
             // On its outline a triangle of two sides has vertices that are turned to different ones.
             CHECK(share_off(at_pixels, at_vertices) <= (inside_out ? 0.01 : 0));
@@ -85,9 +86,10 @@ TEST_CASE("light at the vertices comes close to light at the pixels where triang
 TEST_CASE("light at the vertices of a large triangle misses what shines between them") {
     RendererFixture studio;
     const auto scene = scene_of({{1, quad(4), material_of({0.9, 0.9, 0.9}), glm::dmat4(1)}});
-    View view = lit_by(LightData::Type::point, view_from({0, 0, 5}));
+    plan::View view = lit_by(scene::LightData::Type::point, view_from({0, 0, 5}));
     view.light.position = {0, 0, 0.5};
-    const Image at_pixels = studio.draw(scene, view), at_vertices = studio.draw(scene, lit_at_vertices(view));
+    const scene::Image at_pixels = studio.draw(scene, view),
+                       at_vertices = studio.draw(scene, lit_at_vertices(view));
     CHECK(pixel_of(at_pixels, 48, 32).x > 220);
     CHECK(pixel_of(at_vertices, 48, 32).x < 30);
     // What was drawn in between leaves nothing behind.
@@ -97,16 +99,16 @@ TEST_CASE("light at the vertices of a large triangle misses what shines between 
 TEST_CASE("light at the vertices leaves pictures, panoramas, mirrors and glass as they are") {
     RendererFixture studio;
     // Under parallel light, without highlights, every vertex of a face is lit as its pixels are.
-    Texture checks{"checks", {}};
+    scene::Texture checks{"checks", {}};
     checks.image.resize(8, 8);
     for (std::size_t k = 0; k < checks.image.rgba.size(); ++k)
         checks.image.rgba[k] = static_cast<std::uint8_t>(k % 4 == 3 ? 128 + k % 100 : k * 37 % 256);
-    Material printed = material_of({1, 1, 1}), pane = printed, chrome = material_of({0.4, 0.3, 0.2});
+    scene::Material printed = material_of({1, 1, 1}), pane = printed, chrome = material_of({0.4, 0.3, 0.2});
     printed.texture = pane.texture = 0;
     pane.diffuse.a = 0.5;
     pane.two_sided = true;
     chrome.reflectivity = 0.6;
-    Geometry poster = quad(1);
+    scene::Geometry poster = quad(1);
     poster.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     const auto scene = scene_of({{1, poster, printed, moved_by({-1.2, 0, 0})},
                                  {2, poster, pane, turned_by(20, {0, 1, 0}) * moved_by({0.3, 0, 1})},
@@ -114,18 +116,18 @@ TEST_CASE("light at the vertices leaves pictures, panoramas, mirrors and glass a
                                  {4, quad(1), chrome, turned_by(-40, {0, 1, 0}) * moved_by({1.2, -0.6, 0})},
                                  {5, quad(1), chrome, scaled_by({0.3, 0.3, 0}) * moved_by({0, -3, 0})}},
                                 {checks});
-    View view = lit_by(LightData::Type::directional, view_from({0, 0.5, 5}));
+    plan::View view = lit_by(scene::LightData::Type::directional, view_from({0, 0.5, 5}));
     for (const bool panorama : {false, true}) {
-        if (panorama) view.background.cube_map = std::array<Index, 6>{};
+        if (panorama) view.background.cube_map = std::array<scene::Index, 6>{};
         CHECK(apart(studio.draw(scene, view), studio.draw(scene, lit_at_vertices(view))) <= 1);
     }
     view.selected = 1;
     CHECK(apart(studio.draw(scene, view), studio.draw(scene, lit_at_vertices(view))) <= 1);
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     CHECK(apart(studio.draw(scene, view), studio.draw(scene, lit_at_vertices(view))) <= 1);
     // Edges are turned to the viewer, those of one-sided parts too.
-    view.mode = DrawMode::realistic;
-    view.selected = kNone;
+    view.mode = plan::DrawMode::realistic;
+    view.selected = scene::kNone;
     view.wireframe = true;
     view.camera = view_from({0, 0.5, -5}).camera;
     CHECK(apart(studio.draw(scene, view), studio.draw(scene, lit_at_vertices(view))) <= 1);
@@ -140,7 +142,7 @@ TEST_CASE("sorted transparency is exact where parts have an order") {
     parts.push_back({9, sphere(0.5, 12), glass({0.1, 0.7, 0.2}, 0.5), moved_by({0, 0, 4})});
     const auto scene = scene_of(parts);
     for (const glm::dvec3& eye : {glm::dvec3(0.3, 0.2, 7), glm::dvec3(1, -2, -5)}) {
-        const View view = view_from(eye);
+        const plan::View view = view_from(eye);
         CHECK(studio.check(scene, sorted(view)).surfaces > 300);
         CHECK(studio.draw(scene, view).rgba == studio.draw(scene, sorted(view)).rgba);
     }
@@ -152,8 +154,8 @@ TEST_CASE("sorted transparency draws panes that cross one after the other, each 
                                  {2, quad(1), glass({0.1, 0.2, 0.9}, 0.6), turned_by(-40, {0, 1, 0})},
                                  // It shows itself through itself, too.
                                  {3, sphere(0.6, 8), glass({0.1, 0.9, 0.3}, 0.5), moved_by({0, 0.3, 0})}});
-    const View view = view_from({0, 0, 5});
-    const Image exact = studio.draw(scene, view);
+    const plan::View view = view_from({0, 0, 5});
+    const scene::Image exact = studio.draw(scene, view);
     CHECK(apart(exact, studio.draw(scene, sorted(view))) > 30);
     CHECK(studio.stats.draws == 3);
     CHECK(studio.stats.passes == 1);

@@ -8,17 +8,17 @@ using namespace vrut;
 
 namespace {
 
-const Material kRed = material_of({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20);
-const Material kGreen = material_of({0.1, 0.7, 0.2});
-const Material kBlue = material_of({0.2, 0.3, 0.9});
+const scene::Material kRed = material_of({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20);
+const scene::Material kGreen = material_of({0.1, 0.7, 0.2});
+const scene::Material kBlue = material_of({0.2, 0.3, 0.9});
 
-Material mirror_of(double reflectivity, const glm::dvec3& diffuse = {0.3, 0.2, 0.1}) {
-    Material material = material_of(diffuse);
+scene::Material mirror_of(double reflectivity, const glm::dvec3& diffuse = {0.3, 0.2, 0.1}) {
+    scene::Material material = material_of(diffuse);
     material.reflectivity = reflectivity;
     return material;
 }
 
-Material two_sided(Material material) {
+scene::Material two_sided(scene::Material material) {
     material.two_sided = true;
     return material;
 }
@@ -36,19 +36,19 @@ std::vector<Part> with(std::vector<Part> parts, const std::vector<Part>& more) {
     return parts;
 }
 
-Part mirror_at(Id id, const glm::dmat4& matrix, double half = 2, double reflectivity = 1) {
+Part mirror_at(scene::Id id, const glm::dmat4& matrix, double half = 2, double reflectivity = 1) {
     return {id, quad(half), mirror_of(reflectivity), matrix};
 }
 
 glm::dmat4 floor_turn() { return turned_by(-90, {1, 0, 0}); }
 
-std::size_t mirrors_in(const std::vector<Part>& parts, View view) {
+std::size_t mirrors_in(const std::vector<Part>& parts, plan::View view) {
     view.scene = scene_of(parts);
-    return plan_frame(view).scene.mirrors.size();
+    return plan::plan_frame(view).scene.mirrors.size();
 }
 
 /// Checks, and tells how many pixels were compared that show a surface.
-void check_mirror(RendererFixture& studio, const std::vector<Part>& parts, const View& view,
+void check_mirror(RendererFixture& studio, const std::vector<Part>& parts, const plan::View& view,
                   int surfaces = 400) {
     CHECK(studio.check(scene_of(parts), view).surfaces > surfaces);
 }
@@ -72,7 +72,7 @@ TEST_CASE("a mirror at any angle shows what lies before it") {
 
 TEST_CASE("a mirror from behind, under a mirroring matrix, and flattened") {
     RendererFixture studio;
-    const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
+    const plan::View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     for (const glm::dmat4& matrix : {turned_by(170, {0, 1, 0}), scaled_by({-1, 1, 1}), scaled_by({1, 1, -1}),
                                      turned_by(10, {0, 1, 0}) * scaled_by({2, 1, 1e-9}),
                                      turned_by(190, {0, 1, 0}) * scaled_by({1, 2, 1})}) {
@@ -95,13 +95,13 @@ TEST_CASE("a mirror's own colour has the part that its reflectivity leaves") {
     RendererFixture studio;
     for (const double reflectivity : {0.01, 0.3, 0.9, 1.0}) {
         CAPTURE(reflectivity);
-        View view = view_from({0.5, 2, 5}, {0, 0.6, 0});
+        plan::View view = view_from({0.5, 2, 5}, {0, 0.6, 0});
         check_mirror(studio, with(things(), {mirror_at(1, floor_turn(), 3, reflectivity)}), view);
     }
     // By hand: headlight straight on, 0.8 * 0.3 + 0.2 * 100/255 = 0.3184 and so on.
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     view.background.color = {100 / 255.0, 0, 1};
-    const Image image = studio.draw(scene_of({{1, quad(1), mirror_of(0.2), glm::dmat4(1)}}), view);
+    const scene::Image image = studio.draw(scene_of({{1, quad(1), mirror_of(0.2), glm::dmat4(1)}}), view);
     const glm::ivec3 should = bytes_of({0.8 * 0.3 + 0.2 * 100 / 255, 0.8 * 0.2, 0.8 * 0.1 + 0.2});
     for (int channel = 0; channel < 3; ++channel)
         CHECK(std::abs(pixel_of(image, 48, 32)[channel] - should[channel]) <= 1);
@@ -118,19 +118,19 @@ TEST_CASE("several mirrors: the nearer one hides the farther, each has its own i
                                 {front, back, side},
                                 {back, facing},
                                 {back, side, front, floor, facing}}) {
-        View view = view_from({0.9, 1.5, 5}, {0, 0.6, 0});
+        plan::View view = view_from({0.9, 1.5, 5}, {0, 0.6, 0});
         const auto parts = with(things(), mirrors);
         check_mirror(studio, parts, view, 1000);
         CHECK(mirrors_in(parts, view) == mirrors.size());
         view.camera.eye = {-1, 2.5, 3};
-        view.camera = with_orthogonal_up(view.camera);
+        view.camera = scene::with_orthogonal_up(view.camera);
         check_mirror(studio, parts, view, 1000);
     }
 }
 
 TEST_CASE("what lies behind a mirror's plane is not seen in it, and what goes through it is cut off") {
     RendererFixture studio;
-    const View view = view_from({0.5, 2, 5}, {0, 0, 0});
+    const plan::View view = view_from({0.5, 2, 5}, {0, 0, 0});
     for (const double height : {-3.0, -0.7, -0.3, 0.0, 0.2, 0.61, 1.0}) {
         CAPTURE(height);
         const Part floor = mirror_at(1, floor_turn(), 3);
@@ -152,7 +152,7 @@ TEST_CASE("what lies behind a mirror's plane is not seen in it, and what goes th
 
 TEST_CASE("lights of all kinds stay at their places in a mirror") {
     RendererFixture studio;
-    View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
+    plan::View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const auto parts = with(things(), {mirror_at(1, moved_by({0, 0.8, -1.7}) * turned_by(15, {0, 1, 0})),
                                        mirror_at(2, floor_turn(), 2, 0.6)});
     view.light.attenuation = {0.5, 0.1, 0.02};
@@ -161,7 +161,8 @@ TEST_CASE("lights of all kinds stay at their places in a mirror") {
     view.light.position = {1, 3, -1};
     view.light.direction = glm::normalize(glm::dvec3(-0.4, -1, 0.5));
     view.light.angle = 70;
-    for (const auto type : {LightData::Type::point, LightData::Type::directional, LightData::Type::spot}) {
+    for (const auto type :
+         {scene::LightData::Type::point, scene::LightData::Type::directional, scene::LightData::Type::spot}) {
         CAPTURE(static_cast<int>(type));
         view.light.type = type;
         check_mirror(studio, parts, view);
@@ -170,7 +171,7 @@ TEST_CASE("lights of all kinds stay at their places in a mirror") {
 
 TEST_CASE("what a mirror shows is drawn only where the mirror is seen") {
     RendererFixture studio;
-    const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
+    const plan::View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const Part mirror = mirror_at(1, moved_by({0, 0.8, -1.7}));
     check_mirror(studio, with(things(), {mirror}), view);
     const std::uint64_t open = studio.stats.triangles;

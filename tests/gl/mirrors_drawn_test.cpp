@@ -10,39 +10,42 @@ using namespace vrut::mirror_scenes;
 
 namespace {
 
-auto counts(const FrameStats& stats) { return std::tuple(stats.passes, stats.draws, stats.triangles); }
+auto counts(const plan::FrameStats& stats) { return std::tuple(stats.passes, stats.draws, stats.triangles); }
 
 /// One geometry under one matrix, once for each material; ids rise from 1. Before them, node 9, a plate that
 /// the mirror shows.
-std::shared_ptr<const PlacedScene> twins(const Geometry& geometry, const std::vector<Material>& materials) {
-    SceneParts parts;
+std::shared_ptr<const scene::PlacedScene> twins(const scene::Geometry& geometry,
+                                                const std::vector<scene::Material>& materials) {
+    scene::SceneParts parts;
     parts.geometries = {geometry, quad(9)};
     parts.materials = materials;
     parts.materials.push_back(paint({0, 1, 0}));
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        const GeometryData data{0, static_cast<Index>(i)};
-        parts.nodes.push_back({Node{static_cast<Id>(i) + 1,
-                                    {},
-                                    NodeType::geometry,
-                                    kNone,
-                                    {},
-                                    true,
-                                    turned_by(20, {0, 1, 0}),
-                                    data},
+        const scene::GeometryData data{0, static_cast<scene::Index>(i)};
+        parts.nodes.push_back({scene::Node{static_cast<scene::Id>(i) + 1,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           turned_by(20, {0, 1, 0}),
+                                           data},
                                0});
     }
-    const GeometryData data{1, static_cast<Index>(materials.size())};
-    parts.nodes.push_back({Node{9, {}, NodeType::geometry, kNone, {}, true, moved_by({0, 0, 8}), data}, 0});
-    return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+    const scene::GeometryData data{1, static_cast<scene::Index>(materials.size())};
+    parts.nodes.push_back(
+        {scene::Node{9, {}, scene::NodeType::geometry, scene::kNone, {}, true, moved_by({0, 0, 8}), data},
+         0});
+    return std::make_shared<const scene::PlacedScene>(place(*scene::Scene::build(std::move(parts))));
 }
 
-int farthest_apart(const Image& a, const Image& b) {
+int farthest_apart(const scene::Image& a, const scene::Image& b) {
     int worst = 0;
     for (std::size_t i = 0; i < a.rgba.size(); ++i) worst = std::max(worst, std::abs(a.rgba[i] - b.rgba[i]));
     return worst;
 }
 
-void check_middle(const Image& image, const glm::dvec3& color) {
+void check_middle(const scene::Image& image, const glm::dvec3& color) {
     const glm::ivec3 off = pixel_of(image, image.width / 2, image.height / 2) - bytes_of(color);
     for (int channel = 0; channel < 3; ++channel) CHECK(std::abs(off[channel]) <= 1);
 }
@@ -61,7 +64,7 @@ TEST_CASE("glass before a mirror and in it, composited by hand") {
         const glm::dvec3 reflection = glm::mix(wall, inside, 0.4);
         return glm::mix(glm::mix(own, reflection, 0.7), before, alpha);
     };
-    const View view = view_from({0, 0, 5});
+    const plan::View view = view_from({0, 0, 5});
     check_middle(studio.draw(scene_of(parts), view), expected(0.25));
     check_middle(studio.draw(scene_of({parts[0], parts[1], parts[2]}), view), expected(0));
     // An opaque one hides it.
@@ -71,12 +74,12 @@ TEST_CASE("glass before a mirror and in it, composited by hand") {
 
 TEST_CASE("of a mirror and its twins the highest id is in front, and no twin is seen in the mirror") {
     RendererFixture studio;
-    const View view = view_from({0, 0, 5});
-    Geometry uneven = quad(1);  // flat enough
+    const plan::View view = view_from({0, 0, 5});
+    scene::Geometry uneven = quad(1);  // flat enough
     uneven.positions[0].z += 6e-5;
     uneven.positions[2].z += 6e-5;
-    const Material mirror = mirror_of(1), red = paint({1, 0, 0}), blue = paint({0, 0, 1}, 0.5);
-    for (const Geometry& geometry : {quad(1), uneven}) {
+    const scene::Material mirror = mirror_of(1), red = paint({1, 0, 0}), blue = paint({0, 0, 1}, 0.5);
+    for (const scene::Geometry& geometry : {quad(1), uneven}) {
         check_middle(studio.draw(twins(geometry, {mirror}), view), {0, 1, 0});
         check_middle(studio.draw(twins(geometry, {red, mirror}), view), {0, 1, 0});
         check_middle(studio.draw(twins(geometry, {mirror, red}), view), {1, 0, 0});
@@ -91,38 +94,38 @@ TEST_CASE("of a mirror and its twins the highest id is in front, and no twin is 
 
 TEST_CASE("a mirror that is not seen costs nothing, and its target goes with it") {
     RendererFixture studio;
-    const View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
+    const plan::View view = view_from({0.5, 1.5, 5}, {0, 0.6, 0});
     const Part ball{2, sphere(0.6, 8), kRed, moved_by({0, 0.8, 0})};
     const auto place = [&](const glm::dvec3& at) {
         return scene_of({{1, quad(1), mirror_of(1), moved_by(at)}, ball});
     };
     const auto seen = place({0, 0.8, -1.5});
-    const Image alone = studio.draw(scene_of({ball}), view);
+    const scene::Image alone = studio.draw(scene_of({ball}), view);
     const auto plain = counts(studio.stats);
     CHECK(std::get<0>(plain) == 1);
     studio.draw(seen, view);
     // Its surface three times: to see whether it shows, as the mask of its reflection, and as itself.
     CHECK(counts(studio.stats) == std::tuple(4, 5, std::get<2>(plain) * 2 + 6));
-    const long with_target = live_gl_objects();
+    const long with_target = gl::live_gl_objects();
     for (const glm::dvec3& at : {glm::dvec3(0, 0.8, 9), {0, 0.8, 5.5}, {9, 0, -1}, {-9, 0, -1}, {0, 9, -1}}) {
-        const Image image = studio.draw(place(at), view);
+        const scene::Image image = studio.draw(place(at), view);
         CHECK(image.rgba == alone.rgba);
         CHECK(counts(studio.stats) == plain);
     }
     studio.draw(seen, view);
-    CHECK(live_gl_objects() == with_target);
+    CHECK(gl::live_gl_objects() == with_target);
     // Colours, depth, what holds them, and the query whether the mirror shows.
-    View away = view;
+    plan::View away = view;
     away.camera.focus = {0, 0.6, 20};
     studio.draw(seen, away);
-    CHECK(live_gl_objects() == with_target - 4);
+    CHECK(gl::live_gl_objects() == with_target - 4);
 }
 
 TEST_CASE("a mirror seen along its plane does not flicker") {
     RendererFixture studio;
     const Part ball{2, sphere(0.6, 8), kRed, moved_by({0, 0.3, 0})};
     const auto scene = scene_of({floor_mirror(1), ball});
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     const auto at = [&](double height) {
         view.camera.eye.y = view.camera.focus.y = height;
         return view;
@@ -130,7 +133,7 @@ TEST_CASE("a mirror seen along its plane does not flicker") {
     // With a row of pixels whose centres lie in the plane, and without.
     for (const int height : {64, 65}) {
         view.height = height;
-        const Image without = studio.draw(scene_of({ball}), at(0));
+        const scene::Image without = studio.draw(scene_of({ball}), at(0));
         for (const double off : {0.0, 1e-15, 1e-12, 1e-9, 1e-7, 1e-6})
             for (const double side : {1.0, -1.0}) {
                 CAPTURE(off);
@@ -143,7 +146,7 @@ TEST_CASE("a mirror seen along its plane does not flicker") {
     }
     view.scene = scene;
     at(0);
-    CHECK(plan_frame(view).scene.mirrors.empty());
+    CHECK(plan::plan_frame(view).scene.mirrors.empty());
 }
 
 TEST_CASE("mirrors of any size and far away") {
@@ -154,7 +157,7 @@ TEST_CASE("mirrors of any size and far away") {
             CAPTURE(far);
             const glm::dvec3 offset = glm::dvec3(far, -far, far) * scale;
             const glm::dmat4 place = moved_by(offset) * scaled_by(glm::dvec3(scale));
-            View view = view_from(glm::dvec3(1, 2, 5) * scale + offset, offset);
+            plan::View view = view_from(glm::dvec3(1, 2, 5) * scale + offset, offset);
             studio.check(scene_of({{1, quad(3), mirror_of(0.9), place * turned_by(-80, {1, 0, 0})},
                                    {2, sphere(0.6, 8), kRed, place * moved_by({-0.8, 0.2, 0})},
                                    {3, box({0.4, 0.4, 0.4}), kRed, place * moved_by({0.8, 0.6, 0})}}),
@@ -164,7 +167,7 @@ TEST_CASE("mirrors of any size and far away") {
 
 TEST_CASE("a curved reflective part is drawn like one that does not reflect") {
     RendererFixture studio;
-    const View view = view_from({1, 1, 5});
+    const plan::View view = view_from({1, 1, 5});
     const auto ball = [](double reflectivity) {
         return std::vector<Part>{{1, sphere(1, 8), mirror_of(reflectivity), glm::dmat4(1)},
                                  floor_mirror(2, 0.5)};
@@ -175,5 +178,5 @@ TEST_CASE("a curved reflective part is drawn like one that does not reflect") {
 TEST_CASE("of a hundred mirrors no more are drawn than a picture may have") {
     RendererFixture studio;
     studio.draw(scene_of(hundred_mirrors()), view_from({0, 0, 12}));
-    CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(kMaxMirrors));
+    CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(plan::kMaxMirrors));
 }

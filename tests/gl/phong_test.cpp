@@ -5,8 +5,8 @@ using namespace vrut;
 namespace {
 
 /// Everything at once, and no two channels alike.
-Material rich(double shininess) {
-    Material material = material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, shininess);
+scene::Material rich(double shininess) {
+    scene::Material material = material_of({0.5, 0.3, 0.1}, {0.2, 0.3, 0.5}, shininess);
     material.ambient = {0.05, 0.1, 0.02, 1};
     material.emission = {0.02, 0.03, 0.1, 1};
     return material;
@@ -33,7 +33,7 @@ TEST_CASE("a ball: normals are interpolated in space and made unit at the pixel"
         CAPTURE(shininess);
         const auto scene = scene_of({{1, sphere(1.5, 8), rich(shininess), turned_by(20, {1, 0, 0})}});
         CHECK(studio.check(scene, view_from({0, 1, 5})).surfaces > 1000);
-        View near = view_from({0, 0.5, 1.7}, {0.5, 0.5, 0});
+        plan::View near = view_from({0, 0.5, 1.7}, {0.5, 0.5, 0});
         near.camera.fov = 100;
         CHECK(studio.check(scene, near).surfaces > 1000);
     }
@@ -55,7 +55,7 @@ TEST_CASE("a ball without normals has flat faces too, and each keeps its own") {
 
 TEST_CASE("zero normals take the face's, corner by corner") {
     RendererFixture studio;
-    Geometry mixed = quad(2);
+    scene::Geometry mixed = quad(2);
     mixed.normals = {{0, 0, 0}, {0, 1, 1}, {0, 0, 0}, {-1, 0, 0.5}};
     CHECK(studio.check(scene_of({{1, mixed, rich(10), turned_by(40, {0, 1, 0})}}), view_from({0, 0, 5}))
               .surfaces > 400);
@@ -67,7 +67,7 @@ TEST_CASE("normals of any length are directions") {
     RendererFixture studio;
     for (const float length : {1e-25f, 1e-3f, 7.f, 1e15f}) {
         CAPTURE(length);
-        Geometry geometry = quad(2);
+        scene::Geometry geometry = quad(2);
         geometry.normals = {{0, 0, length}, {length, 0, length}, {0, 0, length}, {0, -length, length}};
         studio.check(scene_of({{1, geometry, rich(10), glm::dmat4(1)}}), view_from({0, 1, 5}));
     }
@@ -92,7 +92,7 @@ TEST_CASE("normals under stretching, shearing and mirroring matrices") {
 TEST_CASE("the headlight's colour and attenuation") {
     RendererFixture studio;
     const auto scene = scene_of({{1, quad(3), rich(20), glm::dmat4(1)}});
-    View view = view_from({1, 1, 3});
+    plan::View view = view_from({1, 1, 3});
     view.light.color = {0.9, 0.5, 0.2, 0.1};  // its alpha means nothing
     studio.check(scene, view);
     for (const glm::dvec3& attenuation :
@@ -113,11 +113,11 @@ TEST_CASE("the headlight's colour and attenuation") {
 
 TEST_CASE("colours are clamped, not wrapped") {
     RendererFixture studio;
-    Material bright = material_of({3, 0.5, 0}, {0, 4, 0.5}, 2);
+    scene::Material bright = material_of({3, 0.5, 0}, {0, 4, 0.5}, 2);
     bright.emission = {0, 0, 0.7, 1};
     bright.ambient = {0, 0, 0.6, 1};
     const auto scene = scene_of({{1, sphere(1.5, 8), bright, glm::dmat4(1)}});
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     CHECK(studio.check(scene, view).surfaces > 500);
     view.light.color = {1e6, 1e6, 1e6, 1};
     studio.check(scene, view);
@@ -125,9 +125,9 @@ TEST_CASE("colours are clamped, not wrapped") {
 
 TEST_CASE("what no light falls on has its ambient and emission") {
     RendererFixture studio;
-    Geometry away = quad(2);
+    scene::Geometry away = quad(2);
     away.normals.assign(4, glm::vec3(0, 0, -1));
-    Image image = studio.draw(scene_of({{1, away, rich(5), glm::dmat4(1)}}), view_from({0, 0, 4}));
+    scene::Image image = studio.draw(scene_of({{1, away, rich(5), glm::dmat4(1)}}), view_from({0, 0, 4}));
     CHECK(pixel_of(image, 48, 32) == bytes_of({0.07, 0.13, 0.12}));
     away.normals.assign(4, glm::vec3(1, 0, 0));  // at right angles, and beyond on one side
     studio.check(scene_of({{1, away, rich(0), glm::dmat4(1)}}), view_from({0, 0, 4}));
@@ -135,9 +135,9 @@ TEST_CASE("what no light falls on has its ambient and emission") {
 
 TEST_CASE("the background's bytes") {
     RendererFixture studio;
-    View view = view_from({0, 0, 4});
+    plan::View view = view_from({0, 0, 4});
     const auto all = [&](const glm::ivec3& bytes) {
-        const Image image = studio.draw(scene_of({}), view);
+        const scene::Image image = studio.draw(scene_of({}), view);
         bool same = true;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) same = same && pixel_of(image, x, y) == bytes;

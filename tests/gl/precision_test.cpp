@@ -4,11 +4,12 @@ using namespace vrut;
 
 namespace {
 
-const Material kRed = material_of({1, 0, 0}), kGreen = material_of({0, 1, 0}), kBlue = material_of({0, 0, 1});
+const scene::Material kRed = material_of({1, 0, 0}), kGreen = material_of({0, 1, 0}),
+                      kBlue = material_of({0, 0, 1});
 
 bool is_red(const glm::ivec3& color) { return color.r > 50 && color.g == 0 && color.b == 0; }
 
-View moved(View view, double scale, const glm::dvec3& offset) {
+plan::View moved(plan::View view, double scale, const glm::dvec3& offset) {
     view.camera.eye = view.camera.eye * scale + offset;
     view.camera.focus = view.camera.focus * scale + offset;
     view.camera.center = view.camera.focus;
@@ -17,9 +18,9 @@ View moved(View view, double scale, const glm::dvec3& offset) {
 
 /// A few things of all kinds, `in_file` of whose size and place are in the positions and the rest in the
 /// matrices.
-std::shared_ptr<const PlacedScene> things(double scale, const glm::dvec3& offset, bool in_file) {
-    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
-    const auto part = [&](Id id, const Geometry& geometry, const glm::dvec3& at) {
+std::shared_ptr<const scene::PlacedScene> things(double scale, const glm::dvec3& offset, bool in_file) {
+    const scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const auto part = [&](scene::Id id, const scene::Geometry& geometry, const glm::dvec3& at) {
         if (in_file) return Part{id, mapped(geometry, scale, at * scale + offset), material, glm::dmat4(1)};
         return Part{id, geometry, material, moved_by(at * scale + offset) * scaled_by(glm::dvec3(scale))};
     };
@@ -31,7 +32,7 @@ std::shared_ptr<const PlacedScene> things(double scale, const glm::dvec3& offset
 
 TEST_CASE("size and place of a scene do not change its picture") {
     RendererFixture studio;
-    const View view = view_from({1, 1.5, 6});
+    const plan::View view = view_from({1, 1.5, 6});
     CHECK(studio.check(things(1, {0, 0, 0}, true), view).surfaces > 2000);
     const glm::dvec3 far{1e7, -1e7, 1e7};
     for (const bool in_file : {true, false}) {
@@ -47,11 +48,11 @@ TEST_CASE("size and place of a scene do not change its picture") {
 
 TEST_CASE("a flattened part of any size is lit") {
     RendererFixture studio;
-    Geometry sideways = quad(1);
+    scene::Geometry sideways = quad(1);
     sideways.normals.assign(4, glm::vec3(1, 0, 0));
     for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
         CAPTURE(scale);
-        View view = moved(view_from({0.5, 0.3, 5}), scale, {0, 0, 0});
+        plan::View view = moved(view_from({0.5, 0.3, 5}), scale, {0, 0, 0});
         const ExpectedImage picture(*scene_of({{1, quad(scale), kRed, glm::dmat4(1)}}), view);
         const ImageMismatch result = difference(
             picture, studio.draw(scene_of({{1, sideways, kRed, scaled_by({scale, scale, 0})}}), view));
@@ -71,9 +72,9 @@ TEST_CASE("depth tells a millimetre at a kilometre, with something before the ey
             const auto scene = scene_of({{1, quad(1e-3), kBlue, moved_by({1, 0, -0.01})},
                                          {nearer_first ? 2 : 4, quad(300), kRed, a_bit_nearer},
                                          {3, quad(300), kGreen, there}});
-            View view = view_from({0, 0, 0}, {0, 0, -1});
+            plan::View view = view_from({0, 0, 0}, {0, 0, -1});
             view.camera.fov = 20;
-            const Image image = studio.draw(scene, view);
+            const scene::Image image = studio.draw(scene, view);
             int red = 0;
             for (int y = 0; y < view.height; ++y)
                 for (int x = 0; x < view.width; ++x)
@@ -109,28 +110,39 @@ TEST_CASE("something very far away hides nothing") {
 
 TEST_CASE("of equal depth the higher id is in front") {
     RendererFixture studio;
-    const View view = view_from({1, 2, 5});
+    const plan::View view = view_from({1, 2, 5});
     const glm::dmat4 matrix = turned_by(33, glm::normalize(glm::dvec3(1, 1, 0.2))) * scaled_by({1, 1.3, 0.9});
-    for (const Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)}) {
-        const auto alone = [&](const Material& material) {
+    for (const scene::Geometry& geometry : {sphere(1.3, 10), box({1, 1, 1}), sphere(1.3, 3, false)}) {
+        const auto alone = [&](const scene::Material& material) {
             return studio.draw(scene_of({{1, geometry, material, matrix}}), view).rgba;
         };
         const std::vector<std::uint8_t> red = alone(kRed), green = alone(kGreen);
         // The first deeper in the tree than the second or not, in either order in the file.
-        const auto both = [&](Id red_id, Id green_id, bool deeper, bool red_first) {
-            SceneParts parts;
+        const auto both = [&](scene::Id red_id, scene::Id green_id, bool deeper, bool red_first) {
+            scene::SceneParts parts;
             parts.materials = {kRed, kGreen};
             parts.geometries = {geometry};
-            const auto add = [&](Id id, Id parent, Index material) {
-                parts.nodes.push_back(
-                    {Node{id, {}, NodeType::geometry, kNone, {}, true, matrix, GeometryData{0, material}},
-                     parent});
+            const auto add = [&](scene::Id id, scene::Id parent, scene::Index material) {
+                parts.nodes.push_back({scene::Node{id,
+                                                   {},
+                                                   scene::NodeType::geometry,
+                                                   scene::kNone,
+                                                   {},
+                                                   true,
+                                                   matrix,
+                                                   scene::GeometryData{0, material}},
+                                       parent});
             };
             if (!red_first) add(green_id, 0, 1);
             add(red_id, deeper ? 1 : 0, 0);
             if (red_first) add(green_id, 0, 1);
-            parts.nodes.push_back({Node{1, {}, NodeType::assembly, kNone, {}, true, glm::dmat4(1), {}}, 0});
-            return studio.draw(std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts)))), view)
+            parts.nodes.push_back(
+                {scene::Node{1, {}, scene::NodeType::assembly, scene::kNone, {}, true, glm::dmat4(1), {}},
+                 0});
+            return studio
+                .draw(std::make_shared<scene::PlacedScene>(
+                          scene::place(*scene::Scene::build(std::move(parts)))),
+                      view)
                 .rgba;
         };
         for (const bool deeper : {false, true})

@@ -17,30 +17,30 @@ public:
     ~RendererFixture() {
         for (const std::string& message : renderer_->take_messages()) FAIL_CHECK(message);
         renderer_.reset();
-        CHECK(live_gl_objects() == 0);
+        CHECK(gl::live_gl_objects() == 0);
     }
 
-    Renderer& renderer() { return *renderer_; }
+    renderer::Renderer& renderer() { return *renderer_; }
 
-    Image draw(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
-        Image image;
-        View shown = view;
+    scene::Image draw(const std::shared_ptr<const scene::PlacedScene>& scene, const plan::View& view) {
+        scene::Image image;
+        plan::View shown = view;
         shown.scene = scene;
         renderer_->render(shown, image, stats);
         return image;
     }
 
     /// Draws and compares with what is computed, at all pixels but those at edges.
-    ImageMismatch check(const std::shared_ptr<const PlacedScene>& scene, const View& view) {
+    ImageMismatch check(const std::shared_ptr<const scene::PlacedScene>& scene, const plan::View& view) {
         ImageMismatch result = difference(ExpectedImage(*scene, view), draw(scene, view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         return result;
     }
 
-    FrameStats stats;
+    plan::FrameStats stats;
 
 private:
-    std::optional<Renderer> renderer_;
+    std::optional<renderer::Renderer> renderer_;
 };
 
 }  // namespace vrut

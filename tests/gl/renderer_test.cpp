@@ -9,7 +9,7 @@ using namespace vrut;
 
 namespace {
 
-const Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
+const scene::Material kPaint = material_of({0.8, 0.3, 0.1}, {0.3, 0.3, 0.3}, 20);
 
 std::vector<Part> some_parts() {
     std::vector<Part> parts;
@@ -23,7 +23,7 @@ std::vector<Part> some_parts() {
     return parts;
 }
 
-double average(const Image& image) {
+double average(const scene::Image& image) {
     double sum = 0;
     for (const std::uint8_t byte : image.rgba) sum += byte;
     return sum / static_cast<double>(image.rgba.size());
@@ -35,7 +35,7 @@ TEST_CASE("pictures of any size") {
     RendererFixture studio;
     const auto scene =
         scene_of({{1, sphere(1.5, 8), kPaint, glm::dmat4(1)}, {2, quad(4), kPaint, moved_by({0, 0, -2})}});
-    View view = view_from({0.5, 0.4, 5});
+    plan::View view = view_from({0.5, 0.4, 5});
     struct Size {
         int width, height;
     };
@@ -44,7 +44,7 @@ TEST_CASE("pictures of any size") {
         CAPTURE(size.height);
         view.width = size.width;
         view.height = size.height;
-        const Image image = studio.draw(scene, view);
+        const scene::Image image = studio.draw(scene, view);
         CHECK(image.width == size.width);
         CHECK(image.height == size.height);
         CHECK(image.rgba.size() == static_cast<std::size_t>(size.width * size.height * 4));
@@ -54,8 +54,8 @@ TEST_CASE("pictures of any size") {
     }
     CHECK(studio.renderer().max_size() >= 2048);
     view.width = studio.renderer().max_size() + 1;
-    Image image;
-    FrameStats stats;
+    scene::Image image;
+    plan::FrameStats stats;
     CHECK_THROWS_AS(studio.renderer().render(view, image, stats), std::runtime_error);
     // And it draws on after that. What the driver said of it is no fault.
     studio.renderer().take_messages();
@@ -64,9 +64,9 @@ TEST_CASE("pictures of any size") {
 
 TEST_CASE("one sample is the pixel's centre") {
     RendererFixture studio;
-    const View view = pixel_view(8, 6);
+    const plan::View view = pixel_view(8, 6);
     const auto dark = [&](double left, double top, double right, double bottom) {
-        const Image image = studio.draw(
+        const scene::Image image = studio.draw(
             scene_of({{1, rectangle(left, top, right, bottom, view), material_of({0, 0, 0}), glm::dmat4(1)}}),
             view);
         std::vector<std::pair<int, int>> pixels;
@@ -84,15 +84,15 @@ TEST_CASE("one sample is the pixel's centre") {
 
 TEST_CASE("many samples: what an edge covers is told to one part in their number") {
     RendererFixture studio;
-    View view = pixel_view(8, 6);
+    plan::View view = pixel_view(8, 6);
     for (const int samples : {2, 3, 4, 5, 16, 64})
         for (int ninth = 0; ninth < 9; ++ninth) {
             const double edge = 0.03 + ninth * 0.11;
             CAPTURE(samples);
             CAPTURE(edge);
             view.samples = samples;
-            const auto white = [&](const Geometry& geometry, int x, int y) {
-                const Image image =
+            const auto white = [&](const scene::Geometry& geometry, int x, int y) {
+                const scene::Image image =
                     studio.draw(scene_of({{1, geometry, material_of({0, 0, 0}), glm::dmat4(1)}}), view);
                 CHECK(pixel_of(image, 1, 1) == glm::ivec3(0));
                 CHECK(pixel_of(image, 7, 5) == glm::ivec3(255));
@@ -112,11 +112,11 @@ TEST_CASE("many samples: what an edge covers is told to one part in their number
 TEST_CASE("many samples: the average of a finer picture") {
     RendererFixture studio;
     const auto scene = scene_of(some_parts());
-    View view = view_from({1, 2, 5});
-    View fine = view;
+    plan::View view = view_from({1, 2, 5});
+    plan::View fine = view;
     fine.width *= 8;
     fine.height *= 8;
-    const Image finer = studio.draw(scene, fine);
+    const scene::Image finer = studio.draw(scene, fine);
     const auto block = [&](int x, int y) {
         glm::dvec3 sum(0);
         for (int dy = 0; dy < 8; ++dy)
@@ -127,7 +127,7 @@ TEST_CASE("many samples: the average of a finer picture") {
     for (const int samples : {1, 4, 16}) {
         CAPTURE(samples);
         view.samples = samples;
-        const Image image = studio.draw(scene, view);
+        const scene::Image image = studio.draw(scene, view);
         double worst = 0, sum = 0;
         for (int y = 0; y < view.height; ++y)
             for (int x = 0; x < view.width; ++x) {
@@ -149,12 +149,12 @@ TEST_CASE("many samples: the average of a finer picture") {
 
 TEST_CASE("many samples of one colour are that colour") {
     RendererFixture studio;
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     for (const int samples : {1, 2, 3, 7, 16, 61}) {
         view.samples = samples;
         for (const int level : {0, 1, 100, 254, 255}) {
             view.background.color = glm::dvec3(level / 255.0);
-            const Image image = studio.draw(scene_of({}), view);
+            const scene::Image image = studio.draw(scene_of({}), view);
             CHECK(pixel_of(image, 11, 13) == glm::ivec3(level));
             CHECK(average(image) == doctest::Approx((level * 3 + 255) / 4.0));
         }
@@ -163,12 +163,12 @@ TEST_CASE("many samples of one colour are that colour") {
 
 TEST_CASE("a view without a scene shows the background, with its samples or without") {
     RendererFixture studio;
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     view.background.color = {1, 0.5, 0};
     for (const int samples : {1, 3}) {
         view.samples = samples;
         studio.draw(scene_of({{1, quad(9), kPaint, glm::dmat4(1)}}), view);
-        const Image image = studio.draw(nullptr, view);
+        const scene::Image image = studio.draw(nullptr, view);
         CHECK(pixel_of(image, 48, 32) == glm::ivec3(255, 128, 0));
         CHECK(studio.stats.draws == 0);
     }
@@ -176,38 +176,38 @@ TEST_CASE("a view without a scene shows the background, with its samples or with
 
 TEST_CASE("other states of the same scene change the picture and upload nothing") {
     RendererFixture studio;
-    const View view = view_from({0, 0, 5});
+    const plan::View view = view_from({0, 0, 5});
     const auto first =
         scene_of({{1, quad(1), kPaint, glm::dmat4(1)}, {2, box({1, 1, 1}), kPaint, moved_by({0, 1.5, 0})}});
-    const Image before = studio.draw(first, view);
+    const scene::Image before = studio.draw(first, view);
     CHECK(studio.stats.uploads == 2);
-    const long objects = live_gl_objects();
-    std::vector<NodeState> states = first->nodes;
-    for (NodeState& state : states) state.material = kNone;
-    const auto painted = std::make_shared<const PlacedScene>(place(first->scene, states));
+    const long objects = gl::live_gl_objects();
+    std::vector<scene::NodeState> states = first->nodes;
+    for (scene::NodeState& state : states) state.material = scene::kNone;
+    const auto painted = std::make_shared<const scene::PlacedScene>(scene::place(first->scene, states));
     CHECK(studio.draw(painted, view).rgba != before.rgba);
     studio.check(painted, view);
     CHECK(studio.stats.uploads == 0);
     states[1].active = false;
-    studio.draw(std::make_shared<const PlacedScene>(place(first->scene, states)), view);
+    studio.draw(std::make_shared<const scene::PlacedScene>(scene::place(first->scene, states)), view);
     CHECK(studio.stats.draws == 1);
     CHECK(studio.stats.uploads == 0);
     states = first->nodes;
     states[1].matrix = moved_by({0.5, 0, 0.2});
-    studio.check(std::make_shared<const PlacedScene>(place(first->scene, states)), view);
+    studio.check(std::make_shared<const scene::PlacedScene>(scene::place(first->scene, states)), view);
     CHECK(studio.stats.uploads == 0);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
     CHECK(studio.draw(first, view).rgba == before.rgba);
     CHECK(studio.stats.uploads == 0);
     // Another scene, though it holds the same: its own copy, and nothing left of the first.
-    studio.draw(std::make_shared<const PlacedScene>(place(*first->scene)), view);
+    studio.draw(std::make_shared<const scene::PlacedScene>(scene::place(*first->scene)), view);
     CHECK(studio.stats.uploads == 2);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
 }
 
 TEST_CASE("what a picture took") {
     RendererFixture studio;
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     studio.draw(scene_of({}), view);
     CHECK(studio.stats.passes == 0);
     CHECK(studio.stats.draws == 0);
@@ -218,7 +218,7 @@ TEST_CASE("what a picture took") {
     std::vector<Part> parts{{1, box({1, 1, 1}), kPaint, glm::dmat4(1)},
                             {2, sphere(1, 4), kPaint, glm::dmat4(1)},
                             {3, quad(1), kPaint, scaled_by({1, 1, 0})},
-                            {4, Geometry{}, kPaint, glm::dmat4(1)},
+                            {4, scene::Geometry{}, kPaint, glm::dmat4(1)},
                             {5, quad(1), kPaint, glm::dmat4(1)}};
     parts.back().geometry.triangles.clear();
     studio.draw(scene_of(parts), view);
@@ -229,52 +229,67 @@ TEST_CASE("what a picture took") {
 
 TEST_CASE("what does not show is not drawn") {
     RendererFixture studio;
-    const auto draws = [&](const std::shared_ptr<PlacedScene>& placed, double distance) {
+    const auto draws = [&](const std::shared_ptr<scene::PlacedScene>& placed, double distance) {
         studio.draw(placed, view_from({0, 0, distance}));
         return studio.stats.draws;
     };
-    const auto scene_with = [](NodeType type, decltype(Node::data) data, bool active) {
-        SceneParts parts;
+    const auto scene_with = [](scene::NodeType type, decltype(scene::Node::data) data, bool active) {
+        scene::SceneParts parts;
         parts.geometries = {sphere(1, 4)};
-        parts.nodes.push_back({Node{1, {}, type, kNone, {}, active, glm::dmat4(1), std::move(data)}, 0});
-        for (Id id = 2; id <= 4; ++id)
-            parts.nodes.push_back(
-                {Node{id, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, kNone}},
-                 1});
-        return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+        parts.nodes.push_back(
+            {scene::Node{1, {}, type, scene::kNone, {}, active, glm::dmat4(1), std::move(data)}, 0});
+        for (scene::Id id = 2; id <= 4; ++id)
+            parts.nodes.push_back({scene::Node{id,
+                                               {},
+                                               scene::NodeType::geometry,
+                                               scene::kNone,
+                                               {},
+                                               true,
+                                               glm::dmat4(1),
+                                               scene::GeometryData{0, scene::kNone}},
+                                   1});
+        return std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
     };
-    CHECK(draws(scene_with(NodeType::assembly, GroupData{}, true), 5) == 3);
-    CHECK(draws(scene_with(NodeType::assembly, GroupData{}, false), 5) == 0);
-    CHECK(draws(scene_with(NodeType::switch_, SwitchData{1}, true), 5) == 1);
-    CHECK(draws(scene_with(NodeType::switch_, SwitchData{7}, true), 5) == 0);
-    CHECK(draws(scene_with(NodeType::lod, LodData{{10, 20, 30}}, true), 15) == 1);
-    CHECK(draws(scene_with(NodeType::lod, LodData{{10, 20, 30}}, true), 35) == 0);
+    CHECK(draws(scene_with(scene::NodeType::assembly, scene::GroupData{}, true), 5) == 3);
+    CHECK(draws(scene_with(scene::NodeType::assembly, scene::GroupData{}, false), 5) == 0);
+    CHECK(draws(scene_with(scene::NodeType::switch_, scene::SwitchData{1}, true), 5) == 1);
+    CHECK(draws(scene_with(scene::NodeType::switch_, scene::SwitchData{7}, true), 5) == 0);
+    CHECK(draws(scene_with(scene::NodeType::lod, scene::LodData{{10, 20, 30}}, true), 15) == 1);
+    CHECK(draws(scene_with(scene::NodeType::lod, scene::LodData{{10, 20, 30}}, true), 35) == 0);
 }
 
 TEST_CASE("a part at no finite place is left out, and the others are drawn") {
     RendererFixture studio;
-    const View view = view_from({1, 2, 5});
+    const plan::View view = view_from({1, 2, 5});
     std::vector<Part> parts = some_parts();
-    const Image without = studio.draw(scene_of(parts), view);
+    const scene::Image without = studio.draw(scene_of(parts), view);
     for (const glm::dmat4& matrix :
          {glm::dmat4(1e300), moved_by({std::nan(""), 0, 0}), moved_by({0, 1e30, 0}),
           scaled_by({1, std::numeric_limits<double>::infinity(), 1})}) {
-        parts.push_back({900 + static_cast<Id>(parts.size()), sphere(1, 4), kPaint, matrix});
+        parts.push_back({900 + static_cast<scene::Id>(parts.size()), sphere(1, 4), kPaint, matrix});
         CHECK(studio.draw(scene_of(parts), view).rgba == without.rgba);
     }
 }
 
 TEST_CASE("a chain of a million nodes is drawn") {
-    constexpr Id kCount = 1'000'000;
-    SceneParts parts;
+    constexpr scene::Id kCount = 1'000'000;
+    scene::SceneParts parts;
     parts.geometries = {quad(1)};
-    for (Id id = 1; id < kCount; ++id)
+    for (scene::Id id = 1; id < kCount; ++id)
         parts.nodes.push_back(
-            {Node{id, {}, NodeType::assembly, kNone, {}, true, moved_by({1, 0, 0}), {}}, id - 1});
-    parts.nodes.push_back(
-        {Node{kCount, {}, NodeType::geometry, kNone, {}, true, glm::dmat4(1), GeometryData{0, kNone}},
-         kCount - 1});
-    const auto placed = std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+            {scene::Node{id, {}, scene::NodeType::assembly, scene::kNone, {}, true, moved_by({1, 0, 0}), {}},
+             id - 1});
+    parts.nodes.push_back({scene::Node{kCount,
+                                       {},
+                                       scene::NodeType::geometry,
+                                       scene::kNone,
+                                       {},
+                                       true,
+                                       glm::dmat4(1),
+                                       scene::GeometryData{0, scene::kNone}},
+                           kCount - 1});
+    const auto placed =
+        std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
     RendererFixture studio;
     const double x = static_cast<double>(kCount - 1);
     CHECK(studio.check(placed, view_from({x, 0, 4}, {x, 0, 0})).surfaces > 300);
@@ -286,9 +301,9 @@ TEST_CASE("the order in the file does not change a byte") {
     std::vector<Part> parts = some_parts();
     parts.push_back({500, parts[3].geometry, material_of({0, 0, 1}), parts[3].matrix});  // a tie
     parts.push_back({5, parts[4].geometry, material_of({0, 0, 1}), parts[4].matrix});
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     view.samples = 2;
-    const Image first = studio.draw(scene_of(parts), view);
+    const scene::Image first = studio.draw(scene_of(parts), view);
     std::mt19937 random(3);
     for (int round = 0; round < 10; ++round) {
         std::shuffle(parts.begin(), parts.end(), random);
@@ -299,9 +314,9 @@ TEST_CASE("the order in the file does not change a byte") {
 TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
     RendererFixture studio;
     const auto scene = scene_of(some_parts());
-    const View view = view_from({1, 2, 5});
-    const Image first = studio.draw(scene, view);
-    View other = view_from({5, 1, 0});
+    const plan::View view = view_from({1, 2, 5});
+    const scene::Image first = studio.draw(scene, view);
+    plan::View other = view_from({5, 1, 0});
     other.width = 33;
     other.samples = 3;
     studio.draw(scene_of({{1, quad(1), kPaint, scaled_by({-1, 1, 1})}}), other);
@@ -310,32 +325,32 @@ TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
 
 TEST_CASE("scenes come and go without leaving anything on the GPU") {
     RendererFixture studio;
-    const View view = view_from({1, 2, 5});
+    const plan::View view = view_from({1, 2, 5});
     studio.draw(scene_of(some_parts()), view);
-    const long before = live_gl_objects();
+    const long before = gl::live_gl_objects();
     CHECK(before > 12);
     for (int i = 0; i < 20; ++i) studio.draw(scene_of(some_parts()), view);
-    CHECK(live_gl_objects() == before);
+    CHECK(gl::live_gl_objects() == before);
     studio.draw(scene_of({}), view);
-    CHECK(live_gl_objects() < before - 12);
+    CHECK(gl::live_gl_objects() < before - 12);
 }
 
 TEST_CASE("what draws is told, and a device that is not there is refused with a sentence") {
     {
-        const Renderer renderer;
+        const renderer::Renderer renderer;
         CHECK(renderer.description().find("OpenGL") != std::string::npos);
         CHECK(renderer.description().starts_with("EGL "));
         CHECK(renderer.max_size() >= 8192);
     }
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
     for (const int device : {999, -1}) {
         try {
-            const Renderer none(device);
+            const renderer::Renderer none(device);
             FAIL_CHECK("no exception");
         } catch (const std::runtime_error& error) {
             CHECK(std::string(error.what()).find("no EGL device " + std::to_string(device)) !=
                   std::string::npos);
         }
     }
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
 }

@@ -10,28 +10,28 @@ struct HealedMemory {
     ~HealedMemory() { gl_faults::heal(); }
 };
 
-Material glass() {
-    Material material = material_of({0.2, 0.5, 0.9});
+scene::Material glass() {
+    scene::Material material = material_of({0.2, 0.5, 0.9});
     material.diffuse.a = 0.5;
     return material;
 }
 
-Material mirror() {
-    Material material = material_of({0.2, 0.2, 0.2});
+scene::Material mirror() {
+    scene::Material material = material_of({0.2, 0.2, 0.2});
     material.reflectivity = 0.8;
     return material;
 }
 
 /// Something for every pass.
-std::shared_ptr<const PlacedScene> everything() {
+std::shared_ptr<const scene::PlacedScene> everything() {
     return scene_of({{1, sphere(1, 12), material_of({0.7, 0.5, 0.3}), moved_by({-1, 0, 0})},
                      {2, sphere(0.6, 12), glass(), moved_by({0.4, 0, 1})},
                      {3, box({0.5, 0.5, 0.5}), glass(), moved_by({0.6, 0, 1.2})},
                      {4, quad(3), mirror(), moved_by({0, 0, -2})}});
 }
 
-View view_of(const std::shared_ptr<const PlacedScene>& scene) {
-    View view = view_from({0, 1, 5});
+plan::View view_of(const std::shared_ptr<const scene::PlacedScene>& scene) {
+    plan::View view = view_from({0, 1, 5});
     view.scene = scene;
     view.selected = 1;
     view.markers = markers_at({{0, 0, 1}});
@@ -42,12 +42,12 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene) {
 
 TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the next one is whole") {
     const HealedMemory healed;
-    const View view = view_of(everything());
-    Image expected, image;
-    FrameStats stats;
+    const plan::View view = view_of(everything());
+    scene::Image expected, image;
+    plan::FrameStats stats;
     std::size_t most = 0;
     {
-        Renderer renderer;
+        renderer::Renderer renderer;
         const std::size_t before = gl_faults::memory_used();
         renderer.render(view, expected, stats);
         REQUIRE(stats.passes >= 5);
@@ -57,12 +57,12 @@ TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the 
     int refused = 0;
     for (std::size_t k = 0; k <= 24; ++k) {
         CAPTURE(k);
-        Renderer renderer;
+        renderer::Renderer renderer;
         gl_faults::limit_memory(gl_faults::memory_used() + most * k / 24);
         try {
             renderer.render(view, image, stats);
             CHECK(image.rgba == expected.rgba);
-        } catch (const OutOfMemory& error) {
+        } catch (const base::OutOfMemory& error) {
             ++refused;
             CHECK(std::string(error.what()).find("has no memory for") != std::string::npos);
         }
@@ -72,26 +72,26 @@ TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the 
     }
     CHECK(refused > 5);
     CHECK(refused <= 24);  // with all that it needs it is drawn
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
 }
 
 TEST_CASE(
     "a scene that does not fit beside the one shown is refused, and that one is drawn from what is there") {
     const HealedMemory healed;
-    const View shown = view_of(everything());
-    View large = view_from({0, 0, 5});
+    const plan::View shown = view_of(everything());
+    plan::View large = view_from({0, 0, 5});
     large.scene = scene_of({{1, sphere(1, 200), material_of({1, 0, 0}), glm::dmat4(1)}});
-    Image expected, image;
-    FrameStats stats;
-    Renderer renderer;
+    scene::Image expected, image;
+    plan::FrameStats stats;
+    renderer::Renderer renderer;
     renderer.upload(shown);
     renderer.render(shown, expected, stats);
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     gl_faults::limit_memory(gl_faults::memory_used() + 500'000);
     CHECK_THROWS_WITH_AS(renderer.upload(large),
                          doctest::Contains("the graphics driver has no memory for 1.8 MiB of vertices"),
-                         OutOfMemory);
-    CHECK(live_gl_objects() == objects);
+                         base::OutOfMemory);
+    CHECK(gl::live_gl_objects() == objects);
     renderer.render(shown, image, stats);
     CHECK(stats.uploads == 0);
     CHECK(image.rgba == expected.rgba);
@@ -105,34 +105,35 @@ TEST_CASE(
 
 TEST_CASE("what earlier pictures left on the GPU makes room for the next") {
     const HealedMemory healed;
-    View view = view_of(everything());
-    Image expected, image;
-    FrameStats stats;
-    Renderer renderer;
+    plan::View view = view_of(everything());
+    scene::Image expected, image;
+    plan::FrameStats stats;
+    renderer::Renderer renderer;
     renderer.render(view, expected, stats);
-    View lines = view;
+    plan::View lines = view;
     lines.wireframe = true;
     lines.width = lines.height = 300;
     renderer.render(lines, image, stats);
     gl_faults::limit_memory(gl_faults::memory_used());
-    view.mode = DrawMode::stylized;
+    view.mode = plan::DrawMode::stylized;
     renderer.render(view, image, stats);
-    view.mode = DrawMode::realistic;
+    view.mode = plan::DrawMode::realistic;
     renderer.render(view, image, stats);
     CHECK(image.rgba == expected.rgba);
 }
 
 TEST_CASE("a picture larger than the driver holds is refused in a sentence") {
     const HealedMemory healed;
-    View view = view_of(everything());
-    Image image;
-    FrameStats stats;
-    Renderer renderer;
+    plan::View view = view_of(everything());
+    scene::Image image;
+    plan::FrameStats stats;
+    renderer::Renderer renderer;
     gl_faults::limit_memory(gl_faults::memory_used() + 1'000'000);
     view.width = 2000;
     view.height = 1000;
     CHECK_THROWS_WITH_AS(renderer.render(view, image, stats),
-                         "the graphics driver has no memory for a picture of 2000x1000 pixels", OutOfMemory);
+                         "the graphics driver has no memory for a picture of 2000x1000 pixels",
+                         base::OutOfMemory);
     view.width = view.height = 64;
     renderer.render(view, image, stats);
 }

@@ -6,18 +6,19 @@ using namespace vrut;
 
 namespace {
 
-Material two_sided(Material material) {
+scene::Material two_sided(scene::Material material) {
     material.two_sided = true;
     return material;
 }
 
-const Material kPlain = material_of({0.7, 0.5, 0.3}, {0.2, 0.3, 0.4}, 12);
+const scene::Material kPlain = material_of({0.7, 0.5, 0.3}, {0.2, 0.3, 0.4}, 12);
 
 /// How many pixels show something else than the background.
-int covered(const Image& image) {
+int covered(const scene::Image& image) {
     int count = 0;
     for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width; ++x) count += pixel_of(image, x, y) != bytes_of(kDefaultBackground);
+        for (int x = 0; x < image.width; ++x)
+            count += pixel_of(image, x, y) != bytes_of(plan::kDefaultBackground);
     return count;
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("two-sided parts are lit from both sides") {
         CHECK(studio.check(mirrored, view_from({1, 0, 4})).surfaces > 300);
         CHECK(studio.check(mirrored, view_from({1, 0, -4})).surfaces > 300);
     }
-    View within = view_from({0, 0, 0.5}, {1, 0, 0});
+    plan::View within = view_from({0, 0, 0.5}, {1, 0, 0});
     CHECK(studio.check(scene_of({{1, sphere(2, 8), two_sided(kPlain), glm::dmat4(1)}}), within).surfaces ==
           96 * 64);
 }
@@ -70,7 +71,7 @@ TEST_CASE("two-sided parts are lit from both sides") {
 TEST_CASE("of two-sided parts the normal faces the viewer, whatever the triangle does") {
     RendererFixture studio;
     // The triangles face the viewer, their normals do not: a file from a modeller that turned one of the two.
-    Geometry away = quad(1);
+    scene::Geometry away = quad(1);
     away.normals.assign(4, glm::vec3(0.3f, 0, -1));
     CHECK(
         studio.check(scene_of({{1, away, two_sided(kPlain), glm::dmat4(1)}}), view_from({1, 0, 4})).surfaces >
@@ -78,7 +79,7 @@ TEST_CASE("of two-sided parts the normal faces the viewer, whatever the triangle
     CHECK(studio.check(scene_of({{1, away, two_sided(kPlain), glm::dmat4(1)}}), view_from({1, 0, -4}))
               .surfaces > 300);
     // Normals that turn away from the viewer within a triangle.
-    Geometry wide = quad(1.5);
+    scene::Geometry wide = quad(1.5);
     wide.normals = {{-1, 0, 0.1f}, {1, 0, 0.1f}, {1, 0, -0.5f}, {-1, 0, 0.1f}};
     CHECK(
         studio.check(scene_of({{1, wide, two_sided(kPlain), glm::dmat4(1)}}), view_from({2, 0, 4})).surfaces >
@@ -92,15 +93,15 @@ TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is
     for (const double degrees : {0.0, 20.0, 50.0}) {
         CAPTURE(degrees);
         const glm::dmat4 turn = turned_by(degrees, glm::normalize(glm::dvec3(1, 2, 3)));
-        const auto flattened = [&](const Geometry& geometry) {
+        const auto flattened = [&](const scene::Geometry& geometry) {
             return scene_of({{1, geometry, kPlain, turn * scaled_by({1, 1, 0})}});
         };
         for (const double side : {1.0, -1.0}) {
             CAPTURE(side);
-            const View view = view_from({0.5, 0.3, 5 * side});
+            const plan::View view = view_from({0.5, 0.3, 5 * side});
             // A plate has the same faces.
             const ExpectedImage picture(*scene_of({{1, quad(1), two_sided(kPlain), turn}}), view);
-            for (const Geometry& geometry : {box({1, 1, 1}), quad(1), quad(1, false)}) {
+            for (const scene::Geometry& geometry : {box({1, 1, 1}), quad(1), quad(1, false)}) {
                 const ImageMismatch result = difference(picture, studio.draw(flattened(geometry), view));
                 CHECK_MESSAGE(result.worst <= 1, result.where);
                 CHECK(result.surfaces > 200);
@@ -120,7 +121,7 @@ TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is
                 CHECK(result.surfaces > 200);
             }
             // A ball becomes a disc, in the middle as bright as the plate.
-            const Image disc = studio.draw(flattened(sphere(1, 8)), view);
+            const scene::Image disc = studio.draw(flattened(sphere(1, 8)), view);
             int worst = 0;
             for (int y = 28; y < 36; ++y)
                 for (int x = 44; x < 52; ++x) {
@@ -147,9 +148,9 @@ TEST_CASE("a part that is only thin is not flat") {
 
 TEST_CASE("normals that a flattening matrix wipes out take the face's") {
     RendererFixture studio;
-    Geometry sideways = quad(1);
+    scene::Geometry sideways = quad(1);
     sideways.normals.assign(4, glm::vec3(1, 0, 0));
-    const View view = view_from({0.5, 0.3, 5});
+    const plan::View view = view_from({0.5, 0.3, 5});
     const ExpectedImage picture(*scene_of({{1, quad(1), kPlain, glm::dmat4(1)}}), view);
     const ImageMismatch result =
         difference(picture, studio.draw(scene_of({{1, sideways, kPlain, scaled_by({1, 1, 0})}}), view));
@@ -164,7 +165,7 @@ TEST_CASE("parts flattened to a line or a point leave no trace") {
             {{1, sphere(1, 6), kPlain, scaled_by(factors)}, {2, quad(1), kPlain, scaled_by(factors)}});
         CHECK(covered(studio.draw(scene, view_from({1, 1, 5}))) == 0);
     }
-    Geometry degenerate = quad(1, false);
+    scene::Geometry degenerate = quad(1, false);
     degenerate.triangles = {{0, 0, 1}, {0, 1, 1}, {2, 2, 2}, {0, 1, 2}};
     CHECK(studio.check(scene_of({{1, degenerate, kPlain, glm::dmat4(1)}}), view_from({0, 0, 5})).surfaces >
           100);

@@ -8,8 +8,8 @@ using namespace vrut;
 
 namespace {
 
-Material glass(double red, double alpha) {
-    Material material = material_of({red, 0.5, 0.9});
+scene::Material glass(double red, double alpha) {
+    scene::Material material = material_of({red, 0.5, 0.9});
     material.diffuse.a = alpha;
     material.two_sided = true;
     return material;
@@ -17,8 +17,8 @@ Material glass(double red, double alpha) {
 
 /// So many that a sample takes several steps, for each way in which glass is drawn: sorted, layered, and both
 /// in a mirror.
-std::shared_ptr<const PlacedScene> much_glass(double red) {
-    Material mirror = material_of({0.2, 0.2, 0.2});
+std::shared_ptr<const scene::PlacedScene> much_glass(double red) {
+    scene::Material mirror = material_of({0.2, 0.2, 0.2});
     mirror.reflectivity = 0.8;
     std::vector<Part> parts{{1, quad(3), mirror, moved_by({0, 0, -3})}};
     for (int i = 0; i < 2000; ++i)
@@ -29,8 +29,8 @@ std::shared_ptr<const PlacedScene> much_glass(double red) {
     return scene_of(parts);
 }
 
-View view_of(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& eye) {
-    View view = view_from(eye);
+plan::View view_of(const std::shared_ptr<const scene::PlacedScene>& scene, const glm::dvec3& eye) {
+    plan::View view = view_from(eye);
     view.scene = scene;
     view.samples = 2;
     view.width = 160;
@@ -42,11 +42,11 @@ View view_of(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& 
 
 TEST_CASE("an ordinary image takes a step for each sample") {
     RendererFixture studio;
-    View view = view_from({1, 2, 5});
+    plan::View view = view_from({1, 2, 5});
     view.scene = scene_of({{1, sphere(1, 12), material_of({0.7, 0.5, 0.3}), glm::dmat4(1)}});
     view.samples = 4;
-    const Image expected = studio.draw(view.scene, view);
-    RenderJob rendering(view);
+    const scene::Image expected = studio.draw(view.scene, view);
+    plan::RenderJob rendering(view);
     for (int sample = 1; sample <= 4; ++sample) {
         CHECK(studio.renderer().step(rendering) == (sample == 4));
         CHECK(rendering.samples == sample);
@@ -59,17 +59,18 @@ TEST_CASE("an ordinary image takes a step for each sample") {
 TEST_CASE("images that are drawn in turns are those that are drawn alone, and no sample is drawn twice") {
     RendererFixture studio;
     const auto scene = much_glass(0.1), other = much_glass(0.8);
-    View selected = view_of(scene, {2, 1, 4});
+    plan::View selected = view_of(scene, {2, 1, 4});
     selected.selected = 1;
     selected.markers = markers_at({{0, 0, 1}});
-    View lines = view_of(other, {-2, 1, 4});
-    lines.mode = DrawMode::stylized;
+    plan::View lines = view_of(other, {-2, 1, 4});
+    lines.mode = plan::DrawMode::stylized;
     lines.width = 100;
-    const std::vector<View> views{view_of(scene, {1, 2, 5}), selected, view_of(other, {1, 2, 5}), lines};
-    std::vector<RenderJob> renderings;
-    std::vector<Image> expected;
-    std::vector<FrameStats> alone;
-    for (const View& view : views) {
+    const std::vector<plan::View> views{view_of(scene, {1, 2, 5}), selected, view_of(other, {1, 2, 5}),
+                                        lines};
+    std::vector<plan::RenderJob> renderings;
+    std::vector<scene::Image> expected;
+    std::vector<plan::FrameStats> alone;
+    for (const plan::View& view : views) {
         expected.push_back(studio.draw(view.scene, view));
         alone.push_back(studio.stats);
         renderings.emplace_back(view);
@@ -77,7 +78,7 @@ TEST_CASE("images that are drawn in turns are those that are drawn alone, and no
     int steps = 0, between = 0;
     for (bool all = false; !all; ++steps) {
         all = true;
-        for (RenderJob& rendering : renderings) {
+        for (plan::RenderJob& rendering : renderings) {
             if (rendering.samples == 2) continue;
             const int before = rendering.samples;
             const bool whole = studio.renderer().step(rendering);
@@ -99,16 +100,16 @@ TEST_CASE("images that are drawn in turns are those that are drawn alone, and no
 
 TEST_CASE("what is given up in the midst of a sample leaves nothing behind") {
     RendererFixture studio;
-    const View view = view_of(much_glass(0.1), {1, 2, 5});
-    const Image expected = studio.draw(view.scene, view);
-    const long objects = live_gl_objects();
+    const plan::View view = view_of(much_glass(0.1), {1, 2, 5});
+    const scene::Image expected = studio.draw(view.scene, view);
+    const long objects = gl::live_gl_objects();
     for (int i = 0; i < 5; ++i) {
-        RenderJob rendering(view);
+        plan::RenderJob rendering(view);
         CHECK_FALSE(studio.renderer().step(rendering));
         CHECK(rendering.samples == 0);
     }
     CHECK(studio.draw(view.scene, view).rgba == expected.rgba);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
 }
 
 TEST_CASE("no step of a scene of many panes in one place does more than so much") {
@@ -116,15 +117,15 @@ TEST_CASE("no step of a scene of many panes in one place does more than so much"
     std::vector<Part> parts;
     constexpr int kPanes = 30'000;
     for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
-    const Image expected = studio.draw(view.scene, view);
-    RenderJob rendering(view);
+    const scene::Image expected = studio.draw(view.scene, view);
+    plan::RenderJob rendering(view);
     int steps = 0, draws = 0;
     for (bool whole = false; !whole; ++steps) {
         whole = studio.renderer().step(rendering);
         // Each covers more than 100 pixels, and takes at least that much.
-        CHECK(rendering.stats.draws - draws <= DrawBudget::kMost / 100);
+        CHECK(rendering.stats.draws - draws <= plan::DrawBudget::kMost / 100);
         draws = rendering.stats.draws;
     }
     CHECK(draws == kPanes);
@@ -136,13 +137,14 @@ TEST_CASE("planning many panes takes steps, each of which looks at so many") {
     std::vector<Part> parts;
     constexpr int kPanes = 100'000;
     for (int i = 0; i < kPanes; ++i) parts.push_back({i + 1, quad(0.5), glass(0.3, 0.01), glm::dmat4(1)});
-    View view = view_from({0, 0, 5});
+    plan::View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
-    TransparencyCache shapes(*view.scene->scene);
+    plan::TransparencyCache shapes(*view.scene->scene);
     const auto steps = [&] {
-        FramePlanner planner;
+        plan::FramePlanner planner;
         int count = 1;
-        for (DrawBudget work(true); !planner.step(view, shapes, work); ++count) work = DrawBudget(true);
+        for (plan::DrawBudget work(true); !planner.step(view, shapes, work); ++count)
+            work = plan::DrawBudget(true);
         REQUIRE(planner.plan().scene.transparent.size() == 1);
         CHECK(planner.plan().scene.transparent[0].items.size() == kPanes);
         return count;

@@ -8,35 +8,43 @@ namespace {
 
 /// A board in the plane z = 0 of its own space that shows a picture as it is.
 struct Board {
-    Image image;
+    scene::Image image;
     glm::dvec2 scale{1}, offset{0};  ///< texcoord = position · scale + offset
     glm::dmat4 matrix{1};
     double half = 1000;
 };
 
-std::shared_ptr<const PlacedScene> scene_of(const Board& board, const Material& given = {}) {
-    SceneParts parts;
+std::shared_ptr<const scene::PlacedScene> scene_of(const Board& board, const scene::Material& given = {}) {
+    scene::SceneParts parts;
     parts.textures = {{"board.png", board.image, false}};
-    Geometry geometry = quad(board.half);
+    scene::Geometry geometry = quad(board.half);
     for (const glm::dvec3& position : geometry.positions)
         geometry.texcoords.emplace_back(glm::dvec2(position) * board.scale + board.offset);
     parts.geometries = {geometry};
     parts.materials = {given};
     parts.materials[0].texture = 0;
-    parts.nodes = {{Node{1, {}, NodeType::geometry, kNone, {}, true, board.matrix, GeometryData{0, 0}}, 0}};
-    return std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts))));
+    parts.nodes = {{scene::Node{1,
+                                {},
+                                scene::NodeType::geometry,
+                                scene::kNone,
+                                {},
+                                true,
+                                board.matrix,
+                                scene::GeometryData{0, 0}},
+                    0}};
+    return std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
 }
 
 /// Lit so that a surface with that normal shows its diffuse colour.
-View plainly_lit(View view, const glm::dvec3& normal) {
+plan::View plainly_lit(plan::View view, const glm::dvec3& normal) {
     view.light.headlight = false;
-    view.light.type = LightData::Type::directional;
+    view.light.type = scene::LightData::Type::directional;
     view.light.direction = -normal;
     return view;
 }
 
 /// The board's picture as the view should show it.
-TextureMismatch check(const Board& board, View view, RendererFixture& studio) {
+TextureMismatch check(const Board& board, plan::View view, RendererFixture& studio) {
     view = plainly_lit(view, glm::normalize(glm::dvec3(board.matrix[2])));
     const ExpectedTexture texture(board.image);
     const glm::dmat4 inverse = glm::inverse(board.matrix);
@@ -70,13 +78,13 @@ TEST_CASE("levels are means of what they cover, by area") {
          {glm::ivec2(1, 1), {2, 2}, {3, 1}, {5, 3}, {37, 19}, {64, 16}, {7, 1000}, {255, 257}}) {
         CAPTURE(size.x);
         CAPTURE(size.y);
-        const Image image = noise(size.x, size.y);
-        const std::vector<Image> levels = mip_levels(image);
+        const scene::Image image = noise(size.x, size.y);
+        const std::vector<scene::Image> levels = gl::mip_levels(image);
         const ExpectedTexture expected(image);
         REQUIRE(static_cast<int>(levels.size()) == expected.levels() - 1);
         double worst = 0;
         for (int level = 1; level < expected.levels(); ++level) {
-            const Image& found = levels[static_cast<std::size_t>(level - 1)];
+            const scene::Image& found = levels[static_cast<std::size_t>(level - 1)];
             REQUIRE(glm::ivec2(found.width, found.height) == expected.size(level));
             for (int y = 0; y < found.height; ++y)
                 for (int x = 0; x < found.width; ++x) {
@@ -91,11 +99,11 @@ TEST_CASE("levels are means of what they cover, by area") {
 
 TEST_CASE("a picture lies upright on a surface, and its first row is the bottom one") {
     RendererFixture studio;
-    Image image;
+    scene::Image image;
     image.resize(2, 2);
     image.rgba = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 0, 255};
-    View view = plainly_lit(pixel_view(6, 6), {0, 0, 1});
-    const Image drawn =
+    plan::View view = plainly_lit(pixel_view(6, 6), {0, 0, 1});
+    const scene::Image drawn =
         studio.draw(scene_of({image, glm::dvec2(1.0 / 6), glm::dvec2(0.5), glm::dmat4(1), 4}), view);
     CHECK(pixel_of(drawn, 1, 4) == glm::ivec3(255, 0, 0));
     CHECK(pixel_of(drawn, 4, 4) == glm::ivec3(0, 255, 0));
@@ -135,11 +143,11 @@ TEST_CASE("minified: trilinear at the level of the pixel's longer side") {
 TEST_CASE("minified on a tilted plane, up to its horizon") {
     RendererFixture studio;
     for (const double tilt : {20.0, 60.0, 80.0})
-        for (const Image& image : {noise(128, 128), cloudy(300, 170), noise(37, 19)}) {
+        for (const scene::Image& image : {noise(128, 128), cloudy(300, 170), noise(37, 19)}) {
             CAPTURE(tilt);
             CAPTURE(image.width);
             const glm::dmat4 tilted = turned_by(25, {0, 0, 1}) * turned_by(-tilt, {1, 0, 0});
-            View view = view_from({0, 0, 3});
+            plan::View view = view_from({0, 0, 3});
             view.width = 240;
             view.height = 160;
             const TextureMismatch off = check({image, {0.35, 0.5}, {0.1, 0.2}, tilted}, view, studio);
@@ -164,28 +172,28 @@ TEST_CASE("pictures of extreme sizes") {
 
 TEST_CASE("texture coordinates far from zero show the same") {
     RendererFixture studio;
-    const Image image = noise(32, 32);
-    const View view = plainly_lit(pixel_view(64, 64), {0, 0, 1});
+    const scene::Image image = noise(32, 32);
+    const plan::View view = plainly_lit(pixel_view(64, 64), {0, 0, 1});
     // The corners' own coordinates are exact in float.
     const Board near{image, glm::dvec2(1.0 / 64), {0, 0}, glm::dmat4(1), 64};
     Board far = near;
     far.offset = {1 << 20, -(1 << 21)};
-    const Image found = studio.draw(scene_of(far), view), wanted = studio.draw(scene_of(near), view);
+    const scene::Image found = studio.draw(scene_of(far), view), wanted = studio.draw(scene_of(near), view);
     CHECK(found.rgba == wanted.rgba);
 }
 
 TEST_CASE("a texture takes the place of the diffuse colour and of nothing else") {
     RendererFixture studio;
-    Image image;
+    scene::Image image;
     image.resize(1, 1);
     image.rgba = {51, 102, 204, 255};
-    Material material = material_of({0.9, 0.1, 0.5}, {0.2, 0.3, 0.1}, 7);
+    scene::Material material = material_of({0.9, 0.1, 0.5}, {0.2, 0.3, 0.1}, 7);
     material.ambient = {0.05, 0.02, 0.1, 1};
     material.emission = {0.01, 0.1, 0.02, 1};
-    const View view = view_from({1, 2, 4});
+    const plan::View view = view_from({1, 2, 4});
     const auto textured = scene_of({image, glm::dvec2(1), glm::dvec2(0), glm::dmat4(1), 2}, material);
-    const Image found = studio.draw(textured, view);
-    Material painted = material;
+    const scene::Image found = studio.draw(textured, view);
+    scene::Material painted = material;
     painted.diffuse = {51.0 / 255, 102.0 / 255, 204.0 / 255, 1};
     const ImageMismatch off =
         difference(ExpectedImage(*vrut::scene_of({{1, quad(2), painted, glm::dmat4(1)}}), view), found);
@@ -194,8 +202,8 @@ TEST_CASE("a texture takes the place of the diffuse colour and of nothing else")
 
     // Neither the stylized drawing nor edges show it.
     for (const bool wireframe : {false, true}) {
-        View plain = view;
-        plain.mode = wireframe ? DrawMode::realistic : DrawMode::stylized;
+        plan::View plain = view;
+        plain.mode = wireframe ? plan::DrawMode::realistic : plan::DrawMode::stylized;
         plain.wireframe = wireframe;
         CHECK(studio.draw(textured, plain).rgba ==
               studio.draw(vrut::scene_of({{1, quad(2), material, glm::dmat4(1)}}), plain).rgba);
@@ -204,29 +212,30 @@ TEST_CASE("a texture takes the place of the diffuse colour and of nothing else")
 
 TEST_CASE("geometry without texture coordinates shows no texture, and flat corners keep theirs") {
     RendererFixture studio;
-    const View view = view_from({1, 2, 4});
+    const plan::View view = view_from({1, 2, 4});
     const Board board{noise(8, 8), glm::dvec2(0.4), glm::dvec2(0.5), glm::dmat4(1), 2};
     const auto with = scene_of(board);
     const auto drawn = [&](bool normals, bool texcoords) {
-        SceneParts parts;
+        scene::SceneParts parts;
         parts.textures = with->scene->textures();
         parts.materials = with->scene->materials();
         parts.geometries = with->scene->geometries();
         if (!normals) parts.geometries[0].normals.clear();
         if (!texcoords) parts.geometries[0].texcoords.clear();
         parts.nodes = {{with->scene->nodes()[1], 0}};
-        return studio.draw(std::make_shared<PlacedScene>(place(*Scene::build(std::move(parts)))), view);
+        return studio.draw(
+            std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts)))), view);
     };
-    const Image smooth = drawn(true, true);
+    const scene::Image smooth = drawn(true, true);
     CHECK(drawn(false, true).rgba == smooth.rgba);
     CHECK(drawn(true, false).rgba != smooth.rgba);
     CHECK(drawn(true, false).rgba ==
-          studio.draw(vrut::scene_of({{1, quad(2), Material(), glm::dmat4(1)}}), view).rgba);
+          studio.draw(vrut::scene_of({{1, quad(2), scene::Material(), glm::dmat4(1)}}), view).rgba);
 }
 
 TEST_CASE("a texture is uploaded once, when it is first drawn, and only then is its program made") {
     RendererFixture studio;
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.textures = {
         {"a.png", noise(4, 4), false}, {"b.png", noise(9, 4), false}, {"c.png", noise(4, 4), false}};
     parts.geometries = {quad(1)};
@@ -234,28 +243,29 @@ TEST_CASE("a texture is uploaded once, when it is first drawn, and only then is 
     parts.materials.resize(3);
     parts.materials[1].texture = 0;
     parts.materials[2].texture = 1;
-    for (Id id = 1; id <= 5; ++id)
-        parts.nodes.push_back({Node{id,
-                                    {},
-                                    NodeType::geometry,
-                                    kNone,
-                                    {},
-                                    true,
-                                    glm::dmat4(1),
-                                    GeometryData{0, static_cast<Index>(id % 3)}},
+    for (scene::Id id = 1; id <= 5; ++id)
+        parts.nodes.push_back({scene::Node{id,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           glm::dmat4(1),
+                                           scene::GeometryData{0, static_cast<scene::Index>(id % 3)}},
                                0});
-    const auto scene = std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
-    std::vector<NodeState> states = scene->nodes;
-    for (NodeState& state : states) state.material = 0;
-    const View view = view_from({0, 0, 5});
-    studio.draw(std::make_shared<const PlacedScene>(place(scene->scene, states)), view);
+    const auto scene =
+        std::make_shared<const scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
+    std::vector<scene::NodeState> states = scene->nodes;
+    for (scene::NodeState& state : states) state.material = 0;
+    const plan::View view = view_from({0, 0, 5});
+    studio.draw(std::make_shared<const scene::PlacedScene>(scene::place(scene->scene, states)), view);
     CHECK(studio.stats.uploads == 1);
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     studio.draw(scene, view);
     CHECK(studio.stats.uploads == 2);
     CHECK(studio.stats.passes == 1);
-    CHECK(live_gl_objects() == objects + 3);  // two textures, one program
+    CHECK(gl::live_gl_objects() == objects + 3);  // two textures, one program
     studio.draw(scene, view);
     CHECK(studio.stats.uploads == 0);
-    CHECK(live_gl_objects() == objects + 3);
+    CHECK(gl::live_gl_objects() == objects + 3);
 }

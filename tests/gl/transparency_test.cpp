@@ -11,17 +11,17 @@ using namespace vrut;
 namespace {
 
 /// Glass that looks the same under any light.
-Material glass(const glm::dvec3& color, double alpha, bool two_sided = false) {
-    Material material;
+scene::Material glass(const glm::dvec3& color, double alpha, bool two_sided = false) {
+    scene::Material material;
     material.emission = {color, 1};
     material.diffuse = {0, 0, 0, alpha};
     material.two_sided = two_sided;
     return material;
 }
 
-Material paint(const glm::dvec3& color) { return glass(color, 1); }
+scene::Material paint(const glm::dvec3& color) { return glass(color, 1); }
 
-glm::dvec3 over(const glm::dvec3& behind, const Material& material) {
+glm::dvec3 over(const glm::dvec3& behind, const scene::Material& material) {
     return glm::mix(behind, glm::dvec3(material.emission), material.diffuse.a);
 }
 
@@ -31,15 +31,15 @@ int distance(const glm::ivec3& a, const glm::ivec3& b) {
 }
 
 /// With a pixel whose centre lies on the axis.
-View odd_view(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
-    View view = view_from(eye, focus);
+plan::View odd_view(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    plan::View view = view_from(eye, focus);
     view.width = 97;
     view.height = 65;
     return view;
 }
 
 /// The pixel in the middle, which shows `expected` within `tolerance`.
-void check_middle(const Image& image, const glm::dvec3& expected, int tolerance = 1) {
+void check_middle(const scene::Image& image, const glm::dvec3& expected, int tolerance = 1) {
     const glm::ivec3 seen = pixel_of(image, image.width / 2, image.height / 2);
     CHECK_MESSAGE(distance(seen, bytes_of(expected)) <= tolerance, seen.x, " ", seen.y, " ", seen.z,
                   " instead of ", bytes_of(expected).x, " ", bytes_of(expected).y, " ", bytes_of(expected).z);
@@ -54,8 +54,8 @@ TEST_CASE("layers of glass are composited from far to near, in any order of node
     int worst = 0;
     for (int trial = 0; trial < 200; ++trial) {
         const int count = 1 + trial % 16;
-        std::vector<Id> ids(static_cast<std::size_t>(count));
-        for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<Id>(i) + 1;
+        std::vector<scene::Id> ids(static_cast<std::size_t>(count));
+        for (std::size_t i = 0; i < ids.size(); ++i) ids[i] = static_cast<scene::Id>(i) + 1;
         std::shuffle(ids.begin(), ids.end(), random);
         const double thin = trial % 3 == 0 ? 0.1 : 1;
         std::vector<Part> parts;
@@ -66,12 +66,12 @@ TEST_CASE("layers of glass are composited from far to near, in any order of node
                              moved_by({0, 0, 0.2 * i})});
         const auto scene = scene_of(parts);
         for (const bool front : {true, false}) {
-            const View view = view_from({0.1, 0.2, front ? 9.0 : -7.0});
+            const plan::View view = view_from({0.1, 0.2, front ? 9.0 : -7.0});
             glm::dvec3 expected = view.background.color;
             for (int i = 0; i < count; ++i)
                 expected =
                     over(expected, parts[static_cast<std::size_t>(front ? i : count - 1 - i)].material);
-            const Image image = studio.draw(scene, view);
+            const scene::Image image = studio.draw(scene, view);
             worst = std::max(worst, distance(pixel_of(image, 48, 32), bytes_of(expected)));
         }
     }
@@ -80,12 +80,12 @@ TEST_CASE("layers of glass are composited from far to near, in any order of node
 
 TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emission too") {
     RendererFixture studio;
-    Material material = material_of({0.5, 0.3, 0.2}, {0.6, 0.7, 0.8}, 20);
+    scene::Material material = material_of({0.5, 0.3, 0.2}, {0.6, 0.7, 0.8}, 20);
     material.emission = {0.1, 0.05, 0, 1};
     for (const double alpha : {0.0, 0.02, 0.5, 0.98, 0.9999}) {
         CAPTURE(alpha);
         material.diffuse.a = alpha;
-        const View view = odd_view({0, 0, 5});
+        const plan::View view = odd_view({0, 0, 5});
         const glm::dvec3 own = phong(material, view.light, view.camera.eye, {0, 0, 0}, {0, 0, 1});
         check_middle(studio.draw(scene_of({{1, quad(1), material}}), view),
                      glm::mix(view.background.color, own, alpha));
@@ -94,7 +94,7 @@ TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emiss
     // A sum above 1 is clamped before it is multiplied.
     material = glass({3, 0.5, 0}, 0.5);
     check_middle(studio.draw(scene_of({{1, quad(1), material}}), odd_view({0, 0, 5})),
-                 glm::mix(kDefaultBackground, glm::dvec3(1, 0.5, 0), 0.5));
+                 glm::mix(plan::kDefaultBackground, glm::dvec3(1, 0.5, 0), 0.5));
 }
 
 TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
@@ -108,40 +108,42 @@ TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
     check_middle(studio.draw(scene, odd_view({0, 0, -5})), red);
     // The back of one-sided glass is not drawn.
     const auto one_sided = scene_of({{1, quad(1), glass(green, 0.4)}});
-    check_middle(studio.draw(one_sided, odd_view({0, 0, 5})), glm::mix(kDefaultBackground, green, 0.4));
-    check_middle(studio.draw(one_sided, odd_view({0, 0, -5})), kDefaultBackground);
+    check_middle(studio.draw(one_sided, odd_view({0, 0, 5})), glm::mix(plan::kDefaultBackground, green, 0.4));
+    check_middle(studio.draw(one_sided, odd_view({0, 0, -5})), plan::kDefaultBackground);
     // Mirrored, its front is still its front.
     const auto mirrored = scene_of({{1, quad(1), glass(green, 0.4), scaled_by({-1, 1, 1})}});
-    check_middle(studio.draw(mirrored, odd_view({0, 0, 5})), glm::mix(kDefaultBackground, green, 0.4));
-    check_middle(studio.draw(mirrored, odd_view({0, 0, -5})), kDefaultBackground);
+    check_middle(studio.draw(mirrored, odd_view({0, 0, 5})), glm::mix(plan::kDefaultBackground, green, 0.4));
+    check_middle(studio.draw(mirrored, odd_view({0, 0, -5})), plan::kDefaultBackground);
 }
 
 TEST_CASE("of the same geometry in the same place the higher id is in front, whichever is glass") {
     RendererFixture studio;
     const glm::dvec3 red(0.8, 0.1, 0.1), green(0.1, 0.7, 0.2);
-    const Material pane = glass(green, 0.4, true), other = glass(red, 0.3, true);
-    Material solid = paint(red);
+    const scene::Material pane = glass(green, 0.4, true), other = glass(red, 0.3, true);
+    scene::Material solid = paint(red);
     solid.two_sided = true;
     const glm::dmat4 matrix = turned_by(20, {0, 1, 0}) * moved_by({0.1, 0.2, 0.3});
     // One geometry of two nodes.
-    const auto twins = [&](const Material& first, const Material& second, bool first_is_higher) {
-        SceneParts parts;
+    const auto twins = [&](const scene::Material& first, const scene::Material& second,
+                           bool first_is_higher) {
+        scene::SceneParts parts;
         parts.geometries = {quad(1)};
         parts.materials = {first, second};
-        for (const Index i : {0, 1})
-            parts.nodes.push_back({Node{(i == 0) == first_is_higher ? 9 : 5,
-                                        {},
-                                        NodeType::geometry,
-                                        kNone,
-                                        {},
-                                        true,
-                                        matrix,
-                                        GeometryData{0, i}},
+        for (const scene::Index i : {0, 1})
+            parts.nodes.push_back({scene::Node{(i == 0) == first_is_higher ? 9 : 5,
+                                               {},
+                                               scene::NodeType::geometry,
+                                               scene::kNone,
+                                               {},
+                                               true,
+                                               matrix,
+                                               scene::GeometryData{0, i}},
                                    0});
-        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+        return std::make_shared<const scene::PlacedScene>(
+            scene::place(*scene::Scene::build(std::move(parts))));
     };
     for (const double side : {5.0, -5.0}) {
-        const View view = odd_view({0, 0, side});
+        const plan::View view = odd_view({0, 0, side});
         const glm::dvec3 back = view.background.color;
         check_middle(studio.draw(twins(pane, other, true), view), over(over(back, other), pane));
         check_middle(studio.draw(twins(pane, other, false), view), over(over(back, pane), other));
@@ -152,11 +154,12 @@ TEST_CASE("of the same geometry in the same place the higher id is in front, whi
 
 TEST_CASE("glass around the eye is in front of glass outside") {
     RendererFixture studio;
-    const Material around = glass({0.2, 0.3, 0.9}, 0.5, true), outside = glass({0.9, 0.2, 0.1}, 0.5, true);
+    const scene::Material around = glass({0.2, 0.3, 0.9}, 0.5, true),
+                          outside = glass({0.9, 0.2, 0.1}, 0.5, true);
     for (const bool around_first : {true, false}) {
         const auto scene = scene_of({{around_first ? 1 : 2, sphere(1, 12), around},
                                      {around_first ? 2 : 1, quad(2), outside, moved_by({0, 0, -3})}});
-        const View view = odd_view({0, 0, 0.5}, {0, 0, -3});
+        const plan::View view = odd_view({0, 0, 0.5}, {0, 0, -3});
         check_middle(studio.draw(scene, view), over(over(view.background.color, outside), around));
     }
 }
@@ -164,11 +167,11 @@ TEST_CASE("glass around the eye is in front of glass outside") {
 TEST_CASE("a thousand panes") {
     RendererFixture studio;
     std::vector<Part> parts;
-    glm::dvec3 expected = kDefaultBackground;
+    glm::dvec3 expected = plan::kDefaultBackground;
     for (int i = 0; i < 1000; ++i) {
         // 617 is coprime to 1000: ids in no order.
-        const Id id = 1 + i * 617 % 1000;
-        const Material material = glass({i % 7 / 6.0, i % 5 / 4.0, i % 3 / 2.0}, 0.05, true);
+        const scene::Id id = 1 + i * 617 % 1000;
+        const scene::Material material = glass({i % 7 / 6.0, i % 5 / 4.0, i % 3 / 2.0}, 0.05, true);
         parts.push_back({id, quad(20), material, moved_by({0, 0, -0.01 * i})});
     }
     for (std::size_t i = 1000; i-- > 0;) expected = over(expected, parts[i].material);
@@ -222,22 +225,22 @@ TEST_CASE("a ring of three panes") {
 namespace {
 
 /// Lit from one side, so that front and back of a body differ.
-View lit_from_the_side(const glm::dvec3& eye) {
-    View view = view_from(eye);
+plan::View lit_from_the_side(const glm::dvec3& eye) {
+    plan::View view = view_from(eye);
     view.light.headlight = false;
-    view.light.type = LightData::Type::directional;
+    view.light.type = scene::LightData::Type::directional;
     view.light.direction = glm::normalize(glm::dvec3(-3, -2, -1));
     return view;
 }
 
-Material lit_glass(double alpha, bool two_sided) {
-    Material material = material_of({0.9, 0.5, 0.2}, {0.6, 0.7, 0.8}, 5);
+scene::Material lit_glass(double alpha, bool two_sided) {
+    scene::Material material = material_of({0.9, 0.5, 0.2}, {0.6, 0.7, 0.8}, 5);
     material.diffuse.a = alpha;
     material.two_sided = two_sided;
     return material;
 }
 
-Geometry joined(Geometry first, const Geometry& second) {
+scene::Geometry joined(scene::Geometry first, const scene::Geometry& second) {
     const auto offset = static_cast<unsigned>(first.positions.size());
     first.positions.insert(first.positions.end(), second.positions.begin(), second.positions.end());
     for (const glm::uvec3& triangle : second.triangles) first.triangles.push_back(triangle + offset);
@@ -276,12 +279,12 @@ TEST_CASE("glass of more triangles than can be ordered once for all eyes") {
 
 TEST_CASE("glass that is hollow, and glass with a bay, is right from all around") {
     RendererFixture studio;
-    const Geometry tank = joined(box({1, 0.6, 0.8}), turned_inside_out(box({0.9, 0.5, 0.7})));
-    const Geometry hooks = joined(mapped(box({1, 0.2, 0.2}), 1, {0, -0.5, 0}),
-                                  joined(mapped(box({0.2, 0.2, 0.9}), 1, {0.8, 0.1, 0}),
-                                         mapped(box({0.2, 0.2, 0.9}), 1, {-0.8, 0.1, 0.6})));
+    const scene::Geometry tank = joined(box({1, 0.6, 0.8}), turned_inside_out(box({0.9, 0.5, 0.7})));
+    const scene::Geometry hooks = joined(mapped(box({1, 0.2, 0.2}), 1, {0, -0.5, 0}),
+                                         joined(mapped(box({0.2, 0.2, 0.9}), 1, {0.8, 0.1, 0}),
+                                                mapped(box({0.2, 0.2, 0.9}), 1, {-0.8, 0.1, 0.6})));
     for (const bool two_sided : {false, true})
-        for (const Geometry& geometry : {tank, hooks}) {
+        for (const scene::Geometry& geometry : {tank, hooks}) {
             const auto scene = scene_of({{2, geometry, lit_glass(0.5, two_sided), glm::dmat4(1)}, kBackdrop});
             for (const glm::dvec3& eye : kEyes) {
                 CAPTURE(eye.x);
@@ -294,7 +297,7 @@ TEST_CASE("glass that is hollow, and glass with a bay, is right from all around"
 TEST_CASE("glass with a film on it, whichever comes first in the file") {
     RendererFixture studio;
     for (const double gap : {1e-3, 1e-4, 1e-5})
-        for (const Id outer : {1, 3})
+        for (const scene::Id outer : {1, 3})
             for (const double side : {1.0, -1.0}) {
                 CAPTURE(gap);
                 const double size = 1 + gap;
@@ -308,7 +311,7 @@ TEST_CASE("glass with a film on it, whichever comes first in the file") {
 
 TEST_CASE("glass that crosses itself") {
     RendererFixture studio;
-    Geometry across = quad(1, false);
+    scene::Geometry across = quad(1, false);
     for (glm::dvec3& position : across.positions) position = {position.z, position.y, -position.x};
     const auto scene = scene_of({{2, joined(quad(1, false), across), lit_glass(0.5, true), glm::dmat4(1)}});
     for (const glm::dvec3& eye : {glm::dvec3(3, 2, 4), glm::dvec3(-4, 1, 2), glm::dvec3(1, -3, -4)})
@@ -332,7 +335,7 @@ TEST_CASE("layers that do not fit into the budget are made in parts of the pictu
     CHECK(studio.check(scene, view_from({0, 0, 5})).surfaces > 1000);
     CHECK(studio.stats.passes >= 24 / 8);
     // So long a row of them that it is cut across.
-    View row = view_from({0, 0, 5});
+    plan::View row = view_from({0, 0, 5});
     row.width = 256;
     row.height = 1;
     CHECK(studio.check(scene, row).surfaces > 50);
@@ -342,19 +345,19 @@ TEST_CASE("room for layers stays while panes cross in some pictures and not in o
     RendererFixture studio;
     const auto crossing = scene_of({{1, quad(2), glass({1, 0, 0}, 0.5, true), turned_by(20, {0, 1, 0})},
                                     {2, quad(2), glass({0, 0, 1}, 0.5, true), turned_by(-20, {0, 1, 0})}});
-    const View towards = odd_view({0, 0.3, 6}), away = odd_view({0, 0.3, 6}, {0, 0.3, 12});
+    const plan::View towards = odd_view({0, 0.3, 6}), away = odd_view({0, 0.3, 6}, {0, 0.3, 12});
     studio.draw(crossing, towards);
     studio.draw(crossing, away);
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     for (int i = 0; i < 3; ++i) {
         studio.draw(crossing, towards);
         studio.draw(crossing, away);
-        CHECK(live_gl_objects() == objects);
+        CHECK(gl::live_gl_objects() == objects);
     }
     studio.draw(crossing, towards);
-    CHECK(live_gl_objects() == objects);
+    CHECK(gl::live_gl_objects() == objects);
     for (int i = 0; i <= 100; ++i) studio.draw(crossing, away);
-    CHECK(live_gl_objects() == objects - 2);
+    CHECK(gl::live_gl_objects() == objects - 2);
 }
 
 TEST_CASE("the reference sees the same in rings and bodies of glass") {
@@ -366,11 +369,12 @@ TEST_CASE("the reference sees the same in rings and bodies of glass") {
     for (const glm::dvec3& eye : kEyes) {
         CAPTURE(eye.x);
         // Beside the axes, so that no crease lies exactly on centres of pixels.
-        View view = lit_from_the_side(eye + glm::dvec3(0.013, 0.007, 0));
+        plan::View view = lit_from_the_side(eye + glm::dvec3(0.013, 0.007, 0));
         view.scene = scene;
         view.width = 240;
         view.height = 160;
-        const Image drawn = studio.draw(scene, view), expected = image_of(trace(view));
+        const scene::Image drawn = studio.draw(scene, view),
+                           expected = reference::image_of(reference::trace(view));
         int beside = 0, wrong = 0;
         for (int y = 1; y < view.height - 1; ++y)
             for (int x = 1; x < view.width - 1; ++x) {

@@ -25,7 +25,7 @@ std::string picture() {
 }
 
 /// The scene of one of the files there, with `from` in it as `to`, beside its material library and picture.
-Scene read_panel(const std::string& name, const std::string& from = "", const std::string& to = "") {
+scene::Scene read_panel(const std::string& name, const std::string& from = "", const std::string& to = "") {
     const TemporaryFolder folder;
     folder.write("panel.mtl", text_of("panel.mtl"));
     folder.write("paint.png", picture());
@@ -36,24 +36,24 @@ Scene read_panel(const std::string& name, const std::string& from = "", const st
     return read_well(folder.write(name, text.replace(at, from.size(), to)));
 }
 
-const Geometry& geometry_of(const Scene& scene, const Node& node) {
-    return scene.geometries()[static_cast<std::size_t>(std::get<GeometryData>(node.data).geometry)];
+const scene::Geometry& geometry_of(const scene::Scene& scene, const scene::Node& node) {
+    return scene.geometries()[static_cast<std::size_t>(std::get<scene::GeometryData>(node.data).geometry)];
 }
 
-const Material& material_of(const Scene& scene, const Node& node) {
-    return scene.material(std::get<GeometryData>(node.data).material);
+const scene::Material& material_of(const scene::Scene& scene, const scene::Node& node) {
+    return scene.material(std::get<scene::GeometryData>(node.data).material);
 }
 
 /// The picture as it is, or without its alpha.
-void check_picture(const Scene& scene, const Material& material, std::uint8_t alpha) {
-    REQUIRE(material.texture != kNone);
-    const Image& image = scene.textures()[static_cast<std::size_t>(material.texture)].image;
+void check_picture(const scene::Scene& scene, const scene::Material& material, std::uint8_t alpha) {
+    REQUIRE(material.texture != scene::kNone);
+    const scene::Image& image = scene.textures()[static_cast<std::size_t>(material.texture)].image;
     CHECK(image.rgba == std::vector<std::uint8_t>{0, 0, 255, 255, 255, 255, 255, alpha,  // from the bottom
                                                   255, 0, 0, 255, 0, 255, 0, 255});
 }
 
 /// Two triangles over the unit square, laid with the picture upright.
-void check_panel(const Geometry& panel, bool has_texcoords) {
+void check_panel(const scene::Geometry& panel, bool has_texcoords) {
     CHECK(panel.positions.size() == 4);
     CHECK(panel.triangles.size() == 2);
     CHECK(panel.bounds.max == glm::dvec3(1, 1, 0));
@@ -96,19 +96,19 @@ std::string binary_ply(std::uint64_t vertices, std::uint64_t faces) {
 }  // namespace
 
 TEST_CASE("an OBJ scene keeps its objects, normals and places on pictures") {
-    const Scene scene = read_panel("panel.obj");
+    const scene::Scene scene = read_panel("panel.obj");
     CHECK(scene.nodes().size() == 3);
-    const Node &panel = node_of(scene, "Panel"), &pane = node_of(scene, "Pane");
+    const scene::Node &panel = node_of(scene, "Panel"), &pane = node_of(scene, "Pane");
     CHECK(panel.parent == 0);
-    CHECK(panel.type == NodeType::geometry);
+    CHECK(panel.type == scene::NodeType::geometry);
     check_panel(geometry_of(scene, panel), true);
     CHECK(geometry_of(scene, panel).normals.empty());  // flat
     CHECK(geometry_of(scene, pane).normals == std::vector(3, glm::vec3(0, 0.6F, 0.8F)));
 }
 
 TEST_CASE("materials that are Phong's follow one rule") {
-    const Scene scene = read_panel("panel.obj");
-    const Material& paint = material_of(scene, "Paint");
+    const scene::Scene scene = read_panel("panel.obj");
+    const scene::Material& paint = material_of(scene, "Paint");
     CHECK(paint.diffuse == glm::dvec4(0.5, 0.25, 0, 1));
     CHECK(is_near(paint.ambient, {0.05, 0.025, 0, 1}));
     CHECK(paint.specular == glm::dvec4(0.5, 0.25, 0, 1));
@@ -116,7 +116,7 @@ TEST_CASE("materials that are Phong's follow one rule") {
     CHECK(paint.shininess == 50);
     CHECK(paint.two_sided);
     check_picture(scene, paint, 255);
-    const Material& glass = material_of(scene, "Glass");
+    const scene::Material& glass = material_of(scene, "Glass");
     CHECK(is_near(glass.diffuse, {0.1, 0.2, 0.3, 0.4}));
     CHECK(glass.specular == glm::dvec4(0, 0, 0, 1));  // without an exponent
     CHECK(has_notice(scene, "a bump map is not shown"));
@@ -130,7 +130,7 @@ TEST_CASE("a picture's alpha counts in OBJ where it is the picture of the opacit
     const fs::path path = folder.write("panel.obj", text_of("panel.obj"));
     for (const auto& [opacity, alpha] : {std::pair("paint.png", 128), {"other.png", 255}}) {
         folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\nmap_d " + std::string(opacity) + "\n");
-        const Scene scene = read_well(path);
+        const scene::Scene scene = read_well(path);
         check_picture(scene, material_of(scene, "Paint"), static_cast<std::uint8_t>(alpha));
         CHECK(has_notice(scene, "a picture of transparency on its own") == (alpha == 255));
     }
@@ -151,13 +151,13 @@ TEST_CASE("parts are two-sided unless they are closed, wound outwards and opaque
 }
 
 TEST_CASE("an STL scene keeps its solids, each welded and flat") {
-    const Scene scene = read_panel("panel.stl");
+    const scene::Scene scene = read_panel("panel.stl");
     CHECK(scene.nodes().size() == 3);
-    const Node& panel = node_of(scene, "Panel");
+    const scene::Node& panel = node_of(scene, "Panel");
     check_panel(geometry_of(scene, panel), false);
     CHECK(geometry_of(scene, panel).normals.empty());
     CHECK(geometry_of(scene, node_of(scene, "Pane")).triangles.size() == 1);
-    CHECK(scene.material(0).diffuse == Material().diffuse);
+    CHECK(scene.material(0).diffuse == scene::Material().diffuse);
     CHECK(scene.material(0).two_sided);
     CHECK(scene.notices().empty());
 }
@@ -169,17 +169,17 @@ TEST_CASE("a binary STL scene is one part by its file's name") {
     const float numbers[] = {0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 1, 0};
     text.append(reinterpret_cast<const char*>(numbers), sizeof numbers).append(2, '\0');
     const TemporaryFolder folder;
-    const Scene scene = read_well(folder.write("lid.STL", text));
+    const scene::Scene scene = read_well(folder.write("lid.STL", text));
     CHECK(geometry_of(scene, node_of(scene, "lid")).positions.size() == 3);
 }
 
 TEST_CASE("a PLY scene is one part by its file's name") {
-    const Scene scene = read_panel("panel.ply");
+    const scene::Scene scene = read_panel("panel.ply");
     CHECK(scene.nodes().size() == 2);
-    const Node& panel = node_of(scene, "panel");
+    const scene::Node& panel = node_of(scene, "panel");
     check_panel(geometry_of(scene, panel), false);  // and the vertex that no face has is gone
     CHECK(geometry_of(scene, panel).normals == std::vector(4, glm::vec3(0, 0.6F, 0.8F)));
-    CHECK(material_of(scene, panel).diffuse == Material().diffuse);
+    CHECK(material_of(scene, panel).diffuse == scene::Material().diffuse);
     CHECK(has_notice(scene, "colours at its vertices are not shown"));
     CHECK(scene.notices().size() == 1);
 }
@@ -201,9 +201,10 @@ TEST_CASE(
 }
 
 TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and in metres") {
-    const Scene scene = read_panel("panel.dae");
+    const scene::Scene scene = read_panel("panel.dae");
     CHECK(scene.unit() == 1);
-    const Node &top = node_of(scene, "Scene"), &car = node_of(scene, "Car"), &door = node_of(scene, "Door");
+    const scene::Node &top = node_of(scene, "Scene"), &car = node_of(scene, "Car"),
+                      &door = node_of(scene, "Door");
     CHECK(is_near(top.matrix[2], {0, 0.01, 0, 0}));   // up
     CHECK(is_near(top.matrix[1], {0, 0, -0.01, 0}));  // away
     CHECK(&parent_of(scene, car) == &top);
@@ -211,7 +212,7 @@ TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and 
     CHECK(car.matrix[3] == glm::dvec4(1, 2, 3, 1));
     CHECK(door.matrix == glm::dmat4(0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1));
     check_panel(geometry_of(scene, door), true);
-    const Material& paint = material_of(scene, door);
+    const scene::Material& paint = material_of(scene, door);
     CHECK(paint.name == "Paint");
     CHECK(paint.diffuse == glm::dvec4(1, 1, 1, 0.5));
     CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
@@ -221,40 +222,40 @@ TEST_CASE("a Collada scene keeps its hierarchy, names and matrices, upright and 
 }
 
 TEST_CASE("a Collada scene keeps its cameras and lights") {
-    const Scene scene = read_panel("panel.dae");
-    const Node& camera = node_of(scene, "Camera");
+    const scene::Scene scene = read_panel("panel.dae");
+    const scene::Node& camera = node_of(scene, "Camera");
     CHECK(camera.matrix[3] == glm::dvec4(0, 0, 9, 1));
-    const auto& seen = std::get<CameraData>(camera.data);
+    const auto& seen = std::get<scene::CameraData>(camera.data);
     CHECK(seen.fov == doctest::Approx(2 * 21.0517));  // of 60 degrees across, 3 : 2
     CHECK(seen.eye == glm::dvec3(0));
     CHECK(seen.focus == glm::dvec3(0, 0, -1));
-    CHECK(std::get<CameraData>(node_of(scene, "Camera2").data).fov == 40);
-    const auto& lamp = std::get<LightData>(node_of(scene, "Lamp").data);
-    CHECK(lamp.type == LightData::Type::spot);
+    CHECK(std::get<scene::CameraData>(node_of(scene, "Camera2").data).fov == 40);
+    const auto& lamp = std::get<scene::LightData>(node_of(scene, "Lamp").data);
+    CHECK(lamp.type == scene::LightData::Type::spot);
     CHECK(lamp.color == glm::dvec4(1, 0.5, 0, 1));
     CHECK(lamp.attenuation == glm::dvec3(1, 0.5, 0.25));
     CHECK(lamp.angle == doctest::Approx(60));
-    CHECK(node_of(scene, "Amb").type == NodeType::assembly);
+    CHECK(node_of(scene, "Amb").type == scene::NodeType::assembly);
     CHECK(has_notice(scene, "a camera's field of view is not read"));
     CHECK(has_notice(scene, "from an area or from everywhere"));
     CHECK(scene.notices().size() == 2);
 }
 
 TEST_CASE("an FBX scene keeps its hierarchy, names and matrices, upright and with its unit") {
-    const Scene scene = read_panel("panel.fbx");
+    const scene::Scene scene = read_panel("panel.fbx");
     CHECK(scene.unit() == doctest::Approx(0.0254));
-    const Node &root = node_of(scene, "RootNode"), &car = node_of(scene, "Car");
+    const scene::Node &root = node_of(scene, "RootNode"), &car = node_of(scene, "Car");
     CHECK(root.matrix == glm::dmat4(1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1));
     CHECK(&parent_of(scene, car) == &root);
     CHECK(car.matrix[3] == glm::dvec4(1, 2, 3, 1));
     // Shift, pivot, turn by 180 degrees, the post-rotation back by 90, pivot back, and the mesh's own shift.
-    const Node& door = node_of(scene, "Door");
+    const scene::Node& door = node_of(scene, "Door");
     CHECK(&parent_of(scene, door) == &car);
     CHECK(is_near(door.matrix[0], {0, 1, 0, 0}));
     CHECK(is_near(door.matrix[1], {-1, 0, 0, 0}));
     CHECK(is_near(door.matrix[3], {5, 4, 13, 1}));
     // To which that shift does not belong.
-    const Node& handle = node_of(scene, "Handle");
+    const scene::Node& handle = node_of(scene, "Handle");
     CHECK(&parent_of(scene, handle) == &door);
     CHECK(is_near(handle.matrix[3], {1, 0, -7, 1}));
     check_panel(geometry_of(scene, handle), true);
@@ -263,30 +264,30 @@ TEST_CASE("an FBX scene keeps its hierarchy, names and matrices, upright and wit
 }
 
 TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
-    const Scene scene = read_panel("panel.fbx");
-    const Material& paint = material_of(scene, "Paint");
+    const scene::Scene scene = read_panel("panel.fbx");
+    const scene::Material& paint = material_of(scene, "Paint");
     CHECK(is_near(paint.diffuse, {0.5, 0.25, 0, 0.4}));
     CHECK(paint.specular == glm::dvec4(0.5, 0.25, 0, 1));
     CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
     CHECK(paint.shininess == 50);
     check_picture(scene, paint, 255);
-    const auto& camera = std::get<CameraData>(node_of(scene, "Presenter").data);
+    const auto& camera = std::get<scene::CameraData>(node_of(scene, "Presenter").data);
     CHECK(camera.fov == doctest::Approx(2 * 21.0517));
     CHECK(camera.focus == glm::dvec3(1, 0, 0));
     CHECK(camera.up == glm::dvec3(0, 1, 0));
-    const Node& light = node_of(scene, "light");
+    const scene::Node& light = node_of(scene, "light");
     CHECK(parent_of(scene, light).name == "Lamp");
     CHECK(is_near(light.matrix[2], {0, 1, 0, 0}));  // so that -z, where it shines, is -y
-    CHECK(std::get<LightData>(light.data).color == glm::dvec4(0.5, 0.25, 0, 1));
-    CHECK(std::get<LightData>(light.data).angle == doctest::Approx(60));
+    CHECK(std::get<scene::LightData>(light.data).color == glm::dvec4(0.5, 0.25, 0, 1));
+    CHECK(std::get<scene::LightData>(light.data).angle == doctest::Approx(60));
     CHECK(has_notice(scene, "strength and range are not read"));
     CHECK(scene.notices().size() == 2);
 }
 
 TEST_CASE("FBX axes that are none are left as they are") {
-    const Scene scene = read_panel("panel.fbx", "\"FrontAxis\", \"int\", \"Integer\", \"\",1",
-                                   "\"FrontAxis\", \"int\", \"Integer\", \"\",7");
-    CHECK(parent_of(scene, node_of(scene, "Car")).type == NodeType::root);
+    const scene::Scene scene = read_panel("panel.fbx", "\"FrontAxis\", \"int\", \"Integer\", \"\",1",
+                                          "\"FrontAxis\", \"int\", \"Integer\", \"\",7");
+    CHECK(parent_of(scene, node_of(scene, "Car")).type == scene::NodeType::root);
     CHECK(has_notice(scene, "axes are left as they are"));
 }
 
@@ -308,7 +309,7 @@ TEST_CASE("the material library and pictures of an OBJ scene lie in its folder")
     for (const std::string& image :
          {std::string("../secret.png"), std::string("link.png"), (outer.path() / "secret.png").string(),
           std::string("tex/../../secret.png")}) {
-        const Scene scene = notices_with("paint.mtl", image);
+        const scene::Scene scene = notices_with("paint.mtl", image);
         CHECK_MESSAGE(has_notice(scene, outside), image);
         CHECK_MESSAGE(scene.textures().empty(), image);
     }
@@ -318,9 +319,10 @@ TEST_CASE("the material library and pictures of an OBJ scene lie in its folder")
     fs::create_symlink(outer.path() / "secret.mtl", outer.path() / "scenes/link.mtl");
     for (const std::string& library :
          {std::string("../secret.mtl"), std::string("link.mtl"), (outer.path() / "secret.mtl").string()}) {
-        const Scene scene = notices_with(library, "x");
+        const scene::Scene scene = notices_with(library, "x");
         CHECK_MESSAGE(has_notice(scene, "'" + library + "': " + outside), library);
-        for (const Material& material : scene.materials()) CHECK(material.diffuse != glm::dvec4(1, 0, 0, 1));
+        for (const scene::Material& material : scene.materials())
+            CHECK(material.diffuse != glm::dvec4(1, 0, 0, 1));
     }
 }
 
@@ -343,7 +345,7 @@ TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
         CHECK(with_picture("paint.png").textures().size() == 1);
         for (const std::string& image : {std::string("../secret.png"), std::string("link.png"),
                                          (outer.path() / "secret.png").string()}) {
-            const Scene scene = with_picture(image);
+            const scene::Scene scene = with_picture(image);
             CHECK_MESSAGE(has_notice(scene, "in the folder of the scene's file"), image);
             CHECK_MESSAGE(scene.textures().empty(), image);
         }
@@ -462,7 +464,7 @@ TEST_CASE("models of other programs are read whole") {
         {"jeep/2013_BINARY/jeep1.fbx", 2'032, 7, 2, 1},
     };
     for (const auto& model : kModels) {
-        const Scene scene = read_well(fs::path(models) / model.file);
+        const scene::Scene scene = read_well(fs::path(models) / model.file);
         CHECK_MESSAGE(scene.triangle_count() == model.triangles, model.file);
         CHECK_MESSAGE(scene.geometries().size() == model.geometries, model.file);
         CHECK_MESSAGE(scene.materials().size() == model.materials, model.file);

@@ -69,30 +69,31 @@ std::string car_glb() {
 }  // namespace
 
 TEST_CASE("a glTF scene keeps its hierarchy, names and matrices") {
-    const Scene scene = read_well(kCar);
+    const scene::Scene scene = read_well(kCar);
     CHECK(scene.unit() == 1);
     CHECK(scene.nodes()[0].children.size() == 3);
-    const Node& car = node_of(scene, "Car");
+    const scene::Node& car = node_of(scene, "Car");
     CHECK(car.matrix[3] == glm::dvec4(1, 2, 3, 1));
-    const Node& left = node_of(scene, "Left door");
+    const scene::Node& left = node_of(scene, "Left door");
     CHECK(&parent_of(scene, left) == &car);
     CHECK(is_near(left.matrix[0], {0.56, 0, -1.92, 0}));  // by twice cosine and sine of 73.7 degrees
     CHECK(is_near(left.matrix[2], {1.92, 0, 0.56, 0}));
     CHECK(node_of(scene, "Right door").matrix[3] == glm::dvec4(0.5, -4, 0.25, 1));
-    for (const Node& node : scene.nodes()) CHECK(node.name != "Not in the scene");
+    for (const scene::Node& node : scene.nodes()) CHECK(node.name != "Not in the scene");
 }
 
 TEST_CASE("a glTF mesh is one geometry for all nodes that show it, with a child for each of several parts") {
-    const Scene scene = read_well(kCar);
+    const scene::Scene scene = read_well(kCar);
     CHECK(scene.geometries().size() == 3);
-    const Node& left = node_of(scene, "Left door");
-    const Node& right = node_of(scene, "Door");
+    const scene::Node& left = node_of(scene, "Left door");
+    const scene::Node& right = node_of(scene, "Door");
     CHECK(parent_of(scene, right).name == "Right door");
-    CHECK(std::get<GeometryData>(left.data).geometry == std::get<GeometryData>(right.data).geometry);
-    CHECK(node_of(scene, "Mirror").type == NodeType::assembly);
+    CHECK(std::get<scene::GeometryData>(left.data).geometry ==
+          std::get<scene::GeometryData>(right.data).geometry);
+    CHECK(node_of(scene, "Mirror").type == scene::NodeType::assembly);
     CHECK(parent_of(scene, node_of(scene, "Mirror-0")).name == "Mirror");
     CHECK(parent_of(scene, node_of(scene, "Mirror-1")).name == "Mirror");
-    const Geometry& door = scene.geometries()[0];
+    const scene::Geometry& door = scene.geometries()[0];
     CHECK(door.positions[2] == glm::dvec3(1, 1, 0));
     CHECK(door.normals.size() == 4);
     CHECK(door.normals[3] == glm::vec3(0, 0, 1));
@@ -104,8 +105,8 @@ TEST_CASE("a glTF mesh is one geometry for all nodes that show it, with a child 
 }
 
 TEST_CASE("glTF materials follow one rule") {
-    const Scene scene = read_well(kCar);
-    const Material& chrome = material_of(scene, "Chrome");
+    const scene::Scene scene = read_well(kCar);
+    const scene::Material& chrome = material_of(scene, "Chrome");
     const double half = 0.7353569830524495;           // what half the light displays as
     CHECK(is_near(chrome.diffuse, {half, 1, 0, 1}));  // opaque, whatever its alpha
     CHECK(is_near(chrome.ambient, {half / 10, 0.1, 0, 1}));
@@ -113,21 +114,21 @@ TEST_CASE("glTF materials follow one rule") {
     CHECK(chrome.shininess == doctest::Approx(7.5));
     CHECK(is_near(chrome.emission, {0, 0, half, 1}));
     CHECK(chrome.two_sided);
-    CHECK(chrome.texture == kNone);
+    CHECK(chrome.texture == scene::kNone);
     CHECK_FALSE(material_of(scene, "Paint").two_sided);
     CHECK(material_of(scene, "Paint").specular == glm::dvec4(0, 0, 0, 1));
     CHECK(material_of(scene, "Paint").shininess == 1);
-    const Material& glass = material_of(scene, "Glass");
+    const scene::Material& glass = material_of(scene, "Glass");
     CHECK(glass.diffuse == glm::dvec4(1, 1, 1, 0.25));
     CHECK(is_near(glass.specular, {0.22, 0.22, 0.22, 1}));
     CHECK(glass.shininess == 10'000);
 }
 
 TEST_CASE("pictures inside a glTF file are read, and seen through only where its material blends") {
-    const Scene scene = read_well(kCar);
-    const auto texture = [&](const char* material) -> const Texture& {
-        const Index index = material_of(scene, material).texture;
-        REQUIRE(index != kNone);
+    const scene::Scene scene = read_well(kCar);
+    const auto texture = [&](const char* material) -> const scene::Texture& {
+        const scene::Index index = material_of(scene, material).texture;
+        REQUIRE(index != scene::kNone);
         return scene.textures()[static_cast<std::size_t>(index)];
     };
     const std::vector<std::uint8_t> clear = {0,   0, 255, 255, 255, 255, 255, 0,
@@ -141,23 +142,23 @@ TEST_CASE("pictures inside a glTF file are read, and seen through only where its
 }
 
 TEST_CASE("glTF cameras and lights are nodes") {
-    const Scene scene = read_well(kCar);
-    const Node& camera = node_of(scene, "Presenter");
-    REQUIRE(camera.type == NodeType::camera);
-    CHECK(std::get<CameraData>(camera.data).fov == doctest::Approx(30));
-    CHECK(std::get<CameraData>(camera.data).eye == glm::dvec3(0));
+    const scene::Scene scene = read_well(kCar);
+    const scene::Node& camera = node_of(scene, "Presenter");
+    REQUIRE(camera.type == scene::NodeType::camera);
+    CHECK(std::get<scene::CameraData>(camera.data).fov == doctest::Approx(30));
+    CHECK(std::get<scene::CameraData>(camera.data).eye == glm::dvec3(0));
     CHECK(camera.matrix[3] == glm::dvec4(0, 1, 5, 1));
-    const Node& lamp = node_of(scene, "light");
+    const scene::Node& lamp = node_of(scene, "light");
     CHECK(parent_of(scene, lamp).name == "Lamps");
-    const auto& spot = std::get<LightData>(lamp.data);
-    CHECK(spot.type == LightData::Type::spot);
+    const auto& spot = std::get<scene::LightData>(lamp.data);
+    CHECK(spot.type == scene::LightData::Type::spot);
     CHECK(spot.angle == doctest::Approx(60));
     CHECK(is_near(spot.color, {1, 0.7353569830524495, 0, 1}));
-    CHECK(std::get<LightData>(node_of(scene, "Sun").data).type == LightData::Type::directional);
+    CHECK(std::get<scene::LightData>(node_of(scene, "Sun").data).type == scene::LightData::Type::directional);
 }
 
 TEST_CASE("what a glTF scene loses is told, once for each kind") {
-    const Scene scene = read_well(kCar);
+    const scene::Scene scene = read_well(kCar);
     for (const char* part :
          {"a skin is not read", "an animation is not shown", "colours at its vertices", "points or lines",
           "a normal map", "extension KHR_materials_clearcoat", "strength and range are not read (2 times)"})
@@ -185,7 +186,7 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
     outer.write("scenes/my parts/paint.png", flat_png(2, 2, {1, 2, 3, 255}));
     fs::create_symlink(outer.path() / "secret.bin", outer.path() / "scenes/link.bin");
     const auto read_with = [&](const std::string& uri) {
-        return read_scene(outer.write("scenes/car.gltf", car_with(data, uri)));
+        return io::read_scene(outer.write("scenes/car.gltf", car_with(data, uri)));
     };
     CHECK(read_with("my parts/car.bin"));
     CHECK(read_with("my%20parts/car.bin"));
@@ -199,7 +200,8 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
     }
     REQUIRE_FALSE(read_with("none.bin"));
     CHECK(read_with("none.bin").error().find("'none.bin': there is no such file") != std::string::npos);
-    const Scene scene = read_well(outer.write("scenes/car.gltf", car_with(image, "my%20parts/paint.png")));
+    const scene::Scene scene =
+        read_well(outer.write("scenes/car.gltf", car_with(image, "my%20parts/paint.png")));
     CHECK(scene.textures().size() == 1);
     outer.write("scenes/my%20paint.png",
                 flat_png(2, 2, {1, 2, 3, 255}));  // as the address says, to the letter
@@ -259,7 +261,8 @@ TEST_CASE("the indices of glTF lines and points, which are not shown, may be any
     const TemporaryFolder folder;
     for (const char* mode : {"0", "1", "2", "3"}) {
         const std::string primitive = "\"indices\": 4, \"mode\": " + std::string(mode);
-        const Scene scene = read_well(folder.write("car.gltf", replaced(strange, "\"mode\": 3", primitive)));
+        const scene::Scene scene =
+            read_well(folder.write("car.gltf", replaced(strange, "\"mode\": 3", primitive)));
         CHECK(scene.triangle_count() == 8);
         CHECK(has_notice(scene, "points or lines"));
     }
@@ -315,7 +318,7 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
                                       primitives + "{\"attributes\": {\"POSITION\": 0}}");
     check_refused(many, why);
     const TemporaryFolder folder;
-    CHECK(read_scene(folder.write("car.gltf", replaced(many, "1000000", "1000"))));
+    CHECK(io::read_scene(folder.write("car.gltf", replaced(many, "1000000", "1000"))));
     // One file in many buffers, and one buffer in many pictures.
     folder.write("zeros.bin", "");
     fs::resize_file(folder.path() / "zeros.bin", 8 << 20);
@@ -331,7 +334,7 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
             "\"byteLength\": 12}", "\"byteLength\": 12}, {\"buffer\": 1, \"byteLength\": 8388608}"),
         "ggg==\"}", "ggg==\"}" + pictures);
     for (const std::string& text : {zeros, shown}) {
-        const auto scene = read_scene(folder.write("car.gltf", text));
+        const auto scene = io::read_scene(folder.write("car.gltf", text));
         REQUIRE_FALSE(scene);
         CHECK_MESSAGE(scene.error().find("more than 512 MiB of memory") != std::string::npos, scene.error());
     }
@@ -339,9 +342,9 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
 
 TEST_CASE("a glTF camera whose field of view is no number is lost, and told") {
     const TemporaryFolder folder;
-    const Scene scene =
+    const scene::Scene scene =
         read_well(folder.write("car.gltf", car_with("\"aspectRatio\": 1.5", "\"aspectRatio\": 1e39")));
-    CHECK(node_of(scene, "Presenter").type == NodeType::assembly);
+    CHECK(node_of(scene, "Presenter").type == scene::NodeType::assembly);
     CHECK(has_notice(scene, "a camera whose field of view is no number is not read"));
 }
 
@@ -350,8 +353,8 @@ TEST_CASE("a black glTF light is black") {
     for (const char* black : {"\"intensity\": 0", "\"intensity\": 40, \"color\": [0, 0, 0]"}) {
         const std::string text = replaced(car_text(), "\"type\": \"directional\"",
                                           "\"type\": \"directional\", " + std::string(black));
-        const Scene scene = read_well(folder.write("car.gltf", text));
-        CHECK(std::get<LightData>(node_of(scene, "Sun").data).color == glm::dvec4(0, 0, 0, 1));
+        const scene::Scene scene = read_well(folder.write("car.gltf", text));
+        CHECK(std::get<scene::LightData>(node_of(scene, "Sun").data).color == glm::dvec4(0, 0, 0, 1));
     }
 }
 

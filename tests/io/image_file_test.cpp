@@ -21,19 +21,19 @@ namespace {
 using Pixel = std::array<int, 4>;
 
 /// Column and row from the top left, as files count.
-Pixel pixel(const Image& image, int x, int y) {
+Pixel pixel(const scene::Image& image, int x, int y) {
     const auto at = static_cast<std::size_t>((image.height - 1 - y) * image.width + x) * 4;
     return {image.rgba[at], image.rgba[at + 1], image.rgba[at + 2], image.rgba[at + 3]};
 }
 
-Image decode_well(const std::string& bytes) {
-    auto image = decode_image(bytes);
+scene::Image decode_well(const std::string& bytes) {
+    auto image = io::decode_image(bytes);
     REQUIRE_MESSAGE(image, image.error());
     return *std::move(image);
 }
 
 std::string refusal(const std::string& bytes) {
-    const auto image = decode_image(bytes);
+    const auto image = io::decode_image(bytes);
     REQUIRE_FALSE(image);
     return image.error();
 }
@@ -215,7 +215,7 @@ TEST_CASE("PNGs of every kind are read exactly, and upright") {
         for (const bool interlaced : {false, true}) {
             CAPTURE(kind.name);
             CAPTURE(interlaced);
-            const Image image = decode_well(file_of(kind, interlaced));
+            const scene::Image image = decode_well(file_of(kind, interlaced));
             REQUIRE(image.width == kWidth);
             REQUIRE(image.height == kHeight);
             REQUIRE(image.rgba.size() == std::size_t{kWidth} * kHeight * 4);
@@ -225,12 +225,13 @@ TEST_CASE("PNGs of every kind are read exactly, and upright") {
 }
 
 TEST_CASE("the last row of a picture is the file's first") {
-    const Image image = decode_well(png_bytes({.width = 1, .height = 2, .rows = {{1, 2, 3}, {4, 5, 6}}}));
+    const scene::Image image =
+        decode_well(png_bytes({.width = 1, .height = 2, .rows = {{1, 2, 3}, {4, 5, 6}}}));
     CHECK(image.rgba == std::vector<std::uint8_t>{4, 5, 6, 255, 1, 2, 3, 255});
 }
 
 TEST_CASE("a gamma that a PNG names changes nothing") {
-    const Image image =
+    const scene::Image image =
         decode_well(png_bytes({.width = 2, .rows = {{1, 60, 128, 200, 254, 77}}, .gamma = 1 / 1.1}));
     CHECK(pixel(image, 0, 0) == Pixel{1, 60, 128, 255});
     CHECK(pixel(image, 1, 0) == Pixel{200, 254, 77, 255});
@@ -258,7 +259,7 @@ TEST_CASE("what a PNG says besides its pixels is not unpacked") {
 
 TEST_CASE("JPEGs in colour and grey, of one and of several scans, are read upright") {
     for (const int flags : {0, TJFLAG_PROGRESSIVE}) {
-        const Image image = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), false, flags));
+        const scene::Image image = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), false, flags));
         REQUIRE(image.width == 32);
         REQUIRE(image.height == 16);
         CHECK(is_near(pixel(image, 3, 3), {255, 0, 0, 255}));
@@ -271,7 +272,7 @@ TEST_CASE("JPEGs in colour and grey, of one and of several scans, are read uprig
         REQUIRE(file.find("\xFF\xC9") != std::string::npos);
         CHECK(is_near(pixel(decode_well(file), 28, 12), {0, 0, 255, 255}));
     }
-    const Image grey = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), true));
+    const scene::Image grey = decode_well(jpeg_bytes(32, 16, three_fields(32, 16), true));
     CHECK(is_near(pixel(grey, 3, 3), {76, 76, 76, 255}));  // luma of red
     CHECK(is_near(pixel(grey, 28, 3), {255, 255, 255, 255}));
     CHECK(is_near(pixel(grey, 28, 12), {29, 29, 29, 255}));
@@ -293,7 +294,7 @@ TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a
 }
 
 TEST_CASE("the size is judged from the header") {
-    CHECK(decode_image(flat_png(16384, 16, {9, 8, 7, 6})));
+    CHECK(io::decode_image(flat_png(16384, 16, {9, 8, 7, 6})));
     for (const auto& [width, height] : {std::pair{16385U, 1U}, {1U, 16385U}, {900000U, 900000U}}) {
         const std::string why = refusal(claiming_png(width, height));
         CHECK_MESSAGE(contains(why, std::to_string(width) + " x " + std::to_string(height)), why);
@@ -302,10 +303,10 @@ TEST_CASE("the size is judged from the header") {
     const std::string many = refusal(claiming_png(16384, 4097));
     CHECK_MESSAGE(contains(many, "67108864"), many);
     CHECK_FALSE(contains(refusal(claiming_png(16384, 4096)), "67108864"));
-    const auto limited = decode_image(flat_png(4, 4, {1, 2, 3, 4}), 15);
+    const auto limited = io::decode_image(flat_png(4, 4, {1, 2, 3, 4}), 15);
     REQUIRE_FALSE(limited);
     CHECK(contains(limited.error(), "15"));
-    CHECK(decode_image(flat_png(4, 4, {1, 2, 3, 4}), 16));
+    CHECK(io::decode_image(flat_png(4, 4, {1, 2, 3, 4}), 16));
 
     std::string jpeg = jpeg_bytes(8, 8, std::vector<std::uint8_t>(192, 100));
     const std::size_t frame = jpeg.find("\xFF\xC0");
@@ -331,7 +332,7 @@ TEST_CASE("files that are cut short are refused, and changed ones do no harm") {
             CHECK_FALSE(refusal(file.substr(0, at)).empty());
             std::string changed = file;
             changed[at] = static_cast<char>(~changed[at]);
-            (void)decode_image(changed);
+            (void)io::decode_image(changed);
         }
     CHECK(contains(refusal(files[0].substr(0, files[0].size() - 1)), "too early"));
 }
@@ -339,9 +340,9 @@ TEST_CASE("files that are cut short are refused, and changed ones do no harm") {
 TEST_CASE("a picture is read from a file whatever its ending") {
     const TemporaryFolder folder;
     const auto path = folder.write("picture.jpg", flat_png(2, 1, {1, 2, 3, 4}));
-    const auto image = read_image_file(path);
+    const auto image = io::read_image_file(path);
     REQUIRE(image);
     CHECK(image->rgba == std::vector<std::uint8_t>{1, 2, 3, 4, 1, 2, 3, 4});
-    CHECK(read_image_file(folder.path() / "none.png").error() == "there is no such file");
-    CHECK(read_image_file(folder.path()).error() == "it is not a file");
+    CHECK(io::read_image_file(folder.path() / "none.png").error() == "there is no such file");
+    CHECK(io::read_image_file(folder.path()).error() == "it is not a file");
 }

@@ -16,16 +16,16 @@ using B = OsbBuilder;
 
 constexpr unsigned kTriangles = 4, kStrip = 5, kFan = 6, kQuads = 7, kQuadStrip = 8, kPolygon = 9;
 
-Scene read_well(const B& file) {
-    auto parts = read_osb_parts(file.bytes(), "x.osb");
+scene::Scene read_well(const B& file) {
+    auto parts = io::read_osb_parts(file.bytes(), "x.osb");
     REQUIRE_MESSAGE(parts, parts.error());
-    auto scene = build_scene(*std::move(parts), "x.osb");
+    auto scene = io::build_scene(*std::move(parts), "x.osb");
     REQUIRE_MESSAGE(scene, scene.error());
     return *std::move(scene);
 }
 
 std::string error_of(const std::string& bytes) {
-    const auto parts = read_osb_parts(bytes, "x.osb");
+    const auto parts = io::read_osb_parts(bytes, "x.osb");
     return parts ? "" : parts.error();
 }
 
@@ -39,7 +39,7 @@ B one_geometry(const std::vector<std::pair<unsigned, unsigned>>& primitives,
 using Triangles = std::vector<glm::uvec3>;
 
 Triangles triangles_of(const B& file) {
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     return scene.geometries().empty() ? Triangles() : scene.geometries()[0].triangles;
 }
 
@@ -63,12 +63,12 @@ TEST_CASE("OSB: primitives become triangles that face as the file says") {
               Triangles{{0, 1, 2}, {3, 4, 5}});
     }
     SUBCASE("only points that are used become vertices") {
-        const Scene scene = read_well(one_geometry({{kTriangles, 3}}, {5, 3, 1}));
+        const scene::Scene scene = read_well(one_geometry({{kTriangles, 3}}, {5, 3, 1}));
         CHECK(scene.geometries()[0].positions == std::vector<glm::dvec3>{{1, 2, 0}, {1, 1, 0}, {1, 0, 0}});
         CHECK(scene.geometries()[0].bounds.max == glm::dvec3(1, 2, 0));
     }
     SUBCASE("points and lines are told") {
-        const Scene scene = read_well(one_geometry({{0, 2}, {3, 2}}));
+        const scene::Scene scene = read_well(one_geometry({{0, 2}, {3, 2}}));
         CHECK(scene.geometries().empty());
         CHECK(has_notice(scene, "points or lines are not shown (2 times)"));
     }
@@ -100,9 +100,9 @@ TEST_CASE("OSB: a vertex is made for each tuple of indices that occurs") {
     std::string indices;
     for (const std::string& tuple : tuples) indices += tuple;
     file.add("GeoIndicesUI16", 15, {{"indices", "MFUInt16", B::u32(12) + indices}});
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     REQUIRE(scene.geometries().size() == 1);
-    const Geometry& geometry = scene.geometries()[0];
+    const scene::Geometry& geometry = scene.geometries()[0];
     CHECK(geometry.triangles == Triangles{{0, 1, 2}, {2, 3, 4}});
     CHECK(geometry.positions ==
           std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}});
@@ -131,18 +131,18 @@ TEST_CASE("OSB: hierarchy, names and transforms") {
               {"rotation", "SFQuaternion", B::reals({0, 0, std::sqrt(0.5F), std::sqrt(0.5F)})},
               {"scale", "SFVec3f", B::reals({2, 2, 2})},
               {"translation", "SFVec3f", B::reals({0, 0, 3})}});
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     REQUIRE(scene.nodes().size() == 5);
     CHECK(scene.nodes()[1].name == "Car");
-    const Node& door = node_of(scene, "Door");
+    const scene::Node& door = node_of(scene, "Door");
     CHECK(door.id == 2);
     CHECK_FALSE(door.active);
     CHECK(door.matrix * glm::dvec4(0, 1, 0, 1) == glm::dvec4(5, 6, 8, 1));
-    const Node& turned = scene.nodes()[static_cast<std::size_t>(scene.find_node(3))];
+    const scene::Node& turned = scene.nodes()[static_cast<std::size_t>(scene.find_node(3))];
     // About (1, 0, 0), by 90 degrees about z and doubled: (2, 0, 0) to (1, 2, 0), and up by 3.
     CHECK(glm::distance(turned.matrix * glm::dvec4(2, 0, 0, 1), glm::dvec4(1, 2, 3, 1)) < 1e-6);
     REQUIRE(turned.children.size() == 1);
-    CHECK(scene.nodes()[static_cast<std::size_t>(turned.children[0])].type == NodeType::geometry);
+    CHECK(scene.nodes()[static_cast<std::size_t>(turned.children[0])].type == scene::NodeType::geometry);
 }
 
 TEST_CASE("OSB: nodes that share a core, and geometries that share arrays, share one geometry") {
@@ -154,7 +154,7 @@ TEST_CASE("OSB: nodes that share a core, and geometries that share arrays, share
               {"lengths", "SFGeoPLengthsPtr", B::u32(12)},
               {"positions", "SFGeoPositionsPtr", B::u32(13)},
               {"indices", "SFGeoIndicesPtr", B::u32(14)}});
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     CHECK(scene.geometries().size() == 1);
     CHECK(scene.triangle_count() == 3);
 }
@@ -189,9 +189,9 @@ TEST_CASE("OSB: materials, of a geometry or of the topmost group that gives one"
               {"height", "SFInt32", B::u32(2)},
               {"pixelFormat", "SFUInt32", B::u32(0x1907)},
               {"pixel", "MFUInt8", B::u32(6) + std::string("\1\2\3\4\5\6")}});
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     REQUIRE(scene.materials().size() == 2);
-    const Material& glass = scene.materials()[0];
+    const scene::Material& glass = scene.materials()[0];
     CHECK(glass.name == "Glass");
     CHECK(glm::distance(glass.ambient, glm::dvec4(0.1, 0.2, 0, 1)) < 1e-6);
     CHECK(glass.diffuse == glm::dvec4(0.25, 0.5, 0.75, 0.75));
@@ -199,14 +199,15 @@ TEST_CASE("OSB: materials, of a geometry or of the topmost group that gives one"
     CHECK(glass.emission == glm::dvec4(0, 0, 0.5, 1));
     CHECK(glass.shininess == 20);
     CHECK(glass.two_sided);
-    const Material& lamp = scene.materials()[1];
+    const scene::Material& lamp = scene.materials()[1];
     CHECK(lamp.diffuse == glm::dvec4(0, 0, 0, 0.5));
     CHECK(lamp.emission == glm::dvec4(1, 0, 0, 1));
     CHECK_FALSE(lamp.two_sided);
     REQUIRE(lamp.texture == 0);
     CHECK(scene.textures()[0].image.rgba == std::vector<std::uint8_t>{1, 2, 3, 255, 4, 5, 6, 255});
-    const auto material_of = [&](Id id) {
-        return std::get<GeometryData>(scene.nodes()[static_cast<std::size_t>(scene.find_node(id))].data)
+    const auto material_of = [&](scene::Id id) {
+        return std::get<scene::GeometryData>(
+                   scene.nodes()[static_cast<std::size_t>(scene.find_node(id))].data)
             .material;
     };
     CHECK(material_of(2) == 0);
@@ -232,28 +233,29 @@ TEST_CASE("OSB: switches, levels of detail and lights") {
               {"direction", "SFVec3f", B::reals({1, 0, 0})},
               {"spotCutOff", "SFReal32", B::f32(0.5F)},
               {"linearAttenuation", "SFReal32", B::f32(0.25F)}});
-    const Scene scene = read_well(file);
-    const auto node = [&](Id id) -> const Node& {
+    const scene::Scene scene = read_well(file);
+    const auto node = [&](scene::Id id) -> const scene::Node& {
         return scene.nodes()[static_cast<std::size_t>(scene.find_node(id))];
     };
-    CHECK(std::get<SwitchData>(node(2).data).active_child == 1);
-    const Id lod = 5;  // after the switch's two children
-    CHECK(std::get<LodData>(node(lod).data).ranges == std::vector<double>{10});
+    CHECK(std::get<scene::SwitchData>(node(2).data).active_child == 1);
+    const scene::Id lod = 5;  // after the switch's two children
+    CHECK(std::get<scene::LodData>(node(lod).data).ranges == std::vector<double>{10});
     CHECK(has_notice(scene, "centre"));
-    std::vector<const Node*> lights;
-    for (const Node& each : scene.nodes())
-        if (each.type == NodeType::light) lights.push_back(&each);
+    std::vector<const scene::Node*> lights;
+    for (const scene::Node& each : scene.nodes())
+        if (each.type == scene::NodeType::light) lights.push_back(&each);
     REQUIRE(lights.size() == 2);
-    const bool sun_first = std::get<LightData>(lights[0]->data).type == LightData::Type::directional;
-    const Node &sun = *lights[sun_first ? 0 : 1], &spot = *lights[sun_first ? 1 : 0];
+    const bool sun_first =
+        std::get<scene::LightData>(lights[0]->data).type == scene::LightData::Type::directional;
+    const scene::Node &sun = *lights[sun_first ? 0 : 1], &spot = *lights[sun_first ? 1 : 0];
     CHECK(scene.nodes()[static_cast<std::size_t>(sun.parent)].id == 8);
     CHECK(glm::distance(glm::dvec3(sun.matrix[2]), glm::dvec3(0, 1, 0)) < 1e-12);
-    CHECK(std::get<LightData>(sun.data).color == glm::dvec4(1, 0.5, 0, 1));
+    CHECK(std::get<scene::LightData>(sun.data).color == glm::dvec4(1, 0.5, 0, 1));
     CHECK_FALSE(spot.active);
     CHECK(glm::distance(spot.matrix[3], glm::dvec4(1, 2, 3, 1)) < 1e-12);
     CHECK(glm::distance(glm::dvec3(-spot.matrix[2]), glm::dvec3(1, 0, 0)) < 1e-12);
-    CHECK(std::get<LightData>(spot.data).angle == doctest::Approx(glm::degrees(1.0)));
-    CHECK(std::get<LightData>(spot.data).attenuation == glm::dvec3(1, 0.25, 0));
+    CHECK(std::get<scene::LightData>(spot.data).angle == doctest::Approx(glm::degrees(1.0)));
+    CHECK(std::get<scene::LightData>(spot.data).attenuation == glm::dvec3(1, 0.25, 0));
 }
 
 TEST_CASE("OSB: the pictures that it names lie in its folder") {
@@ -269,14 +271,14 @@ TEST_CASE("OSB: the pictures that it names lie in its folder") {
                   {"positions", "SFGeoPositionsPtr", B::u32(23)}});
         file.add("SimpleTexturedMaterial", 50, {{"image", "SFImagePtr", B::u32(51)}});
         file.add("Image", 51, {{"name", "SFString", B::text(name)}});
-        const auto scene = read_scene(outer.write("scenes/x.osb", file.bytes()));
+        const auto scene = io::read_scene(outer.write("scenes/x.osb", file.bytes()));
         REQUIRE_MESSAGE(scene, scene.error());
         CHECK_MESSAGE(has_notice(*scene, "the files of a scene lie in the folder of the scene's file"), name);
     }
 }
 
 TEST_CASE("OSB: a child that the file does not have is left out, and told") {
-    const Scene scene = read_well(B().node(1, 0, {2, 3, 9}).node(2, 0).add("Group", 9));
+    const scene::Scene scene = read_well(B().node(1, 0, {2, 3, 9}).node(2, 0).add("Group", 9));
     CHECK(scene.nodes().size() == 3);
     CHECK(has_notice(scene, "a child that is no node of the file is left out (2 times)"));
 }
@@ -286,7 +288,7 @@ TEST_CASE("OSB: what is not known is skipped and told by its type") {
     file.node(1, 20, {2}).node(2, 21);
     file.add("Billboard", 20, {{"axisOfRotation", "SFVec3f", B::reals({0, 1, 0})}});
     file.add("Billboard", 21).add("GenericAtt", 22);
-    const Scene scene = read_well(file);
+    const scene::Scene scene = read_well(file);
     CHECK(scene.nodes().size() == 3);
     CHECK(has_notice(scene, "x.osb: what the file holds of type 'Billboard' is not read (2 times)"));
     CHECK(has_notice(scene, "'GenericAtt' is not read (1 time)"));
@@ -305,7 +307,7 @@ TEST_CASE("OSB: packed arrays are stepped over, by the size that OpenSG means") 
     const std::string size = B::u32(8) + B::u32(1);
     hurt.insert(hurt.find(size) + 4, B::u32(7));
     bytes += hurt;
-    const auto parts = read_osb_parts(bytes, "x.osb");
+    const auto parts = io::read_osb_parts(bytes, "x.osb");
     REQUIRE_MESSAGE(parts, parts.error());
     CHECK(parts->notices.size() == 2);
 }
@@ -399,7 +401,7 @@ TEST_CASE("OSB: a chain of many nodes needs no stack") {
 
 TEST_CASE("OSB: the sample of OpenSG" * doctest::skip(std::getenv("VRUT_TEST_MODELS") == nullptr)) {
     const auto scene =
-        read_scene(std::filesystem::path(std::getenv("VRUT_TEST_MODELS")) / "osb" / "few_cubes.osb");
+        io::read_scene(std::filesystem::path(std::getenv("VRUT_TEST_MODELS")) / "osb" / "few_cubes.osb");
     REQUIRE_MESSAGE(scene, scene.error());
     CHECK(scene->nodes().size() == 10);
     CHECK(scene->geometries().size() == 8);
@@ -407,13 +409,13 @@ TEST_CASE("OSB: the sample of OpenSG" * doctest::skip(std::getenv("VRUT_TEST_MOD
     CHECK(scene->geometries()[0].positions.size() == 1734);
     CHECK(scene->triangle_count() == 8 * 96 * 32);  // 96 strips of 34 vertices
     CHECK(scene->notices().empty());
-    const Bounds bounds = place(*scene).bounds;
+    const math::Bounds bounds = scene::place(*scene).bounds;
     CHECK(glm::distance(bounds.min, glm::dvec3(-2.7, -2.7, -2.7)) < 1e-5);
 }
 
 TEST_CASE("CSB is refused with the reason") {
     const TemporaryFolder folder;
-    const auto scene = read_scene(folder.write("car.CSB", "anything"));
+    const auto scene = io::read_scene(folder.write("car.CSB", "anything"));
     REQUIRE_FALSE(scene);
     CHECK(scene.error().find("the CSB format has no public specification") != std::string::npos);
 }

@@ -35,41 +35,42 @@ node 13 "Sky" background material 12 cube-map "a.png" "a.png" "red.png" "a.png" 
 node 14 "Horn" sound parent 9 end
 )";
 
-SceneParts full_parts() {
+scene::SceneParts full_parts() {
     const TemporaryFolder folder;
     folder.write("red.png", flat_png(2, 2, {255, 0, 0, 99}));
     folder.write("a.png", flat_png(2, 2, {1, 2, 3, 255}));
-    auto parts = read_scene_parts(folder.write("full.vrut", kText));
+    auto parts = io::read_scene_parts(folder.write("full.vrut", kText));
     REQUIRE_MESSAGE(parts, parts.error());
     return *std::move(parts);
 }
 
-std::string bytes_of(PartsResult parts) {
+std::string bytes_of(io::PartsResult parts) {
     std::string bytes;
-    serialize_parts(std::move(parts), [&](std::string_view piece) { bytes += piece; });
+    io::serialize_parts(std::move(parts), [&](std::string_view piece) { bytes += piece; });
     return bytes;
 }
 
 struct Ended {};
 
-PartsResult read(std::string_view bytes, const std::string& file = "car.glb", std::uint64_t most = 1 << 20) {
+io::PartsResult read(std::string_view bytes, const std::string& file = "car.glb",
+                     std::uint64_t most = 1 << 20) {
     const auto source = [&](void* to, std::size_t size) {
         if (size > bytes.size()) throw Ended();
         bytes.copy(static_cast<char*>(to), size);
         bytes.remove_prefix(size);
     };
-    return deserialize_parts(source, most, file);
+    return io::deserialize_parts(source, most, file);
 }
 
 void put(std::string& bytes, std::size_t at, std::uint64_t word) {
     std::memcpy(bytes.data() + at, &word, sizeof word);
 }
 
-std::string text_of(SceneParts parts) {
-    const auto scene = build_scene(std::move(parts), "full.vrut");
+std::string text_of(scene::SceneParts parts) {
+    const auto scene = io::build_scene(std::move(parts), "full.vrut");
     REQUIRE_MESSAGE(scene, scene.error());
     std::ostringstream text;
-    write_vrut_text(*scene, text);
+    io::write_vrut_text(*scene, text);
     return text.str();
 }
 
@@ -82,7 +83,7 @@ std::string refusal(std::string_view bytes, std::uint64_t most = 1 << 20) {
 }
 
 template <class Data>
-Data& first(SceneParts& parts) {
+Data& first(scene::SceneParts& parts) {
     for (auto& part : parts.nodes)
         if (auto* data = std::get_if<Data>(&part.node.data)) return *data;
     FAIL("no such node");
@@ -92,7 +93,7 @@ Data& first(SceneParts& parts) {
 }  // namespace
 
 TEST_CASE("parts come back as they were written") {
-    const SceneParts parts = full_parts();
+    const scene::SceneParts parts = full_parts();
     const auto back = read(bytes_of(parts), "full.vrut");
     REQUIRE_MESSAGE(back, back.error());
     CHECK(text_of(*back) == text_of(parts));
@@ -101,7 +102,7 @@ TEST_CASE("parts come back as they were written") {
     CHECK(back->notices.size() == 2);  // of the sound and of the picture that is missing
     REQUIRE(back->textures.size() == 2);
     for (std::size_t i = 0; i < 2; ++i) {
-        const Texture &was = parts.textures[i], &is = back->textures[i];
+        const scene::Texture &was = parts.textures[i], &is = back->textures[i];
         CHECK(is.file == was.file);
         CHECK(is.image.width == 2);
         CHECK(is.image.height == 2);
@@ -109,11 +110,11 @@ TEST_CASE("parts come back as they were written") {
         CHECK(is.transparent == was.transparent);
     }
     CHECK(back->materials[0].texture == 0);
-    CHECK(back->materials[1].texture == kNone);
+    CHECK(back->materials[1].texture == scene::kNone);
     CHECK(back->geometries[0].bounds.min == glm::dvec3(0, 0, -0.25));
     CHECK(back->nodes[1].line == parts.nodes[1].line);
-    CHECK(std::get<BackgroundData>(back->nodes[7].node.data).cube_textures ==
-          std::get<BackgroundData>(parts.nodes[7].node.data).cube_textures);
+    CHECK(std::get<scene::BackgroundData>(back->nodes[7].node.data).cube_textures ==
+          std::get<scene::BackgroundData>(parts.nodes[7].node.data).cube_textures);
 }
 
 TEST_CASE("a reader's refusal comes back word for word") {
@@ -149,13 +150,14 @@ TEST_CASE("no word, whatever it says, does harm") {
             std::string changed = bytes;
             put(changed, at, word);
             if (auto parts = read(changed))
-                if (auto scene = build_scene(*std::move(parts), "car.glb")) (void)place(*std::move(scene));
+                if (auto scene = io::build_scene(*std::move(parts), "car.glb"))
+                    (void)scene::place(*std::move(scene));
         }
 }
 
 TEST_CASE("large arrays come in pieces") {
-    SceneParts parts;
-    Geometry& geometry = parts.geometries.emplace_back();
+    scene::SceneParts parts;
+    scene::Geometry& geometry = parts.geometries.emplace_back();
     for (int i = 0; i < 300'001; ++i) geometry.positions.emplace_back(i, -i, 0.5);
     for (unsigned i = 0; i < 300'000; ++i) geometry.triangles.emplace_back(i, i + 1, 0);
     const auto back = read(bytes_of(parts), "car.glb", 1 << 30);
@@ -168,36 +170,39 @@ TEST_CASE("large arrays come in pieces") {
 TEST_CASE("parts that no reader would hand over are refused") {
     const struct {
         const char* expected;
-        void (*spoil)(SceneParts&);
+        void (*spoil)(scene::SceneParts&);
     } kFaults[] = {
-        {"an integer in its range", [](SceneParts& p) { p.materials[0].texture = 2; }},
-        {"an integer in its range", [](SceneParts& p) { first<GeometryData>(p).geometry = 2; }},
-        {"an integer in its range", [](SceneParts& p) { first<GeometryData>(p).material = -2; }},
-        {"an integer in its range", [](SceneParts& p) { (*first<BackgroundData>(p).cube_textures)[3] = -1; }},
-        {"an integer in its range", [](SceneParts& p) { first<SwitchData>(p).active_child = -3; }},
-        {"an integer in its range", [](SceneParts& p) { p.nodes[2].node.id = kMaxId + 1; }},
-        {"an integer in its range", [](SceneParts& p) { p.nodes[2].node.type = NodeType{9}; }},
-        {"an integer in its range", [](SceneParts& p) { p.textures[0].image.width = 16385; }},
-        {"4 bytes for each pixel", [](SceneParts& p) { p.textures[0].image.width = 3; }},
-        {"squares of one size", [](SceneParts& p) { p.textures[1].image.resize(4, 4); }},
-        {"each id once", [](SceneParts& p) { p.materials[1].id = 3; }},
-        {"each id once", [](SceneParts& p) { p.geometries[1].id = 7; }},
-        {"indices of vertices", [](SceneParts& p) { p.geometries[0].triangles[1].y = 4; }},
-        {"as many of each", [](SceneParts& p) { p.geometries[0].normals.pop_back(); }},
-        {"as many of each", [](SceneParts& p) { p.geometries[0].texcoords.pop_back(); }},
-        {"numbers from", [](SceneParts& p) { p.geometries[0].positions[2].z = 1e16; }},
-        {"numbers from", [](SceneParts& p) { p.geometries[0].normals[0].x = std::nanf(""); }},
-        {"a number in its range", [](SceneParts& p) { p.nodes[1].node.matrix[3][0] = INFINITY; }},
-        {"0 0 0 1", [](SceneParts& p) { p.nodes[1].node.matrix[3][3] = 2; }},
-        {"a hinge's axis", [](SceneParts& p) { p.nodes[2].node.hinge->axis = glm::dvec3(0); }},
-        {"a number in its range", [](SceneParts& p) { first<CameraData>(p).fov = 0; }},
-        {"a distance", [](SceneParts& p) { first<LodData>(p).ranges[0] = -1; }},
-        {"UTF-8", [](SceneParts& p) { p.nodes[1].node.name = "\xFF"; }},
-        {"UTF-8", [](SceneParts& p) { p.notices[0] = "\xC3"; }},
+        {"an integer in its range", [](scene::SceneParts& p) { p.materials[0].texture = 2; }},
+        {"an integer in its range", [](scene::SceneParts& p) { first<scene::GeometryData>(p).geometry = 2; }},
+        {"an integer in its range",
+         [](scene::SceneParts& p) { first<scene::GeometryData>(p).material = -2; }},
+        {"an integer in its range",
+         [](scene::SceneParts& p) { (*first<scene::BackgroundData>(p).cube_textures)[3] = -1; }},
+        {"an integer in its range",
+         [](scene::SceneParts& p) { first<scene::SwitchData>(p).active_child = -3; }},
+        {"an integer in its range", [](scene::SceneParts& p) { p.nodes[2].node.id = scene::kMaxId + 1; }},
+        {"an integer in its range", [](scene::SceneParts& p) { p.nodes[2].node.type = scene::NodeType{9}; }},
+        {"an integer in its range", [](scene::SceneParts& p) { p.textures[0].image.width = 16385; }},
+        {"4 bytes for each pixel", [](scene::SceneParts& p) { p.textures[0].image.width = 3; }},
+        {"squares of one size", [](scene::SceneParts& p) { p.textures[1].image.resize(4, 4); }},
+        {"each id once", [](scene::SceneParts& p) { p.materials[1].id = 3; }},
+        {"each id once", [](scene::SceneParts& p) { p.geometries[1].id = 7; }},
+        {"indices of vertices", [](scene::SceneParts& p) { p.geometries[0].triangles[1].y = 4; }},
+        {"as many of each", [](scene::SceneParts& p) { p.geometries[0].normals.pop_back(); }},
+        {"as many of each", [](scene::SceneParts& p) { p.geometries[0].texcoords.pop_back(); }},
+        {"numbers from", [](scene::SceneParts& p) { p.geometries[0].positions[2].z = 1e16; }},
+        {"numbers from", [](scene::SceneParts& p) { p.geometries[0].normals[0].x = std::nanf(""); }},
+        {"a number in its range", [](scene::SceneParts& p) { p.nodes[1].node.matrix[3][0] = INFINITY; }},
+        {"0 0 0 1", [](scene::SceneParts& p) { p.nodes[1].node.matrix[3][3] = 2; }},
+        {"a hinge's axis", [](scene::SceneParts& p) { p.nodes[2].node.hinge->axis = glm::dvec3(0); }},
+        {"a number in its range", [](scene::SceneParts& p) { first<scene::CameraData>(p).fov = 0; }},
+        {"a distance", [](scene::SceneParts& p) { first<scene::LodData>(p).ranges[0] = -1; }},
+        {"UTF-8", [](scene::SceneParts& p) { p.nodes[1].node.name = "\xFF"; }},
+        {"UTF-8", [](scene::SceneParts& p) { p.notices[0] = "\xC3"; }},
     };
-    const SceneParts whole = full_parts();
+    const scene::SceneParts whole = full_parts();
     for (const auto& fault : kFaults) {
-        SceneParts parts = whole;
+        scene::SceneParts parts = whole;
         fault.spoil(parts);
         const std::string why = refusal(bytes_of(std::move(parts)));
         CHECK_MESSAGE(why.find(fault.expected) != std::string::npos, fault.expected << ": " << why);

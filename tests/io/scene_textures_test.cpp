@@ -14,8 +14,8 @@ namespace {
 
 const std::vector<std::uint8_t> kSolid = {10, 20, 30, 255}, kGlass = {10, 20, 30, 254};
 
-Scene read_well(const fs::path& path) {
-    auto scene = read_scene(path);
+scene::Scene read_well(const fs::path& path) {
+    auto scene = io::read_scene(path);
     REQUIRE_MESSAGE(scene, scene.error());
     return *std::move(scene);
 }
@@ -32,9 +32,9 @@ std::string sky(const std::vector<std::string>& faces) {
 
 /// A scene in `folder` of one material that names `image`; its only notice, or nothing.
 std::string notice_of(const TemporaryFolder& folder, const std::string& image) {
-    const Scene scene = read_well(folder.write("cars/car.vrut", "vrut-text 1\n" + material(3, image)));
+    const scene::Scene scene = read_well(folder.write("cars/car.vrut", "vrut-text 1\n" + material(3, image)));
     REQUIRE(scene.notices().size() <= 1);
-    CHECK((scene.materials()[0].texture == kNone) == (scene.notices().size() == 1));
+    CHECK((scene.materials()[0].texture == scene::kNone) == (scene.notices().size() == 1));
     return scene.notices().empty() ? "" : scene.notices()[0];
 }
 
@@ -42,8 +42,8 @@ void check_notice(const std::string& notice, const std::vector<std::string>& par
     for (const std::string& part : parts) CHECK_MESSAGE(notice.find(part) != std::string::npos, notice);
 }
 
-const BackgroundData& background(const Scene& scene) {
-    return std::get<BackgroundData>(scene.nodes()[static_cast<std::size_t>(scene.find_node(8))].data);
+const scene::BackgroundData& background(const scene::Scene& scene) {
+    return std::get<scene::BackgroundData>(scene.nodes()[static_cast<std::size_t>(scene.find_node(8))].data);
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ TEST_CASE("pictures come with the scene that names them, each file once") {
     folder.write("solid.png", flat_png(2, 3, kSolid));
     folder.write("textures/glass.png", flat_png(4, 4, kGlass));
     fs::create_symlink("textures/glass.png", folder.path() / "link.png");
-    const Scene scene = read_well(folder.write(
+    const scene::Scene scene = read_well(folder.write(
         "car.vrut",
         "vrut-text 1\n" + material(1, "solid.png") + material(2, "textures/glass.png") +
             material(3, "link.png") + material(4, "./textures/glass.png") + "material 5 \"Plain\" end\n" +
@@ -65,11 +65,11 @@ TEST_CASE("pictures come with the scene that names them, each file once") {
     CHECK(scene.textures()[0].image.height == 3);
     CHECK_FALSE(scene.textures()[0].transparent);
     CHECK(scene.textures()[1].transparent);
-    const Index wanted[] = {0, 1, 1, 1, kNone};
+    const scene::Index wanted[] = {0, 1, 1, 1, scene::kNone};
     for (std::size_t i = 0; i < std::size(wanted); ++i) CHECK(scene.materials()[i].texture == wanted[i]);
     CHECK(scene.is_transparent(scene.materials()[1]));
     REQUIRE(background(scene).cube_textures);
-    CHECK(*background(scene).cube_textures == std::array<Index, 6>{1, 1, 1, 1, 1, 1});
+    CHECK(*background(scene).cube_textures == std::array<scene::Index, 6>{1, 1, 1, 1, 1, 1});
 }
 
 TEST_CASE("a scene that is named without a folder finds its pictures") {
@@ -78,7 +78,7 @@ TEST_CASE("a scene that is named without a folder finds its pictures") {
     folder.write("car.vrut", "vrut-text 1\n" + material(1, "solid.png"));
     const fs::path before = fs::current_path();
     fs::current_path(folder.path());
-    const Scene scene = read_well("car.vrut");
+    const scene::Scene scene = read_well("car.vrut");
     fs::current_path(before);
     CHECK(scene.notices().empty());
     CHECK(scene.textures().size() == 1);
@@ -133,7 +133,7 @@ TEST_CASE("a cube map is six squares of one size, or is left out with a notice")
     const std::pair<const char*, const char*> bad[] = {
         {"b.png", "8 x 8"}, {"c.png", "4 x 5"}, {"none.png", "there is no such file"}};
     for (const auto& [third, cause] : bad) {
-        const Scene scene = read(third);
+        const scene::Scene scene = read(third);
         CHECK_FALSE(background(scene).cube_textures);
         REQUIRE(scene.notices().size() == 1);
         check_notice(scene.notices()[0], {"car.vrut: background 8 ", "'" + std::string(third) + "'", cause});
@@ -145,15 +145,15 @@ TEST_CASE("the pictures of a scene are limited together") {
     folder.write("a.png", flat_png(10, 10, kSolid));
     folder.write("b.png", flat_png(10, 10, kSolid));
     folder.write("c.png", flat_png(5, 5, kSolid));
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.materials.resize(4);
     for (std::size_t i = 0; i < 4; ++i) {
         const char* const names[] = {"a.png", "b.png", "c.png", "a.png"};
-        parts.materials[i].id = static_cast<Id>(i);
+        parts.materials[i].id = static_cast<scene::Id>(i);
         parts.materials[i].image = names[i];
     }
-    read_textures(parts, folder.path() / "car.vrut", {}, 150);
-    const Index wanted[] = {0, kNone, 1, 0};
+    io::read_textures(parts, folder.path() / "car.vrut", {}, 150);
+    const scene::Index wanted[] = {0, scene::kNone, 1, 0};
     for (std::size_t i = 0; i < 4; ++i) CHECK(parts.materials[i].texture == wanted[i]);
     REQUIRE(parts.notices.size() == 1);
     check_notice(parts.notices[0], {"material 1 ", "'b.png'", "10 x 10", "at most 50"});
@@ -165,12 +165,12 @@ TEST_CASE("notices of pictures are few; reading can be given up between pictures
     std::string text = "vrut-text 1\n";
     for (int id = 0; id < 100; ++id) text += material(id, "none.png");
     const fs::path path = folder.write("car.vrut", text + material(100, "a.png"));
-    const Scene scene = read_well(path);
+    const scene::Scene scene = read_well(path);
     REQUIRE(scene.notices().size() == 21);
     check_notice(scene.notices().back(), {"80 more"});
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.materials.resize(1);
     parts.materials[0].image = "a.png";
     struct Stop {};
-    CHECK_THROWS_AS(read_textures(parts, path, [](double) { throw Stop(); }), Stop);
+    CHECK_THROWS_AS(io::read_textures(parts, path, [](double) { throw Stop(); }), Stop);
 }

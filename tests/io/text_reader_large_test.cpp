@@ -82,12 +82,12 @@ std::string large_text(int geometries, int vertices, const char* row_end = "\n")
 
 /// What a text is read as by so many threads: the same scene's text, or the sentence.
 std::string outcome(std::string_view text, unsigned threads) {
-    auto parts = read_vrut_parts(text, "large.vrut", {}, threads);
+    auto parts = io::read_vrut_parts(text, "large.vrut", {}, threads);
     if (!parts) return parts.error();
-    auto scene = build_scene(*std::move(parts), "large.vrut");
+    auto scene = io::build_scene(*std::move(parts), "large.vrut");
     if (!scene) return scene.error();
     std::ostringstream out;
-    write_vrut_text(*scene, out);
+    io::write_vrut_text(*scene, out);
     return out.str();
 }
 
@@ -164,8 +164,8 @@ TEST_CASE("a string, a word, a number of a gigabyte is refused at once, and take
         CAPTURE(start);
         const TemporaryFile file("vrut-preview-gigabyte.vrut", "vrut-text 1\nmaterial 1\n" + start,
                                  kGigabyte);
-        PartsResult result;
-        CHECK(memory_of([&] { result = read_vrut_file(file.path()); }) < 20 * kMegabyte);
+        io::PartsResult result;
+        CHECK(memory_of([&] { result = io::read_vrut_file(file.path()); }) < 20 * kMegabyte);
         REQUIRE_FALSE(result);
         CHECK_MESSAGE(result.error().starts_with(file.path().string() + ":3: expected "), result.error());
     }
@@ -175,7 +175,7 @@ TEST_CASE("a file that is cut short while it is read gives a sentence") {
     const std::string text = large_text(4, 10'000);
     const TemporaryFile file("vrut-preview-cut.vrut", text, text.size());
     const auto result =
-        read_vrut_file(file.path(), [&](double) { std::filesystem::resize_file(file.path(), 1000); });
+        io::read_vrut_file(file.path(), [&](double) { std::filesystem::resize_file(file.path(), 1000); });
     REQUIRE_FALSE(result);
     CHECK(result.error() == file.path().string() + ": it cannot be read to its end");
 }
@@ -184,7 +184,7 @@ TEST_CASE("progress is told on the way, by the thread that reads") {
     std::vector<double> told;
     const auto reader = std::this_thread::get_id();
     const std::string text = large_text(1, 20'000);
-    CHECK(read_vrut_text(text, "large.vrut", [&](double part) {
+    CHECK(io::read_vrut_text(text, "large.vrut", [&](double part) {
         CHECK(std::this_thread::get_id() == reader);
         told.push_back(part);
     }));
@@ -196,8 +196,8 @@ TEST_CASE("progress is told on the way, by the thread that reads") {
 
 TEST_CASE("a comment of 64 MB is skipped, and takes no memory") {
     const TemporaryFile file("vrut-preview-comment.vrut", "vrut-text 1 # no end", 64 * kMegabyte);
-    PartsResult result;
-    CHECK(memory_of([&] { result = read_vrut_file(file.path()); }) < 20 * kMegabyte);
+    io::PartsResult result;
+    CHECK(memory_of([&] { result = io::read_vrut_file(file.path()); }) < 20 * kMegabyte);
     CHECK_MESSAGE(result, result.error());
 }
 
@@ -225,7 +225,8 @@ TEST_CASE("memory stays within its multiple of the text, whatever that says") {
     };
     for (const std::string& text : texts) {
         CAPTURE(text.substr(0, 60));
-        const std::size_t peak = memory_of([&] { static_cast<void>(read_vrut_text(text, "large.vrut")); });
+        const std::size_t peak =
+            memory_of([&] { static_cast<void>(io::read_vrut_text(text, "large.vrut")); });
         CHECK(peak < 100 * text.size() + 4 * kMegabyte);
     }
 }

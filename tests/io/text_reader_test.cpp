@@ -42,22 +42,22 @@ node 14 "Horn" sound parent 9 end
 material 12 "Grey" end
 )";
 
-ReadResult read(const std::string& text) { return read_vrut_text(text, "folder/car.vrut"); }
+io::ReadResult read(const std::string& text) { return io::read_vrut_text(text, "folder/car.vrut"); }
 
-Scene read_well(const std::string& text) {
+scene::Scene read_well(const std::string& text) {
     auto scene = read(text);
     REQUIRE_MESSAGE(scene, scene.error());
     return *std::move(scene);
 }
 
-const Node& node_of(const Scene& scene, Id id) {
-    const Index index = scene.find_node(id);
-    REQUIRE(index != kNone);
+const scene::Node& node_of(const scene::Scene& scene, scene::Id id) {
+    const scene::Index index = scene.find_node(id);
+    REQUIRE(index != scene::kNone);
     return scene.nodes()[static_cast<std::size_t>(index)];
 }
 
 template <class Data>
-const Data& data_of(const Scene& scene, Id id) {
+const Data& data_of(const scene::Scene& scene, scene::Id id) {
     const auto* data = std::get_if<Data>(&node_of(scene, id).data);
     REQUIRE(data);
     return *data;
@@ -72,11 +72,11 @@ std::string repeated(const std::string& text, int count) {
 }  // namespace
 
 TEST_CASE("materials, geometries and the file's own facts") {
-    const Scene scene = read_well(std::string(kFull));
+    const scene::Scene scene = read_well(std::string(kFull));
     CHECK(scene.name() == "car");
     CHECK(scene.unit() == 0.001);
     REQUIRE(scene.materials().size() == 2);
-    const Material& paint = scene.materials()[0];
+    const scene::Material& paint = scene.materials()[0];
     CHECK(paint.id == 3);
     CHECK(paint.name == R"(Paint "red" \ #1)");
     CHECK(paint.ambient == glm::dvec4(0.02, 0.01, 0, 1));
@@ -87,7 +87,7 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.reflectivity == 0.25);
     CHECK(paint.two_sided);
     CHECK(paint.image == "textures/plate.png");
-    const Material& grey = scene.materials()[1];
+    const scene::Material& grey = scene.materials()[1];
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
     CHECK(grey.diffuse == glm::dvec4(0.8, 0.8, 0.8, 1));
     CHECK(grey.shininess == 0);
@@ -95,7 +95,7 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(grey.image.empty());
 
     REQUIRE(scene.geometries().size() == 1);
-    const Geometry& geometry = scene.geometries()[0];
+    const scene::Geometry& geometry = scene.geometries()[0];
     CHECK(geometry.id == 7);
     CHECK(geometry.positions == std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, -0.25}});
     CHECK(geometry.normals == std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
@@ -106,91 +106,92 @@ TEST_CASE("materials, geometries and the file's own facts") {
 }
 
 TEST_CASE("nodes of every type") {
-    const Scene scene = read_well(std::string(kFull));
+    const scene::Scene scene = read_well(std::string(kFull));
     REQUIRE(scene.nodes().size() == 10);
     CHECK(scene.nodes()[0].name == "Estate");
 
-    const Node& body = node_of(scene, 4);
+    const scene::Node& body = node_of(scene, 4);
     CHECK(body.name == "Body");
-    CHECK(body.type == NodeType::assembly);
+    CHECK(body.type == scene::NodeType::assembly);
     CHECK_FALSE(body.active);
     CHECK(body.matrix * glm::dvec4(1, 10, 100, 1) == glm::dvec4(325, 773, 1221, 1));
     CHECK_FALSE(body.hinge);
-    CHECK(node_of(scene, 5).hinge == Hinge{{0, 2, 0}, -65.5});
+    CHECK(node_of(scene, 5).hinge == scene::Hinge{{0, 2, 0}, -65.5});
     const auto child_ids = [&] {
-        std::vector<Id> ids;
-        for (const Index child : body.children)
+        std::vector<scene::Id> ids;
+        for (const scene::Index child : body.children)
             ids.push_back(scene.nodes()[static_cast<std::size_t>(child)].id);
         return ids;
     };
-    CHECK(child_ids() == std::vector<Id>{5, 9, 10});
+    CHECK(child_ids() == std::vector<scene::Id>{5, 9, 10});
 
     CHECK(node_of(scene, 5).active);
     CHECK(node_of(scene, 5).matrix == glm::dmat4(1));
-    CHECK(data_of<GeometryData>(scene, 5).geometry == 0);
-    CHECK(data_of<GeometryData>(scene, 5).material == 0);
-    const auto& camera = data_of<CameraData>(scene, 6);
+    CHECK(data_of<scene::GeometryData>(scene, 5).geometry == 0);
+    CHECK(data_of<scene::GeometryData>(scene, 5).material == 0);
+    const auto& camera = data_of<scene::CameraData>(scene, 6);
     CHECK(camera.eye == glm::dvec3(3, 1, 4));
     CHECK(camera.focus == glm::dvec3(0, 0.7, 0.5));
     CHECK(camera.up == glm::dvec3(1, 2, 3));
     CHECK(camera.fov == 41);
-    const auto& light = data_of<LightData>(scene, 8);
-    CHECK(light.type == LightData::Type::spot);
+    const auto& light = data_of<scene::LightData>(scene, 8);
+    CHECK(light.type == scene::LightData::Type::spot);
     CHECK(light.color == glm::dvec4(0.1, 0.2, 0.3, 1));
     CHECK(light.attenuation == glm::dvec3(4, 5, 6));
     CHECK(light.angle == 33);
-    CHECK(data_of<SwitchData>(scene, 9).active_child == -2);
-    CHECK(data_of<LodData>(scene, 10).ranges == std::vector<double>{10, 40.5});
-    CHECK(data_of<BackgroundData>(scene, 11).material == 1);
-    CHECK_FALSE(data_of<BackgroundData>(scene, 11).cube_map);
-    const auto& sky = data_of<BackgroundData>(scene, 13);
+    CHECK(data_of<scene::SwitchData>(scene, 9).active_child == -2);
+    CHECK(data_of<scene::LodData>(scene, 10).ranges == std::vector<double>{10, 40.5});
+    CHECK(data_of<scene::BackgroundData>(scene, 11).material == 1);
+    CHECK_FALSE(data_of<scene::BackgroundData>(scene, 11).cube_map);
+    const auto& sky = data_of<scene::BackgroundData>(scene, 13);
     REQUIRE(sky.cube_map);
     CHECK(*sky.cube_map ==
           std::array<std::string, 6>{"px.png", "nx.png", "py.png", "ny.png", "pz.png", "nz.png"});
     CHECK(node_of(scene, 13).parent == 0);
-    CHECK(node_of(scene, 14).type == NodeType::sound);
+    CHECK(node_of(scene, 14).type == scene::NodeType::sound);
     CHECK(node_of(scene, node_of(scene, 14).id).parent == scene.find_node(9));
     CHECK(scene.notices() ==
           std::vector<std::string>{"folder/car.vrut:27: node 14 is a sound and was kept as a group"});
 }
 
 TEST_CASE("what a node leaves out") {
-    const Scene scene = read_well(
+    const scene::Scene scene = read_well(
         "vrut-text 1 node 1 \"\" geometry end node 2 \"\" camera end node 3 \"\" light end node 4 \"\" "
         "switch end "
         "node 5 \"\" lod end node 6 \"\" background end");
     CHECK(scene.unit() == 1);
-    CHECK(data_of<GeometryData>(scene, 1).geometry == kNone);
-    CHECK(data_of<GeometryData>(scene, 1).material == kNone);
-    const auto& camera = data_of<CameraData>(scene, 2);
+    CHECK(data_of<scene::GeometryData>(scene, 1).geometry == scene::kNone);
+    CHECK(data_of<scene::GeometryData>(scene, 1).material == scene::kNone);
+    const auto& camera = data_of<scene::CameraData>(scene, 2);
     CHECK(camera.eye == glm::dvec3(0));
     CHECK(camera.focus == glm::dvec3(0, 0, -1));
     CHECK(camera.up == glm::dvec3(0, 1, 0));
     CHECK(camera.fov == 40);
-    const auto& light = data_of<LightData>(scene, 3);
-    CHECK(light.type == LightData::Type::point);
+    const auto& light = data_of<scene::LightData>(scene, 3);
+    CHECK(light.type == scene::LightData::Type::point);
     CHECK(light.color == glm::dvec4(1));
     CHECK(light.attenuation == glm::dvec3(1, 0, 0));
     CHECK(light.angle == 90);
-    CHECK(data_of<SwitchData>(scene, 4).active_child == 0);
-    CHECK(data_of<LodData>(scene, 5).ranges.empty());
-    CHECK(data_of<BackgroundData>(scene, 6).material == kNone);
+    CHECK(data_of<scene::SwitchData>(scene, 4).active_child == 0);
+    CHECK(data_of<scene::LodData>(scene, 5).ranges.empty());
+    CHECK(data_of<scene::BackgroundData>(scene, 6).material == scene::kNone);
 }
 
 TEST_CASE("a hinge's axis may have any length but none, and has one direction") {
-    const Scene scene = read_well(
+    const scene::Scene scene = read_well(
         "vrut-text 1 node 1 \"\" assembly hinge 0 0 -1e15 360 end node 2 \"\" geometry hinge 3e-300 0 4e-300 "
         "-360 end "
         "node 3 \"\" assembly hinge 1 0 0 0 end");
-    CHECK(unit_axis(*node_of(scene, 1).hinge) == glm::dvec3(0, 0, -1));
-    CHECK(glm::distance(unit_axis(*node_of(scene, 2).hinge), glm::dvec3(0.6, 0, 0.8)) < 1e-15);
+    CHECK(scene::unit_axis(*node_of(scene, 1).hinge) == glm::dvec3(0, 0, -1));
+    CHECK(glm::distance(scene::unit_axis(*node_of(scene, 2).hinge), glm::dvec3(0.6, 0, 0.8)) < 1e-15);
     CHECK(node_of(scene, 3).hinge->degrees == 0);
 }
 
 TEST_CASE("VRUT's numbers stand for its node types") {
-    const NodeType types[] = {NodeType::assembly, NodeType::root,       NodeType::camera,
-                              NodeType::geometry, NodeType::light,      NodeType::lod,
-                              NodeType::switch_,  NodeType::background, NodeType::sound};
+    const scene::NodeType types[] = {
+        scene::NodeType::assembly, scene::NodeType::root,       scene::NodeType::camera,
+        scene::NodeType::geometry, scene::NodeType::light,      scene::NodeType::lod,
+        scene::NodeType::switch_,  scene::NodeType::background, scene::NodeType::sound};
     const char* keywords[] = {"assembly", "root",   "camera",     "geometry", "light",
                               "lod",      "switch", "background", "sound"};
     for (int number = 0; number < 9; ++number) {
@@ -201,14 +202,14 @@ TEST_CASE("VRUT's numbers stand for its node types") {
         };
         CHECK(read_type(std::to_string(number)) == types[number]);
         CHECK(read_type(keywords[number]) == types[number]);
-        CHECK(name_of(types[number]) == keywords[number]);
+        CHECK(scene::name_of(types[number]) == keywords[number]);
     }
 }
 
 TEST_CASE("numbers") {
     const auto up_of = [](const std::string& number) {
-        const Scene scene = read_well("vrut-text 1 node 1 \"\" camera up " + number + " 0 1 end");
-        return data_of<CameraData>(scene, 1).up.x;
+        const scene::Scene scene = read_well("vrut-text 1 node 1 \"\" camera up " + number + " 0 1 end");
+        return data_of<scene::CameraData>(scene, 1).up.x;
     };
     CHECK(up_of("+5") == 5);
     CHECK(up_of("-.5") == -0.5);
@@ -222,7 +223,7 @@ TEST_CASE("numbers") {
 }
 
 TEST_CASE("lines may end as on Windows, and blocks may stand on one") {
-    const Scene scene =
+    const scene::Scene scene =
         read_well("vrut-text 1\r\nmaterial 1 \"M\"\r\n # comment\r\n end\r\nnode 1 \"N\" 0 end");
     CHECK(scene.materials()[0].name == "M");
     const auto error = read("vrut-text 1\r\nmaterial 1 \"M\"\r\n shine");
@@ -233,7 +234,7 @@ TEST_CASE("lines may end as on Windows, and blocks may stand on one") {
 }
 
 TEST_CASE("unknown members are skipped with a notice") {
-    const Scene scene = read_well(
+    const scene::Scene scene = read_well(
         "vrut-text 1\n"
         "material 1 \"M\"\n"
         "  gloss fancy 1 -2.5 \"end\" diffusive   shininess 7\n"
@@ -262,13 +263,13 @@ TEST_CASE("notices are few, short and valid UTF-8") {
     for (int i = 0; i < 500; ++i)
         text += "material " + std::to_string(i) + " \"\" " +
                 std::string(static_cast<std::size_t>(i % 4), 'a') + repeated("é", 1000) + " 1 end\n";
-    const Scene noisy = read_well(text);
+    const scene::Scene noisy = read_well(text);
     REQUIRE(noisy.notices().size() <= 50);
     std::size_t told = noisy.notices().size() - 1;
     CHECK_MESSAGE(contains(noisy.notices().back(), std::to_string(500 - told) + " more"),
                   noisy.notices().back());
     for (const std::string& notice : noisy.notices()) {
-        CHECK(find_invalid_utf8(notice) == std::string_view::npos);
+        CHECK(base::find_invalid_utf8(notice) == std::string_view::npos);
         CHECK(notice.size() < 200);
     }
 }
@@ -418,7 +419,7 @@ TEST_CASE("sentences repeat little of the file, and as valid UTF-8") {
             const auto result = read(text);
             REQUIRE_FALSE(result);
             CHECK(result.error().size() < 200);
-            CHECK_MESSAGE(find_invalid_utf8(result.error()) == std::string_view::npos, result.error());
+            CHECK_MESSAGE(base::find_invalid_utf8(result.error()) == std::string_view::npos, result.error());
         }
         // As much of it as fits is shown.
         CHECK(contains(read("vrut-text 1 unit " + word).error(),
@@ -483,7 +484,7 @@ TEST_CASE("UTF-8") {
     };
     for (const auto& c : cases) {
         CAPTURE(c.text.size());
-        CHECK(find_invalid_utf8(c.text) == c.invalid_at);
+        CHECK(base::find_invalid_utf8(c.text) == c.invalid_at);
     }
 }
 
@@ -496,7 +497,7 @@ TEST_CASE("files") {
         return folder / name;
     };
     const auto error_of = [](const std::filesystem::path& path) {
-        const auto result = read_scene(path);
+        const auto result = io::read_scene(path);
         REQUIRE_FALSE(result);
         CHECK_MESSAGE(result.error().starts_with(path.string() + ":"), result.error());
         return result.error();
@@ -509,7 +510,7 @@ TEST_CASE("files") {
     CHECK(contains(error_of(write("empty.vrut", "")), ":1: expected 'vrut-text 1'"));
     CHECK(contains(error_of(write("bad.vrut", "vrut-text 1\nunit")), ":2: expected metres per unit"));
 
-    const auto scene = read_scene(write("My car.VRUT", kFull));
+    const auto scene = io::read_scene(write("My car.VRUT", kFull));
     REQUIRE_MESSAGE(scene, scene.error());
     CHECK(scene->name() == "My car");
     CHECK(scene->nodes().size() == 10);

@@ -17,45 +17,47 @@ using namespace vrut;
 
 namespace {
 
-std::string written(const Scene& scene, const std::string& comment = {}) {
+std::string written(const scene::Scene& scene, const std::string& comment = {}) {
     std::ostringstream out;
-    write_vrut_text(scene, out, comment);
+    io::write_vrut_text(scene, out, comment);
     return out.str();
 }
 
-Scene read(const std::string& text, const std::string& file) {
-    auto scene = read_vrut_text(text, file);
+scene::Scene read(const std::string& text, const std::string& file) {
+    auto scene = io::read_vrut_text(text, file);
     REQUIRE_MESSAGE(scene, scene.error());
     return *std::move(scene);
 }
 
 // Whether all that a scene's text tells is the same.
 
-bool same(const Material& a, const Material& b) {
-    const auto members = [](const Material& m) {
+bool same(const scene::Material& a, const scene::Material& b) {
+    const auto members = [](const scene::Material& m) {
         return std::tie(m.id, m.name, m.ambient, m.diffuse, m.specular, m.emission, m.shininess,
                         m.reflectivity, m.two_sided, m.image);
     };
     return members(a) == members(b);
 }
 
-bool same(const Geometry& a, const Geometry& b) {
-    const auto members = [](const Geometry& g) {
+bool same(const scene::Geometry& a, const scene::Geometry& b) {
+    const auto members = [](const scene::Geometry& g) {
         return std::tie(g.id, g.positions, g.normals, g.texcoords, g.triangles);
     };
     return members(a) == members(b);
 }
 
-auto members(const GroupData&) { return std::tuple<>(); }
-auto members(const GeometryData& data) { return std::tie(data.geometry, data.material); }
-auto members(const CameraData& data) { return std::tie(data.eye, data.focus, data.up, data.fov); }
-auto members(const LightData& data) { return std::tie(data.type, data.color, data.attenuation, data.angle); }
-auto members(const SwitchData& data) { return std::tie(data.active_child); }
-auto members(const LodData& data) { return std::tie(data.ranges); }
-auto members(const BackgroundData& data) { return std::tie(data.material, data.cube_map); }
+auto members(const scene::GroupData&) { return std::tuple<>(); }
+auto members(const scene::GeometryData& data) { return std::tie(data.geometry, data.material); }
+auto members(const scene::CameraData& data) { return std::tie(data.eye, data.focus, data.up, data.fov); }
+auto members(const scene::LightData& data) {
+    return std::tie(data.type, data.color, data.attenuation, data.angle);
+}
+auto members(const scene::SwitchData& data) { return std::tie(data.active_child); }
+auto members(const scene::LodData& data) { return std::tie(data.ranges); }
+auto members(const scene::BackgroundData& data) { return std::tie(data.material, data.cube_map); }
 
-bool same(const Node& a, const Node& b) {
-    const auto of_all = [](const Node& n) {
+bool same(const scene::Node& a, const scene::Node& b) {
+    const auto of_all = [](const scene::Node& n) {
         return std::tie(n.id, n.name, n.type, n.parent, n.children, n.active, n.matrix, n.hinge);
     };
     if (of_all(a) != of_all(b) || a.data.index() != b.data.index()) return false;
@@ -72,7 +74,7 @@ bool all_same(const Things& a, const Things& b) {
                       [](const auto& c, const auto& d) { return same(c, d); });
 }
 
-void check_same(const Scene& a, const Scene& b) {
+void check_same(const scene::Scene& a, const scene::Scene& b) {
     CHECK(a.unit() == b.unit());
     CHECK(all_same(a.materials(), b.materials()));
     CHECK(all_same(a.geometries(), b.geometries()));
@@ -80,9 +82,9 @@ void check_same(const Scene& a, const Scene& b) {
 }
 
 /// What is written tells each bit: -0 is not 0.
-void check_reads_back(const Scene& scene, const std::string& file) {
+void check_reads_back(const scene::Scene& scene, const std::string& file) {
     const std::string once = written(scene);
-    const Scene again = read(once, file);
+    const scene::Scene again = read(once, file);
     check_same(scene, again);
     CHECK(written(again) == once);
 }
@@ -92,19 +94,19 @@ class RandomScene {
 public:
     explicit RandomScene(unsigned seed) : random_(seed) {}
 
-    Scene make() {
+    scene::Scene make() {
         parts_.unit = 1e-12 + std::abs(number(1e12));
-        for (Id id : ids(6)) parts_.materials.push_back(material(id));
-        for (Id id : ids(6)) parts_.geometries.push_back(geometry(id));
-        std::vector<Id> parents{0};
-        parts_.nodes.push_back({node(0, NodeType::root), 0});
-        for (Id id : ids(30)) {
+        for (scene::Id id : ids(6)) parts_.materials.push_back(material(id));
+        for (scene::Id id : ids(6)) parts_.geometries.push_back(geometry(id));
+        std::vector<scene::Id> parents{0};
+        parts_.nodes.push_back({node(0, scene::NodeType::root), 0});
+        for (scene::Id id : ids(30)) {
             parts_.nodes.push_back(
                 {node(id + 1, types_[below(types_.size())]), parents[below(parents.size())]});
             parents.push_back(id + 1);
         }
         std::shuffle(parts_.nodes.begin(), parts_.nodes.end(), random_);
-        return *Scene::build(std::move(parts_));
+        return *scene::Scene::build(std::move(parts_));
     }
 
 private:
@@ -132,23 +134,33 @@ private:
         return coin() ? result + std::string(1, '\0') : result;
     }
 
-    std::vector<Id> ids(std::size_t most) {
-        std::vector<Id> result;
+    std::vector<scene::Id> ids(std::size_t most) {
+        std::vector<scene::Id> result;
         for (std::size_t i = 0; i < most; ++i)
-            result.push_back(static_cast<Id>(below(coin() ? 100 : static_cast<std::size_t>(kMaxId))));
+            result.push_back(
+                static_cast<scene::Id>(below(coin() ? 100 : static_cast<std::size_t>(scene::kMaxId))));
         std::sort(result.begin(), result.end());
         result.erase(std::unique(result.begin(), result.end()), result.end());
         std::shuffle(result.begin(), result.end(), random_);
         return result;
     }
 
-    Material material(Id id) {
-        return {id,          name(), color(), color(),     color(), color(), positive(10000),
-                positive(1), coin(), name(),  Index{kNone}};
+    scene::Material material(scene::Id id) {
+        return {id,
+                name(),
+                color(),
+                color(),
+                color(),
+                color(),
+                positive(10000),
+                positive(1),
+                coin(),
+                name(),
+                scene::Index{scene::kNone}};
     }
 
-    Geometry geometry(Id id) {
-        Geometry result;
+    scene::Geometry geometry(scene::Id id) {
+        scene::Geometry result;
         result.id = id;
         const std::size_t count = below(20);
         const bool normals = coin(), texcoords = coin();
@@ -163,10 +175,10 @@ private:
         return result;
     }
 
-    Index index(std::size_t count) { return static_cast<Index>(below(count + 1)) - 1; }
+    scene::Index index(std::size_t count) { return static_cast<scene::Index>(below(count + 1)) - 1; }
 
-    Node node(Id id, NodeType type) {
-        Node result;
+    scene::Node node(scene::Id id, scene::NodeType type) {
+        scene::Node result;
         result.id = id;
         result.name = name();
         result.type = type;
@@ -174,39 +186,41 @@ private:
         if (coin())
             for (int column = 0; column < 4; ++column)
                 for (int row = 0; row < 3; ++row) result.matrix[column][row] = number(1e15);
-        if ((type == NodeType::assembly || type == NodeType::geometry) && coin())
+        if ((type == scene::NodeType::assembly || type == scene::NodeType::geometry) && coin())
             result.hinge = {point() + glm::dvec3(0, 1e-3, 0), number(360)};
         set_data(result);
         return result;
     }
 
-    void set_data(Node& node) {
-        const Index material = index(parts_.materials.size());
-        if (node.type == NodeType::geometry)
-            node.data = GeometryData{index(parts_.geometries.size()), material};
-        if (node.type == NodeType::camera)
-            node.data = CameraData{point(), point(), point(), 1 + positive(169)};
-        if (node.type == NodeType::light)
-            node.data =
-                LightData{static_cast<LightData::Type>(below(3)), color(), glm::abs(point()), positive(180)};
-        if (node.type == NodeType::switch_) node.data = SwitchData{static_cast<int>(below(100)) - 2};
-        if (node.type == NodeType::lod) {
-            LodData lod;
+    void set_data(scene::Node& node) {
+        const scene::Index material = index(parts_.materials.size());
+        if (node.type == scene::NodeType::geometry)
+            node.data = scene::GeometryData{index(parts_.geometries.size()), material};
+        if (node.type == scene::NodeType::camera)
+            node.data = scene::CameraData{point(), point(), point(), 1 + positive(169)};
+        if (node.type == scene::NodeType::light)
+            node.data = scene::LightData{static_cast<scene::LightData::Type>(below(3)), color(),
+                                         glm::abs(point()), positive(180)};
+        if (node.type == scene::NodeType::switch_)
+            node.data = scene::SwitchData{static_cast<int>(below(100)) - 2};
+        if (node.type == scene::NodeType::lod) {
+            scene::LodData lod;
             for (std::size_t left = below(4); left > 0; --left) lod.ranges.push_back(positive(1e15));
             node.data = lod;
         }
-        if (node.type == NodeType::background) {
-            BackgroundData background{material, {}, {}};
+        if (node.type == scene::NodeType::background) {
+            scene::BackgroundData background{material, {}, {}};
             if (coin()) background.cube_map = {name(), name(), name(), name(), name(), name()};
             node.data = background;
         }
     }
 
-    static constexpr std::array types_{NodeType::assembly, NodeType::camera,    NodeType::geometry,
-                                       NodeType::light,    NodeType::lod,       NodeType::switch_,
-                                       NodeType::sound,    NodeType::background};
+    static constexpr std::array types_{scene::NodeType::assembly, scene::NodeType::camera,
+                                       scene::NodeType::geometry, scene::NodeType::light,
+                                       scene::NodeType::lod,      scene::NodeType::switch_,
+                                       scene::NodeType::sound,    scene::NodeType::background};
     std::mt19937_64 random_;
-    SceneParts parts_;
+    scene::SceneParts parts_;
 };
 
 }  // namespace
@@ -217,7 +231,7 @@ TEST_CASE("what is written reads back as the same scene, and is written the same
         for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
             if (entry.path().extension() != ".vrut") continue;
             CAPTURE(entry.path().string());
-            const auto text = read_bytes(entry.path());
+            const auto text = base::read_bytes(entry.path());
             REQUIRE(text);
             check_reads_back(read(*text, entry.path().string()), entry.path().string());
             ++scenes;
@@ -233,9 +247,9 @@ TEST_CASE("random scenes read back to the last bit") {
 }
 
 TEST_CASE("a sound is still one, and what nothing uses is kept") {
-    const Scene again = read(
+    const scene::Scene again = read(
         written(read("vrut-text 1 node 1 \"Horn\" sound end material 5 \"M\" end geometry 6 end", "s")), "s");
-    CHECK(again.nodes()[1].type == NodeType::sound);
+    CHECK(again.nodes()[1].type == scene::NodeType::sound);
     CHECK(again.notices().size() == 1);
     REQUIRE(again.materials().size() == 1);
     CHECK(again.materials()[0].id == 5);
@@ -249,13 +263,14 @@ TEST_CASE("a matrix that differs from none by the sign of a zero is written") {
 }
 
 TEST_CASE("a name with a line break, which no text can hold, is written with a space") {
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.materials.emplace_back().name = "two\nlines";
-    CHECK(read(written(*Scene::build(std::move(parts))), "name.vrut").materials()[0].name == "two lines");
+    CHECK(read(written(*scene::Scene::build(std::move(parts))), "name.vrut").materials()[0].name ==
+          "two lines");
 }
 
 TEST_CASE("a scene that holds everything reads back") {
-    const Scene scene = read(R"(vrut-text 1
+    const scene::Scene scene = read(R"(vrut-text 1
 unit 0.001
 material 3 "Paint \"red\" \\ #1" ambient 0.1 0.2 0.3 0.4 diffuse 0.6 0.02 0.03 0.5 shininess 64.125 two-sided 1
   reflectivity 0.25 specular 0.333333333333333314 0 0 1 emission 1e-30 0 0 1 image "a b/plate.png" end
@@ -277,17 +292,17 @@ node 11 "Studio" background material 3 end
 node 13 "Sky" background material 3 cube-map "px.png" "n\"x.png" "py.png" "ny.png" "pz.png" "nz.png" end
 node 14 "Horn" sound parent 9 end
 )",
-                             "all.vrut");
+                                    "all.vrut");
     const std::string text = written(scene, "two\nlines");
     CHECK(text.starts_with("vrut-text 1\n# two\n# lines\nunit 0.001\n"));
-    const Scene again = read(text, "all.vrut");
+    const scene::Scene again = read(text, "all.vrut");
     check_same(scene, again);
     CHECK(written(again, "two\nlines") == text);
 }
 
 TEST_CASE("numbers of all sizes read back to the last bit") {
     std::mt19937_64 random(7);
-    Geometry geometry;
+    scene::Geometry geometry;
     geometry.id = 1;
     // The shortest digits of the first, read as a double, round to its neighbour.
     geometry.texcoords = {{7.038531e-26F, -0.0F}, {1e-45F, 1e15F}};
@@ -300,12 +315,12 @@ TEST_CASE("numbers of all sizes read back to the last bit") {
         geometry.positions.emplace_back(sized(exponent), sized(7 * std::min(exponent, 0)), sized(3));
         geometry.texcoords.emplace_back(sized(exponent), sized(exponent / 3));
     }
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.geometries = {geometry};
-    check_reads_back(*Scene::build(std::move(parts)), "numbers.vrut");
+    check_reads_back(*scene::Scene::build(std::move(parts)), "numbers.vrut");
 }
 
 TEST_CASE("the empty scene reads back") {
-    const Scene scene;
+    const scene::Scene scene;
     check_same(scene, read(written(scene), "empty.vrut"));
 }

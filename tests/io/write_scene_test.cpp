@@ -27,8 +27,8 @@ double transfer(double linear) {
 }
 
 /// What the reader makes of a glTF material, by the rule that it states.
-Material phong_of(const glm::dvec3& c, double metallic, double roughness) {
-    Material material;
+scene::Material phong_of(const glm::dvec3& c, double metallic, double roughness) {
+    scene::Material material;
     material.diffuse = glm::dvec4(c, 1);
     material.ambient = glm::dvec4(c * 0.1, 1);
     material.specular = glm::dvec4((1 - roughness) * (0.22 + (c - 0.22) * metallic), 1);
@@ -36,8 +36,8 @@ Material phong_of(const glm::dvec3& c, double metallic, double roughness) {
     return material;
 }
 
-Geometry corner(Id id) {
-    Geometry geometry;
+scene::Geometry corner(scene::Id id) {
+    scene::Geometry geometry;
     geometry.id = id;
     geometry.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.5, 0}};
     geometry.normals = {{0, 0, 2}, {0, 0, 1}, {0, 0.6F, 0.8F}};
@@ -49,8 +49,8 @@ Geometry corner(Id id) {
 
 glm::dmat4 mirrored() { return glm::translate(glm::dvec3(5, 6, 7)) * glm::scale(glm::dvec3(-2, 1, 1)); }
 
-LightData light(LightData::Type type) {
-    LightData data;
+scene::LightData light(scene::LightData::Type type) {
+    scene::LightData data;
     data.type = type;
     data.color = {1, 0.5, 0.25, 1};
     data.angle = 60;
@@ -58,27 +58,27 @@ LightData light(LightData::Type type) {
 }
 
 /// A bit of everything that a scene can hold.
-Scene everything() {
-    SceneParts parts;
+scene::Scene everything() {
+    scene::SceneParts parts;
     parts.unit = 0.001;
     parts.geometries = {corner(1), corner(2)};
     parts.geometries[1].normals.clear();
     parts.geometries[1].texcoords.clear();
-    Texture texture{"textures/a plate.png", {}, true};
+    scene::Texture texture{"textures/a plate.png", {}, true};
     texture.image.resize(1, 2);
     texture.image.rgba = {1, 2, 3, 255, 4, 5, 6, 128};
     parts.textures.push_back(texture);
-    Material paint = phong_of({0.8, 0.4, 0.1}, 0.5, 0.4);
+    scene::Material paint = phong_of({0.8, 0.4, 0.1}, 0.5, 0.4);
     paint.name = "Paint \"red\"";
     paint.id = 10;
     paint.emission = {0.1, 0.2, 0.3, 1};
     paint.two_sided = true;
-    Material plate = phong_of(glm::dvec3(1), 0, 0.5);
+    scene::Material plate = phong_of(glm::dvec3(1), 0, 0.5);
     plate.name = "Plate";
     plate.id = 11;
     plate.texture = 0;
     plate.image = "textures/a plate.png";
-    Material glass;
+    scene::Material glass;
     glass.name = "Glass";
     glass.id = 12;
     glass.ambient = {0.5, 0.5, 0.5, 1};
@@ -87,58 +87,61 @@ Scene everything() {
     glass.shininess = 100;
     glass.reflectivity = 0.5;
     parts.materials = {paint, plate, glass};
-    const auto add = [&](Node node, Id parent) {
-        node.id = static_cast<Id>(parts.nodes.size()) + 1;
+    const auto add = [&](scene::Node node, scene::Id parent) {
+        node.id = static_cast<scene::Id>(parts.nodes.size()) + 1;
         parts.nodes.push_back({std::move(node), parent});
     };
-    const auto node = [](std::string name, NodeType type, auto data, glm::dmat4 matrix = glm::dmat4(1)) {
-        Node made;
+    const auto node = [](std::string name, scene::NodeType type, auto data,
+                         glm::dmat4 matrix = glm::dmat4(1)) {
+        scene::Node made;
         made.name = std::move(name);
         made.type = type;
         made.matrix = matrix;
         made.data = data;
         return made;
     };
-    add(node("Body", NodeType::assembly, GroupData{}, glm::rotate(0.5, glm::dvec3(1, 2, 3))), 0);
-    parts.nodes.back().node.hinge = Hinge{{0, 1, 0}, 60};
-    add(node("Left wing", NodeType::geometry, GeometryData{0, 0}), 1);
-    add(node("Right wing", NodeType::geometry, GeometryData{0, 1}, mirrored()), 0);
-    add(node("Windscreen", NodeType::geometry, GeometryData{1, 2}), 1);
-    add(node("Plain", NodeType::geometry, GeometryData{1, kNone}), 1);
-    add(node("Choice", NodeType::switch_, SwitchData{1}), 1);
-    add(node("Not chosen", NodeType::geometry, GeometryData{1, 0}), 6);
-    add(node("Chosen", NodeType::geometry, GeometryData{1, 0}), 6);
-    add(node("Levels", NodeType::lod, LodData{{10}}), 0);
-    add(node("Near", NodeType::geometry, GeometryData{0, 0}), 9);
-    add(node("Far", NodeType::geometry, GeometryData{1, 0}), 9);
-    add(node("Asleep", NodeType::geometry, GeometryData{1, 0}), 0);
+    add(node("Body", scene::NodeType::assembly, scene::GroupData{}, glm::rotate(0.5, glm::dvec3(1, 2, 3))),
+        0);
+    parts.nodes.back().node.hinge = scene::Hinge{{0, 1, 0}, 60};
+    add(node("Left wing", scene::NodeType::geometry, scene::GeometryData{0, 0}), 1);
+    add(node("Right wing", scene::NodeType::geometry, scene::GeometryData{0, 1}, mirrored()), 0);
+    add(node("Windscreen", scene::NodeType::geometry, scene::GeometryData{1, 2}), 1);
+    add(node("Plain", scene::NodeType::geometry, scene::GeometryData{1, scene::kNone}), 1);
+    add(node("Choice", scene::NodeType::switch_, scene::SwitchData{1}), 1);
+    add(node("Not chosen", scene::NodeType::geometry, scene::GeometryData{1, 0}), 6);
+    add(node("Chosen", scene::NodeType::geometry, scene::GeometryData{1, 0}), 6);
+    add(node("Levels", scene::NodeType::lod, scene::LodData{{10}}), 0);
+    add(node("Near", scene::NodeType::geometry, scene::GeometryData{0, 0}), 9);
+    add(node("Far", scene::NodeType::geometry, scene::GeometryData{1, 0}), 9);
+    add(node("Asleep", scene::NodeType::geometry, scene::GeometryData{1, 0}), 0);
     parts.nodes.back().node.active = false;
-    add(node("Presenter", NodeType::camera, CameraData{{3, 1, 4}, {0, 1, 0}, {0, 1, 0}, 35}), 1);
-    add(node("Lamp", NodeType::light, light(LightData::Type::point)), 1);
-    add(node("Sun", NodeType::light, light(LightData::Type::directional),
+    add(node("Presenter", scene::NodeType::camera, scene::CameraData{{3, 1, 4}, {0, 1, 0}, {0, 1, 0}, 35}),
+        1);
+    add(node("Lamp", scene::NodeType::light, light(scene::LightData::Type::point)), 1);
+    add(node("Sun", scene::NodeType::light, light(scene::LightData::Type::directional),
              glm::rotate(1.0, glm::dvec3(1, 0, 0))),
         0);
-    add(node("Spot", NodeType::light, light(LightData::Type::spot)), 0);
-    std::get<LightData>(parts.nodes.back().node.data).attenuation = {1, 0.5, 0};
-    add(node("Studio", NodeType::background, BackgroundData{0, {}, {}}), 0);
-    auto scene = Scene::build(std::move(parts));
+    add(node("Spot", scene::NodeType::light, light(scene::LightData::Type::spot)), 0);
+    std::get<scene::LightData>(parts.nodes.back().node.data).attenuation = {1, 0.5, 0};
+    add(node("Studio", scene::NodeType::background, scene::BackgroundData{0, {}, {}}), 0);
+    auto scene = scene::Scene::build(std::move(parts));
     REQUIRE(scene);
     return *std::move(scene);
 }
 
-std::size_t index_of(const Scene& scene, const std::string& name) {
+std::size_t index_of(const scene::Scene& scene, const std::string& name) {
     for (std::size_t i = 0; i < scene.nodes().size(); ++i)
         if (scene.nodes()[i].name == name) return i;
     FAIL("no node " << name);
     return 0;
 }
 
-const Node& node_of(const Scene& scene, const std::string& name) {
+const scene::Node& node_of(const scene::Scene& scene, const std::string& name) {
     return scene.nodes()[index_of(scene, name)];
 }
 
-glm::dmat4 world_of(const Scene& scene, const std::string& name) {
-    return world_matrices(scene, file_states(scene))[index_of(scene, name)];
+glm::dmat4 world_of(const scene::Scene& scene, const std::string& name) {
+    return scene::world_matrices(scene, scene::file_states(scene))[index_of(scene, name)];
 }
 
 bool same(const glm::dmat4& a, const glm::dmat4& b) {
@@ -149,12 +152,12 @@ bool same(const glm::dmat4& a, const glm::dmat4& b) {
 
 bool near(const glm::dvec4& a, const glm::dvec4& b) { return glm::distance(a, b) < 1e-5; }
 
-const Material& material_of(const Scene& scene, const std::string& node) {
-    return scene.material(std::get<GeometryData>(node_of(scene, node).data).material);
+const scene::Material& material_of(const scene::Scene& scene, const std::string& node) {
+    return scene.material(std::get<scene::GeometryData>(node_of(scene, node).data).material);
 }
 
-std::vector<std::string> written(const Scene& scene, const fs::path& path) {
-    auto lost = write_scene(scene, path);
+std::vector<std::string> written(const scene::Scene& scene, const fs::path& path) {
+    auto lost = io::write_scene(scene, path);
     REQUIRE_MESSAGE(lost, lost.error());
     for (std::string& notice : *lost) {
         CHECK(notice.starts_with(path.string() + ": "));
@@ -163,8 +166,8 @@ std::vector<std::string> written(const Scene& scene, const fs::path& path) {
     return *lost;
 }
 
-Scene read_well(const fs::path& path) {
-    auto scene = read_scene(path);
+scene::Scene read_well(const fs::path& path) {
+    auto scene = io::read_scene(path);
     REQUIRE_MESSAGE(scene, scene.error());
     return *std::move(scene);
 }
@@ -188,15 +191,15 @@ glm::vec3 vector_at(const std::string& bytes, std::size_t at) {
 
 TEST_CASE("a scene survives a GLB file but for what is told") {
     const TemporaryFolder folder;
-    const Scene scene = everything();
+    const scene::Scene scene = everything();
     const auto lost = written(scene, folder.path() / "all.glb");
-    const Scene read = read_well(folder.path() / "all.glb");
+    const scene::Scene read = read_well(folder.path() / "all.glb");
     SUBCASE("names, tree and matrices") {
         for (const char* name :
              {"Body", "Left wing", "Right wing", "Windscreen", "Plain", "Choice", "Not chosen", "Chosen",
               "Levels", "Near", "Far", "Asleep", "Lamp", "Sun", "Spot", "Studio"}) {
             CAPTURE(name);
-            const Node &before = node_of(scene, name), &after = node_of(read, name);
+            const scene::Node &before = node_of(scene, name), &after = node_of(read, name);
             CHECK(same(after.matrix, before.matrix));
             CHECK(read.nodes()[static_cast<std::size_t>(after.parent)].name ==
                   scene.nodes()[static_cast<std::size_t>(before.parent)].name);
@@ -204,20 +207,21 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(read.nodes().size() == scene.nodes().size());
     }
     SUBCASE("geometry, that of what is hidden apart") {
-        const auto& wing = std::get<GeometryData>(node_of(read, "Left wing").data);
-        const Geometry& geometry = read.geometries()[static_cast<std::size_t>(wing.geometry)];
+        const auto& wing = std::get<scene::GeometryData>(node_of(read, "Left wing").data);
+        const scene::Geometry& geometry = read.geometries()[static_cast<std::size_t>(wing.geometry)];
         CHECK(geometry.positions == scene.geometries()[0].positions);
         CHECK(geometry.texcoords == scene.geometries()[0].texcoords);
         CHECK(geometry.triangles == scene.geometries()[0].triangles);
         CHECK(geometry.normals == std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0.6F, 0.8F}});
-        const auto& plain = std::get<GeometryData>(node_of(read, "Plain").data);
+        const auto& plain = std::get<scene::GeometryData>(node_of(read, "Plain").data);
         CHECK(read.geometries()[static_cast<std::size_t>(plain.geometry)].normals.empty());
         for (const char* hidden : {"Not chosen", "Far", "Asleep"})
-            CHECK(node_of(read, hidden).type == NodeType::assembly);
-        for (const char* shown : {"Chosen", "Near"}) CHECK(node_of(read, shown).type == NodeType::geometry);
+            CHECK(node_of(read, hidden).type == scene::NodeType::assembly);
+        for (const char* shown : {"Chosen", "Near"})
+            CHECK(node_of(read, shown).type == scene::NodeType::geometry);
     }
     SUBCASE("materials") {
-        const Material &paint = material_of(read, "Left wing"), &before = scene.materials()[0];
+        const scene::Material &paint = material_of(read, "Left wing"), &before = scene.materials()[0];
         CHECK(paint.name == before.name);
         CHECK(near(paint.diffuse, before.diffuse));
         CHECK(near(paint.ambient, before.ambient));
@@ -225,7 +229,7 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(near(paint.emission, before.emission));
         CHECK(paint.shininess == doctest::Approx(before.shininess));
         CHECK(paint.two_sided);
-        const Material& glass = material_of(read, "Windscreen");
+        const scene::Material& glass = material_of(read, "Windscreen");
         CHECK(near(glass.diffuse, {0.1, 0.2, 0.3, 0.25}));
         CHECK(near(glass.specular, {0.5, 0.6, 0.7, 1}));
         CHECK(glass.shininess == doctest::Approx(100));
@@ -234,14 +238,14 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(near(material_of(read, "Plain").diffuse, {0.8, 0.8, 0.8, 1}));
     }
     SUBCASE("pictures") {
-        const Material& plate = material_of(read, "Right wing");
-        REQUIRE(plate.texture != kNone);
-        const Texture& texture = read.textures()[static_cast<std::size_t>(plate.texture)];
+        const scene::Material& plate = material_of(read, "Right wing");
+        REQUIRE(plate.texture != scene::kNone);
+        const scene::Texture& texture = read.textures()[static_cast<std::size_t>(plate.texture)];
         CHECK(texture.image.rgba == scene.textures()[0].image.rgba);
         CHECK(texture.transparent);
     }
     SUBCASE("camera and lights") {
-        const CameraData& camera = std::get<CameraData>(node_of(read, "Presenter").data);
+        const scene::CameraData& camera = std::get<scene::CameraData>(node_of(read, "Presenter").data);
         CHECK(camera.fov == doctest::Approx(35));
         const glm::dmat4 before = world_of(scene, "Presenter"), after = world_of(read, "Presenter");
         CHECK(near(after * glm::dvec4(camera.eye, 1), before * glm::dvec4(3, 1, 4, 1)));
@@ -249,12 +253,12 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(near(after * glm::dvec4(camera.up, 0), before * glm::dvec4(0, 1, 0, 0)));
         for (const char* name : {"Lamp", "Sun", "Spot"}) {
             CAPTURE(name);
-            const LightData &was = std::get<LightData>(node_of(scene, name).data),
-                            &is = std::get<LightData>(node_of(read, name).data);
+            const scene::LightData &was = std::get<scene::LightData>(node_of(scene, name).data),
+                                   &is = std::get<scene::LightData>(node_of(read, name).data);
             CHECK(is.type == was.type);
             CHECK(near(is.color, was.color));
         }
-        CHECK(std::get<LightData>(node_of(read, "Spot").data).angle == doctest::Approx(60));
+        CHECK(std::get<scene::LightData>(node_of(read, "Spot").data).angle == doctest::Approx(60));
     }
     CHECK(lost == std::vector<std::string>{
                       "a background is not kept", "a camera's focus is kept as a direction",
@@ -270,9 +274,9 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
 TEST_CASE("a second GLB file of what was read from the first loses nothing more") {
     const TemporaryFolder folder;
     written(everything(), folder.path() / "first.glb");
-    const Scene first = read_well(folder.path() / "first.glb");
+    const scene::Scene first = read_well(folder.path() / "first.glb");
     CHECK(written(first, folder.path() / "second.glb").empty());
-    const Scene second = read_well(folder.path() / "second.glb");
+    const scene::Scene second = read_well(folder.path() / "second.glb");
     REQUIRE(second.materials().size() == first.materials().size());
     for (std::size_t i = 0; i < first.materials().size(); ++i) {
         CAPTURE(first.materials()[i].name);
@@ -283,7 +287,7 @@ TEST_CASE("a second GLB file of what was read from the first loses nothing more"
 }
 
 TEST_CASE("what the reader's rule made of glTF's materials becomes them again") {
-    Scene none;
+    scene::Scene none;
     const glm::dvec3 colors[] = {{0.9, 0.5, 0.1}, {0.05, 0.1, 0.6}, {0.5, 0.5, 0.5},
                                  {1, 1, 1},       {0, 0, 0},        {0.22, 0.22, 0.22}};
     for (const glm::dvec3& c : colors)
@@ -292,12 +296,12 @@ TEST_CASE("what the reader's rule made of glTF's materials becomes them again") 
                 CAPTURE(c.r);
                 CAPTURE(metallic);
                 CAPTURE(roughness);
-                ConversionWarnings warnings;
-                const Material phong = phong_of(c, metallic, roughness);
-                const GltfMaterial made = gltf_material(none, phong, warnings);
+                io::ConversionWarnings warnings;
+                const scene::Material phong = phong_of(c, metallic, roughness);
+                const io::GltfMaterial made = io::gltf_material(none, phong, warnings);
                 CHECK_FALSE(made.specular);
                 CHECK(transfer(made.base.r) == doctest::Approx(c.r).epsilon(1e-6));
-                const Material again = phong_of(c, made.metallic, made.roughness);
+                const scene::Material again = phong_of(c, made.metallic, made.roughness);
                 CHECK(glm::distance(again.specular, phong.specular) < 0.5 / 255);
                 CHECK(again.shininess == doctest::Approx(phong.shininess).epsilon(1e-6));
                 std::vector<std::string> told;
@@ -305,8 +309,8 @@ TEST_CASE("what the reader's rule made of glTF's materials becomes them again") 
                 CHECK(told.empty());
             }
     SUBCASE("where the exponent tells it, the same metal and roughness") {
-        ConversionWarnings warnings;
-        const GltfMaterial made = gltf_material(none, phong_of({0.9, 0.5, 0.1}, 0.3, 0.35), warnings);
+        io::ConversionWarnings warnings;
+        const io::GltfMaterial made = io::gltf_material(none, phong_of({0.9, 0.5, 0.1}, 0.3, 0.35), warnings);
         CHECK(made.metallic == doctest::Approx(0.3).epsilon(1e-6));
         CHECK(made.roughness == doctest::Approx(0.35).epsilon(1e-6));
     }
@@ -314,7 +318,7 @@ TEST_CASE("what the reader's rule made of glTF's materials becomes them again") 
 
 TEST_CASE("an OBJ file holds the shown parts in world space, with their materials and pictures") {
     const TemporaryFolder folder;
-    const Scene scene = everything();
+    const scene::Scene scene = everything();
     const auto lost = written(scene, folder.path() / "all.obj");
     const std::string obj = folder.read("all.obj"), mtl = folder.read("all.mtl");
     CHECK(lines_of(obj, "mtllib") == std::vector<std::string>{"all.mtl"});
@@ -340,7 +344,7 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
     CHECK(lines_of(mtl.substr(mtl.find("newmtl Paint__red_")), "Ke")[0] == "0.1 0.2 0.3");
     const auto pictures = lines_of(mtl, "map_Kd");
     REQUIRE(pictures.size() == 1);
-    const auto picture = read_image_file(folder.path() / pictures[0]);
+    const auto picture = io::read_image_file(folder.path() / pictures[0]);
     REQUIRE_MESSAGE(picture, picture.error());
     CHECK(picture->rgba == scene.textures()[0].image.rgba);
     for (const char* told :
@@ -351,14 +355,14 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
           "a background is not kept", "an assembly is not kept: its matrix goes into the vertices"})
         CHECK_MESSAGE(std::find(lost.begin(), lost.end(), told) != lost.end(), told);
 
-    const Scene read = read_well(folder.path() / "all.obj");
+    const scene::Scene read = read_well(folder.path() / "all.obj");
     CHECK(read.triangle_count() == 6);
     for (const std::string& name : objects)
         CHECK_MESSAGE(std::any_of(read.nodes().begin(), read.nodes().end(),
-                                  [&](const Node& node) { return node.name == name; }),
+                                  [&](const scene::Node& node) { return node.name == name; }),
                       name);
     const auto pane = std::find_if(read.materials().begin(), read.materials().end(),
-                                   [](const Material& material) { return material.name == "Glass"; });
+                                   [](const scene::Material& material) { return material.name == "Glass"; });
     REQUIRE(pane != read.materials().end());
     CHECK(glm::distance(pane->diffuse, glm::dvec4(0.1, 0.2, 0.3, 0.25)) < 1e-6);
     CHECK(glm::distance(glm::dvec3(pane->specular), glm::dvec3(0.5, 0.6, 0.7)) < 1e-6);
@@ -370,23 +374,23 @@ TEST_CASE("an OBJ file holds the shown parts in world space, with their material
 
 TEST_CASE("what an OBJ file has of a material and its reader does not take is told") {
     const TemporaryFolder folder;
-    const auto lost = [&](const std::function<void(Material&)>& change) {
-        SceneParts parts;
+    const auto lost = [&](const std::function<void(scene::Material&)>& change) {
+        scene::SceneParts parts;
         parts.geometries = {corner(1)};
         parts.textures.push_back({"a.png", {1, 1, {1, 2, 3, 128}}, true});
         parts.materials = {phong_of({0.8, 0.4, 0.1}, 0.5, 0.4)};
         parts.materials[0].name = "Paint";
         change(parts.materials[0]);
-        Node node;
+        scene::Node node;
         node.id = 1;
         node.name = "Part";
-        node.type = NodeType::geometry;
-        node.data = GeometryData{0, 0};
+        node.type = scene::NodeType::geometry;
+        node.data = scene::GeometryData{0, 0};
         parts.nodes.push_back({node, 0});
-        const Scene scene = *Scene::build(std::move(parts));
+        const scene::Scene scene = *scene::Scene::build(std::move(parts));
         auto told = written(scene, folder.path() / "x.obj");
-        const Material before = scene.materials()[0],
-                       after = read_well(folder.path() / "x.obj").materials()[0];
+        const scene::Material before = scene.materials()[0],
+                              after = read_well(folder.path() / "x.obj").materials()[0];
         const bool same = near(before.diffuse, after.diffuse) && near(before.ambient, after.ambient) &&
                           near(before.specular, after.specular) && near(before.emission, after.emission) &&
                           std::abs(before.shininess - after.shininess) < 1e-4;
@@ -397,16 +401,16 @@ TEST_CASE("what an OBJ file has of a material and its reader does not take is to
     };
     using std::string;
     const string either = "whether a material is drawn from both sides is not kept";
-    CHECK(lost([](Material&) {}) == either);
-    CHECK(lost([](Material& m) { m.texture = 0; }) == either);
-    CHECK(lost([](Material& m) { m.diffuse.a = 0.5; }) == either);
-    CHECK(lost([](Material& m) { m.texture = 0, m.diffuse.a = 0.5; }) ==
+    CHECK(lost([](scene::Material&) {}) == either);
+    CHECK(lost([](scene::Material& m) { m.texture = 0; }) == either);
+    CHECK(lost([](scene::Material& m) { m.diffuse.a = 0.5; }) == either);
+    CHECK(lost([](scene::Material& m) { m.texture = 0, m.diffuse.a = 0.5; }) ==
           "a material's opacity beside that of its picture is written, but not read here");
-    CHECK(lost([](Material& m) {
+    CHECK(lost([](scene::Material& m) {
               m.ambient = {1, 0, 0, 1};
           }) == "a material's ambient colour is written, but read here as a tenth of its diffuse one");
     for (const double shininess : {0.0, 0.5})
-        CHECK(lost([&](Material& m) { m.shininess = shininess; }) ==
+        CHECK(lost([&](scene::Material& m) { m.shininess = shininess; }) ==
               "a highlight with a shininess below 1 is written, but read here as another or none");
 }
 
@@ -432,13 +436,13 @@ TEST_CASE("an STL file holds the shown triangles in world space, their fronts ou
 TEST_CASE("a scene survives a file of its own format, pictures from inside another file too") {
     const TemporaryFolder folder;
     CHECK(written(everything(), folder.path() / "all.glb").size() == 10);
-    const Scene scene = read_well(folder.path() / "all.glb");
+    const scene::Scene scene = read_well(folder.path() / "all.glb");
     CHECK(written(scene, folder.path() / "all.vrut").empty());
-    const Scene read = read_well(folder.path() / "all.vrut");
+    const scene::Scene read = read_well(folder.path() / "all.vrut");
     CHECK(read.nodes().size() == scene.nodes().size());
     CHECK(read.notices().empty());
-    const Material& plate = material_of(read, "Right wing");
-    REQUIRE(plate.texture != kNone);
+    const scene::Material& plate = material_of(read, "Right wing");
+    REQUIRE(plate.texture != scene::kNone);
     CHECK(plate.image.starts_with("all.textures/"));
     CHECK(read.textures()[static_cast<std::size_t>(plate.texture)].image.rgba ==
           scene.textures()[0].image.rgba);
@@ -446,14 +450,14 @@ TEST_CASE("a scene survives a file of its own format, pictures from inside anoth
 
 TEST_CASE("a matrix that shears or flattens is kept in a GLB file, and told") {
     const TemporaryFolder folder;
-    SceneParts parts;
-    Node node;
+    scene::SceneParts parts;
+    scene::Node node;
     node.id = 1;
     node.name = "Slanted";
     SUBCASE("shears") { node.matrix[1][0] = 0.5; }
     SUBCASE("flattens") { node.matrix[1][1] = 0; }
     parts.nodes.push_back({node, 0});
-    const Scene scene = *Scene::build(std::move(parts));
+    const scene::Scene scene = *scene::Scene::build(std::move(parts));
     CHECK(written(scene, folder.path() / "x.glb") ==
           std::vector<std::string>{"a matrix that shears or flattens is kept, though glTF knows none: other "
                                    "programs may refuse it"});
@@ -463,7 +467,7 @@ TEST_CASE("an empty scene can be written in every format") {
     const TemporaryFolder folder;
     for (const char* name : {"x.vrut", "x.obj", "x.stl", "x.GLB"}) {
         CAPTURE(name);
-        CHECK(write_scene(Scene(), folder.path() / name));
+        CHECK(io::write_scene(scene::Scene(), folder.path() / name));
         CHECK(fs::file_size(folder.path() / name) > 0);
     }
 }
@@ -472,31 +476,31 @@ TEST_CASE("what cannot be written is told, and leaves what was there") {
     const TemporaryFolder folder;
     const auto file = folder.write("car.stl", "old");
     SUBCASE("an ending that is none") {
-        const auto result = write_scene(Scene(), folder.path() / "car.fbx");
+        const auto result = io::write_scene(scene::Scene(), folder.path() / "car.fbx");
         REQUIRE_FALSE(result);
         CHECK(result.error().find("car.fbx: no writer for this ending; known are .vrut, .obj, .stl, .glb") !=
               std::string::npos);
     }
     SUBCASE("no such folder") {
-        const auto result = write_scene(Scene(), folder.path() / "a" / "b" / "car.stl");
+        const auto result = io::write_scene(scene::Scene(), folder.path() / "a" / "b" / "car.stl");
         REQUIRE_FALSE(result);
         CHECK(result.error().find("car.stl: it cannot be written: No such file or directory") !=
               std::string::npos);
     }
     SUBCASE("a folder in its place") {
         fs::create_directory(folder.path() / "folder.obj");
-        CHECK_FALSE(write_scene(everything(), folder.path() / "folder.obj"));
+        CHECK_FALSE(io::write_scene(everything(), folder.path() / "folder.obj"));
         CHECK_FALSE(fs::exists(folder.path() / "folder.mtl"));
         CHECK_FALSE(fs::exists(folder.path() / "folder.textures"));
     }
     SUBCASE("a file that breaks off") {
-        OutputFiles files;
+        base::OutputFiles files;
         CHECK_THROWS_AS(files.write(file,
                                     [](std::ostream& out) {
                                         out << "new";
                                         out.setstate(std::ios::badbit);
                                     }),
-                        WriteError);
+                        base::WriteError);
     }
     CHECK(folder.read("car.stl") == "old");
     for (const auto& entry : fs::directory_iterator(folder.path()))

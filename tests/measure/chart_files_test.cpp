@@ -8,6 +8,7 @@
 #include "measure/rows.hpp"
 #include "temporary_folder.hpp"
 
+using namespace vrut;
 using namespace vrut::server::measure;
 
 namespace {
@@ -25,7 +26,7 @@ Row row(const std::string& scene, double scale) {
     row.height = 48;
     row.frames = 3;
     row.setting.scale = scale;
-    row.setting.methods.light = vrut::Methods::Lighting::vertex;
+    row.setting.methods.light = plan::Methods::Lighting::vertex;
     row.cost.triangles = 12;
     row.cost.ms = {1.5, 1.25, 1, 2};
     row.cost.bytes = {100, 101, 99, 120};

@@ -5,8 +5,8 @@
 #include "measure/calibrate.hpp"
 #include "measure/front.hpp"
 
+using namespace vrut;
 using namespace vrut::server::measure;
-using vrut::Image;
 
 namespace {
 
@@ -117,10 +117,10 @@ TEST_CASE("a spread tells mean and percentiles") {
 }
 
 TEST_CASE("a picture is enlarged between its pixels") {
-    Image small;
+    scene::Image small;
     small.resize(2, 1);
     small.rgba = {0, 0, 0, 255, 100, 200, 40, 255};
-    const Image large = resized(small, 4, 2);
+    const scene::Image large = resized(small, 4, 2);
     REQUIRE(large.rgba.size() == 32);
     const std::vector<std::uint8_t> row{0, 0, 0, 255, 25, 50, 10, 255, 75, 150, 30, 255, 100, 200, 40, 255};
     CHECK(std::vector<std::uint8_t>(large.rgba.begin(), large.rgba.begin() + 16) == row);

@@ -59,7 +59,7 @@ namespace {
 
 const std::atomic<bool> kGoOn{false};
 
-Geometry mapped(Geometry geometry, const glm::dvec3& scale, const glm::dvec3& offset) {
+scene::Geometry mapped(scene::Geometry geometry, const glm::dvec3& scale, const glm::dvec3& offset) {
     geometry.bounds = {};
     for (glm::dvec3& position : geometry.positions) {
         position = position * scale + offset;
@@ -68,7 +68,7 @@ Geometry mapped(Geometry geometry, const glm::dvec3& scale, const glm::dvec3& of
     return geometry;
 }
 
-Geometry with_normals(Geometry geometry) {
+scene::Geometry with_normals(scene::Geometry geometry) {
     geometry.normals.assign(geometry.positions.size(), glm::vec3(0));
     for (const glm::uvec3& t : geometry.triangles) {
         const auto& p = geometry.positions;
@@ -79,8 +79,8 @@ Geometry with_normals(Geometry geometry) {
 }
 
 /// Every triangle with corners of its own.
-Geometry exploded(const Geometry& geometry) {
-    Geometry result;
+scene::Geometry exploded(const scene::Geometry& geometry) {
+    scene::Geometry result;
     result.bounds = geometry.bounds;
     for (const glm::uvec3& triangle : geometry.triangles) {
         const auto first = static_cast<unsigned>(result.positions.size());
@@ -108,7 +108,7 @@ double distance_to(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b
 
 /// Points of some triangles, at their corners, along their edges and within, and how far the furthest of them
 /// is from others: one side of Hausdorff's distance.
-double furthest(const Geometry& geometry, const std::vector<glm::uvec3>& from,
+double furthest(const scene::Geometry& geometry, const std::vector<glm::uvec3>& from,
                 const std::vector<glm::uvec3>& to) {
     const std::vector<glm::dvec3>& p = geometry.positions;
     double result = 0;
@@ -127,12 +127,12 @@ double furthest(const Geometry& geometry, const std::vector<glm::uvec3>& from,
     return result;
 }
 
-void check_bounds(const Geometry& geometry, std::size_t least_levels) {
-    const auto levels = simplify(geometry, kGoOn);
+void check_bounds(const scene::Geometry& geometry, std::size_t least_levels) {
+    const auto levels = mesh::simplify(geometry, kGoOn);
     CHECK(levels.size() >= least_levels);
     std::size_t triangles = geometry.triangles.size();
     double error = 0;
-    for (const DetailLevel& level : levels) {
+    for (const mesh::DetailLevel& level : levels) {
         CAPTURE(level.triangles.size());
         CHECK(level.triangles.size() < triangles);
         CHECK(level.error >= error);
@@ -143,11 +143,11 @@ void check_bounds(const Geometry& geometry, std::size_t least_levels) {
     }
 }
 
-std::shared_ptr<const Scene> scene_with(std::vector<Geometry> geometries) {
-    SceneParts parts;
-    for (std::size_t i = 0; i < geometries.size(); ++i) geometries[i].id = static_cast<Id>(i + 1);
+std::shared_ptr<const scene::Scene> scene_with(std::vector<scene::Geometry> geometries) {
+    scene::SceneParts parts;
+    for (std::size_t i = 0; i < geometries.size(); ++i) geometries[i].id = static_cast<scene::Id>(i + 1);
     parts.geometries = std::move(geometries);
-    return std::make_shared<const Scene>(*Scene::build(std::move(parts)));
+    return std::make_shared<const scene::Scene>(*scene::Scene::build(std::move(parts)));
 }
 
 }  // namespace
@@ -173,18 +173,18 @@ TEST_CASE("no surface lies further from the one it stands for than its level say
 }
 
 TEST_CASE("no level of the car's parts lies further off than it says") {
-    const auto car = read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
+    const auto car = io::read_scene(std::string(VRUT_CARS) + "/car-20k.vrut");
     REQUIRE(car);
-    for (const Geometry& geometry : car->geometries())
+    for (const scene::Geometry& geometry : car->geometries())
         if (geometry.triangles.size() < 1500) check_bounds(geometry, 0);
 }
 
 TEST_CASE("an even surface keeps its plane and its outline") {
-    const Geometry geometry = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
-    auto levels = simplify(geometry, kGoOn);
-    std::erase_if(levels, [](const DetailLevel& level) { return level.error > 2e-5; });
+    const scene::Geometry geometry = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
+    auto levels = mesh::simplify(geometry, kGoOn);
+    std::erase_if(levels, [](const mesh::DetailLevel& level) { return level.error > 2e-5; });
     REQUIRE(levels.size() >= 2);
-    const Geometry coarse = geometry_of(geometry, levels.back());
+    const scene::Geometry coarse = mesh::geometry_of(geometry, levels.back());
     CHECK(coarse.triangles.size() <= 800);
     CHECK(coarse.positions.size() <= 800);
     CHECK(coarse.normals.empty());
@@ -199,27 +199,27 @@ TEST_CASE("an even surface keeps its plane and its outline") {
 }
 
 TEST_CASE("what normals pretend counts as a distance") {
-    Geometry plane = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
+    scene::Geometry plane = surface(40, 40, [](double u, double v) { return glm::dvec3(u, 3, v); });
     for (const glm::dvec3& position : plane.positions)
         plane.normals.push_back({0.2F * std::sin(20 * static_cast<float>(position.x)), 1, 0});
-    const auto levels = simplify(plane, kGoOn);
+    const auto levels = mesh::simplify(plane, kGoOn);
     REQUIRE(levels.size() >= 3);
     CHECK(levels[2].error > 1e-3);
     CHECK(levels[2].error < 0.2);  // no edge is longer than 1, and a shade is off by 0.4 at most
     plane.normals.assign(plane.positions.size(), {0, 1, 0});
-    CHECK(simplify(plane, kGoOn)[2].error < 2e-5);
+    CHECK(mesh::simplify(plane, kGoOn)[2].error < 2e-5);
 }
 
 TEST_CASE("a seam does not open") {
     // A tube whose ends meet in two rows of vertices, with texture coordinates of their own.
-    Geometry tube = surface(40, 20, [](double u, double v) { return glm::dvec3(turn(u), v); });
+    scene::Geometry tube = surface(40, 20, [](double u, double v) { return glm::dvec3(turn(u), v); });
     for (unsigned i = 0; i < tube.positions.size(); ++i) {
         const unsigned row = i / 41, column = i % 41;
         tube.texcoords.emplace_back(static_cast<float>(column) / 40, static_cast<float>(row) / 20);
     }
-    const auto levels = simplify(with_normals(tube), kGoOn);
+    const auto levels = mesh::simplify(with_normals(tube), kGoOn);
     REQUIRE(levels.size() >= 3);
-    for (const DetailLevel& level : levels) {
+    for (const mesh::DetailLevel& level : levels) {
         std::vector<double> left, right;  // heights of the seam's vertices
         for (const glm::uvec3& triangle : level.triangles)
             for (int k = 0; k < 3; ++k) {
@@ -236,34 +236,34 @@ TEST_CASE("a seam does not open") {
 }
 
 TEST_CASE("what cannot be simplified has no levels") {
-    CHECK(simplify({}, kGoOn).empty());
-    Geometry few = ball(4, 4);
-    CHECK(simplify(few, kGoOn).empty());
-    Geometry point = ball(20, 20);
+    CHECK(mesh::simplify({}, kGoOn).empty());
+    scene::Geometry few = ball(4, 4);
+    CHECK(mesh::simplify(few, kGoOn).empty());
+    scene::Geometry point = ball(20, 20);
     for (glm::dvec3& position : point.positions) position = {1, 2, 3};
     point.bounds = {{1, 2, 3}, {1, 2, 3}};
-    CHECK(simplify(point, kGoOn).empty());
-    Geometry line = surface(20, 20, [](double u, double) { return glm::dvec3(u, 0, 0); });
-    for (const DetailLevel& level : simplify(line, kGoOn)) CHECK(level.error <= 2e-5);
-    Geometry beyond = mapped(ball(20, 20), glm::dvec3(1e308), glm::dvec3(0));
-    CHECK(simplify(beyond, kGoOn).empty());
-    Geometry apart;  // triangles that nothing joins
+    CHECK(mesh::simplify(point, kGoOn).empty());
+    scene::Geometry line = surface(20, 20, [](double u, double) { return glm::dvec3(u, 0, 0); });
+    for (const mesh::DetailLevel& level : mesh::simplify(line, kGoOn)) CHECK(level.error <= 2e-5);
+    scene::Geometry beyond = mapped(ball(20, 20), glm::dvec3(1e308), glm::dvec3(0));
+    CHECK(mesh::simplify(beyond, kGoOn).empty());
+    scene::Geometry apart;  // triangles that nothing joins
     for (unsigned i = 0; i < 300; ++i) {
         for (const glm::dvec3& corner : {glm::dvec3(0), {1, 0, 0}, {0, 1, 0}})
             apart.positions.push_back(corner + glm::dvec3(0, 0, i));
         apart.bounds.add(apart.positions.back());
         apart.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }
-    for (const DetailLevel& level : simplify(apart, kGoOn))
+    for (const mesh::DetailLevel& level : mesh::simplify(apart, kGoOn))
         CHECK(furthest(apart, apart.triangles, level.triangles) <= level.error);
 }
 
 TEST_CASE("triangles in a bad order get a better one, and only those") {
-    const Geometry good = with_normals(torus(80, 40));
-    CHECK_FALSE(optimize_vertex_cache(good));
-    Geometry bad = good;
+    const scene::Geometry good = with_normals(torus(80, 40));
+    CHECK_FALSE(mesh::optimize_vertex_cache(good));
+    scene::Geometry bad = good;
     std::shuffle(bad.triangles.begin(), bad.triangles.end(), std::mt19937(1));
-    const auto level = optimize_vertex_cache(bad);
+    const auto level = mesh::optimize_vertex_cache(bad);
     REQUIRE(level);
     CHECK(level->number == 0);
     CHECK(level->error == 0);
@@ -274,11 +274,11 @@ TEST_CASE("triangles in a bad order get a better one, and only those") {
         return triangles;
     };
     CHECK(sorted(level->triangles) == sorted(good.triangles));
-    CHECK_FALSE(optimize_vertex_cache(geometry_of(bad, *level)));
+    CHECK_FALSE(mesh::optimize_vertex_cache(mesh::geometry_of(bad, *level)));
     bad.normals.clear();
-    CHECK_FALSE(optimize_vertex_cache(bad));  // its triangles share no vertices
+    CHECK_FALSE(mesh::optimize_vertex_cache(bad));  // its triangles share no vertices
 
-    const DetailLevels levels(scene_with({with_normals(bad)}));
+    const mesh::DetailLevels levels(scene_with({with_normals(bad)}));
     levels.wait();
     CHECK(levels.of(0).size() >= 4);
     for (std::size_t i = 0; i < levels.of(0).size(); ++i)
@@ -287,7 +287,7 @@ TEST_CASE("triangles in a bad order get a better one, and only those") {
 
 TEST_CASE("levels are made in the background, for each geometry") {
     const auto scene = scene_with({ball(48, 24), {}, torus(40, 20)});
-    const DetailLevels levels(scene);
+    const mesh::DetailLevels levels(scene);
     levels.wait();
     CHECK(levels.done());
     CHECK(levels.of(0).size() >= 4);
@@ -295,29 +295,29 @@ TEST_CASE("levels are made in the background, for each geometry") {
     CHECK(levels.of(2).size() >= 4);
     for (std::size_t i = 0; i < levels.of(2).size(); ++i)
         CHECK(levels.of(2)[i].number == static_cast<int>(i) + 1);
-    CHECK(levels.of(0).back().triangles == simplify(scene->geometries()[0], kGoOn).back().triangles);
+    CHECK(levels.of(0).back().triangles == mesh::simplify(scene->geometries()[0], kGoOn).back().triangles);
 }
 
 TEST_CASE("levels can be given up while they are made") {
-    const auto scene = scene_with(std::vector<Geometry>(400, torus(120, 60)));
-    const DetailLevels none(scene_with({}));
+    const auto scene = scene_with(std::vector<scene::Geometry>(400, torus(120, 60)));
+    const mesh::DetailLevels none(scene_with({}));
     none.wait();
     {
-        const DetailLevels levels(scene);
+        const mesh::DetailLevels levels(scene);
         while (levels.of(0).empty()) std::this_thread::yield();
         CHECK_FALSE(levels.done());
     }
     std::atomic<bool> stopped{true};
-    CHECK(simplify(torus(40, 20), stopped).empty());
+    CHECK(mesh::simplify(torus(40, 20), stopped).empty());
 }
 
 TEST_CASE(
     "whoever gives levels up waits for nothing, and the scene is let go by the thread that makes them") {
     auto scene = scene_with({torus(120, 60)});
-    const std::weak_ptr<const Scene> held = scene;
+    const std::weak_ptr<const scene::Scene> held = scene;
     const large_allocations::Rule rule(large_allocations::halt);
     {
-        const DetailLevels levels(std::move(scene));
+        const mesh::DetailLevels levels(std::move(scene));
         while (large_allocations::halted == 0) std::this_thread::yield();
     }
     CHECK_FALSE(held.expired());  // it still stands where it was halted
@@ -328,7 +328,7 @@ TEST_CASE(
 TEST_CASE("levels for which there is no memory are not made, and that is all") {
     const auto scene = scene_with({torus(120, 60), ball(16, 8)});
     const large_allocations::Rule rule(large_allocations::fail);
-    const DetailLevels levels(scene);
+    const mesh::DetailLevels levels(scene);
     levels.wait();
     CHECK(levels.done());
     CHECK(levels.of(0).empty());

@@ -13,14 +13,14 @@ inline glm::dvec2 turn(double part) {
     return {std::cos(angle), std::sin(angle)};
 }
 
-inline Geometry ball(unsigned columns, unsigned rows) {
+inline scene::Geometry ball(unsigned columns, unsigned rows) {
     return surface(columns, rows, [](double u, double v) {
         const double up = std::numbers::pi * v, ring = v > 0 && v < 1 ? std::sin(up) : 0;
         return glm::dvec3(ring * turn(u), v < 1 ? std::cos(up) : -1);
     });
 }
 
-inline Geometry torus(unsigned columns, unsigned rows) {
+inline scene::Geometry torus(unsigned columns, unsigned rows) {
     return surface(columns, rows, [](double u, double v) {
         const glm::dvec2 across = turn(v);
         return glm::dvec3((1 + 0.3 * across.x) * turn(u), 0.3 * across.y);
@@ -28,7 +28,7 @@ inline Geometry torus(unsigned columns, unsigned rows) {
 }
 
 /// Bends in one direction only, with creases.
-inline Geometry corrugated(unsigned columns, unsigned rows) {
+inline scene::Geometry corrugated(unsigned columns, unsigned rows) {
     return surface(columns, rows, [](double u, double v) {
         return glm::dvec3(u, 0.02 * std::abs(std::sin(20 * u)) + 0.001 * std::sin(90 * v), v);
     });

@@ -33,8 +33,8 @@ glm::dmat4 turned_by(double x, double z) {
            rows({1, 0, 0, 0}, {0, std::cos(x), -std::sin(x), 0}, {0, std::sin(x), std::cos(x), 0});
 }
 
-Geometry geometry_of(std::vector<glm::dvec3> positions, std::vector<glm::uvec3> triangles) {
-    Geometry geometry;
+scene::Geometry geometry_of(std::vector<glm::dvec3> positions, std::vector<glm::uvec3> triangles) {
+    scene::Geometry geometry;
     geometry.positions = std::move(positions);
     geometry.triangles = std::move(triangles);
     for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
@@ -42,12 +42,12 @@ Geometry geometry_of(std::vector<glm::dvec3> positions, std::vector<glm::uvec3> 
 }
 
 /// In the plane z = 0, its front towards +z, the right angle at the origin.
-Geometry corner_triangle() { return geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}); }
+scene::Geometry corner_triangle() { return geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}); }
 
 /// From −half to half, front outwards.
-Geometry box_of(const glm::dvec3& half) {
-    const Bounds bounds{-half, half};
-    const auto points = corners(bounds);
+scene::Geometry box_of(const glm::dvec3& half) {
+    const math::Bounds bounds{-half, half};
+    const auto points = math::corners(bounds);
     return geometry_of({points.begin(), points.end()}, {{0, 4, 6},
                                                         {0, 6, 2},
                                                         {1, 3, 7},
@@ -63,7 +63,7 @@ Geometry box_of(const glm::dvec3& half) {
 }
 
 /// The unit sphere as a globe of meridians and parallels that share their corners; front outwards.
-Geometry sphere(unsigned meridians, unsigned parallels) {
+scene::Geometry sphere(unsigned meridians, unsigned parallels) {
     std::vector<glm::dvec3> positions{{0, 1, 0}};
     for (unsigned ring = 1; ring < parallels; ++ring) {
         for (unsigned i = 0; i < meridians; ++i) {
@@ -89,11 +89,11 @@ Geometry sphere(unsigned meridians, unsigned parallels) {
     return geometry_of(std::move(positions), std::move(triangles));
 }
 
-enum MaterialPlace : Index { kPlain = 0, kTwoSided = 1, kGlass = 2, kTwoSidedGlass = 3 };
+enum MaterialPlace : scene::Index { kPlain = 0, kTwoSided = 1, kGlass = 2, kTwoSidedGlass = 3 };
 
 /// Scenes of a few nodes: materials as above, nodes hang under the root unless told otherwise.
 struct Builder {
-    SceneParts parts;
+    scene::SceneParts parts;
 
     Builder() {
         parts.materials.resize(4);
@@ -101,45 +101,48 @@ struct Builder {
         parts.materials[kGlass].diffuse.a = parts.materials[kTwoSidedGlass].diffuse.a = 0.99;
     }
 
-    Node& add(Id id, NodeType type, Id parent) {
-        parts.nodes.push_back({Node{id, {}, type, kNone, {}, true, glm::dmat4(1), {}}, parent});
+    scene::Node& add(scene::Id id, scene::NodeType type, scene::Id parent) {
+        parts.nodes.push_back({scene::Node{id, {}, type, scene::kNone, {}, true, glm::dmat4(1), {}}, parent});
         return parts.nodes.back().node;
     }
     /// Instances are made by naming the place of a geometry that is there already.
-    Node& add_instance(Id id, Index geometry, const glm::dmat4& matrix = glm::dmat4(1),
-                       Index material = kNone, Id parent = 0) {
-        Node& node = add(id, NodeType::geometry, parent);
+    scene::Node& add_instance(scene::Id id, scene::Index geometry, const glm::dmat4& matrix = glm::dmat4(1),
+                              scene::Index material = scene::kNone, scene::Id parent = 0) {
+        scene::Node& node = add(id, scene::NodeType::geometry, parent);
         node.matrix = matrix;
-        node.data = GeometryData{geometry, material};
+        node.data = scene::GeometryData{geometry, material};
         return node;
     }
-    Node& add(Id id, Geometry geometry, const glm::dmat4& matrix = glm::dmat4(1), Index material = kNone,
-              Id parent = 0) {
+    scene::Node& add(scene::Id id, scene::Geometry geometry, const glm::dmat4& matrix = glm::dmat4(1),
+                     scene::Index material = scene::kNone, scene::Id parent = 0) {
         parts.geometries.push_back(std::move(geometry));
-        return add_instance(id, static_cast<Index>(parts.geometries.size() - 1), matrix, material, parent);
+        return add_instance(id, static_cast<scene::Index>(parts.geometries.size() - 1), matrix, material,
+                            parent);
     }
-    PlacedScene placed() const {
-        auto scene = Scene::build(parts);
+    scene::PlacedScene placed() const {
+        auto scene = scene::Scene::build(parts);
         REQUIRE_MESSAGE(scene, scene.error().message);
         return place(*std::move(scene));
     }
 };
 
-PlacedScene scene_of(Geometry geometry, const glm::dmat4& matrix = glm::dmat4(1), Index material = kPlain) {
+scene::PlacedScene scene_of(scene::Geometry geometry, const glm::dmat4& matrix = glm::dmat4(1),
+                            scene::Index material = kPlain) {
     Builder builder;
     builder.add(1, std::move(geometry), matrix, material);
     return builder.placed();
 }
 
-Ray ray_from(const glm::dvec3& origin, const glm::dvec3& direction) {
+mesh::Ray ray_from(const glm::dvec3& origin, const glm::dvec3& direction) {
     return {origin, glm::normalize(direction)};
 }
 
-Ray down_z(double x, double y, double z = 5) { return {{x, y, z}, {0, 0, -1}}; }
+mesh::Ray down_z(double x, double y, double z = 5) { return {{x, y, z}, {0, 0, -1}}; }
 
 /// The node's id; −1 where nothing is hit.
-Id picked_id(const PlacedScene& placed, const Ray& ray, bool through_transparent = false) {
-    const auto hit = pick(placed, ray, through_transparent);
+scene::Id picked_id(const scene::PlacedScene& placed, const mesh::Ray& ray,
+                    bool through_transparent = false) {
+    const auto hit = mesh::pick(placed, ray, through_transparent);
     return hit ? placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id : -1;
 }
 
@@ -160,27 +163,27 @@ glm::dvec3 random_direction(std::mt19937& random) {
     }
 }
 
-glm::dvec3 random_point(std::mt19937& random, const Bounds& box) {
+glm::dvec3 random_point(std::mt19937& random, const math::Bounds& box) {
     std::uniform_real_distribution<double> any(-1, 1);
     return box.center() + box.half_extent() * glm::dvec3(any(random), any(random), any(random));
 }
 
-const PlacedScene& car() {
-    static const PlacedScene placed = [] {
-        auto scene = read_scene(VRUT_CARS "/car-20k.vrut");
+const scene::PlacedScene& car() {
+    static const scene::PlacedScene placed = [] {
+        auto scene = io::read_scene(VRUT_CARS "/car-20k.vrut");
         REQUIRE_MESSAGE(scene, scene.error());
         // Without the floor around it, which few rays would miss.
-        std::vector<NodeState> states = file_states(*scene);
+        std::vector<scene::NodeState> states = scene::file_states(*scene);
         for (std::size_t i = 0; i < states.size(); ++i)
             if (scene->nodes()[i].name == "Floor shadow") states[i].active = false;
-        return place(std::make_shared<const Scene>(*std::move(scene)), std::move(states));
+        return place(std::make_shared<const scene::Scene>(*std::move(scene)), std::move(states));
     }();
     return placed;
 }
 
-PlacedScene seen_through(const glm::dmat4& matrix, PlacedScene placed) {
+scene::PlacedScene seen_through(const glm::dmat4& matrix, scene::PlacedScene placed) {
     for (glm::dmat4& world : placed.world) world = matrix * world;
-    placed.bounds = subtree_bounds(placed, 0);
+    placed.bounds = scene::subtree_bounds(placed, 0);
     return placed;
 }
 
@@ -210,7 +213,7 @@ Crossing cross(const LongVec& direction, const LongVec& a, const LongVec& b, con
 struct Reference {
     static constexpr Long kCloseCall = 1e-9L;
 
-    Id node = -1;
+    scene::Id node = -1;
     Long distance = std::numeric_limits<Long>::infinity();
     Long second = distance;  ///< of the nearest other node
     bool at_edge = false;
@@ -218,7 +221,7 @@ struct Reference {
     /// More closely past an edge that counts, or a second node, than double can tell.
     bool close_call() const { return at_edge || (node >= 0 && second - distance < kCloseCall * distance); }
 
-    void add(Id id, const Crossing& crossing) {
+    void add(scene::Id id, const Crossing& crossing) {
         if (!(crossing.inside > -kCloseCall) || crossing.distance <= 0) return;
         if (crossing.distance <= distance && crossing.inside < kCloseCall) at_edge = true;
         if (crossing.inside < 0) return;
@@ -232,16 +235,17 @@ struct Reference {
     }
 };
 
-Reference reference_pick(const PlacedScene& placed, const Ray& ray, bool through_transparent) {
-    const std::vector<bool> shown = shown_nodes(placed, ray.origin);
+Reference reference_pick(const scene::PlacedScene& placed, const mesh::Ray& ray, bool through_transparent) {
+    const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
     Reference best;
     for (std::size_t i = 0; i < shown.size(); ++i) {
-        const Node& node = placed.scene->nodes()[i];
-        const auto* data = std::get_if<GeometryData>(&node.data);
+        const scene::Node& node = placed.scene->nodes()[i];
+        const auto* data = std::get_if<scene::GeometryData>(&node.data);
         if (!shown[i] || !data) continue;
-        const Material& material = placed.scene->material(placed.nodes[i].material);
+        const scene::Material& material = placed.scene->material(placed.nodes[i].material);
         if (through_transparent && placed.scene->is_transparent(material)) continue;
-        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+        const scene::Geometry& geometry =
+            placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const glm::mat<4, 4, Long> world(placed.world[i]);
         const glm::mat<3, 3, Long> axes(world);
         const LongVec place = LongVec(world[3]) - LongVec(ray.origin);
@@ -258,15 +262,16 @@ Reference reference_pick(const PlacedScene& placed, const Ray& ray, bool through
 }
 
 /// From outside towards somewhere in the scene, or from inside to anywhere.
-Ray random_ray(std::mt19937& random, const Bounds& box, bool inside) {
+mesh::Ray random_ray(std::mt19937& random, const math::Bounds& box, bool inside) {
     const glm::dvec3 point = random_point(random, box), direction = random_direction(random);
     if (inside) return {point, direction};
     const glm::dvec3 from = box.center() + direction * (1.5 * box.radius());
     return ray_from(from, point - from);
 }
 
-void check_hit(const PlacedScene& placed, const Ray& ray, const Hit& hit, const Reference& expected) {
-    const Id id = placed.scene->nodes()[static_cast<std::size_t>(hit.node)].id;
+void check_hit(const scene::PlacedScene& placed, const mesh::Ray& ray, const mesh::Hit& hit,
+               const Reference& expected) {
+    const scene::Id id = placed.scene->nodes()[static_cast<std::size_t>(hit.node)].id;
     CHECK(id == expected.node);
     CHECK(std::abs(static_cast<Long>(hit.distance) - expected.distance) < 1e-9L * expected.distance);
     CHECK(hit.point == ray.origin + ray.direction * hit.distance);
@@ -274,22 +279,23 @@ void check_hit(const PlacedScene& placed, const Ray& ray, const Hit& hit, const 
 }
 
 /// Of the car without the floor around it.
-Bounds aim(const PlacedScene& placed) {
+math::Bounds aim(const scene::PlacedScene& placed) {
     const auto& nodes = placed.scene->nodes();
     const auto body =
-        std::find_if(nodes.begin(), nodes.end(), [](const Node& n) { return n.name == "Body"; });
-    return subtree_bounds(placed, body == nodes.end() ? 0 : static_cast<Index>(body - nodes.begin()));
+        std::find_if(nodes.begin(), nodes.end(), [](const scene::Node& n) { return n.name == "Body"; });
+    return scene::subtree_bounds(placed,
+                                 body == nodes.end() ? 0 : static_cast<scene::Index>(body - nodes.begin()));
 }
 
-void compare_with_reference(const PlacedScene& placed, int count, bool through_transparent) {
+void compare_with_reference(const scene::PlacedScene& placed, int count, bool through_transparent) {
     std::mt19937 random(20);
-    const Bounds box = aim(placed);
+    const math::Bounds box = aim(placed);
     int hits = 0, close_calls = 0;
     for (int i = 0; i < count; ++i) {
         CAPTURE(i);
-        const Ray ray = random_ray(random, box, i % 3 == 0);
+        const mesh::Ray ray = random_ray(random, box, i % 3 == 0);
         const Reference expected = reference_pick(placed, ray, through_transparent);
-        const auto hit = pick(placed, ray, through_transparent);
+        const auto hit = mesh::pick(placed, ray, through_transparent);
         if (expected.close_call()) {
             ++close_calls;
             continue;
@@ -302,18 +308,19 @@ void compare_with_reference(const PlacedScene& placed, int count, bool through_t
     CHECK(close_calls < count / 100);
 }
 
-Ray pixel_ray(const Camera& camera, const glm::ivec2& size, const glm::ivec2& pixel) {
-    const double half = std::tan(camera.fov / 2 * kRadiansPerDegree);
+mesh::Ray pixel_ray(const scene::Camera& camera, const glm::ivec2& size, const glm::ivec2& pixel) {
+    const double half = std::tan(camera.fov / 2 * scene::kRadiansPerDegree);
     const double right = (2 * (pixel.x + 0.5) - size.x) / size.y * half;
     const double up = (1 - 2 * (pixel.y + 0.5) / size.y) * half;
-    return ray_from(camera.eye, view_direction(camera) + right_direction(camera) * right + camera.up * up);
+    return ray_from(camera.eye,
+                    scene::view_direction(camera) + scene::right_direction(camera) * right + camera.up * up);
 }
 
 }  // namespace
 
 TEST_CASE("a triangle: point, normal and distance") {
-    const PlacedScene placed = scene_of(corner_triangle());
-    const auto hit = pick(placed, down_z(0.25, 0.5), false);
+    const scene::PlacedScene placed = scene_of(corner_triangle());
+    const auto hit = mesh::pick(placed, down_z(0.25, 0.5), false);
     REQUIRE(hit);
     CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == 1);
     CHECK(hit->distance == 5);
@@ -327,8 +334,8 @@ TEST_CASE("a triangle: point, normal and distance") {
     CHECK(picked_id(placed, {{0.25, 0.25, 0}, {0, 0, -1}}) == -1);  // on it: the distance is 0
     CHECK(picked_id(placed, {{-1, 0.25, 0}, {1, 0, 0}}) == -1);     // along its plane
 
-    const Ray slanted = ray_from({3, 2, 7}, glm::dvec3(0.2, 0.3, 0) - glm::dvec3(3, 2, 7));
-    const auto slanted_hit = pick(placed, slanted, false);
+    const mesh::Ray slanted = ray_from({3, 2, 7}, glm::dvec3(0.2, 0.3, 0) - glm::dvec3(3, 2, 7));
+    const auto slanted_hit = mesh::pick(placed, slanted, false);
     REQUIRE(slanted_hit);
     check_vector(slanted_hit->point, {0.2, 0.3, 0}, 1e-14);
     CHECK(slanted_hit->distance == doctest::Approx(std::sqrt(2.8 * 2.8 + 1.7 * 1.7 + 49)).epsilon(1e-14));
@@ -343,12 +350,13 @@ TEST_CASE("a box from all sides, and from inside") {
             glm::dvec3 out(0), aside(0.1, 0.2, 0.3);
             out[axis] = sign;
             aside[axis] = 0;
-            const auto outside = pick(scene_of(box_of(half)), {out * 10.0 + aside, -out}, false);
+            const auto outside = mesh::pick(scene_of(box_of(half)), {out * 10.0 + aside, -out}, false);
             REQUIRE(outside);
             CHECK(outside->distance == 10 - half[axis]);
             CHECK(outside->normal == out);
             CHECK(picked_id(scene_of(box_of(half)), {aside, out}) == -1);
-            const auto inside = pick(scene_of(box_of(half), glm::dmat4(1), kTwoSided), {aside, out}, false);
+            const auto inside =
+                mesh::pick(scene_of(box_of(half), glm::dmat4(1), kTwoSided), {aside, out}, false);
             REQUIRE(inside);
             CHECK(inside->distance == half[axis]);
             CHECK(inside->normal == -out);
@@ -357,13 +365,13 @@ TEST_CASE("a box from all sides, and from inside") {
 }
 
 TEST_CASE("a sphere is hit where its surface is") {
-    const PlacedScene placed = scene_of(sphere(128, 64), moved_by({1, 2, 3}));
+    const scene::PlacedScene placed = scene_of(sphere(128, 64), moved_by({1, 2, 3}));
     std::mt19937 random(3);
     // Between the sphere through the corners and the largest inside the facets.
     const double least = std::cos(std::numbers::pi / 128) * std::cos(std::numbers::pi / 128);
     for (int i = 0; i < 2000; ++i) {
         const glm::dvec3 out = random_direction(random);
-        const auto hit = pick(placed, {glm::dvec3(1, 2, 3) + out * 4.0, -out}, false);
+        const auto hit = mesh::pick(placed, {glm::dvec3(1, 2, 3) + out * 4.0, -out}, false);
         REQUIRE(hit);
         CHECK(4 - hit->distance <= 1 + 1e-12);
         CHECK(4 - hit->distance >= least - 1e-12);
@@ -374,11 +382,11 @@ TEST_CASE("a sphere is hit where its surface is") {
 TEST_CASE("edges and corners belong to the triangle") {
     for (const double far : {0.0, 1e7}) {
         CAPTURE(far);
-        const PlacedScene placed = scene_of(corner_triangle(), moved_by({far, 0, 0}));
+        const scene::PlacedScene placed = scene_of(corner_triangle(), moved_by({far, 0, 0}));
         for (const glm::dvec2 at : {glm::dvec2(0, 0), {1, 0}, {0, 1}, {0.5, 0}, {0, 0.3}, {0.25, 0.75}}) {
             CAPTURE(at.x);
             CAPTURE(at.y);
-            const auto hit = pick(placed, down_z(far + at.x, at.y), false);
+            const auto hit = mesh::pick(placed, down_z(far + at.x, at.y), false);
             REQUIRE(hit);
             CHECK(hit->distance == 5);
         }
@@ -387,7 +395,7 @@ TEST_CASE("edges and corners belong to the triangle") {
     }
     // Coordinates that double rounds: the very corner still counts, wherever the geometry has its origin.
     for (const glm::dvec3 at : {glm::dvec3(0.1, 0.7, 0.3), {1000.1, -3000.7, 0.3}, {1e7 + 0.1, 3.3, 1e7}}) {
-        const PlacedScene placed = scene_of(
+        const scene::PlacedScene placed = scene_of(
             geometry_of({at, at + glm::dvec3(0.1, 0.03, 0), at + glm::dvec3(0.02, 0.17, 0)}, {{0, 1, 2}}));
         for (const glm::dvec3& corner : placed.scene->geometries()[0].positions)
             CHECK(picked_id(placed, {corner + glm::dvec3(0, 0, 5), {0, 0, -1}}) == 1);
@@ -398,9 +406,9 @@ TEST_CASE("edges and corners belong to the triangle") {
     CHECK(picked_id(scene_of(geometry_of({a, b, {1, -1, 0}}, {{0, 1, 2}})), down_z(0, 0)) == -1);
     CHECK(picked_id(scene_of(geometry_of({b, a, {-1, 1, 0}}, {{0, 1, 2}})), down_z(0, 0)) == 1);
     // Along a diagonal of the axes the shear is exact.
-    const PlacedScene box = scene_of(box_of(glm::dvec3(0.1)));
-    for (const glm::dvec3& corner : corners(Bounds{glm::dvec3(-1), glm::dvec3(1)})) {
-        const auto hit = pick(box, ray_from(corner * 7.0, -corner), false);
+    const scene::PlacedScene box = scene_of(box_of(glm::dvec3(0.1)));
+    for (const glm::dvec3& corner : math::corners(math::Bounds{glm::dvec3(-1), glm::dvec3(1)})) {
+        const auto hit = mesh::pick(box, ray_from(corner * 7.0, -corner), false);
         REQUIRE(hit);
         CHECK(hit->distance == doctest::Approx(6.9 * std::sqrt(3)).epsilon(1e-14));
     }
@@ -410,7 +418,7 @@ TEST_CASE("closed bodies have no gaps") {
     std::mt19937 random(11);
     const glm::dmat4 turned = turned_by(0.7, 1.9);
     struct Case {
-        Geometry geometry;
+        scene::Geometry geometry;
         glm::dmat4 matrix;
     };
     const std::vector<Case> cases{{box_of({1, 2, 3}), glm::dmat4(1)},
@@ -420,21 +428,22 @@ TEST_CASE("closed bodies have no gaps") {
                                   {sphere(24, 12), turned * scaled_by({1e6, 1, 1e6})}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
         CAPTURE(i);
-        const PlacedScene placed = scene_of(cases[i].geometry, cases[i].matrix, kTwoSided);
+        const scene::PlacedScene placed = scene_of(cases[i].geometry, cases[i].matrix, kTwoSided);
         const auto from_node = [&](const glm::dvec3& point) {
             return glm::dvec3(placed.world[1] * glm::dvec4(point, 1));
         };
         const glm::dvec3 middle = from_node({0.1, -0.2, 0.05});
         int missed = 0;
         for (int k = 0; k < 20000; ++k)
-            if (!pick(placed, {middle, random_direction(random)}, false)) ++missed;
+            if (!mesh::pick(placed, {middle, random_direction(random)}, false)) ++missed;
         CHECK(missed == 0);
         // Straight at all corners, and at all edges, as closely as double can aim.
-        const Geometry& geometry = cases[i].geometry;
+        const scene::Geometry& geometry = cases[i].geometry;
         for (const glm::uvec3& triangle : geometry.triangles) {
             const glm::dvec3 &a = geometry.positions[triangle.x], &b = geometry.positions[triangle.y];
             for (const double part : {0.0, 0.5, 0.3, 0.77})
-                if (!pick(placed, ray_from(middle, from_node(a + (b - a) * part) - middle), false)) ++missed;
+                if (!mesh::pick(placed, ray_from(middle, from_node(a + (b - a) * part) - middle), false))
+                    ++missed;
         }
         CHECK(missed == 0);
     }
@@ -450,7 +459,7 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
         CAPTURE(round);
         Builder builder;
         std::vector<std::array<glm::dvec3, 3>> triangles;
-        for (Id id = 1; id <= 8; ++id) {
+        for (scene::Id id = 1; id <= 8; ++id) {
             // Levels repeat, so that higher ids win ties; some triangles have no area.
             const double height = place(random) % 4;
             const bool upright = id % 4 == 0;
@@ -460,11 +469,11 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
             triangles.push_back(points);
             builder.add(id, geometry_of({points.begin(), points.end()}, {{0, 1, 2}}));
         }
-        const PlacedScene placed = builder.placed();
+        const scene::PlacedScene placed = builder.placed();
         for (int x = 0; x <= 12; ++x) {
             for (int y = 0; y <= 12; ++y) {
                 const glm::dvec2 p(x / 2.0, y / 2.0);
-                Id expected = -1;
+                scene::Id expected = -1;
                 double highest = -1;
                 bool known = true;
                 for (std::size_t i = 0; i < triangles.size(); ++i) {
@@ -478,14 +487,14 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
                     if (height >= highest) {
                         known = gap > 1e-12 || (gap == 0 && !slanted && known);
                         highest = height;
-                        expected = static_cast<Id>(i + 1);
+                        expected = static_cast<scene::Id>(i + 1);
                     } else if (gap <= 1e-12) {
                         known = false;
                     }
                 }
                 CAPTURE(x);
                 CAPTURE(y);
-                const auto hit = pick(placed, down_z(p.x, p.y, 10), false);
+                const auto hit = mesh::pick(placed, down_z(p.x, p.y, 10), false);
                 REQUIRE(hit.has_value() == (expected >= 0));
                 if (!hit) continue;
                 CHECK(hit->distance == doctest::Approx(10 - highest).epsilon(1e-14));
@@ -507,14 +516,15 @@ TEST_CASE("the car, against the reference") {
 }
 
 TEST_CASE("a picked point lies under its pixel") {
-    const Camera camera = home_camera(car().bounds, 1.5);
+    const scene::Camera camera = navigation::home_camera(car().bounds, 1.5);
     const glm::ivec2 size(60, 40);
     const glm::dmat4 clip_from_world =
-        clip_from_view(camera, 1.5, fit_clip_range(camera, car().bounds)) * view_from_world(camera);
+        scene::clip_from_view(camera, 1.5, scene::fit_clip_range(camera, car().bounds)) *
+        scene::view_from_world(camera);
     int hits = 0;
     for (int y = 0; y < size.y; ++y) {
         for (int x = 0; x < size.x; ++x) {
-            const auto hit = pick(car(), pixel_ray(camera, size, {x, y}), false);
+            const auto hit = mesh::pick(car(), pixel_ray(camera, size, {x, y}), false);
             if (!hit) continue;
             ++hits;
             const glm::dvec4 clip = clip_from_world * glm::dvec4(hit->point, 1);
@@ -526,20 +536,20 @@ TEST_CASE("a picked point lies under its pixel") {
 }
 
 TEST_CASE("sides are those that are drawn") {
-    const Ray at_front = down_z(0.25, 0.25), at_back{{0.25, 0.25, -5}, {0, 0, 1}};
+    const mesh::Ray at_front = down_z(0.25, 0.25), at_back{{0.25, 0.25, -5}, {0, 0, 1}};
     // A mirrored matrix turns the picture, and the front stays the front.
     const std::vector<glm::dmat4> matrices{glm::dmat4(1), rows({0, 1, 0, 0}, {1, 0, 0, 0}, {0, 0, 1, 0}),
                                            scaled_by({1, 1, -1})};
     for (std::size_t i = 0; i < matrices.size(); ++i) {
         CAPTURE(i);
         const bool exchanged = i == 2;
-        const PlacedScene one = scene_of(corner_triangle(), matrices[i]);
+        const scene::PlacedScene one = scene_of(corner_triangle(), matrices[i]);
         CHECK(picked_id(one, at_front) == (exchanged ? -1 : 1));
         CHECK(picked_id(one, at_back) == (exchanged ? 1 : -1));
-        for (const Index material : {kTwoSided, kTwoSidedGlass}) {
-            const PlacedScene both = scene_of(corner_triangle(), matrices[i], material);
-            for (const Ray& ray : {at_front, at_back}) {
-                const auto hit = pick(both, ray, false);
+        for (const scene::Index material : {kTwoSided, kTwoSidedGlass}) {
+            const scene::PlacedScene both = scene_of(corner_triangle(), matrices[i], material);
+            for (const mesh::Ray& ray : {at_front, at_back}) {
+                const auto hit = mesh::pick(both, ray, false);
                 REQUIRE(hit);
                 CHECK(hit->distance == 5);
                 CHECK(hit->normal == -ray.direction);
@@ -554,11 +564,11 @@ TEST_CASE("sides are those that are drawn") {
 }
 
 TEST_CASE("flattened parts are hit from both sides") {
-    const PlacedScene flat =
+    const scene::PlacedScene flat =
         scene_of(box_of({1, 2, 3}), turned_by(0.5, 0.2) * scaled_by({1, 0, 1}) * turned_by(0.1, 0));
     const glm::dvec3 normal(turned_by(0.5, 0.2)[1]);
     for (const double sign : {-1.0, 1.0}) {
-        const auto hit = pick(flat, {normal * (4 * sign), normal * -sign}, false);
+        const auto hit = mesh::pick(flat, {normal * (4 * sign), normal * -sign}, false);
         REQUIRE(hit);
         CHECK(hit->distance == doctest::Approx(4).epsilon(1e-14));
         check_vector(hit->normal, normal * sign, 1e-14);
@@ -567,7 +577,7 @@ TEST_CASE("flattened parts are hit from both sides") {
     CHECK(picked_id(scene_of(box_of({1, 2, 3}), scaled_by({1, 0, 0})), down_z(0, 0)) == -1);
     CHECK(picked_id(scene_of(box_of({1, 2, 3}), scaled_by({0, 0, 0})), down_z(0, 0)) == -1);
     // As thin, but not flat: the back stays a back.
-    const Ray from_below{{0.25, 0.25, -5}, {0, 0, 1}};
+    const mesh::Ray from_below{{0.25, 0.25, -5}, {0, 0, 1}};
     CHECK(picked_id(scene_of(corner_triangle(), scaled_by({1, 1, 1e-9})), from_below) == -1);
     CHECK(picked_id(scene_of(corner_triangle(), scaled_by({1, 1, 0})), from_below) == 1);
     // A sheared matrix without volume, of full-length axes.
@@ -581,10 +591,10 @@ TEST_CASE("far from the origin, tiny and huge") {
             CAPTURE(size);
             CAPTURE(place.x);
             const glm::dmat4 matrix = moved_by(place) * scaled_by(glm::dvec3(size));
-            const PlacedScene placed = scene_of(corner_triangle(), matrix);
+            const scene::PlacedScene placed = scene_of(corner_triangle(), matrix);
             const double above = 4 * size;
-            const Ray ray = down_z(place.x + 0.25 * size, place.y + 0.25 * size, place.z + above);
-            const auto hit = pick(placed, ray, false);
+            const mesh::Ray ray = down_z(place.x + 0.25 * size, place.y + 0.25 * size, place.z + above);
+            const auto hit = mesh::pick(placed, ray, false);
             REQUIRE(hit);
             // Seen from the ray's origin, which is rounded, nothing else is.
             CHECK(hit->distance == doctest::Approx(ray.origin.z - place.z).epsilon(1e-15));
@@ -594,54 +604,54 @@ TEST_CASE("far from the origin, tiny and huge") {
         }
     }
     // The geometry is far from its own origin, and its matrix brings it back.
-    Geometry far = corner_triangle();
+    scene::Geometry far = corner_triangle();
     far.bounds = {};
     for (glm::dvec3& position : far.positions) {
         position += glm::dvec3(1e7);
         far.bounds.add(position);
     }
-    const PlacedScene back = scene_of(far, moved_by(glm::dvec3(-1e7)));
-    CHECK(pick(back, down_z(0, 0, 0.001), false)->distance == 0.001);
+    const scene::PlacedScene back = scene_of(far, moved_by(glm::dvec3(-1e7)));
+    CHECK(mesh::pick(back, down_z(0, 0, 0.001), false)->distance == 0.001);
     CHECK(picked_id(back, down_z(1e-9, 1e-9, 0.001)) == 1);
     CHECK(picked_id(back, down_z(-1e-9, 1e-9, 0.001)) == -1);
     // Both are far, and the geometry is not on the grid that double has there.
-    Geometry near_far = corner_triangle();
+    scene::Geometry near_far = corner_triangle();
     near_far.bounds = {};
     for (glm::dvec3& position : near_far.positions) {
         position += glm::dvec3(5 + 1e-12);
         near_far.bounds.add(position);
     }
-    const PlacedScene moved = scene_of(near_far, moved_by(glm::dvec3(1e7)));
-    const auto hit = pick(moved, down_z(1e7 + 5.25, 1e7 + 5.25, 1e7 + 6), false);
+    const scene::PlacedScene moved = scene_of(near_far, moved_by(glm::dvec3(1e7)));
+    const auto hit = mesh::pick(moved, down_z(1e7 + 5.25, 1e7 + 5.25, 1e7 + 6), false);
     REQUIRE(hit);
     CHECK(hit->distance == doctest::Approx(1 - 1e-12).epsilon(1e-15));
 }
 
 TEST_CASE("only what shows is hit") {
     Builder builder;
-    builder.add(1, NodeType::assembly, 0);
+    builder.add(1, scene::NodeType::assembly, 0);
     builder.add(10, corner_triangle(), moved_by({0, 0, 2}), kPlain, 1);
-    builder.add(2, NodeType::switch_, 0).data = SwitchData{1};
+    builder.add(2, scene::NodeType::switch_, 0).data = scene::SwitchData{1};
     builder.add_instance(20, 0, moved_by({0, 0, 1.5}), kPlain, 2);
     builder.add_instance(21, 0, moved_by({0, 0, 1}), kPlain, 2);
-    builder.add(3, NodeType::lod, 0).data = LodData{{10, 20}};
+    builder.add(3, scene::NodeType::lod, 0).data = scene::LodData{{10, 20}};
     builder.add_instance(30, 0, moved_by({0, 0, 0.5}), kPlain, 3);
     builder.add_instance(31, 0, moved_by({0, 0, 0.25}), kPlain, 3);
-    const auto node = [&](Id id) -> Node& {
+    const auto node = [&](scene::Id id) -> scene::Node& {
         return std::find_if(builder.parts.nodes.begin(), builder.parts.nodes.end(),
                             [&](const auto& part) { return part.node.id == id; })
             ->node;
     };
-    const Ray ray = down_z(0.25, 0.25);
+    const mesh::Ray ray = down_z(0.25, 0.25);
     CHECK(picked_id(builder.placed(), ray) == 10);
     node(10).active = false;
     CHECK(picked_id(builder.placed(), ray) == 21);
     node(10).active = true;
     node(1).active = false;
     CHECK(picked_id(builder.placed(), ray) == 21);
-    node(2).data = SwitchData{SwitchData::kAllChildren};
+    node(2).data = scene::SwitchData{scene::SwitchData::kAllChildren};
     CHECK(picked_id(builder.placed(), ray) == 20);
-    node(2).data = SwitchData{SwitchData::kNoChild};
+    node(2).data = scene::SwitchData{scene::SwitchData::kNoChild};
     // By the distance of the ray's origin, not of the hit.
     CHECK(picked_id(builder.placed(), down_z(0.25, 0.25, 9)) == 30);
     CHECK(picked_id(builder.placed(), down_z(0.25, 0.25, 10)) == 31);
@@ -656,9 +666,9 @@ TEST_CASE("of equal distances the higher id is hit") {
         builder.add(low_first ? 4 : 9, sphere(16, 8), matrix, kGlass);
         builder.add_instance(low_first ? 9 : 4, 0, matrix, kPlain);
         builder.add_instance(6, 0, matrix, kPlain);
-        builder.add(100, NodeType::assembly, 0);
+        builder.add(100, scene::NodeType::assembly, 0);
         builder.add_instance(2, 0, matrix, kTwoSided, 100);
-        const PlacedScene placed = builder.placed();
+        const scene::PlacedScene placed = builder.placed();
         std::mt19937 random(2);
         for (int i = 0; i < 500; ++i) {
             const glm::dvec3 out = random_direction(random);
@@ -691,7 +701,7 @@ TEST_CASE("slivers, and triangles without area") {
     const glm::dmat4 turned = turned_by(0.4, 0.9);
     for (const double thin : {1e-4, 1e-7, 1e-10}) {
         CAPTURE(thin);
-        const PlacedScene slivers =
+        const scene::PlacedScene slivers =
             scene_of(geometry_of({{-500, 0, 0}, {500, 0.1, 0}, {0, 0.05 + thin, 0}, {0, 0.05 - thin, 0}},
                                  {{0, 1, 2}, {1, 0, 3}}),
                      turned, kTwoSided);
@@ -701,16 +711,16 @@ TEST_CASE("slivers, and triangles without area") {
             const double along = any(random);
             const glm::dvec3 target(turned * glm::dvec4(along, 0.05 + 0.0001 * along, 0, 1));
             const glm::dvec3 from(turned * glm::dvec4(along + any(random) * 0.001, 0.1, 3, 1));
-            const auto hit = pick(slivers, ray_from(from, target - from), false);
+            const auto hit = mesh::pick(slivers, ray_from(from, target - from), false);
             REQUIRE(hit);
             CHECK(hit->distance == doctest::Approx(glm::distance(from, target)).epsilon(1e-14 / thin));
         }
     }
 
-    Geometry none = geometry_of({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 0, 0}},
-                                {{0, 0, 0}, {0, 1, 1}, {0, 1, 0}, {0, 1, 2}, {2, 0, 1}, {0, 3, 1}});
+    scene::Geometry none = geometry_of({{0, 0, 0}, {1, 1, 0}, {2, 2, 0}, {0, 0, 0}},
+                                       {{0, 0, 0}, {0, 1, 1}, {0, 1, 0}, {0, 1, 2}, {2, 0, 1}, {0, 3, 1}});
     for (const glm::dmat4& matrix : {glm::dmat4(1), turned_by(0.3, 0.1), moved_by({0.1, 0.1, 1e7})}) {
-        const PlacedScene placed = scene_of(none, matrix, kTwoSided);
+        const scene::PlacedScene placed = scene_of(none, matrix, kTwoSided);
         for (const double part : {0.0, 0.25, 0.5, 1.0}) {
             const glm::dvec3 at(placed.world[1] * glm::dvec4(2 * part, 2 * part, 0, 1));
             CHECK(picked_id(placed, {at + glm::dvec3(0, 0, 5), {0, 0, -1}}) == -1);
@@ -720,31 +730,31 @@ TEST_CASE("slivers, and triangles without area") {
 }
 
 TEST_CASE("nothing there, and numbers that are none") {
-    CHECK_FALSE(pick(place(Scene()), {}, false));
-    CHECK(picked_id(scene_of(Geometry{}), down_z(0, 0)) == -1);
+    CHECK_FALSE(mesh::pick(place(scene::Scene()), {}, false));
+    CHECK(picked_id(scene_of(scene::Geometry{}), down_z(0, 0)) == -1);
     CHECK(picked_id(scene_of(geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {})), down_z(0.1, 0.1)) == -1);
     Builder without;
-    without.add_instance(1, kNone);
+    without.add_instance(1, scene::kNone);
     CHECK(picked_id(without.placed(), down_z(0, 0)) == -1);
 
-    const PlacedScene placed = scene_of(corner_triangle(), glm::dmat4(1), kTwoSided);
+    const scene::PlacedScene placed = scene_of(corner_triangle(), glm::dmat4(1), kTwoSided);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double bad : {nan, kInfinity, -kInfinity}) {
         CAPTURE(bad);
         for (int axis = 0; axis < 3; ++axis) {
-            Ray ray = down_z(0.25, 0.25);
+            mesh::Ray ray = down_z(0.25, 0.25);
             ray.origin[axis] = bad;
-            CHECK_FALSE(pick(placed, ray, false));
+            CHECK_FALSE(mesh::pick(placed, ray, false));
             ray = down_z(0.25, 0.25);
             ray.direction[axis] = bad;
-            CHECK_FALSE(pick(placed, ray, false));
+            CHECK_FALSE(mesh::pick(placed, ray, false));
         }
         // A bad part hides nothing behind it.
         Builder builder;
         glm::dmat4 matrix(1);
         matrix[1][1] = bad;
         builder.add(7, corner_triangle(), matrix, kTwoSided);
-        Geometry broken = corner_triangle();
+        scene::Geometry broken = corner_triangle();
         broken.positions[1].x = bad;
         builder.add(8, broken, moved_by({0, 0, 1}), kTwoSided);
         broken = corner_triangle();
@@ -753,7 +763,7 @@ TEST_CASE("nothing there, and numbers that are none") {
         builder.add(3, corner_triangle());
         CHECK(picked_id(builder.placed(), down_z(0.25, 0.25)) == 3);
     }
-    CHECK_FALSE(pick(placed, {{0.25, 0.25, 5}, {0, 0, 0}}, false));
+    CHECK_FALSE(mesh::pick(placed, {{0.25, 0.25, 5}, {0, 0, 0}}, false));
     // Beyond what is drawn.
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1e17})), down_z(0.25, 0.25)) == 1);
     CHECK(picked_id(scene_of(corner_triangle(), moved_by({0, 0, -1e19})), down_z(0.25, 0.25)) == -1);
@@ -762,16 +772,16 @@ TEST_CASE("nothing there, and numbers that are none") {
 }
 
 TEST_CASE("what is hit follows from the states of the nodes") {
-    const PlacedScene file = scene_of(corner_triangle(), glm::dmat4(1), kTwoSided);
-    const Ray from_behind{{0.25, 0.25, -1}, {0, 0, 1}};
+    const scene::PlacedScene file = scene_of(corner_triangle(), glm::dmat4(1), kTwoSided);
+    const mesh::Ray from_behind{{0.25, 0.25, -1}, {0, 0, 1}};
     const auto hit_with = [&](auto change) {
-        std::vector<NodeState> states = file.nodes;
+        std::vector<scene::NodeState> states = file.nodes;
         change(states[1]);
-        return pick(place(file.scene, states), from_behind, false);
+        return mesh::pick(place(file.scene, states), from_behind, false);
     };
-    CHECK(hit_with([](NodeState&) {}));
-    CHECK_FALSE(hit_with([](NodeState& state) { state.material = kPlain; }));
-    CHECK_FALSE(hit_with([](NodeState& state) { state.active = false; }));
-    CHECK_FALSE(hit_with([](NodeState& state) { state.matrix = moved_by({0, 0, -2}); }));
-    CHECK(hit_with([](NodeState& state) { state.matrix = moved_by({0, 0, 2}); })->distance == 3);
+    CHECK(hit_with([](scene::NodeState&) {}));
+    CHECK_FALSE(hit_with([](scene::NodeState& state) { state.material = kPlain; }));
+    CHECK_FALSE(hit_with([](scene::NodeState& state) { state.active = false; }));
+    CHECK_FALSE(hit_with([](scene::NodeState& state) { state.matrix = moved_by({0, 0, -2}); }));
+    CHECK(hit_with([](scene::NodeState& state) { state.matrix = moved_by({0, 0, 2}); })->distance == 3);
 }

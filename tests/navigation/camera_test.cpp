@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double degrees(double value) { return value * std::numbers::pi / 180; }
 
 /// Where the camera sees a point: right and up in halves of the view's height, and how far along the view.
-glm::dvec3 seen(const Camera& camera, const glm::dvec3& point) {
+glm::dvec3 seen(const scene::Camera& camera, const glm::dvec3& point) {
     const glm::dvec3 view = glm::normalize(camera.focus - camera.eye);
     const glm::dvec3 right = glm::normalize(glm::cross(view, camera.up));
     const glm::dvec3 from_eye = point - camera.eye;
@@ -34,35 +34,36 @@ public:
         return std::uniform_real_distribution<double>(low, high)(engine_);
     }
     glm::dvec3 vector(double size) { return {number(-size, size), number(-size, size), number(-size, size)}; }
-    Camera camera() {
-        Camera result;
+    scene::Camera camera() {
+        scene::Camera result;
         result.eye = vector(10);
         result.focus = result.eye + vector(10);
         result.center = vector(10);
         result.up = vector(1);
         result.fov = number(10, 120);
-        return with_orthogonal_up(result);
+        return scene::with_orthogonal_up(result);
     }
 
 private:
     std::mt19937 engine_;
 };
 
-void check_frame(const Camera& camera) {
+void check_frame(const scene::Camera& camera) {
     CHECK(std::abs(glm::length(camera.up) - 1) < 1e-12);
-    CHECK(std::abs(glm::dot(camera.up, view_direction(camera))) < 1e-12);
+    CHECK(std::abs(glm::dot(camera.up, scene::view_direction(camera))) < 1e-12);
 }
 
-PlacedScene scene_of(std::vector<SceneParts::PartNode> nodes) {
-    SceneParts parts;
+scene::PlacedScene scene_of(std::vector<scene::SceneParts::PartNode> nodes) {
+    scene::SceneParts parts;
     parts.nodes = std::move(nodes);
-    auto scene = Scene::build(std::move(parts));
+    auto scene = scene::Scene::build(std::move(parts));
     REQUIRE(scene);
-    return place(*std::move(scene));
+    return scene::place(*std::move(scene));
 }
 
-SceneParts::PartNode camera_part(Id id, Id parent, const CameraData& data) {
-    return {Node{id, {}, NodeType::camera, kNone, {}, true, glm::dmat4(1), data}, parent};
+scene::SceneParts::PartNode camera_part(scene::Id id, scene::Id parent, const scene::CameraData& data) {
+    return {scene::Node{id, {}, scene::NodeType::camera, scene::kNone, {}, true, glm::dmat4(1), data},
+            parent};
 }
 
 }  // namespace
@@ -71,17 +72,17 @@ TEST_CASE("fit: the sphere around the box touches the smaller side of the view")
     Random random(1);
     for (const double fov : {1.0, 20.0, 40.0, 90.0, 170.0})
         for (const double aspect : {0.01, 0.5, 1.0, 16.0 / 9, 100.0}) {
-            Camera before = random.camera();
+            scene::Camera before = random.camera();
             before.fov = fov;
-            Bounds box;
+            math::Bounds box;
             box.add(random.vector(5));
             box.add(random.vector(50));
-            const Camera after = fitted(before, box, aspect);
+            const scene::Camera after = navigation::fitted(before, box, aspect);
             const double smaller = std::min(degrees(fov) / 2, std::atan(std::tan(degrees(fov) / 2) * aspect));
             const double distance = glm::distance(after.eye, box.center());
             CHECK(std::asin(glm::length(box.max - box.min) / 2 / distance) ==
                   doctest::Approx(smaller).epsilon(1e-12));
-            for (const glm::dvec3& corner : corners(box)) {
+            for (const glm::dvec3& corner : math::corners(box)) {
                 const glm::dvec3 place = seen(after, corner);
                 CHECK(place.z > 0);
                 CHECK(std::abs(place.x) <= aspect * (1 + 1e-9));
@@ -89,43 +90,43 @@ TEST_CASE("fit: the sphere around the box touches the smaller side of the view")
             }
             CHECK(after.focus == box.center());
             CHECK(after.center == box.center());
-            CHECK(near(view_direction(after), view_direction(before)));
+            CHECK(near(scene::view_direction(after), scene::view_direction(before)));
             CHECK(after.up == before.up);
             CHECK(after.fov == fov);
         }
 }
 
 TEST_CASE("fit: nothing, a point, and a box far from the origin") {
-    const Camera camera;  // looks along -z
-    CHECK(near(fitted(camera, Bounds{}, 1).eye, {0, 0, 1 / std::sin(degrees(20))}));
-    CHECK(fitted(camera, Bounds{}, 1).focus == glm::dvec3(0));
-    Bounds point;
+    const scene::Camera camera;  // looks along -z
+    CHECK(near(navigation::fitted(camera, math::Bounds{}, 1).eye, {0, 0, 1 / std::sin(degrees(20))}));
+    CHECK(navigation::fitted(camera, math::Bounds{}, 1).focus == glm::dvec3(0));
+    math::Bounds point;
     point.add({3, 4, 5});
-    CHECK(near(fitted(camera, point, 1).eye, {3, 4, 5 + 1 / std::sin(degrees(20))}));
+    CHECK(near(navigation::fitted(camera, point, 1).eye, {3, 4, 5 + 1 / std::sin(degrees(20))}));
     for (const double far : {1e7, 1e12, 1e15, 1e30, 1e149})
         for (const double size : {0.0, 1e-6, 1.0}) {
-            Bounds box;
+            math::Bounds box;
             box.add({far, far, far});
             box.add({far + size, far, far});
-            const Camera fit = fitted(camera, box, 1);
-            CHECK(is_valid_pose(fit, box.radius()));
-            CHECK(near(view_direction(fit), {0, 0, -1}, 1e-3));
+            const scene::Camera fit = navigation::fitted(camera, box, 1);
+            CHECK(scene::is_valid_pose(fit, box.radius()));
+            CHECK(near(scene::view_direction(fit), {0, 0, -1}, 1e-3));
         }
 }
 
 TEST_CASE("near and far are tight around what is in front of the eye") {
     Random random(2);
     for (int round = 0; round < 2000; ++round) {
-        const Camera camera = random.camera();
-        Bounds box;
+        const scene::Camera camera = random.camera();
+        math::Bounds box;
         box.add(random.vector(20));
         box.add(random.vector(20));
         double nearest = kInfinity, farthest = -kInfinity;
-        for (const glm::dvec3& corner : corners(box)) {
+        for (const glm::dvec3& corner : math::corners(box)) {
             nearest = std::min(nearest, seen(camera, corner).z);
             farthest = std::max(farthest, seen(camera, corner).z);
         }
-        const ClipRange range = fit_clip_range(camera, box);
+        const scene::ClipRange range = scene::fit_clip_range(camera, box);
         CHECK(range.near > 0);
         CHECK(range.far > range.near);
         if (farthest <= 0) continue;
@@ -139,40 +140,40 @@ TEST_CASE("near and far are tight around what is in front of the eye") {
         }
     }
     // With the eye inside of something huge, what it looks at stays in view.
-    Bounds huge;
+    math::Bounds huge;
     huge.add({-1e12, -1e12, -1e12});
     huge.add({1e12, 1e12, 1e12});
-    CHECK(fit_clip_range(Camera{}, huge).near == doctest::Approx(5e-3));
-    const ClipRange empty = fit_clip_range(Camera{}, Bounds{});
+    CHECK(scene::fit_clip_range(scene::Camera{}, huge).near == doctest::Approx(5e-3));
+    const scene::ClipRange empty = scene::fit_clip_range(scene::Camera{}, math::Bounds{});
     CHECK(empty.near > 0);
     CHECK(empty.far > 5);
 }
 
 TEST_CASE("the view matrix") {
-    Camera camera;
+    scene::Camera camera;
     camera.eye = {10, 2, 0};
     camera.focus = {7, 2, 0};
     const glm::dmat4 expected = glm::transpose(glm::dmat4(glm::dvec4(0, 0, -1, 0), glm::dvec4(0, 1, 0, -2),
                                                           glm::dvec4(1, 0, 0, -10), glm::dvec4(0, 0, 0, 1)));
-    CHECK(view_from_world(camera) == expected);
+    CHECK(scene::view_from_world(camera) == expected);
 
     Random random(3);
     for (int round = 0; round < 100; ++round) {
-        const Camera any = random.camera();
-        const glm::dmat4 view = view_from_world(any);
+        const scene::Camera any = random.camera();
+        const glm::dmat4 view = scene::view_from_world(any);
         const auto in_view = [&](const glm::dvec3& point) { return glm::dvec3(view * glm::dvec4(point, 1)); };
         CHECK(near(in_view(any.eye), glm::dvec3(0)));
-        CHECK(near(in_view(any.focus), glm::dvec3(0, 0, -focus_distance(any))));
+        CHECK(near(in_view(any.focus), glm::dvec3(0, 0, -scene::focus_distance(any))));
         CHECK(near(in_view(any.eye + any.up), glm::dvec3(0, 1, 0)));
-        CHECK(near(in_view(any.eye + right_direction(any)), glm::dvec3(1, 0, 0)));
+        CHECK(near(in_view(any.eye + scene::right_direction(any)), glm::dvec3(1, 0, 0)));
         CHECK(glm::determinant(view) == doctest::Approx(1).epsilon(1e-12));
     }
 }
 
 TEST_CASE("the projection matrix") {
-    Camera camera;
+    scene::Camera camera;
     camera.fov = 90;
-    const glm::dmat4 clip = clip_from_view(camera, 2, {1, 3});
+    const glm::dmat4 clip = scene::clip_from_view(camera, 2, {1, 3});
     const auto check = [&](const glm::dvec4& point, const glm::dvec4& expected) {
         CHECK(glm::distance(clip * point, expected) < 1e-14);
     };
@@ -183,29 +184,30 @@ TEST_CASE("the projection matrix") {
     check({2, -1, -1, 1}, {1, -1, -1, 1});  // a corner of the near plane
     check({6, 3, -3, 1}, {3, 3, 3, 3});     // and of the far one
     camera.fov = 60;
-    CHECK(clip_from_view(camera, 1, {1, 3})[1][1] == doctest::Approx(std::sqrt(3.0)).epsilon(1e-15));
+    CHECK(scene::clip_from_view(camera, 1, {1, 3})[1][1] == doctest::Approx(std::sqrt(3.0)).epsilon(1e-15));
 }
 
 TEST_CASE("a drag to the right turns the scene to the right, down tips its top towards the viewer") {
-    const Camera camera;  // at (0, 0, 5), looking at the origin
+    const scene::Camera camera;  // at (0, 0, 5), looking at the origin
     for (const bool keep_upright : {true, false}) {
         CAPTURE(keep_upright);
-        const Camera right = rotated(camera, 90, 0, keep_upright);
+        const scene::Camera right = navigation::rotated(camera, 90, 0, keep_upright);
         CHECK(near(right.eye, {-5, 0, 0}));
         CHECK(near(right.up, {0, 1, 0}));
-        const Camera down = rotated(camera, 0, 90, keep_upright);
+        const scene::Camera down = navigation::rotated(camera, 0, 90, keep_upright);
         CHECK(near(down.eye, {0, 5, 0}));
         CHECK(near(down.up, {0, 0, -1}));
         // What faces the viewer moves to the right, what is on top comes nearer.
-        CHECK(seen(rotated(camera, 10, 0, keep_upright), {0, 0, 1}).x > 0.05);
-        CHECK(seen(rotated(camera, 0, 30, keep_upright), {0, 1, 0}).z == doctest::Approx(4.5).epsilon(1e-12));
-        CHECK(seen(rotated(camera, 0, -30, keep_upright), {0, 1, 0}).z ==
+        CHECK(seen(navigation::rotated(camera, 10, 0, keep_upright), {0, 0, 1}).x > 0.05);
+        CHECK(seen(navigation::rotated(camera, 0, 30, keep_upright), {0, 1, 0}).z ==
+              doctest::Approx(4.5).epsilon(1e-12));
+        CHECK(seen(navigation::rotated(camera, 0, -30, keep_upright), {0, 1, 0}).z ==
               doctest::Approx(5.5).epsilon(1e-12));
     }
     for (int right = -360; right <= 360; right += 30)
         for (int down = -90; down <= 90; down += 15) {
             const double a = degrees(right), b = degrees(down);
-            const Camera turned = rotated(camera, right, down, true);
+            const scene::Camera turned = navigation::rotated(camera, right, down, true);
             CHECK(near(turned.eye,
                        glm::dvec3(-std::sin(a) * std::cos(b), std::sin(b), std::cos(a) * std::cos(b)) * 5.0));
             CHECK(near(turned.up, {std::sin(a) * std::sin(b), std::cos(b), -std::cos(a) * std::sin(b)}));
@@ -216,13 +218,13 @@ TEST_CASE("a drag to the right turns the scene to the right, down tips its top t
 TEST_CASE("a turn keeps the distances of eye and focus from the centre, and the distance between them") {
     Random random(4);
     for (int round = 0; round < 2000; ++round) {
-        const Camera camera = random.camera();
-        const Camera turned =
-            rotated(camera, random.number(-400, 400), random.number(-400, 400), round % 2 == 0);
+        const scene::Camera camera = random.camera();
+        const scene::Camera turned =
+            navigation::rotated(camera, random.number(-400, 400), random.number(-400, 400), round % 2 == 0);
         const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-12 * b; };
         CHECK(same(glm::distance(turned.eye, turned.center), glm::distance(camera.eye, camera.center)));
         CHECK(same(glm::distance(turned.focus, turned.center), glm::distance(camera.focus, camera.center)));
-        CHECK(same(focus_distance(turned), focus_distance(camera)));
+        CHECK(same(scene::focus_distance(turned), scene::focus_distance(camera)));
         CHECK(turned.center == camera.center);
         CHECK(turned.fov == camera.fov);
         check_frame(turned);
@@ -232,11 +234,11 @@ TEST_CASE("a turn keeps the distances of eye and focus from the centre, and the 
 TEST_CASE("kept upright, the scene is never turned over") {
     Random random(5);
     for (int sequence = 0; sequence < 200; ++sequence) {
-        Camera camera = random.camera();  // rolled anyhow
+        scene::Camera camera = random.camera();  // rolled anyhow
         const double side = camera.up.y < 0 ? -1 : 1;
         bool at_pole = false;
         for (int step = 0; step < 50; ++step) {
-            camera = rotated(camera, random.number(-300, 300), random.number(-90, 90), true);
+            camera = navigation::rotated(camera, random.number(-300, 300), random.number(-90, 90), true);
             // Straight above or below there is no telling which side is up.
             at_pole = at_pole || std::abs(camera.up.y) < 1e-9;
             if (!at_pole || side > 0) CHECK(camera.up.y * side > -1e-9);
@@ -246,68 +248,70 @@ TEST_CASE("kept upright, the scene is never turned over") {
 }
 
 TEST_CASE("kept upright, a drag ends at the poles and comes back from there") {
-    const Camera camera;
-    const Camera top = rotated(camera, 0, 1000, true);
+    const scene::Camera camera;
+    const scene::Camera top = navigation::rotated(camera, 0, 1000, true);
     CHECK(near(top.eye, {0, 5, 0}));
     CHECK(near(top.up, {0, 0, -1}));
-    CHECK(near(rotated(top, 0, 50, true).eye, {0, 5, 0}));
-    CHECK(near(rotated(top, 0, -90, true).eye, {0, 0, 5}));
-    CHECK(near(rotated(top, 0, -1000, true).eye, {0, -5, 0}));
+    CHECK(near(navigation::rotated(top, 0, 50, true).eye, {0, 5, 0}));
+    CHECK(near(navigation::rotated(top, 0, -90, true).eye, {0, 0, 5}));
+    CHECK(near(navigation::rotated(top, 0, -1000, true).eye, {0, -5, 0}));
     // From above, to the right is still to the right: what is at the lower edge goes there.
-    CHECK(seen(rotated(top, 10, 0, true), {0, 0, 1}).x > 0.05);
+    CHECK(seen(navigation::rotated(top, 10, 0, true), {0, 0, 1}).x > 0.05);
 
-    const Camera bottom = rotated(camera, 30, -1000, true);
+    const scene::Camera bottom = navigation::rotated(camera, 30, -1000, true);
     CHECK(near(bottom.eye, {0, -5, 0}));
-    CHECK(rotated(bottom, 0, 20, true).up.y == doctest::Approx(std::sin(degrees(20))).epsilon(1e-9));
+    CHECK(navigation::rotated(bottom, 0, 20, true).up.y ==
+          doctest::Approx(std::sin(degrees(20))).epsilon(1e-9));
 }
 
 TEST_CASE("a camera that hangs upside down stays so, and the scene still follows the finger") {
-    Camera camera;
+    scene::Camera camera;
     camera.up = {0, -1, 0};
-    CHECK(seen(rotated(camera, 10, 0, true), {0, 0, 1}).x > 0.05);
-    CHECK(seen(rotated(camera, 0, 10, true), {0, -1, 0}).z < 4.9);
-    CHECK(near(rotated(camera, 0, 1000, true).eye, {0, -5, 0}));
-    CHECK(near(rotated(camera, 0, 1000, true).up, {0, 0, -1}));
-    CHECK(rotated(camera, 123, 45, true).up.y == doctest::Approx(-std::cos(degrees(45))).epsilon(1e-12));
+    CHECK(seen(navigation::rotated(camera, 10, 0, true), {0, 0, 1}).x > 0.05);
+    CHECK(seen(navigation::rotated(camera, 0, 10, true), {0, -1, 0}).z < 4.9);
+    CHECK(near(navigation::rotated(camera, 0, 1000, true).eye, {0, -5, 0}));
+    CHECK(near(navigation::rotated(camera, 0, 1000, true).up, {0, 0, -1}));
+    CHECK(navigation::rotated(camera, 123, 45, true).up.y ==
+          doctest::Approx(-std::cos(degrees(45))).epsilon(1e-12));
 }
 
 TEST_CASE("not kept upright, turns are about the camera's own up and go over the poles") {
-    Camera camera;
+    scene::Camera camera;
     camera.up = {1, 0, 0};  // its right is then -y
-    const Camera right = rotated(camera, 90, 0, false);
+    const scene::Camera right = navigation::rotated(camera, 90, 0, false);
     CHECK(near(right.eye, {0, 5, 0}));
     CHECK(near(right.up, {1, 0, 0}));
-    CHECK(seen(rotated(camera, 10, 0, false), {0, 0, 1}).x > 0.05);
+    CHECK(seen(navigation::rotated(camera, 10, 0, false), {0, 0, 1}).x > 0.05);
 
-    const Camera over = rotated(Camera{}, 0, 180, false);
+    const scene::Camera over = navigation::rotated(scene::Camera{}, 0, 180, false);
     CHECK(near(over.eye, {0, 0, -5}));
     CHECK(near(over.up, {0, -1, 0}));
-    CHECK(near(rotated(Camera{}, 0, 360, false).eye, {0, 0, 5}));
+    CHECK(near(navigation::rotated(scene::Camera{}, 0, 360, false).eye, {0, 0, 5}));
 }
 
 TEST_CASE("a move by nothing changes nothing, to the bit") {
     Random random(6);
     for (int round = 0; round < 200; ++round) {
-        Camera camera = random.camera();
+        scene::Camera camera = random.camera();
         if (round % 2) camera.up *= 1.0 + 1e-13;
-        CHECK(rotated(camera, 0, 0, true) == camera);
-        CHECK(rotated(camera, 0, 0, false) == camera);
-        CHECK(rotated(camera, -0.0, -0.0, true) == camera);
-        CHECK(panned(camera, 0, 0) == camera);
-        CHECK(zoomed(camera, 1, 10) == camera);
+        CHECK(navigation::rotated(camera, 0, 0, true) == camera);
+        CHECK(navigation::rotated(camera, 0, 0, false) == camera);
+        CHECK(navigation::rotated(camera, -0.0, -0.0, true) == camera);
+        CHECK(navigation::panned(camera, 0, 0) == camera);
+        CHECK(navigation::zoomed(camera, 1, 10) == camera);
     }
 }
 
 TEST_CASE("a pan keeps the point at the focus' depth under the finger") {
     Random random(7);
     for (int round = 0; round < 500; ++round) {
-        const Camera camera = random.camera();
-        const glm::dvec3 across = right_direction(camera);
+        const scene::Camera camera = random.camera();
+        const glm::dvec3 across = scene::right_direction(camera);
         const glm::dvec3 point =
-            camera.focus +
-            (across * random.number(-1, 1) + camera.up * random.number(-1, 1)) * focus_distance(camera);
+            camera.focus + (across * random.number(-1, 1) + camera.up * random.number(-1, 1)) *
+                               scene::focus_distance(camera);
         const glm::dvec2 fraction{random.number(-2, 2), random.number(-2, 2)};
-        const Camera after = panned(camera, fraction.x, fraction.y);
+        const scene::Camera after = navigation::panned(camera, fraction.x, fraction.y);
         // In halves of the view's height, y up.
         const glm::dvec3 expected = seen(camera, point) + glm::dvec3(2 * fraction.x, -2 * fraction.y, 0);
         CHECK(near(seen(after, point), expected, 1e-11));
@@ -321,11 +325,12 @@ TEST_CASE("a pan keeps the point at the focus' depth under the finger") {
 TEST_CASE("zoom divides the distance, along the view") {
     Random random(8);
     for (int round = 0; round < 200; ++round) {
-        const Camera camera = random.camera();
+        const scene::Camera camera = random.camera();
         const double factor = std::exp(random.number(-5, 5));
-        const Camera after = zoomed(camera, factor, 10);
-        CHECK(focus_distance(after) == doctest::Approx(focus_distance(camera) / factor).epsilon(1e-12));
-        CHECK(near(view_direction(after), view_direction(camera)));
+        const scene::Camera after = navigation::zoomed(camera, factor, 10);
+        CHECK(scene::focus_distance(after) ==
+              doctest::Approx(scene::focus_distance(camera) / factor).epsilon(1e-12));
+        CHECK(near(scene::view_direction(after), scene::view_direction(camera)));
         CHECK(after.focus == camera.focus);
         CHECK(after.up == camera.up);
         CHECK(after.center == camera.center);
@@ -333,9 +338,9 @@ TEST_CASE("zoom divides the distance, along the view") {
 }
 
 TEST_CASE("zoom stays between a millionth and a million of the scene's radius") {
-    const Camera camera;
+    const scene::Camera camera;
     const auto distance = [&](double factor, double radius) {
-        return focus_distance(zoomed(camera, factor, radius));
+        return scene::focus_distance(navigation::zoomed(camera, factor, radius));
     };
     CHECK(distance(1e9, 2) == doctest::Approx(2e-6).epsilon(1e-9));
     CHECK(distance(1e-9, 2) == doctest::Approx(2e6).epsilon(1e-9));
@@ -350,131 +355,132 @@ TEST_CASE("zoom stays between a millionth and a million of the scene's radius") 
 
     // At a limit more of the same changes nothing.
     for (const double factor : {1.1, 1 / 1.1}) {
-        Camera at_limit = zoomed(zoomed(camera, std::pow(factor, 400), 3), factor, 3);
-        for (int i = 0; i < 10; ++i) CHECK(zoomed(at_limit, factor, 3) == at_limit);
+        scene::Camera at_limit =
+            navigation::zoomed(navigation::zoomed(camera, std::pow(factor, 400), 3), factor, 3);
+        for (int i = 0; i < 10; ++i) CHECK(navigation::zoomed(at_limit, factor, 3) == at_limit);
     }
 }
 
 TEST_CASE("far from the origin, zooming in ends before the numbers do") {
     for (const double far : {1e3, 1e7, 1e10, 1e15, 1e30}) {
         CAPTURE(far);
-        Camera camera;
+        scene::Camera camera;
         camera.focus = camera.center = {far, far, far};
         camera.eye = camera.focus + glm::dvec3(1, 2, 3) * std::max(1.0, far * 1e-7);
-        camera = with_orthogonal_up(camera);
-        const glm::dvec3 before = view_direction(camera);
-        for (int i = 0; i < 500; ++i) camera = zoomed(camera, 1.1, 1);
-        CHECK(is_valid_pose(camera, 1));
-        CHECK(near(view_direction(camera), before, 2e-3));
-        for (int i = 0; i < 100; ++i) camera = zoomed(camera, 1 / 1.1, 1);
-        CHECK(near(view_direction(camera), before, 2e-3));
+        camera = scene::with_orthogonal_up(camera);
+        const glm::dvec3 before = scene::view_direction(camera);
+        for (int i = 0; i < 500; ++i) camera = navigation::zoomed(camera, 1.1, 1);
+        CHECK(scene::is_valid_pose(camera, 1));
+        CHECK(near(scene::view_direction(camera), before, 2e-3));
+        for (int i = 0; i < 100; ++i) camera = navigation::zoomed(camera, 1 / 1.1, 1);
+        CHECK(near(scene::view_direction(camera), before, 2e-3));
     }
 }
 
 TEST_CASE("a move that no number can hold is not made") {
-    const Camera camera;
+    const scene::Camera camera;
     for (const double much : {1e308, kInfinity, std::nan("")}) {
         CAPTURE(much);
-        CHECK(is_valid_pose(rotated(camera, much, 0, true), 1));
-        CHECK(is_valid_pose(rotated(camera, 0, -much, false), 1));
-        CHECK(panned(camera, much, 0) == camera);
-        CHECK(panned(camera, 0, -much) == camera);
-        CHECK(is_valid_pose(zoomed(camera, much, 1), 1));
+        CHECK(scene::is_valid_pose(navigation::rotated(camera, much, 0, true), 1));
+        CHECK(scene::is_valid_pose(navigation::rotated(camera, 0, -much, false), 1));
+        CHECK(navigation::panned(camera, much, 0) == camera);
+        CHECK(navigation::panned(camera, 0, -much) == camera);
+        CHECK(scene::is_valid_pose(navigation::zoomed(camera, much, 1), 1));
     }
-    CHECK(is_valid_pose(panned(camera, 1e17, 0), 1));
+    CHECK(scene::is_valid_pose(navigation::panned(camera, 1e17, 0), 1));
 }
 
 TEST_CASE("a million moves do not drift") {
-    Camera start;
+    scene::Camera start;
     start.eye = {3, 2, 4};
     start.center = {0.5, 0.25, -1};
-    start = with_orthogonal_up(start);
+    start = scene::with_orthogonal_up(start);
     for (const bool keep_upright : {true, false}) {
         Random random(9);
-        Camera camera = start;
+        scene::Camera camera = start;
         for (int i = 0; i < 1'000'000; ++i)
-            camera = rotated(camera, random.number(-5, 5), random.number(-5, 5), keep_upright);
+            camera = navigation::rotated(camera, random.number(-5, 5), random.number(-5, 5), keep_upright);
         const auto off = [](double a, double b) { return std::abs(a / b - 1); };
         CHECK(off(glm::distance(camera.eye, camera.center), glm::distance(start.eye, start.center)) < 1e-9);
         CHECK(off(glm::distance(camera.focus, camera.center), glm::distance(start.focus, start.center)) <
               1e-9);
-        CHECK(off(focus_distance(camera), focus_distance(start)) < 1e-9);
+        CHECK(off(scene::focus_distance(camera), scene::focus_distance(start)) < 1e-9);
         check_frame(camera);
         CHECK(camera.center == start.center);
     }
 }
 
 TEST_CASE("a pose is valid or not") {
-    Camera camera;
-    CHECK(is_valid_pose(camera, 1));
+    scene::Camera camera;
+    CHECK(scene::is_valid_pose(camera, 1));
     const auto with = [&](auto change) {
-        Camera changed = camera;
+        scene::Camera changed = camera;
         change(changed);
-        return is_valid_pose(changed, 1000);
+        return scene::is_valid_pose(changed, 1000);
     };
-    CHECK_FALSE(with([](Camera& c) { c.eye = c.focus; }));
-    CHECK_FALSE(with([](Camera& c) { c.eye = {0, 0, 0.9e-6}; }));
-    CHECK(with([](Camera& c) { c.eye = {0, 0, 1.1e-6}; }));
-    CHECK_FALSE(with([](Camera& c) { c.up = {0, 0, 0}; }));
-    CHECK_FALSE(with([](Camera& c) { c.up = {0, 0, 1}; }));
-    CHECK_FALSE(with([](Camera& c) { c.up = {0, 0, -7}; }));
-    CHECK(with([](Camera& c) { c.up = {0, 0.001, 1}; }));
-    CHECK(with([](Camera& c) { c.up = {3, 400, 5}; }));
-    CHECK_FALSE(with([](Camera& c) { c.up.x = std::nan(""); }));
-    CHECK_FALSE(with([](Camera& c) { c.eye.x = kInfinity; }));
-    CHECK_FALSE(with([](Camera& c) { c.focus.y = std::nan(""); }));
-    CHECK_FALSE(with([](Camera& c) { c.center.z = -kInfinity; }));
-    CHECK_FALSE(with([](Camera& c) { c.eye.x = 1e200; }));
-    CHECK(is_valid_pose(camera, 0));
+    CHECK_FALSE(with([](scene::Camera& c) { c.eye = c.focus; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.eye = {0, 0, 0.9e-6}; }));
+    CHECK(with([](scene::Camera& c) { c.eye = {0, 0, 1.1e-6}; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.up = {0, 0, 0}; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.up = {0, 0, 1}; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.up = {0, 0, -7}; }));
+    CHECK(with([](scene::Camera& c) { c.up = {0, 0.001, 1}; }));
+    CHECK(with([](scene::Camera& c) { c.up = {3, 400, 5}; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.up.x = std::nan(""); }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.eye.x = kInfinity; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.focus.y = std::nan(""); }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.center.z = -kInfinity; }));
+    CHECK_FALSE(with([](scene::Camera& c) { c.eye.x = 1e200; }));
+    CHECK(scene::is_valid_pose(camera, 0));
     camera.eye = camera.focus;
-    CHECK_FALSE(is_valid_pose(camera, 0));
+    CHECK_FALSE(scene::is_valid_pose(camera, 0));
 }
 
 TEST_CASE("up is made orthogonal and unit, and then left alone") {
     Random random(10);
     for (int round = 0; round < 500; ++round) {
-        Camera camera = random.camera();
+        scene::Camera camera = random.camera();
         camera.up = random.vector(100);
-        const Camera once = with_orthogonal_up(camera);
+        const scene::Camera once = scene::with_orthogonal_up(camera);
         check_frame(once);
-        CHECK(with_orthogonal_up(once) == once);
+        CHECK(scene::with_orthogonal_up(once) == once);
         // It turns in the plane of view and up only, and towards the old one.
-        CHECK(std::abs(glm::dot(once.up, glm::cross(view_direction(camera), camera.up))) < 1e-9);
+        CHECK(std::abs(glm::dot(once.up, glm::cross(scene::view_direction(camera), camera.up))) < 1e-9);
         CHECK(glm::dot(once.up, camera.up) > 0);
         CHECK(once.eye == camera.eye);
     }
     // As close to the view as is allowed.
-    Camera steep;
+    scene::Camera steep;
     steep.eye = {1, 2, 3};
     steep.up = glm::normalize(steep.eye) + glm::dvec3(3e-9, 0, 0);
-    REQUIRE(is_valid_pose(steep, 1));
-    check_frame(with_orthogonal_up(steep));
-    CHECK(with_orthogonal_up(with_orthogonal_up(steep)) == with_orthogonal_up(steep));
+    REQUIRE(scene::is_valid_pose(steep, 1));
+    check_frame(scene::with_orthogonal_up(steep));
+    CHECK(scene::with_orthogonal_up(scene::with_orthogonal_up(steep)) == scene::with_orthogonal_up(steep));
 }
 
 TEST_CASE("the scene's first camera node by id, in the world, active or not") {
-    CameraData data;
+    scene::CameraData data;
     data.eye = {0, 0, 4};
     data.focus = {0, 0, 0};
     data.fov = 33;
-    CameraData other = data;
+    scene::CameraData other = data;
     other.fov = 55;
-    std::vector<SceneParts::PartNode> nodes{camera_part(7, 0, other), camera_part(5, 20, data)};
+    std::vector<scene::SceneParts::PartNode> nodes{camera_part(7, 0, other), camera_part(5, 20, data)};
     nodes[1].node.active = false;
     // A quarter turn about y, twice the size, moved.
-    nodes.push_back({Node{20,
-                          {},
-                          NodeType::assembly,
-                          kNone,
-                          {},
-                          true,
-                          glm::dmat4(glm::dvec4(0, 0, -2, 0), glm::dvec4(0, 2, 0, 0), glm::dvec4(2, 0, 0, 0),
-                                     glm::dvec4(10, 20, 30, 1)),
-                          {}},
+    nodes.push_back({scene::Node{20,
+                                 {},
+                                 scene::NodeType::assembly,
+                                 scene::kNone,
+                                 {},
+                                 true,
+                                 glm::dmat4(glm::dvec4(0, 0, -2, 0), glm::dvec4(0, 2, 0, 0),
+                                            glm::dvec4(2, 0, 0, 0), glm::dvec4(10, 20, 30, 1)),
+                                 {}},
                      0});
-    const PlacedScene placed = scene_of(nodes);
-    REQUIRE(first_camera_node(placed) != kNone);
-    const auto camera = camera_at(placed, first_camera_node(placed));
+    const scene::PlacedScene placed = scene_of(nodes);
+    REQUIRE(scene::first_camera_node(placed) != scene::kNone);
+    const auto camera = scene::camera_at(placed, scene::first_camera_node(placed));
     REQUIRE(camera);
     CHECK(near(camera->eye, {18, 20, 30}));
     CHECK(near(camera->focus, {10, 20, 30}));
@@ -482,18 +488,19 @@ TEST_CASE("the scene's first camera node by id, in the world, active or not") {
     CHECK(near(camera->up, {0, 1, 0}));
     CHECK(camera->fov == 33);
 
-    CHECK(first_camera_node(scene_of({})) == kNone);
+    CHECK(scene::first_camera_node(scene_of({})) == scene::kNone);
     data.focus = data.eye;
-    CHECK(first_camera_node(scene_of({camera_part(1, 0, data)})) == kNone);
-    CHECK(first_camera_node(scene_of({camera_part(1, 0, data), camera_part(2, 0, other)})) == kNone);
+    CHECK(scene::first_camera_node(scene_of({camera_part(1, 0, data)})) == scene::kNone);
+    CHECK(scene::first_camera_node(scene_of({camera_part(1, 0, data), camera_part(2, 0, other)})) ==
+          scene::kNone);
 }
 
 TEST_CASE("home looks from three quarters and above, and fits") {
-    Bounds box;
+    math::Bounds box;
     box.add({1, 0, 2});
     box.add({3, 1.5, 6});
     for (const double aspect : {0.5, 2.0}) {
-        const Camera home = home_camera(box, aspect);
+        const scene::Camera home = navigation::home_camera(box, aspect);
         CHECK(home.focus == box.center());
         const glm::dvec3 from_center = home.eye - home.focus;
         CHECK(from_center.x > 0);
@@ -501,10 +508,10 @@ TEST_CASE("home looks from three quarters and above, and fits") {
         CHECK(from_center.z > from_center.x);
         CHECK(home.up.y > 0.9);
         check_frame(home);
-        for (const glm::dvec3& corner : corners(box)) {
+        for (const glm::dvec3& corner : math::corners(box)) {
             CHECK(std::abs(seen(home, corner).x) < aspect);
             CHECK(std::abs(seen(home, corner).y) < 1);
         }
     }
-    CHECK(is_valid_pose(home_camera(Bounds{}, 1), 0));
+    CHECK(scene::is_valid_pose(navigation::home_camera(math::Bounds{}, 1), 0));
 }

@@ -6,9 +6,9 @@
 #include <functional>
 
 using namespace vrut;
-using Action = PointerInput::Action;
-using Device = PointerInput::Device;
-using Operation = Click::Operation;
+using Action = navigation::PointerInput::Action;
+using Device = navigation::PointerInput::Device;
+using Operation = navigation::Click::Operation;
 
 namespace {
 
@@ -21,34 +21,34 @@ class Hand {
 public:
     explicit Hand(Device device = Device::mouse, int button = 0) : device_(device), button_(button) {}
 
-    std::optional<Click> down(double time, double x, double y, int pointer = 1) {
+    std::optional<navigation::Click> down(double time, double x, double y, int pointer = 1) {
         return send(Action::down, time, x, y, pointer, button_, 1);
     }
-    std::optional<Click> move(double time, double x, double y, int pointer = 1, int button = -1) {
+    std::optional<navigation::Click> move(double time, double x, double y, int pointer = 1, int button = -1) {
         return send(Action::move, time, x, y, pointer, button, 1);
     }
-    std::optional<Click> up(double time, double x, double y, int pointer = 1) {
+    std::optional<navigation::Click> up(double time, double x, double y, int pointer = 1) {
         return send(Action::up, time, x, y, pointer, button_, 0);
     }
-    std::optional<Click> cancel(double time, int pointer = 1) {
+    std::optional<navigation::Click> cancel(double time, int pointer = 1) {
         return send(Action::cancel, time, 0, 0, pointer, -1, 0);
     }
     /// A release that nobody saw.
-    std::optional<Click> hover(double time, double x, double y) {
+    std::optional<navigation::Click> hover(double time, double x, double y) {
         return send(Action::move, time, x, y, 1, -1, 0);
     }
-    Clicks& clicks() { return clicks_; }
+    navigation::Clicks& clicks() { return clicks_; }
 
-    NavigationStyle style = NavigationStyle::vrut;
-    ModifierKeys modifiers;
+    navigation::NavigationStyle style = navigation::NavigationStyle::vrut;
+    navigation::ModifierKeys modifiers;
 
 private:
-    std::optional<Click> send(Action action, double time, double x, double y, int pointer, int button,
-                              unsigned buttons) {
+    std::optional<navigation::Click> send(Action action, double time, double x, double y, int pointer,
+                                          int button, unsigned buttons) {
         return clicks_.pointer({action, "c1", pointer, device_, x, y, button, buttons, modifiers},
                                {std::nullopt, ms(time)}, style);
     }
-    Clicks clicks_;
+    navigation::Clicks clicks_;
     Device device_;
     int button_;
 };
@@ -149,10 +149,10 @@ TEST_CASE("between press and release a pointer may wander: where it is then coun
 }
 
 TEST_CASE("two different buttons, devices or clients are no double click") {
-    const PointerInput first{Action::down, "c1", 1, Device::mouse, 5, 5, 0, 1};
-    const auto second = [&](const PointerInput& press) {
-        Clicks clicks;
-        const auto send = [&](PointerInput input, Action action, double time) {
+    const navigation::PointerInput first{Action::down, "c1", 1, Device::mouse, 5, 5, 0, 1};
+    const auto second = [&](const navigation::PointerInput& press) {
+        navigation::Clicks clicks;
+        const auto send = [&](navigation::PointerInput input, Action action, double time) {
             input.action = action;
             return clicks.pointer(input, {std::nullopt, ms(time)});
         };
@@ -169,7 +169,8 @@ TEST_CASE("two different buttons, devices or clients are no double click") {
 }
 
 TEST_CASE("with the key held that makes a style's buttons the camera's, presses are no clicks") {
-    const auto clicks = [](NavigationStyle style, ModifierKeys modifiers, Device device = Device::mouse) {
+    const auto clicks = [](navigation::NavigationStyle style, navigation::ModifierKeys modifiers,
+                           Device device = Device::mouse) {
         Hand hand(device);
         hand.style = style;
         hand.modifiers = modifiers;
@@ -178,8 +179,8 @@ TEST_CASE("with the key held that makes a style's buttons the camera's, presses 
         hand.down(100, 100, 100);
         return hand.up(150, 100, 100).has_value();
     };
-    using Style = NavigationStyle;
-    const ModifierKeys alt{true, false, false, false}, others{false, true, true, true};
+    using Style = navigation::NavigationStyle;
+    const navigation::ModifierKeys alt{true, false, false, false}, others{false, true, true, true};
     for (const Style style : {Style::vrut, Style::maya, Style::catia, Style::cinema4d}) {
         CHECK(clicks(style, {}));
         CHECK(clicks(style, others));
@@ -236,7 +237,7 @@ TEST_CASE("what is almost press and tap is none") {
     mouse.down(300, 400, 300, 2);
     CHECK_FALSE(mouse.up(400, 400, 300, 2).has_value());
 
-    Clicks clicks;  // nor is another client's hand
+    navigation::Clicks clicks;  // nor is another client's hand
     clicks.pointer({Action::down, "c1", 1, Device::touch, 100, 100, 0, 1}, {std::nullopt, ms(0)});
     clicks.pointer({Action::down, "c2", 1, Device::touch, 400, 300, 0, 1}, {std::nullopt, ms(300)});
     CHECK_FALSE(clicks.pointer({Action::up, "c2", 1, Device::touch, 400, 300, 0, 0}, {std::nullopt, ms(400)})
@@ -244,7 +245,7 @@ TEST_CASE("what is almost press and tap is none") {
 }
 
 TEST_CASE("a client's own time counts, so that the link's delays do not") {
-    EventClock clock;
+    navigation::EventClock clock;
     const auto time = [&](std::optional<double> stamp, double arrival) {
         return clock.time({stamp, ms(arrival)});
     };
@@ -265,7 +266,7 @@ TEST_CASE("time does not depend on where the clocks start, nor on how often they
     for (const double start : {0.0, 0.123, 1e9, -4e12})
         for (const double zero : {0.0, 77777.7, 1.7e12})
             for (const int every : {1, 10, 1000}) {
-                EventClock clock;
+                navigation::EventClock clock;
                 std::chrono::microseconds time{0};
                 for (int i = 0; i <= 3000; i += every)
                     time = clock.time({zero + i * 0.1, ms(start) + std::chrono::microseconds(i * 133)});
@@ -288,7 +289,7 @@ TEST_CASE("jitter of the arrivals has no influence where time stamps can be trus
         {Action::down, 6000}, {Action::up, 6250}, {Action::down, 6300}, {Action::up, 6550},  // double
     };
     for (const int seed : {0, 1, 2, 3, 4}) {
-        Clicks clicks;
+        navigation::Clicks clicks;
         std::string completed;
         double last = 0;
         for (std::size_t i = 0; i < events.size(); ++i) {
@@ -299,7 +300,8 @@ TEST_CASE("jitter of the arrivals has no influence where time stamps can be trus
                     : static_cast<double>((i * 7919 + i * i * 31) * static_cast<std::size_t>(seed) % 500);
             last = std::max(last, event.stamp + late);
             const bool up = event.action == Action::up;
-            const PointerInput input{event.action, "c1", 1, Device::mouse, 100, 100, 0, up ? 0u : 1u};
+            const navigation::PointerInput input{event.action, "c1", 1, Device::mouse,
+                                                 100,          100,  0, up ? 0u : 1u};
             if (clicks.pointer(input, {1e6 + event.stamp, ms(last)})) completed += std::to_string(i) + " ";
         }
         CAPTURE(seed);

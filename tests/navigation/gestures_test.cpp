@@ -15,19 +15,19 @@ using namespace vrut;
 
 namespace {
 
-using Action = PointerInput::Action;
-using Device = PointerInput::Device;
+using Action = navigation::PointerInput::Action;
+using Device = navigation::PointerInput::Device;
 
-using Style = NavigationStyle;
-using Operation = DragOperation;
+using Style = navigation::NavigationStyle;
+using Operation = navigation::DragOperation;
 
 constexpr unsigned kLeft = 1, kRight = 2, kMiddle = 4;
-constexpr ModifierKeys kAlt{true, false, false, false};
+constexpr navigation::ModifierKeys kAlt{true, false, false, false};
 
 bool near(const glm::dvec2& a, const glm::dvec2& b, double tolerance = 1e-9) {
     return glm::distance(a, b) <= tolerance;
 }
-bool near(const Camera& a, const Camera& b) {
+bool near(const scene::Camera& a, const scene::Camera& b) {
     return ::near(a.eye, b.eye) && ::near(a.focus, b.focus) && ::near(a.up, b.up) &&
            ::near(a.center, b.center) && a.fov == b.fov;
 }
@@ -35,10 +35,10 @@ bool near(const Camera& a, const Camera& b) {
 /// A view of 1280x720 with the eye at (0, 0, 5), the focus at the origin, and hands on it.
 class Hands {
 public:
-    Camera camera;
-    NavigationContext context;
-    Gestures gestures;
-    ModifierKeys modifiers;
+    scene::Camera camera;
+    navigation::NavigationContext context;
+    navigation::Gestures gestures;
+    navigation::ModifierKeys modifiers;
 
     Hands() {
         context.bounds.add({-1, -1, -1});
@@ -70,32 +70,33 @@ public:
 
     /// What a move from (100, 400) to (136, 40) does; the hand goes back then.
     Operation operation(unsigned buttons) {
-        const Camera before = camera;
+        const scene::Camera before = camera;
         mouse_move(136, 40, buttons);
-        const Camera after = camera;
+        const scene::Camera after = camera;
         mouse_move(100, 400, buttons);
         CHECK(near(camera, before));
         camera = before;
         gestures.restart(before);
         if (after == before) return Operation::none;
-        if (near(after, rotated(before, 9, -90, true))) return Operation::rotate;
-        if (near(after, panned(before, 0.05, -0.5))) return Operation::pan;
-        CHECK(near(after, zoomed(before, 2, context.bounds.radius())));
+        if (near(after, navigation::rotated(before, 9, -90, true))) return Operation::rotate;
+        if (near(after, navigation::panned(before, 0.05, -0.5))) return Operation::pan;
+        CHECK(near(after, navigation::zoomed(before, 2, context.bounds.radius())));
         return Operation::zoom;
     }
 
     /// Where `point` is in the view, in CSS pixels from its top left.
     glm::dvec2 pixel_of(const glm::dvec3& point) const {
-        const glm::dvec4 clip = clip_from_view(camera, context.width / context.height, {0.01, 100}) *
-                                (view_from_world(camera) * glm::dvec4(point, 1));
+        const glm::dvec4 clip = scene::clip_from_view(camera, context.width / context.height, {0.01, 100}) *
+                                (scene::view_from_world(camera) * glm::dvec4(point, 1));
         return {(clip.x / clip.w + 1) / 2 * context.width, (1 - clip.y / clip.w) / 2 * context.height};
     }
     /// The point at the focus' depth that is seen there.
     glm::dvec3 point_at(double x, double y) const {
-        const double height = 2 * focus_distance(camera) * std::tan(camera.fov * std::numbers::pi / 360);
-        return camera.focus +
-               (right_direction(camera) * (x - context.width / 2) + camera.up * (context.height / 2 - y)) *
-                   (height / context.height);
+        const double height =
+            2 * scene::focus_distance(camera) * std::tan(camera.fov * std::numbers::pi / 360);
+        return camera.focus + (scene::right_direction(camera) * (x - context.width / 2) +
+                               camera.up * (context.height / 2 - y)) *
+                                  (height / context.height);
     }
 };
 
@@ -105,7 +106,7 @@ TEST_CASE("left drag turns around the centre: the view's shorter side is half a 
     Hands hands;
     SUBCASE("landscape") {
         hands.mouse_down(200, 100, 0, kLeft);
-        CHECK(hands.camera == Camera{});
+        CHECK(hands.camera == scene::Camera{});
         hands.mouse_move(560, 100, kLeft);
         CHECK(near(hands.camera.eye, {-5, 0, 0}));
         hands.mouse_move(200, 280, kLeft);  // back, and down by a quarter of the height
@@ -152,7 +153,7 @@ TEST_CASE("right drag keeps the point at the focus' depth under the pointer") {
     hands.mouse_move(-50, 1000, kRight);
     CHECK(near(hands.pixel_of(point), {-50, 1000}));
     CHECK(hands.camera.center == glm::dvec3(0));
-    CHECK(focus_distance(hands.camera) == doctest::Approx(5).epsilon(1e-14));
+    CHECK(scene::focus_distance(hands.camera) == doctest::Approx(5).epsilon(1e-14));
     hands.context.pan_speed = 2;
     hands.mouse_move(350, 500, kRight);
     CHECK(near(hands.pixel_of(point), {400, 500}));
@@ -195,13 +196,13 @@ TEST_CASE("two fingers pan and pinch together") {
     Hands hands;
     hands.finger_down(1, 540, 360);
     hands.finger_down(2, 740, 360);
-    CHECK(hands.camera == Camera{});
+    CHECK(hands.camera == scene::Camera{});
     hands.finger_move(1, 600, 400);
     hands.finger_move(2, 1000, 400);
-    CHECK(focus_distance(hands.camera) == doctest::Approx(2.5).epsilon(1e-13));
+    CHECK(scene::focus_distance(hands.camera) == doctest::Approx(2.5).epsilon(1e-13));
     // What was in the middle between them, at the focus' depth, is there still.
     CHECK(near(hands.pixel_of({0, 0, 0}), {800, 400}));
-    CHECK(near(view_direction(hands.camera), {0, 0, -1}));
+    CHECK(near(scene::view_direction(hands.camera), {0, 0, -1}));
 
     // Closer than at the start; turned against each other, which does nothing.
     hands.finger_move(1, 640, 310);
@@ -209,7 +210,7 @@ TEST_CASE("two fingers pan and pinch together") {
     CHECK(near(hands.camera.eye, {0, 0, 10}));
     hands.finger_move(1, 740, 360);
     hands.finger_move(2, 540, 360);
-    CHECK(near(hands.camera, Camera{}));
+    CHECK(near(hands.camera, scene::Camera{}));
 }
 
 TEST_CASE("two fingers side by side keep the points under both of them") {
@@ -228,12 +229,12 @@ TEST_CASE("fingers on one spot divide by nothing") {
     hands.finger_down(1, 300, 300);
     hands.finger_down(2, 300, 300);
     hands.finger_move(2, 302, 300);
-    CHECK(is_valid_pose(hands.camera, 1));
+    CHECK(scene::is_valid_pose(hands.camera, 1));
     hands.finger_move(2, 300, 300);
-    CHECK(near(hands.camera, Camera{}));
+    CHECK(near(hands.camera, scene::Camera{}));
     for (const double far : {1e9, -1e300}) {
         hands.finger_move(1, far, -far);
-        CHECK(is_valid_pose(hands.camera, 1));
+        CHECK(scene::is_valid_pose(hands.camera, 1));
     }
 }
 
@@ -241,14 +242,14 @@ TEST_CASE("chords: the button pressed last decides, and no step jumps") {
     Hands hands;
     hands.mouse_down(600, 300, 0, kLeft);
     hands.mouse_move(650, 310, kLeft);
-    const Camera turned = hands.camera;
-    CHECK(near(turned, rotated(Camera{}, 12.5, 2.5, true)));
+    const scene::Camera turned = hands.camera;
+    CHECK(near(turned, navigation::rotated(scene::Camera{}, 12.5, 2.5, true)));
     hands.chord(650, 310, 2, kLeft | kRight);
     CHECK(hands.camera == turned);
     const glm::dvec3 point = hands.point_at(650, 310);
     hands.mouse_move(700, 400, kLeft | kRight);
     CHECK(near(hands.pixel_of(point), {700, 400}));
-    const Camera moved = hands.camera;
+    const scene::Camera moved = hands.camera;
 
     SUBCASE("the first goes up first") {
         hands.chord(700, 400, 0, kRight);
@@ -260,16 +261,16 @@ TEST_CASE("chords: the button pressed last decides, and no step jumps") {
         hands.chord(700, 400, 2, kLeft);
         CHECK(hands.camera == moved);
         hands.mouse_move(720, 400, kLeft);
-        CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
+        CHECK(near(hands.camera, navigation::rotated(moved, 5, 0, true)));
         hands.mouse_up(720, 400, 0);
-        CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
+        CHECK(near(hands.camera, navigation::rotated(moved, 5, 0, true)));
         CHECK_FALSE(hands.gestures.any_pressed());
     }
     SUBCASE("a third") {
         hands.chord(700, 400, 1, kLeft | kRight | kMiddle);
         hands.mouse_move(700, 40, kLeft | kRight | kMiddle);
-        CHECK(focus_distance(hands.camera) == doctest::Approx(2.5).epsilon(1e-13));
-        const Camera zoomed_in = hands.camera;
+        CHECK(scene::focus_distance(hands.camera) == doctest::Approx(2.5).epsilon(1e-13));
+        const scene::Camera zoomed_in = hands.camera;
         hands.chord(700, 40, 0, kRight | kMiddle);
         hands.chord(700, 40, 1, kRight);
         CHECK(hands.camera == zoomed_in);
@@ -280,16 +281,16 @@ TEST_CASE("chords: the button pressed last decides, and no step jumps") {
     SUBCASE("the movement that comes with the press belongs to the drag before") {
         hands.chord(700, 400, 2, kLeft);
         hands.chord(800, 400, 2, kLeft | kRight);
-        CHECK(near(hands.camera, rotated(moved, 25, 0, true)));
+        CHECK(near(hands.camera, navigation::rotated(moved, 25, 0, true)));
     }
     SUBCASE("a change of buttons that no event named") {
         hands.mouse_move(700, 400, kLeft);
         hands.mouse_move(720, 400, kLeft);
-        CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
+        CHECK(near(hands.camera, navigation::rotated(moved, 5, 0, true)));
     }
     SUBCASE("and where it was is not known: the whole way is the new drag's") {
         hands.mouse_move(720, 400, kLeft);
-        CHECK(near(hands.camera, rotated(moved, 5, 0, true)));
+        CHECK(near(hands.camera, navigation::rotated(moved, 5, 0, true)));
     }
 }
 
@@ -297,11 +298,11 @@ TEST_CASE("buttons that mean nothing move nothing, alone or with another") {
     Hands hands;
     hands.mouse_down(100, 100, 3, 8);
     hands.mouse_move(300, 300, 8);
-    CHECK(hands.camera == Camera{});
+    CHECK(hands.camera == scene::Camera{});
     hands.chord(300, 300, 0, 8 | kLeft);
     hands.mouse_move(310, 300, 8 | kLeft);
-    CHECK(near(hands.camera, rotated(Camera{}, 2.5, 0, true)));
-    const Camera turned = hands.camera;
+    CHECK(near(hands.camera, navigation::rotated(scene::Camera{}, 2.5, 0, true)));
+    const scene::Camera turned = hands.camera;
     hands.chord(310, 300, 0, 8);
     hands.mouse_move(500, 600, 8);
     CHECK(hands.camera == turned);
@@ -311,7 +312,7 @@ TEST_CASE("buttons that mean nothing move nothing, alone or with another") {
     left.mouse_down(100, 100, 0, kLeft);
     left.chord(100, 100, 4, kLeft | 16);
     left.mouse_move(110, 100, kLeft | 16);
-    CHECK(near(left.camera, rotated(Camera{}, 2.5, 0, true)));
+    CHECK(near(left.camera, navigation::rotated(scene::Camera{}, 2.5, 0, true)));
 }
 
 TEST_CASE("hovering does nothing, nor does what is not pressed") {
@@ -321,7 +322,7 @@ TEST_CASE("hovering does nothing, nor does what is not pressed") {
     hands.mouse_up(400, 400, 0);
     hands.send(Action::cancel, 0, 0, -1, 0);
     hands.finger_move(3, 10, 10);
-    CHECK(hands.camera == Camera{});
+    CHECK(hands.camera == scene::Camera{});
     CHECK_FALSE(hands.gestures.any_pressed());
 }
 
@@ -329,11 +330,11 @@ TEST_CASE("a second press of a pressed pointer starts anew") {
     Hands hands;
     hands.mouse_down(100, 100, 0, kLeft);
     hands.mouse_move(200, 100, kLeft);
-    const Camera turned = hands.camera;
+    const scene::Camera turned = hands.camera;
     hands.mouse_down(500, 300, 0, kLeft);
     CHECK(hands.camera == turned);
     hands.mouse_move(520, 300, kLeft);
-    CHECK(near(hands.camera, rotated(turned, 5, 0, true)));
+    CHECK(near(hands.camera, navigation::rotated(turned, 5, 0, true)));
     // It was one pointer all the time.
     hands.mouse_up(520, 300, 0);
     CHECK_FALSE(hands.gestures.any_pressed());
@@ -356,8 +357,8 @@ TEST_CASE("the place of the release counts, that of a cancel does not") {
     Hands cancelled;
     cancelled.finger_down(4, 100, 100);
     cancelled.finger_move(4, 200, 100);
-    const Camera before = cancelled.camera;
-    CHECK(before != Camera{});
+    const scene::Camera before = cancelled.camera;
+    CHECK(before != scene::Camera{});
     cancelled.send(Action::cancel, 0, 0, 0, 0, Device::touch, 4);
     CHECK(cancelled.camera == before);
     CHECK_FALSE(cancelled.gestures.any_pressed());
@@ -369,7 +370,7 @@ TEST_CASE("a button released unseen is released: its drag ends where it was") {
     Hands hands;
     hands.mouse_down(100, 100, 0, kLeft);
     hands.mouse_move(200, 100, kLeft);
-    const Camera before = hands.camera;
+    const scene::Camera before = hands.camera;
     hands.mouse_move(900, 650, 0);
     CHECK(hands.camera == before);
     CHECK_FALSE(hands.gestures.any_pressed());
@@ -383,7 +384,7 @@ TEST_CASE("a finger lifted of two goes over into a turn, without a jump") {
         hands.finger_down(2, 600, 300);
         hands.finger_move(1, 350, 350);
         hands.finger_move(2, 650, 250);
-        const Camera before = hands.camera;
+        const scene::Camera before = hands.camera;
         hands.finger_up(lifted, lifted == 1 ? 350 : 650, lifted == 1 ? 350 : 250);
         CHECK(hands.camera == before);
         const std::int64_t left = 3 - lifted;
@@ -391,13 +392,13 @@ TEST_CASE("a finger lifted of two goes over into a turn, without a jump") {
         hands.finger_move(left, at.x, at.y);
         CHECK(hands.camera == before);
         hands.finger_move(left, at.x + 40, at.y + 20);
-        CHECK(near(hands.camera, rotated(before, 10, 5, true)));
+        CHECK(near(hands.camera, navigation::rotated(before, 10, 5, true)));
         // And back to two.
-        const Camera turned = hands.camera;
+        const scene::Camera turned = hands.camera;
         hands.finger_down(9, 100, 100);
         CHECK(hands.camera == turned);
         hands.finger_move(9, 110, 100);
-        CHECK(near(view_direction(hands.camera), view_direction(turned)));
+        CHECK(near(scene::view_direction(hands.camera), scene::view_direction(turned)));
     }
 }
 
@@ -408,7 +409,7 @@ TEST_CASE("a third finger is ignored") {
         hands->finger_down(2, 600, 300);
         hands->finger_move(2, 640, 310);
     }
-    const Camera before = three.camera;
+    const scene::Camera before = three.camera;
     three.finger_down(3, 900, 600);
     three.finger_move(3, 100, 50);
     CHECK(three.camera == before);
@@ -440,14 +441,14 @@ TEST_CASE("a pointer is a client's: the same number elsewhere is another one") {
     hands.send(Action::move, 700, 300, -1, 1, Device::touch, 1, "b");
     CHECK(near(hands.camera.eye, {0, 0, 2.5}));
 
-    const Camera before = hands.camera;
+    const scene::Camera before = hands.camera;
     hands.gestures.lift("a", hands.camera);
     CHECK_FALSE(hands.gestures.is_pressed("a", 1));
     CHECK(hands.gestures.is_pressed("b", 1));
     hands.send(Action::move, 700, 300, -1, 1, Device::touch, 1, "b");
     CHECK(hands.camera == before);
     hands.send(Action::move, 720, 300, -1, 1, Device::touch, 1, "b");
-    CHECK(near(hands.camera, rotated(before, 5, 0, true)));
+    CHECK(near(hands.camera, navigation::rotated(before, 5, 0, true)));
 }
 
 TEST_CASE("what changes the camera in mid-drag makes the drag begin anew there") {
@@ -455,21 +456,22 @@ TEST_CASE("what changes the camera in mid-drag makes the drag begin anew there")
     hands.mouse_down(100, 100, 0, kLeft);
     hands.mouse_move(200, 150, kLeft);
     SUBCASE("a wheel") {
-        hands.camera = wheel({-100, WheelInput::Unit::pixel}, hands.camera, hands.context);
+        hands.camera =
+            navigation::wheel({-100, navigation::WheelInput::Unit::pixel}, hands.camera, hands.context);
         hands.gestures.restart(hands.camera);
-        CHECK(focus_distance(hands.camera) == doctest::Approx(5 / 1.1).epsilon(1e-13));
+        CHECK(scene::focus_distance(hands.camera) == doctest::Approx(5 / 1.1).epsilon(1e-13));
     }
     SUBCASE("a patch") {
         hands.camera.eye = {7, 8, 9};
         hands.camera.center = {1, 0, 0};
-        hands.camera = with_orthogonal_up(hands.camera);
+        hands.camera = scene::with_orthogonal_up(hands.camera);
         hands.gestures.restart(hands.camera);
     }
-    const Camera changed = hands.camera;
+    const scene::Camera changed = hands.camera;
     hands.mouse_move(200, 150, kLeft);
     CHECK(hands.camera == changed);
     hands.mouse_move(220, 160, kLeft);
-    CHECK(near(hands.camera, rotated(changed, 5, 2.5, true)));
+    CHECK(near(hands.camera, navigation::rotated(changed, 5, 2.5, true)));
 }
 
 TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
@@ -496,7 +498,7 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
             Hands hands;
             hands.camera.eye = {3, 4, 5};
             hands.camera.center = {1, 1, 0};
-            hands.camera = with_orthogonal_up(hands.camera);
+            hands.camera = scene::with_orthogonal_up(hands.camera);
             hands.context.keep_upright = kind.keep_upright;
             hands.context.zoom_speed = 0.3;
             const unsigned buttons = kind.button == 1 ? kMiddle : kind.button == 2 ? kRight : kLeft;
@@ -506,7 +508,8 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
             for (const Move& move : moves)
                 hands.send(Action::move, move.x, move.y, -1, buttons, device, move.finger);
             if (with_wheel) {
-                hands.camera = wheel({-50, WheelInput::Unit::pixel}, hands.camera, hands.context);
+                hands.camera = navigation::wheel({-50, navigation::WheelInput::Unit::pixel}, hands.camera,
+                                                 hands.context);
                 hands.gestures.restart(hands.camera);
                 for (const Move& move : moves)
                     hands.send(Action::move, move.y, move.x, -1, buttons, device, move.finger);
@@ -517,9 +520,9 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
             return hands.camera;
         };
         for (const bool with_wheel : {false, true}) {
-            const Camera fifty = drag(path, with_wheel);
+            const scene::Camera fifty = drag(path, with_wheel);
             CHECK_FALSE(near(fifty, drag({{1, 300, 350}}, with_wheel)));
-            CHECK(is_valid_pose(fifty, 1));
+            CHECK(scene::is_valid_pose(fifty, 1));
             const std::vector<Move> two(path.end() - 2, path.end());
             CHECK(drag(two, with_wheel) == fifty);
             if (kind.button != -1) CHECK(drag({path.back()}, with_wheel) == fifty);
@@ -535,11 +538,11 @@ TEST_CASE("many moves, few, or in another order: the same camera to the bit") {
 TEST_CASE("navigation styles: which button does what with which key held") {
     struct Row {
         Style style = Style::vrut;
-        ModifierKeys modifiers;
+        navigation::ModifierKeys modifiers;
         Operation left = Operation::none, middle = Operation::none, right = Operation::none;
     };
-    using enum DragOperation;
-    const ModifierKeys others{false, true, true, true};
+    using enum navigation::DragOperation;
+    const navigation::ModifierKeys others{false, true, true, true};
     for (const Row& row : {
              Row{Style::vrut, {}, rotate, zoom, pan},
              Row{Style::vrut, kAlt, rotate, zoom, pan},
@@ -625,11 +628,11 @@ TEST_CASE("catia: the middle button pans, with another it turns, and zooms once 
 }
 
 TEST_CASE("cinema4d: number keys say what the left button does") {
-    const auto drag = [](const std::vector<KeyInput>& held, Style style = Style::cinema4d,
+    const auto drag = [](const std::vector<navigation::KeyInput>& held, Style style = Style::cinema4d,
                          const std::string& client = "tablet") {
         Hands hands;
         hands.context.style = style;
-        for (const KeyInput& key : held) hands.gestures.key_down(client, key);
+        for (const navigation::KeyInput& key : held) hands.gestures.key_down(client, key);
         hands.mouse_down(100, 400, 0, kLeft);
         return hands.operation(kLeft);
     };
@@ -649,7 +652,7 @@ TEST_CASE("cinema4d: number keys say what the left button does") {
 
     Hands hands;
     hands.context.style = Style::cinema4d;
-    Gestures& gestures = hands.gestures;
+    navigation::Gestures& gestures = hands.gestures;
     gestures.key_down("tablet", {"1", false, "Digit1"});
     gestures.key_down("tablet", {"1", false, "Digit1"});  // it repeats itself
     hands.mouse_down(100, 400, 0, kLeft);
@@ -670,7 +673,7 @@ TEST_CASE("cinema4d: number keys say what the left button does") {
     CHECK(hands.operation(kRight | kLeft) == Operation::zoom);
     gestures.key_down("other", {"2", false, "Digit2"});
     gestures.lift("tablet", hands.camera);
-    CHECK(gestures.held_keys() == std::vector<Gestures::HeldKey>{{"other", 2}});
+    CHECK(gestures.held_keys() == std::vector<navigation::Gestures::HeldKey>{{"other", 2}});
 }
 
 TEST_CASE("touch and the wheel are the same in all styles") {
@@ -682,10 +685,11 @@ TEST_CASE("touch and the wheel are the same in all styles") {
             hands->finger_move(1, 500, 350);
             hands->finger_down(2, 600, 300);
             hands->finger_move(2, 700, 100);
-            hands->camera = wheel({-50, WheelInput::Unit::pixel}, hands->camera, hands->context);
+            hands->camera =
+                navigation::wheel({-50, navigation::WheelInput::Unit::pixel}, hands->camera, hands->context);
         }
         CHECK(other.camera == same.camera);
-        CHECK_FALSE(near(same.camera, Camera{}));
+        CHECK_FALSE(near(same.camera, scene::Camera{}));
     }
 }
 
@@ -694,8 +698,8 @@ TEST_CASE("touch and the wheel are the same in all styles") {
 namespace {
 
 struct Event {
-    PointerInput input;
-    EventTime when;
+    navigation::PointerInput input;
+    navigation::EventTime when;
 };
 
 /// Any events of a mouse, a pen and four fingers of two clients, sensible or not, with much dragging.
@@ -703,7 +707,7 @@ std::vector<Event> random_events(unsigned seed) {
     std::mt19937 random(seed);
     const auto number = [&](int low, int high) { return std::uniform_int_distribution(low, high)(random); };
     std::vector<Event> events;
-    PointerInput input;
+    navigation::PointerInput input;
     double time = 1000;
     for (int i = 0; i < 400; ++i) {
         if (number(0, 2) == 0 || i == 0) {
@@ -732,7 +736,7 @@ std::vector<Event> random_events(unsigned seed) {
         if (input.action == Action::move)
             input.buttons = number(0, 5) == 0 ? static_cast<unsigned>(number(0, 7)) : input.buttons;
         else
-            input.buttons = input.action == Action::down ? button_mask(input.button) : 0;
+            input.buttons = input.action == Action::down ? navigation::button_mask(input.button) : 0;
         time += number(0, 12) * 10.1;
         events.push_back(
             {input, {time, std::chrono::microseconds(std::llround(time * 1000) + number(0, 50000))}});
@@ -743,13 +747,13 @@ std::vector<Event> random_events(unsigned seed) {
 /// What the server does with them: drags, and clicks that set the centre.
 struct Session {
     Hands hands;
-    Clicks clicks;
+    navigation::Clicks clicks;
     int completed = 0;
 
     explicit Session(Style style) {
         hands.camera.eye = {3, 4, 5};
         hands.context.style = style;
-        hands.camera = with_orthogonal_up(hands.camera);
+        hands.camera = scene::with_orthogonal_up(hands.camera);
     }
     void send(const Event& event) {
         hands.camera = hands.gestures.pointer(event.input, hands.camera, hands.context);
@@ -761,7 +765,7 @@ struct Session {
     }
 };
 
-bool may_be_merged(const PointerInput& a, const PointerInput& b) {
+bool may_be_merged(const navigation::PointerInput& a, const navigation::PointerInput& b) {
     return a.action == Action::move && b.action == Action::move && a.button == -1 && b.button == -1 &&
            a.pointer == b.pointer && a.client == b.client && a.buttons == b.buttons;
 }
@@ -810,14 +814,15 @@ TEST_CASE("what is pressed, pressed again: a fresh Gestures goes on alike, to th
             session.send(events[i]);
         }
         in_drag += hands.gestures.any_pressed() ? 1 : 0;
-        const Camera before = hands.camera;
+        const scene::Camera before = hands.camera;
         Hands fresh = hands;
         fresh.gestures = {};
         const auto keys = hands.gestures.held_keys();
         const auto pressed = hands.gestures.pressed();
         for (Hands* each : {&hands, &fresh}) {
-            for (const Gestures::HeldKey& key : keys) each->gestures.key_down(key.client, key.input());
-            for (const PointerInput& input : pressed)
+            for (const navigation::Gestures::HeldKey& key : keys)
+                each->gestures.key_down(key.client, key.input());
+            for (const navigation::PointerInput& input : pressed)
                 each->camera = each->gestures.pointer(input, each->camera, each->context);
             REQUIRE(each->camera == before);
             REQUIRE(each->gestures.held_keys() == keys);
@@ -839,7 +844,7 @@ TEST_CASE("what is pressed is told as it is now") {
     hands.mouse_move(110, 220, kLeft);
     hands.modifiers.shift = true;
     hands.finger_down(7, 300, 400);
-    const std::vector<PointerInput> pressed = hands.gestures.pressed();
+    const std::vector<navigation::PointerInput> pressed = hands.gestures.pressed();
     REQUIRE(pressed.size() == 2);
     CHECK(pressed[0].action == Action::down);
     CHECK(pressed[0].client == "tablet");
@@ -858,10 +863,10 @@ TEST_CASE("what is pressed is told as it is now") {
 
 TEST_CASE("wheel: a step is 100 pixels, 3 lines or a third of a page") {
     const Hands hands;
-    const auto distance = [&](double delta, WheelInput::Unit unit) {
-        return focus_distance(wheel({delta, unit}, hands.camera, hands.context));
+    const auto distance = [&](double delta, navigation::WheelInput::Unit unit) {
+        return scene::focus_distance(navigation::wheel({delta, unit}, hands.camera, hands.context));
     };
-    using Unit = WheelInput::Unit;
+    using Unit = navigation::WheelInput::Unit;
     CHECK(distance(-100, Unit::pixel) == doctest::Approx(5 / 1.1).epsilon(1e-13));
     CHECK(distance(-3, Unit::line) == doctest::Approx(5 / 1.1).epsilon(1e-13));
     CHECK(distance(-1.0 / 3, Unit::page) == doctest::Approx(5 / 1.1).epsilon(1e-13));
@@ -870,27 +875,28 @@ TEST_CASE("wheel: a step is 100 pixels, 3 lines or a third of a page") {
     CHECK(distance(1, Unit::page) == doctest::Approx(5 * 1.331).epsilon(1e-13));
     CHECK(distance(-50, Unit::pixel) == doctest::Approx(5 / std::sqrt(1.1)).epsilon(1e-13));
     for (const auto unit : {Unit::pixel, Unit::line, Unit::page}) {
-        CHECK(wheel({0, unit}, hands.camera, hands.context) == hands.camera);
+        CHECK(navigation::wheel({0, unit}, hands.camera, hands.context) == hands.camera);
         const double radius = std::sqrt(3.0);
         for (const double huge : {1e9, 1e300, std::numeric_limits<double>::max()}) {
             CHECK(distance(-huge, unit) == doctest::Approx(radius * 1e-6).epsilon(1e-9));
             CHECK(distance(huge, unit) == doctest::Approx(radius * 1e6).epsilon(1e-9));
         }
     }
-    NavigationContext fast = hands.context;
+    navigation::NavigationContext fast = hands.context;
     fast.zoom_speed = 2;
-    CHECK(focus_distance(wheel({-100, Unit::pixel}, hands.camera, fast)) ==
+    CHECK(scene::focus_distance(navigation::wheel({-100, Unit::pixel}, hands.camera, fast)) ==
           doctest::Approx(5 / 1.21).epsilon(1e-13));
 }
 
 TEST_CASE("keys") {
     Hands hands;
     hands.context.rotate_speed = hands.context.pan_speed = hands.context.zoom_speed = 7;  // not for keys
-    Camera home;
+    scene::Camera home;
     home.eye = {9, 9, 9};
     const auto pressed = [&](const std::string& key, bool shift = false) {
-        const std::optional<KeyOperation> operation = key_operation({key, shift, ""});
-        return operation ? apply_key_operation(*operation, hands.camera, home, hands.context) : hands.camera;
+        const std::optional<navigation::KeyOperation> operation = navigation::key_operation({key, shift, ""});
+        return operation ? navigation::apply_key_operation(*operation, hands.camera, home, hands.context)
+                         : hands.camera;
     };
     const double s = 5 * std::sin(5 * std::numbers::pi / 180), c = 5 * std::cos(5 * std::numbers::pi / 180);
     CHECK(near(pressed("ArrowRight").eye, {-s, 0, c}));
@@ -914,13 +920,13 @@ TEST_CASE("keys") {
     CHECK(near(pressed("f").eye, {0, 0, std::sqrt(3.0) / std::sin(20 * std::numbers::pi / 180)}, 1e-9));
     CHECK(pressed("Home") == home);
 
-    using Kind = KeyOperation::Kind;
+    using Kind = navigation::KeyOperation::Kind;
     for (const auto& [key, kind] :
          {std::pair{"w", Kind::toggle_wireframe}, {"s", Kind::toggle_stylized}, {"Escape", Kind::escape}}) {
-        REQUIRE(key_operation({key, false, ""}).has_value());
-        CHECK(key_operation({key, false, ""})->kind == kind);
+        REQUIRE(navigation::key_operation({key, false, ""}).has_value());
+        CHECK(navigation::key_operation({key, false, ""})->kind == kind);
         CHECK(pressed(key) == hands.camera);
     }
     for (const char* key : {"a", "F5", "Enter", "", "arrowleft", "Shift", "1", "=", "W", "F"})
-        CHECK_FALSE(key_operation({key, false, ""}).has_value());
+        CHECK_FALSE(navigation::key_operation({key, false, ""}).has_value());
 }

@@ -61,7 +61,7 @@ struct Stoppable {
     FrameRendererFactory factory(const FakeRenderer& of = {}) const {
         return [stop = stopped, inner = of.factory()] {
             FrameRenderer renderer = inner();
-            renderer.step = [stop, step = renderer.step](RenderJob& rendering) {
+            renderer.step = [stop, step = renderer.step](plan::RenderJob& rendering) {
                 while (*stop) std::this_thread::sleep_for(1ms);
                 return step(rendering);
             };
@@ -255,8 +255,8 @@ TEST_CASE("while a driver that was lost is started again nothing is ready") {
     const auto factory = [&] {
         if (lost) throw std::runtime_error("the driver is not there yet");
         FrameRenderer renderer = FakeRenderer{}.factory()();
-        renderer.step = [&, step = renderer.step](RenderJob& rendering) {
-            if (lost) throw ContextLost("the driver was reset");
+        renderer.step = [&, step = renderer.step](plan::RenderJob& rendering) {
+            if (lost) throw vrut::base::ContextLost("the driver was reset");
             return step(rendering);
         };
         return renderer;
@@ -294,7 +294,7 @@ TEST_CASE("an encode loop that does not come round is told apart from one that w
             metrics, [&](const auto&) { go_on.get_future().wait(); }, [] {},
             [](const Picture&, const std::string&) {});
         CHECK(encoder.busy_for() == 0s);
-        Image image;
+        scene::Image image;
         image.resize(4, 4);
         encoder.offer({}, std::move(image));
         CHECK(eventually([&] { return encoder.busy_for() > 50ms; }));

@@ -11,11 +11,12 @@ using namespace vrut;
 
 namespace {
 
-const Material kPaint = material_of({0.7, 0.5, 0.3});
+const scene::Material kPaint = material_of({0.7, 0.5, 0.3});
 
-std::size_t planned(View view, const Geometry& geometry, const glm::dmat4& matrix = glm::dmat4(1)) {
+std::size_t planned(plan::View view, const scene::Geometry& geometry,
+                    const glm::dmat4& matrix = glm::dmat4(1)) {
     view.scene = scene_of({{1, geometry, kPaint, matrix}});
-    return plan_frame(view).scene.opaque.size();
+    return plan::plan_frame(view).scene.opaque.size();
 }
 
 /// Whether some of a triangle's corners (in clip space) is left when it is cut along the sides of the
@@ -37,12 +38,12 @@ bool shows(std::vector<glm::dvec4> polygon) {
     return !polygon.empty();
 }
 
-bool shows(const PlacedScene& placed, std::size_t node, const View& view) {
+bool shows(const scene::PlacedScene& placed, std::size_t node, const plan::View& view) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dmat4 clip_from_node =
-        clip_from_view(view.camera, aspect, {0.1, 100}) * view_from_world(view.camera) * placed.world[node];
-    const auto& data = std::get<GeometryData>(placed.scene->nodes()[node].data);
-    const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
+    const glm::dmat4 clip_from_node = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+                                      scene::view_from_world(view.camera) * placed.world[node];
+    const auto& data = std::get<scene::GeometryData>(placed.scene->nodes()[node].data);
+    const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
     for (const glm::uvec3& triangle : geometry.triangles) {
         const auto corner = [&](int k) {
             return clip_from_node * glm::dvec4(geometry.positions[triangle[k]], 1);
@@ -55,7 +56,7 @@ bool shows(const PlacedScene& placed, std::size_t node, const View& view) {
 }  // namespace
 
 TEST_CASE("what lies more than a pixel beside the picture, or behind the eye, is not planned") {
-    const View view = pixel_view(80, 60);
+    const plan::View view = pixel_view(80, 60);
     CHECK(planned(view, rectangle(10, 10, 20, 20, view)) == 1);
     CHECK(planned(view, rectangle(-1000, -1000, 1000, 1000, view)) == 1);
     struct Beside {
@@ -67,7 +68,7 @@ TEST_CASE("what lies more than a pixel beside the picture, or behind the eye, is
              {Beside{-20, 20, -gap, 30}, {80 + gap, 20, 99, 30}, {20, -20, 30, -gap}, {20, 60 + gap, 30, 99}})
             CHECK(planned(view, rectangle(b.left, b.top, b.right, b.bottom, view)) == (gap < 1 ? 1u : 0u));
     }
-    const Geometry ball = sphere(1, 8);
+    const scene::Geometry ball = sphere(1, 8);
     CHECK(planned(view, ball, moved_by({0, 0, 29.5})) == 1);   // around the eye
     CHECK(planned(view, ball, moved_by({0, 0, 30.99})) == 1);  // the last of it before the eye
     CHECK(planned(view, ball, moved_by({0, 0, 31.01})) == 0);
@@ -80,18 +81,18 @@ TEST_CASE("what lies more than a pixel beside the picture, or behind the eye, is
 }
 
 TEST_CASE("an area of the picture sees what shows there and no more") {
-    const View view = pixel_view(80, 60);
-    const glm::dmat4 from_world = view_from_world(view.camera);
-    const auto sees = [&](const NdcRect& area, double left, double right) {
-        return !is_outside(frustum_of(view.camera, 80.0 / 60, area), from_world,
-                           rectangle(left, 20, right, 30, view).bounds);
+    const plan::View view = pixel_view(80, 60);
+    const glm::dmat4 from_world = scene::view_from_world(view.camera);
+    const auto sees = [&](const plan::NdcRect& area, double left, double right) {
+        return !plan::is_outside(plan::frustum_of(view.camera, 80.0 / 60, area), from_world,
+                                 rectangle(left, 20, right, 30, view).bounds);
     };
-    const NdcRect quarter{{0.5, -1}, {1, 1}};  // from pixel 60
+    const plan::NdcRect quarter{{0.5, -1}, {1, 1}};  // from pixel 60
     CHECK(sees(quarter, 50, 61));
     CHECK_FALSE(sees(quarter, 50, 59.9));
     CHECK(sees(quarter, 79, 90));
     CHECK_FALSE(sees(quarter, 80.1, 90));
-    const NdcRect strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
+    const plan::NdcRect strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
     CHECK(sees(strip, 31.9, 40));
     CHECK_FALSE(sees(strip, 32.1, 40));
     CHECK_FALSE(sees(strip, 20, 29.9));
@@ -101,12 +102,12 @@ TEST_CASE("what shows is planned: random parts, from within and from near") {
     Dice dice(7);
     int left_out = 0, showing = 0;
     for (int round = 0; round < 100; ++round) {
-        View view = view_from(dice.vector(5), dice.vector(5));
+        plan::View view = view_from(dice.vector(5), dice.vector(5));
         view.camera.fov = dice.between(5, 150);
         view.width = static_cast<int>(dice.between(1, 200));
         view.scene = scene_of(random_parts(dice, kPaint));
         std::vector<bool> found(view.scene->nodes.size());
-        for (const DrawItem& item : plan_frame(view).scene.opaque)
+        for (const plan::DrawItem& item : plan::plan_frame(view).scene.opaque)
             found[static_cast<std::size_t>(item.node)] = true;
         for (std::size_t node = 1; node < found.size(); ++node) {
             const bool there = shows(*view.scene, node, view);

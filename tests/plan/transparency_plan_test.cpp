@@ -12,14 +12,14 @@ using namespace vrut;
 
 namespace {
 
-std::shared_ptr<const PlacedScene> car() {
-    auto scene = read_scene(VRUT_CARS "/car-20k.vrut");
+std::shared_ptr<const scene::PlacedScene> car() {
+    auto scene = io::read_scene(VRUT_CARS "/car-20k.vrut");
     REQUIRE(scene);
-    return std::make_shared<const PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
 /// Of window glass, not of a lamp.
-bool is_window(const Scene& scene, const DrawItem& item) {
+bool is_window(const scene::Scene& scene, const plan::DrawItem& item) {
     return scene.material(item.material).name.starts_with("Glass");
 }
 
@@ -27,25 +27,25 @@ bool is_window(const Scene& scene, const DrawItem& item) {
 
 TEST_CASE("a car's windows are drawn sorted from all around, but for one that is seen along its edge") {
     int along = 0;
-    View view = view_from({0, 1, 5});
+    plan::View view = view_from({0, 1, 5});
     view.scene = car();
-    const Scene& scene = *view.scene->scene;
+    const scene::Scene& scene = *view.scene->scene;
     for (int side = 0; side < 8; ++side)
         for (const double height : {0.4, 1.2, 2.5}) {
             CAPTURE(side);
             CAPTURE(height);
             const double angle = glm::radians(45.0 * side + 10);
             view.camera.eye = {5 * std::sin(angle), height, 5 * std::cos(angle)};
-            const FramePlan plan = plan_frame(view);
+            const plan::FramePlan plan = plan::plan_frame(view);
             std::size_t blended = 0, windows = 0, expected = 0, exact = 0;
-            for (const TransparentGroup& group : plan.scene.transparent)
-                for (const DrawItem& item : group.items) {
+            for (const plan::TransparentGroup& group : plan.scene.transparent)
+                for (const plan::DrawItem& item : group.items) {
                     ++blended;
                     if (!is_window(scene, item)) continue;
                     ++windows;
                     exact += group.exact;
                 }
-            for (const DrawItem& item : visible_faces(view))
+            for (const plan::DrawItem& item : plan::visible_faces(view))
                 expected += scene.is_transparent(scene.material(item.material));
             CHECK(blended == expected);
             CHECK(windows >= 8);  // of four doors, two quarters, the boot lid, and the windscreen
@@ -57,18 +57,18 @@ TEST_CASE("a car's windows are drawn sorted from all around, but for one that is
 
 namespace {
 
-Part pane(Id id, const glm::dvec3& color, const glm::dmat4& matrix) {
-    Material material;
+Part pane(scene::Id id, const glm::dvec3& color, const glm::dmat4& matrix) {
+    scene::Material material;
     material.emission = {color, 1};
     material.diffuse = {0, 0, 0, 0.5};
     material.two_sided = true;
     return {id, quad(1), material, matrix};
 }
 
-std::vector<TransparentGroup> groups_of(const std::vector<Part>& parts) {
-    View view = view_from({0, 0, 5});
+std::vector<plan::TransparentGroup> groups_of(const std::vector<Part>& parts) {
+    plan::View view = view_from({0, 0, 5});
     view.scene = scene_of(parts);
-    return plan_frame(view).scene.transparent;
+    return plan::plan_frame(view).scene.transparent;
 }
 
 }  // namespace

@@ -7,37 +7,37 @@ using namespace vrut;
 
 namespace {
 
-Texture noise(unsigned seed, int width, int height) {
+scene::Texture noise(unsigned seed, int width, int height) {
     std::mt19937 random(seed);
-    Texture texture;
+    scene::Texture texture;
     texture.image.resize(width, height);
     for (std::uint8_t& byte : texture.image.rgba) byte = static_cast<std::uint8_t>(random());
     for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
     return texture;
 }
 
-std::vector<Texture> six(int size) {
-    std::vector<Texture> textures;
+std::vector<scene::Texture> six(int size) {
+    std::vector<scene::Texture> textures;
     for (unsigned i = 0; i < 6; ++i) textures.push_back(noise(i + 1, size, size));
     return textures;
 }
 
-constexpr std::array<Index, 6> kSix{0, 1, 2, 3, 4, 5};
+constexpr std::array<scene::Index, 6> kSix{0, 1, 2, 3, 4, 5};
 
-void check_shows(const ReferenceImage& shown, const Image& image) {
+void check_shows(const reference::ReferenceImage& shown, const scene::Image& image) {
     REQUIRE(shown.color.size() * 4 == image.rgba.size());
     for (std::size_t i = 0; i < shown.color.size(); ++i)
         check_same(shown.color[i],
                    glm::dvec3(image.rgba[4 * i], image.rgba[4 * i + 1], image.rgba[4 * i + 2]) / 255.0, 1e-9);
 }
 
-glm::dvec3 texel_of(const std::vector<Texture>& textures, std::size_t face, int x, int y) {
-    const Image& image = textures[face].image;
+glm::dvec3 texel_of(const std::vector<scene::Texture>& textures, std::size_t face, int x, int y) {
+    const scene::Image& image = textures[face].image;
     const auto at = 4 * static_cast<std::size_t>(y * image.width + x);
     return glm::dvec3(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]) / 255.0;
 }
 
-reference::CubeMap cube_of(const std::vector<Texture>& textures) {
+reference::CubeMap cube_of(const std::vector<scene::Texture>& textures) {
     return reference::CubeMap({&textures[0].image, &textures[1].image, &textures[2].image, &textures[3].image,
                                &textures[4].image, &textures[5].image});
 }
@@ -47,31 +47,31 @@ constexpr std::array<glm::dvec3, 2> kStill{};
 }  // namespace
 
 TEST_CASE("nothing but a background") {
-    View view = picture({0, 0, 5}, {0, 0, 0}, 3, 2);
-    for (const auto& scene : {std::shared_ptr<const PlacedScene>(), scene_of({})}) {
-        const ReferenceImage shown = traced(scene, view);
+    plan::View view = picture({0, 0, 5}, {0, 0, 0}, 3, 2);
+    for (const auto& scene : {std::shared_ptr<const scene::PlacedScene>(), scene_of({})}) {
+        const reference::ReferenceImage shown = traced(scene, view);
         REQUIRE(shown.color.size() == 6);
         for (std::size_t i = 0; i < 6; ++i) {
-            check_same(shown.color[i], kDefaultBackground);
-            CHECK(shown.node[i] == kNone);
+            check_same(shown.color[i], plan::kDefaultBackground);
+            CHECK(shown.node[i] == scene::kNone);
         }
     }
-    CHECK(image_of(traced(nullptr, view)).rgba ==
+    CHECK(reference::image_of(traced(nullptr, view)).rgba ==
           std::vector<std::uint8_t>{230, 235, 242, 255, 230, 235, 242, 255, 230, 235, 242, 255,
                                     230, 235, 242, 255, 230, 235, 242, 255, 230, 235, 242, 255});
 }
 
 TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") {
-    View view = picture({1, 2, 5}, {0, 0, 0}, 4, 3);
+    plan::View view = picture({1, 2, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const Texture texture = noise(3, 4, 3);
+    const scene::Texture texture = noise(3, 4, 3);
     check_shows(traced(scene_of({}, {texture}), view), texture.image);
 
-    Texture two;
+    scene::Texture two;
     two.image = {2, 1, {0, 0, 0, 255, 200, 200, 200, 255}};
     view.width = 8;
     view.height = 2;
-    const ReferenceImage wide = traced(scene_of({}, {two}), view);
+    const reference::ReferenceImage wide = traced(scene_of({}, {two}), view);
     for (std::size_t i = 0; i < 16; ++i)
         check_same(
             wide.color[i],
@@ -81,13 +81,13 @@ TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") 
 }
 
 TEST_CASE("a mirror shows the background's picture at the same pixel") {
-    View view = picture({0, 3, 5}, {0, 0, 0}, 4, 3);
+    plan::View view = picture({0, 3, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const Texture texture = noise(3, 4, 3);
-    Material mirror = glowing({0, 0, 0});
+    const scene::Texture texture = noise(3, 4, 3);
+    scene::Material mirror = glowing({0, 0, 0});
     mirror.reflectivity = 1;
     const auto shown = traced(scene_of({{1, quad(50), mirror, glm::dmat4(1)}}, {texture}), view);
-    CHECK(shown.node[5] != kNone);
+    CHECK(shown.node[5] != scene::kNone);
     check_shows(shown, texture.image);
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("each picture of a cube map is what a camera at the origin sees that w
         const auto textures = six(size);
         for (std::size_t i = 0; i < 6; ++i) {
             CAPTURE(i);
-            View view;
+            plan::View view;
             view.background.cube_map = kSix;
             view.camera.eye = {3, -7, 2};  // a cube map is infinitely far
             view.camera.focus = view.camera.eye + ways[i].view;
@@ -178,9 +178,9 @@ TEST_CASE("a pixel that spans many texels of a cube map takes a coarser level of
 
 TEST_CASE("what is curved or transparent mixes the cube map along the reflected ray") {
     auto textures = six(1);  // one colour a face; texels of one face reach to the middle of the next
-    Material material = glowing({2, 0.5, 0});
+    scene::Material material = glowing({2, 0.5, 0});
     material.reflectivity = 0.25;
-    View view = look({0, 0, 5}, {0, 0, 0});
+    plan::View view = look({0, 0, 5}, {0, 0, 0});
     const glm::dvec3 own(1, 0.5, 0);
     const Part ball{1, sphere(1, 64), material, turned_by(37, {1, 2, 3})};
     view.camera.fov = 1;
@@ -196,7 +196,7 @@ TEST_CASE("what is curved or transparent mixes the cube map along the reflected 
                (own * 0.75 + texel_of(textures, 0, 0, 0) * 0.25) * 0.5 + texel_of(textures, 5, 0, 0) * 0.5,
                1e-9);
     // In a mirror in the plane x = 0 the ball's other side is seen, and shows what is there.
-    Material mirror = glowing({0, 0, 0});
+    scene::Material mirror = glowing({0, 0, 0});
     mirror.reflectivity = 1;
     material.diffuse.a = 1;
     const Part far_ball{1, sphere(1, 64), material, moved_by({5, 0, 0})};

@@ -22,9 +22,9 @@ double distance_to(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c
     return u >= 0 && v >= 0 && u + v <= 1 && t > 0 ? t : std::numeric_limits<double>::infinity();
 }
 
-Geometry soup(std::mt19937& random, int triangles) {
+scene::Geometry soup(std::mt19937& random, int triangles) {
     std::uniform_real_distribution<double> far(-10, 10), near(-2, 2);
-    Geometry geometry;
+    scene::Geometry geometry;
     for (int i = 0; i < triangles; ++i) {
         const glm::dvec3 center(far(random), far(random), far(random));
         const auto at = static_cast<unsigned>(geometry.positions.size());
@@ -44,12 +44,12 @@ TEST_CASE("the tree finds what trying each triangle finds") {
     std::normal_distribution<double> any(0, 1);
     int hits = 0;
     for (const int count : {1, 2, 5, 40, 3000}) {
-        Geometry geometry = soup(random, count);
-        Material material = material_of({1, 1, 1});
+        scene::Geometry geometry = soup(random, count);
+        scene::Material material = material_of({1, 1, 1});
         material.two_sided = true;
-        Material glass = material;
+        scene::Material glass = material;
         glass.diffuse.a = 0.5;
-        View view;
+        plan::View view;
         view.camera.eye = {1, 2, 3};
         view.scene =
             scene_of({{1, geometry, material, glm::dmat4(1)}, {2, geometry, glass, moved_by({0, 9, 0})}});
@@ -92,7 +92,7 @@ TEST_CASE("the tree finds what trying each triangle finds") {
 
 TEST_CASE("boxes in one place, and none at all") {
     const double farthest = std::numeric_limits<double>::infinity();
-    const std::vector<Bounds> same(1000, Bounds{{1, 1, 1}, {2, 2, 2}});
+    const std::vector<math::Bounds> same(1000, math::Bounds{{1, 1, 1}, {2, 2, 2}});
     std::vector<int> met(same.size());
     reference::RayBvh(same).visit({1.5, 1.5, 9}, {0, 0, -1}, farthest, [&](std::uint32_t i) { ++met[i]; });
     CHECK(met == std::vector<int>(1000, 1));

@@ -8,7 +8,7 @@ using namespace vrut;
 namespace {
 
 /// To 2^-20, so that a place 10^7 away holds them exactly.
-Geometry rounded(Geometry geometry) {
+scene::Geometry rounded(scene::Geometry geometry) {
     geometry.bounds = {};
     for (glm::dvec3& position : geometry.positions) {
         position = glm::round(position * 1048576.0) / 1048576.0;
@@ -18,9 +18,9 @@ Geometry rounded(Geometry geometry) {
 }
 
 ReferenceParts things() {
-    Material glass = material_of({0.1, 0.6, 0.4}, {0.5, 0.5, 0.5}, 9);
+    scene::Material glass = material_of({0.1, 0.6, 0.4}, {0.5, 0.5, 0.5}, 9);
     glass.diffuse.a = 0.5;
-    Material mirror = material_of({0.1, 0.1, 0.1});
+    scene::Material mirror = material_of({0.1, 0.1, 0.1});
     mirror.reflectivity = 0.7;
     return {{1, rounded(sphere(0.875, 9)), material_of({0.5, 0.2, 0.1}, {0.4, 0.5, 0.6}, 20), glm::dmat4(1)},
             {2, mapped(quad(4), 1, {0, 0, -2}), mirror, glm::dmat4(1)},
@@ -32,20 +32,20 @@ ReferenceParts map_all(ReferenceParts parts, double scale, const glm::dvec3& off
     return parts;
 }
 
-View seen_from(double scale, const glm::dvec3& offset) {
+plan::View seen_from(double scale, const glm::dvec3& offset) {
     return picture(glm::dvec3(1, 2, 4) * scale + offset, glm::dvec3(0.25, 0, 0) * scale + offset);
 }
 
 }  // namespace
 
 TEST_CASE("far from the origin, and of any size, the picture is the same") {
-    const ReferenceImage here = traced(scene_of(things()), seen_from(1, {0, 0, 0}));
-    const auto check = [&](const ReferenceParts& parts, const View& view) {
-        const ReferenceImage there = traced(scene_of(parts), view);
+    const reference::ReferenceImage here = traced(scene_of(things()), seen_from(1, {0, 0, 0}));
+    const auto check = [&](const ReferenceParts& parts, const plan::View& view) {
+        const reference::ReferenceImage there = traced(scene_of(parts), view);
         CHECK(there.node == here.node);
         CHECK(difference_of(there, here) < 1e-9);
     };
-    CHECK(std::count(here.node.begin(), here.node.end(), kNone) < 500);
+    CHECK(std::count(here.node.begin(), here.node.end(), scene::kNone) < 500);
     CHECK(std::count(here.node.begin(), here.node.end(), 3) > 20);
     const glm::dvec3 far(1e7, -1e7, 1e7);
     check(map_all(things(), 1, far), seen_from(1, far));
@@ -68,19 +68,19 @@ TEST_CASE("far from the origin, and of any size, the picture is the same") {
 
 TEST_CASE("the order of the file is nothing to it") {
     ReferenceParts parts = things();
-    const View view = seen_from(1, {0, 0, 0});
-    const ReferenceImage should = traced(scene_of(parts), view);
+    const plan::View view = seen_from(1, {0, 0, 0});
+    const reference::ReferenceImage should = traced(scene_of(parts), view);
     std::reverse(parts.begin(), parts.end());
     CHECK(traced(scene_of(parts), view).color == should.color);
 }
 
 TEST_CASE("a pixel is the mean of its samples, not rounded before") {
     // Left of the middle of the second pixel white, then black.
-    View step = pixels(4, 2);
+    plan::View step = pixels(4, 2);
     step.samples = 4;
     step.background.color = {0, 0, 0};
     const Part half{1, quad(9), glowing({1, 1, 1}), moved_by({-9.5, 0, 0})};
-    const ReferenceImage edge = traced(scene_of({half}), step);
+    const reference::ReferenceImage edge = traced(scene_of({half}), step);
     for (const double row : {0, 4}) {
         const auto first = static_cast<std::size_t>(row);
         check_same(edge.color[first], glm::dvec3(1));
@@ -88,45 +88,45 @@ TEST_CASE("a pixel is the mean of its samples, not rounded before") {
         check_same(edge.color[first + 2], glm::dvec3(0));
     }
     const Part top{1, quad(9), glowing({1, 1, 1}), moved_by({0, 9.75, 0})};  // a quarter of the upper row
-    const ReferenceImage upper = traced(scene_of({top}), step);
+    const reference::ReferenceImage upper = traced(scene_of({top}), step);
     check_same(upper.color[4], glm::dvec3(0.25));  // one of the offsets 1/8, 3/8, 5/8, 7/8 is less
     check_same(upper.color[0], glm::dvec3(0));
 }
 
 TEST_CASE("stylized faces are all in one colour, and hide what is behind") {
     ReferenceParts parts = things();
-    View view = seen_from(1, {0, 0, 0});
-    view.mode = DrawMode::stylized;
-    const ReferenceImage shown = traced(scene_of(parts), view);
-    for (Part& part : parts) part.material = stylized_faces();
-    view.mode = DrawMode::realistic;
-    const ReferenceImage should = traced(scene_of(parts), view);
+    plan::View view = seen_from(1, {0, 0, 0});
+    view.mode = plan::DrawMode::stylized;
+    const reference::ReferenceImage shown = traced(scene_of(parts), view);
+    for (Part& part : parts) part.material = scene::stylized_faces();
+    view.mode = plan::DrawMode::realistic;
+    const reference::ReferenceImage should = traced(scene_of(parts), view);
     CHECK(difference_of(shown, should) == 0);
     CHECK(shown.node == should.node);
 }
 
 TEST_CASE("a wireframe has no faces") {
-    View view = seen_from(1, {0, 0, 0});
+    plan::View view = seen_from(1, {0, 0, 0});
     view.wireframe = true;
-    const ReferenceImage shown = traced(scene_of(things()), view);
-    CHECK(std::count(shown.node.begin(), shown.node.end(), kNone) == 48 * 32);
-    check_same(shown.color[700], kDefaultBackground);
+    const reference::ReferenceImage shown = traced(scene_of(things()), view);
+    CHECK(std::count(shown.node.begin(), shown.node.end(), scene::kNone) == 48 * 32);
+    check_same(shown.color[700], plan::kDefaultBackground);
 }
 
 TEST_CASE("bytes are rounded to the nearest, halves up") {
-    ReferenceImage picture{
+    reference::ReferenceImage picture{
         3, 1, {{0, 1, 0.5}, {0.49 / 255, 0.51 / 255, 1 - 0.49 / 255}, {0.002, 1.5 / 255, 0.9981}}, {}};
-    CHECK(image_of(picture).rgba ==
+    CHECK(reference::image_of(picture).rgba ==
           std::vector<std::uint8_t>{0, 255, 128, 255, 0, 1, 255, 255, 1, 2, 255, 255});
 }
 
 TEST_CASE("views of one pixel's width or height") {
     for (const auto& [width, height] : {std::pair{1, 2048}, std::pair{2048, 1}, std::pair{1, 1}}) {
-        View view = seen_from(1, {0, 0, 0});
+        plan::View view = seen_from(1, {0, 0, 0});
         view.width = width;
         view.height = height;
-        const ReferenceImage shown = traced(scene_of(things()), view);
+        const reference::ReferenceImage shown = traced(scene_of(things()), view);
         CHECK(shown.color.size() == static_cast<std::size_t>(width * height));
-        CHECK(std::count(shown.node.begin(), shown.node.end(), kNone) < width * height);
+        CHECK(std::count(shown.node.begin(), shown.node.end(), scene::kNone) < width * height);
     }
 }

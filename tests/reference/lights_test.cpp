@@ -6,8 +6,8 @@ using namespace vrut;
 
 namespace {
 
-Material shiny() {
-    Material material = material_of({0.5, 0.3, 0.2}, {0.3, 0.4, 0.1}, 7);
+scene::Material shiny() {
+    scene::Material material = material_of({0.5, 0.3, 0.2}, {0.3, 0.4, 0.1}, 7);
     material.ambient = {0.01, 0.02, 0.03, 1};
     material.emission = {0.02, 0, 0.01, 1};
     return material;
@@ -25,14 +25,14 @@ glm::dvec3 expected(const glm::dvec3& to_light, double intensity) {
     return kBase + (glm::dvec3(0.5, 0.3, 0.2) + glm::dvec3(0.3, 0.4, 0.1) * highlight) * lambert * intensity;
 }
 
-glm::dvec3 plate_under(const Light& light) {
-    View view = look(kEye, kSeen);
+glm::dvec3 plate_under(const scene::Light& light) {
+    plan::View view = look(kEye, kSeen);
     view.light = light;
     return seen({{1, quad(10), shiny(), glm::dmat4(1)}}, view);
 }
 
-Light at(const glm::dvec3& position, LightData::Type type = LightData::Type::point) {
-    Light light;
+scene::Light at(const glm::dvec3& position, scene::LightData::Type type = scene::LightData::Type::point) {
+    scene::Light light;
     light.headlight = false;
     light.type = type;
     light.position = position;
@@ -48,7 +48,7 @@ TEST_CASE("a plate under the headlight") {
     const glm::dvec3 color =
         kBase + (glm::dvec3(0.5, 0.3, 0.2) + glm::dvec3(0.3, 0.4, 0.1) * highlight) * cosine;
     check_same(plate_under({}), color);
-    Light fading;
+    scene::Light fading;
     fading.attenuation = {0.5, 0.25, 0.125};
     check_same(plate_under(fading), kBase + (color - kBase) / (0.5 + 0.25 * distance + 0.125 * 21));
     fading.attenuation = {0, 0, 0};
@@ -60,7 +60,7 @@ TEST_CASE("a plate under the headlight") {
 TEST_CASE("a point light and a directional one, before and behind the plate") {
     const glm::dvec3 offset = glm::dvec3(-1, 3, 2) - kSeen;
     check_same(plate_under(at({-1, 3, 2})), expected(glm::normalize(offset), 1));
-    Light fading = at({-1, 3, 2});
+    scene::Light fading = at({-1, 3, 2});
     fading.attenuation = {1, 0, 0.5};
     fading.color = {0.5, 0.25, 0.125, 0};  // its alpha is nothing
     const glm::dvec3 lit =
@@ -69,7 +69,7 @@ TEST_CASE("a point light and a directional one, before and behind the plate") {
     check_same(plate_under(at({-1, 3, -2})), kBase);
     check_same(plate_under(at(kSeen)), kBase);
 
-    Light sun = directional({1, -2, -2});
+    scene::Light sun = directional({1, -2, -2});
     sun.attenuation = {9, 9, 9};  // nothing to it
     check_same(plate_under(sun), expected(glm::dvec3(-1, 2, 2) / 3.0, 1));
     check_same(plate_under(directional({1, -2, 2})), kBase);
@@ -77,7 +77,7 @@ TEST_CASE("a point light and a directional one, before and behind the plate") {
 
 TEST_CASE("a spot's cone") {
     const glm::dvec3 position(1, 2, 3);  // above what is seen
-    Light spot = at(position, LightData::Type::spot);
+    scene::Light spot = at(position, scene::LightData::Type::spot);
     spot.angle = 60;
     const auto tilted = [&](double degrees) {
         const double a = degrees * std::numbers::pi / 180;
@@ -99,11 +99,11 @@ TEST_CASE("a spot's cone") {
 }
 
 TEST_CASE("shininess 0 has its highlight wherever it is lit; one turned away has none") {
-    View view = look({4, 0, 1}, {0, 0, 0});
+    plan::View view = look({4, 0, 1}, {0, 0, 0});
     view.light =
         directional({4, 0, -1});  // its reflection goes away from the viewer: exactly backwards is none
     const double lambert = 1 / std::sqrt(17.0);
-    Material plain = material_of({0.1, 0.1, 0.1}, {0.5, 0.5, 0.5}, 0);
+    scene::Material plain = material_of({0.1, 0.1, 0.1}, {0.5, 0.5, 0.5}, 0);
     check_same(seen({{1, quad(1), plain, glm::dmat4(1)}}, view), glm::dvec3(0.6 * lambert));
     view.light = directional({-4, 0, -1});  // back to the light's side: R · C is below 0
     plain.shininess = 0.5;
@@ -114,15 +114,15 @@ TEST_CASE("shininess 0 has its highlight wherever it is lit; one turned away has
 
 TEST_CASE("a ball of many triangles is a ball") {
     constexpr double kRadius = 1.5;
-    const View view = picture({2, 1, 5}, {0.2, 0.1, 0});
+    const plan::View view = picture({2, 1, 5}, {0.2, 0.1, 0});
     const auto ball = scene_of({{1, sphere(kRadius, 300), shiny(), glm::dmat4(1)}});
-    const ReferenceImage shown = traced(ball, view);
+    const reference::ReferenceImage shown = traced(ball, view);
     const glm::dvec3 eye = view.camera.eye;
     int compared = 0;
     for (int y = 0; y < view.height; ++y)
         for (int x = 0; x < view.width; ++x) {
             const glm::dvec2 at((x + 0.5) / view.width * 2 - 1, (y + 0.5) / view.height * 2 - 1);
-            const glm::dvec3 ray = direction_through(view.camera, 1.5, at);
+            const glm::dvec3 ray = scene::direction_through(view.camera, 1.5, at);
             // |eye + t ray| = radius
             const double middle = -glm::dot(eye, ray);
             const double root = middle * middle - glm::dot(eye, eye) + kRadius * kRadius;
@@ -130,7 +130,7 @@ TEST_CASE("a ball of many triangles is a ball") {
                 static_cast<std::size_t>(view.height - 1 - y) * static_cast<std::size_t>(view.width) +
                 static_cast<std::size_t>(x);
             if (std::abs(root) < 0.05) continue;  // near its outline
-            CHECK((shown.node[pixel] == kNone) == (root < 0));
+            CHECK((shown.node[pixel] == scene::kNone) == (root < 0));
             if (root < 0) continue;
             const glm::dvec3 normal = (eye + ray * (middle - std::sqrt(root))) / kRadius;
             const double cosine = -glm::dot(normal, ray);

@@ -4,14 +4,15 @@ using namespace vrut;
 
 namespace {
 
-Material mirror(double reflectivity, const glm::dvec3& own = glm::dvec3(0)) {
-    Material material = glowing(own);
+scene::Material mirror(double reflectivity, const glm::dvec3& own = glm::dvec3(0)) {
+    scene::Material material = glowing(own);
     material.reflectivity = reflectivity;
     return material;
 }
 
 /// In the plane through `point` at right angles to `normal`, large.
-Part mirror_at(Id id, const glm::dvec3& point, const glm::dvec3& normal, const Material& material) {
+Part mirror_at(scene::Id id, const glm::dvec3& point, const glm::dvec3& normal,
+               const scene::Material& material) {
     const glm::dvec3 n = glm::normalize(normal);
     const glm::dvec3 u = glm::normalize(glm::cross(glm::dvec3(0.3, 1, 0.2), n));
     glm::dmat4 matrix(1);
@@ -22,19 +23,19 @@ Part mirror_at(Id id, const glm::dvec3& point, const glm::dvec3& normal, const M
     return {id, quad(40), material, matrix};
 }
 
-Texture checks() {
-    Texture texture;
+scene::Texture checks() {
+    scene::Texture texture;
     texture.image = {2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 255, 255, 0, 255}};
     return texture;
 }
 
 /// A shiny ball, a box with a picture, and a pane before them.
 ReferenceParts room(const glm::dmat4& placed) {
-    Geometry plate = quad(1);
+    scene::Geometry plate = quad(1);
     plate.texcoords = {{0, 0}, {3, 0}, {3, 3}, {0, 3}};
-    Material pictured = material_of({1, 1, 1}, {0.2, 0.2, 0.2}, 3);
+    scene::Material pictured = material_of({1, 1, 1}, {0.2, 0.2, 0.2}, 3);
     pictured.texture = 0;
-    Material glass = glowing({0.1, 0.6, 0.4}, 0.4);
+    scene::Material glass = glowing({0.1, 0.6, 0.4}, 0.4);
     return {{2, sphere(0.8, 12), material_of({0.5, 0.2, 0.1}, {0.4, 0.5, 0.6}, 20),
              placed * moved_by({-1, 0, 0})},
             {3, plate, two_sided(pictured), placed * moved_by({1, 0.2, 0.3}) * turned_by(60, {1, 1, 0})},
@@ -46,11 +47,11 @@ constexpr glm::dvec3 kPoint{0.5, -1.5, -2}, kNormal{0.3, 1, 0.6};
 }  // namespace
 
 TEST_CASE("a mirror shows what the reflected things would show behind it") {
-    const Plane plane{glm::normalize(kNormal), kPoint};
-    const glm::dmat4 reflection = reflection_about(plane);
-    View view = picture({0.5, 4, 5}, {0.2, -0.5, -1}, 96, 64);
+    const math::Plane plane{glm::normalize(kNormal), kPoint};
+    const glm::dmat4 reflection = math::reflection_about(plane);
+    plan::View view = picture({0.5, 4, 5}, {0.2, -0.5, -1}, 96, 64);
     for (const bool headlight : {true, false}) {
-        View reflected_light = view;
+        plan::View reflected_light = view;
         view.light = reflected_light.light = {};
         view.light.headlight = headlight;
         view.light.position = {2, 4, 6};
@@ -68,10 +69,10 @@ TEST_CASE("a mirror shows what the reflected things would show behind it") {
         double worst = 0;
         int compared = 0;
         for (std::size_t i = 0; i < shown.color.size(); ++i) {
-            if (direct.node[i] != kNone || shown.node[i] == kNone) continue;
+            if (direct.node[i] != scene::kNone || shown.node[i] == scene::kNone) continue;
             const glm::dvec3 off = glm::abs(shown.color[i] - should.color[i]);
             worst = std::max({worst, off.r, off.g, off.b});
-            compared += should.node[i] != kNone;
+            compared += should.node[i] != scene::kNone;
         }
         CHECK(worst < 1e-12);
         CHECK(compared > 80);
@@ -83,7 +84,7 @@ TEST_CASE("a mirror mixes its own colour with the reflection, from both sides") 
     for (const double side : {1.0, -1.0}) {
         const Part ball{2, sphere(1, 8), glowing({0.2, 1, 0.4}), moved_by({3, 0, 3 * side})};
         const Part plate{1, quad(1), mirror(0.25, {2, 0.5, 0}), glm::dmat4(1)};
-        View view = look({-3, 0, 3 * side}, {0, 0, 0});
+        plan::View view = look({-3, 0, 3 * side}, {0, 0, 0});
         check_same(seen({ball, plate}, view), {0.75 + 0.25 * 0.2, 0.75 * 0.5 + 0.25, 0.25 * 0.4});
         view.background.color = {0, 0, 1};
         check_same(seen({plate}, view), {0.75, 0.375, 0.25});
@@ -97,12 +98,12 @@ TEST_CASE("a mirror mixes its own colour with the reflection, from both sides") 
 TEST_CASE("a thing that reaches through a mirror is cut at its plane") {
     // The reflected ray would meet the wall below the plane only.
     const Part plate{1, quad(1), mirror(1), glm::dmat4(1)};
-    Geometry low = quad(1);  // x = 2, from z = -2 to z = 1
+    scene::Geometry low = quad(1);  // x = 2, from z = -2 to z = 1
     low.positions = {{2, -1, -2}, {2, -1, 1}, {2, 1, 1}, {2, 1, -2}};
     low.normals.clear();
     low.bounds = {};
     for (const glm::dvec3& position : low.positions) low.bounds.add(position);
-    View view = look({-3, 0, 3}, {0, 0, 0});  // meets x = 2 at z = 2 after the reflection
+    plan::View view = look({-3, 0, 3}, {0, 0, 0});  // meets x = 2 at z = 2 after the reflection
     view.background.color = {0, 0, 0};
     check_same(seen({{2, low, two_sided(glowing({1, 1, 1})), glm::dmat4(1)}, plate}, view), glm::dvec3(0));
     view.camera.eye = {-3, 0, 1};  // at z = 2/3
@@ -111,12 +112,12 @@ TEST_CASE("a thing that reaches through a mirror is cut at its plane") {
 
 TEST_CASE("the light stays where it is, and C is the way back along the reflected ray") {
     // By hand: eye, mirror z = 0 met at the origin, then a plate facing the eye's side at x = 3.
-    Geometry wall = quad(1);
+    scene::Geometry wall = quad(1);
     wall.normals.clear();
-    Material material = material_of({0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}, 3);
+    scene::Material material = material_of({0.3, 0.2, 0.1}, {0.5, 0.5, 0.5}, 3);
     const Part plate{1, quad(1), mirror(1), glm::dmat4(1)};
     const Part target{2, wall, material, moved_by({3, 0, 4}) * turned_by(-90, {0, 1, 0})};  // faces -x
-    View view = look({-3, 0, 4}, {0, 0, 0});
+    plan::View view = look({-3, 0, 4}, {0, 0, 0});
     const glm::dvec3 point(3, 0, 4), normal(-1, 0, 0);
     const glm::dvec3 to_light = glm::normalize(view.camera.eye - point);  // the headlight at the true eye
     const glm::dvec3 back = glm::normalize(-point);
@@ -137,35 +138,43 @@ TEST_CASE("within a mirror mirrors are ordinary surfaces, from both sides") {
 
 TEST_CASE("a mirror does not show what lies in its own place") {
     const glm::dmat4 turned = moved_by({0.1, -0.2, 0.3}) * turned_by(37, {1, 2, 3});
-    View view = picture(glm::dvec3(turned * glm::dvec4(-0.3, 0.2, 3, 1)), glm::dvec3(turned[3]), 8, 8);
+    plan::View view = picture(glm::dvec3(turned * glm::dvec4(-0.3, 0.2, 3, 1)), glm::dvec3(turned[3]), 8, 8);
     view.camera.fov = 10;
     view.background.color = {0.2, 0.8, 0.4};
     // One geometry of one node, or of two.
-    const auto plates = [&](const std::vector<Material>& materials) {
-        SceneParts parts;
+    const auto plates = [&](const std::vector<scene::Material>& materials) {
+        scene::SceneParts parts;
         parts.geometries = {quad(1)};
         parts.materials = materials;
-        for (Index i = 0; i < static_cast<Index>(materials.size()); ++i)
-            parts.nodes.push_back(
-                {Node{9 - i, {}, NodeType::geometry, kNone, {}, true, turned, GeometryData{0, i}}, 0});
-        return std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts))));
+        for (scene::Index i = 0; i < static_cast<scene::Index>(materials.size()); ++i)
+            parts.nodes.push_back({scene::Node{9 - i,
+                                               {},
+                                               scene::NodeType::geometry,
+                                               scene::kNone,
+                                               {},
+                                               true,
+                                               turned,
+                                               scene::GeometryData{0, i}},
+                                   0});
+        return std::make_shared<const scene::PlacedScene>(
+            scene::place(*scene::Scene::build(std::move(parts))));
     };
-    const Material plate = mirror(0.5, {0.6, 0.2, 0.2});
-    const ReferenceImage alone = traced(plates({plate}), view);
+    const scene::Material plate = mirror(0.5, {0.6, 0.2, 0.2});
+    const reference::ReferenceImage alone = traced(plates({plate}), view);
     check_same(alone.color[27], {0.4, 0.5, 0.3});
-    for (const Material& twin :
+    for (const scene::Material& twin :
          {two_sided(glowing({1, 1, 0})), mirror(1), two_sided(glowing({1, 0, 1}, 0.5))})
         CHECK(difference_of(traced(plates({plate, twin}), view), alone) < 1e-12);
 }
 
 TEST_CASE("geometry that is not flat, or transparent, is no mirror") {
-    View view = look({-3, 0, 3}, {0, 0, 0});
+    plan::View view = look({-3, 0, 3}, {0, 0, 0});
     view.background.color = {0, 0, 0};
-    Geometry bent = quad(1);
+    scene::Geometry bent = quad(1);
     bent.positions[2].z = 0.01;
     bent.bounds.add(bent.positions[2]);
     check_same(seen({{1, bent, mirror(0.5, {1, 1, 1}), glm::dmat4(1)}}, view), glm::dvec3(1));
-    Material glass = glowing({1, 1, 1}, 0.5);
+    scene::Material glass = glowing({1, 1, 1}, 0.5);
     glass.reflectivity = 0.5;
     check_same(seen({{1, quad(1), glass, glm::dmat4(1)}}, view), glm::dvec3(0.5));
     // Glass is shown from its front only; a mirror from behind, too.
@@ -175,7 +184,7 @@ TEST_CASE("geometry that is not flat, or transparent, is no mirror") {
 }
 
 TEST_CASE("a mirror that is flat by its matrix' grace, and glass before and in a mirror") {
-    View view = look({-3, 0, 3}, {0, 0, 0});
+    plan::View view = look({-3, 0, 3}, {0, 0, 0});
     view.background.color = {0, 0, 0};
     const Part ball{2, sphere(1, 8), glowing({0.2, 1, 0.4}), moved_by({3, 0, 3})};
     // A flat geometry under a singular matrix that keeps its plane.
@@ -191,20 +200,29 @@ TEST_CASE("a mirror that is flat by its matrix' grace, and glass before and in a
 }
 
 TEST_CASE("LODs in a mirror are the eye's") {
-    SceneParts parts;
+    scene::SceneParts parts;
     parts.materials = {mirror(1), glowing({1, 0, 0}), glowing({0, 1, 0})};
     parts.geometries = {quad(1), sphere(1, 8)};
-    const auto geometry_node = [](Id id, Index geometry, Index material) {
-        return Node{id, {},   NodeType::geometry, kNone,
-                    {}, true, glm::dmat4(1),      GeometryData{geometry, material}};
+    const auto geometry_node = [](scene::Id id, scene::Index geometry, scene::Index material) {
+        return scene::Node{id,
+                           {},
+                           scene::NodeType::geometry,
+                           scene::kNone,
+                           {},
+                           true,
+                           glm::dmat4(1),
+                           scene::GeometryData{geometry, material}};
     };
-    parts.nodes = {{geometry_node(1, 0, 0), 0},
-                   {Node{2, {}, NodeType::lod, kNone, {}, true, moved_by({3, 0, 3}), LodData{{7}}}, 0},
-                   {geometry_node(3, 1, 1), 2},
-                   {geometry_node(4, 1, 2), 2}};
-    auto scene = Scene::build(std::move(parts));
+    parts.nodes = {
+        {geometry_node(1, 0, 0), 0},
+        {scene::Node{
+             2, {}, scene::NodeType::lod, scene::kNone, {}, true, moved_by({3, 0, 3}), scene::LodData{{7}}},
+         0},
+        {geometry_node(3, 1, 1), 2},
+        {geometry_node(4, 1, 2), 2}};
+    auto scene = scene::Scene::build(std::move(parts));
     REQUIRE(scene);
-    const auto placed = std::make_shared<PlacedScene>(place(*std::move(scene)));
+    const auto placed = std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
     // 6 from the ball by air, 8.5 by way of the mirror; then 7.07.
     check_same(traced(placed, look({-3, 0, 3}, {0, 0, 0})).color[0], {1, 0, 0});
     check_same(traced(placed, look({-4, 0, 4}, {0, 0, 0})).color[0], {0, 1, 0});

@@ -12,39 +12,40 @@ namespace vrut {
 using ReferenceParts = std::vector<Part>;
 
 /// One pixel, which looks from `eye` to `focus`.
-inline View look(const glm::dvec3& eye, const glm::dvec3& focus) {
-    View view;
+inline plan::View look(const glm::dvec3& eye, const glm::dvec3& focus) {
+    plan::View view;
     view.camera.eye = eye;
     view.camera.focus = focus;
     const glm::dvec3 along = glm::normalize(focus - eye);
     view.camera.up = std::abs(along.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
-    view.camera = with_orthogonal_up(view.camera);
+    view.camera = scene::with_orthogonal_up(view.camera);
     view.width = view.height = 1;
     return view;
 }
 
 /// A small picture from there.
-inline View picture(const glm::dvec3& eye, const glm::dvec3& focus, int width = 48, int height = 32) {
-    View view = look(eye, focus);
+inline plan::View picture(const glm::dvec3& eye, const glm::dvec3& focus, int width = 48, int height = 32) {
+    plan::View view = look(eye, focus);
     view.width = width;
     view.height = height;
     return view;
 }
 
 /// Straight on to the plane z = 0, where a unit is a pixel.
-inline View pixels(int width, int height) {
-    View view = picture({0, 0, height / 2.0}, {0, 0, 0}, width, height);
+inline plan::View pixels(int width, int height) {
+    plan::View view = picture({0, 0, height / 2.0}, {0, 0, 0}, width, height);
     view.camera.fov = 90;
     return view;
 }
 
-inline ReferenceImage traced(const std::shared_ptr<const PlacedScene>& scene, View view) {
+inline reference::ReferenceImage traced(const std::shared_ptr<const scene::PlacedScene>& scene,
+                                        plan::View view) {
     view.scene = scene;
-    return trace(view);
+    return reference::trace(view);
 }
 
 /// What the one pixel shows.
-inline glm::dvec3 seen(const ReferenceParts& parts, const View& view) {
+inline glm::dvec3 seen(const ReferenceParts& parts, const plan::View& view) {
     return traced(scene_of(parts), view).color[0];
 }
 
@@ -58,7 +59,7 @@ inline void check_same(const glm::dvec3& is, const glm::dvec3& should, double to
 }
 
 /// The largest difference of any component.
-inline double difference_of(const ReferenceImage& a, const ReferenceImage& b) {
+inline double difference_of(const reference::ReferenceImage& a, const reference::ReferenceImage& b) {
     REQUIRE(a.color.size() == b.color.size());
     double worst = 0;
     for (std::size_t i = 0; i < a.color.size(); ++i)
@@ -67,22 +68,22 @@ inline double difference_of(const ReferenceImage& a, const ReferenceImage& b) {
 }
 
 /// Of that colour under any light.
-inline Material glowing(const glm::dvec3& color, double alpha = 1) {
-    Material material = material_of({0, 0, 0});
+inline scene::Material glowing(const glm::dvec3& color, double alpha = 1) {
+    scene::Material material = material_of({0, 0, 0});
     material.emission = {color, 1};
     material.diffuse.a = alpha;
     return material;
 }
 
-inline Material two_sided(Material material) {
+inline scene::Material two_sided(scene::Material material) {
     material.two_sided = true;
     return material;
 }
 
-inline Light directional(const glm::dvec3& direction) {
-    Light light;
+inline scene::Light directional(const glm::dvec3& direction) {
+    scene::Light light;
     light.headlight = false;
-    light.type = LightData::Type::directional;
+    light.type = scene::LightData::Type::directional;
     light.direction = glm::normalize(direction);
     return light;
 }

@@ -4,11 +4,11 @@ using namespace vrut;
 
 namespace {
 
-const Material kPlain = material_of({0.6, 0.4, 0.2});
+const scene::Material kPlain = material_of({0.6, 0.4, 0.2});
 const glm::dvec3 kLit{0.6, 0.4, 0.2};
 
 bool shows(const ReferenceParts& parts, const glm::dvec3& eye) {
-    return traced(scene_of(parts), look(eye, {0, 0, 0})).node[0] != kNone;
+    return traced(scene_of(parts), look(eye, {0, 0, 0})).node[0] != scene::kNone;
 }
 
 }  // namespace
@@ -21,7 +21,7 @@ TEST_CASE("front faces are shown, back faces are not, whatever the matrix' sign"
         CAPTURE(factors.z);
         for (const bool normals : {true, false})
             for (const double alpha : {1.0, 0.5}) {
-                Material material = kPlain;
+                scene::Material material = kPlain;
                 material.diffuse.a = alpha;
                 const Part plate{1, quad(1, normals), material, scaled_by(factors)};
                 const double front = factors.z > 0 ? 5 : -5;
@@ -51,7 +51,7 @@ TEST_CASE("a flattened part is shown from both sides and lit from both") {
 
 TEST_CASE("normals go by the cofactors, are unit at the corners and again at the pixel") {
     // Stretched along x, a slope's normal leans less.
-    Geometry slope = quad(1);
+    scene::Geometry slope = quad(1);
     slope.normals.assign(4, glm::vec3(3, 0, 4));  // of any length
     const glm::dvec3 normal = glm::normalize(glm::dvec3(1.5, 0, 4));
     check_same(seen({{1, slope, kPlain, scaled_by({2, 1, 1})}}, look({0, 0, 5}, {0, 0, 0})), kLit * normal.z);
@@ -59,7 +59,7 @@ TEST_CASE("normals go by the cofactors, are unit at the corners and again at the
                kLit * normal.z);
 
     // Half way between two corners, one of them given ten times as long.
-    Geometry bent = quad(1);
+    scene::Geometry bent = quad(1);
     bent.normals = {{-0.6f, 0, 0.8f}, {6, 0, 8}, {6, 0, 8}, {-0.6f, 0, 0.8f}};
     check_same(seen({{1, bent, kPlain, glm::dmat4(1)}}, look({0, -0.5, 5}, {0, -0.5, 0})), kLit, 1e-7);
     const glm::dvec3 quarter = glm::normalize(glm::dvec3(0.3, 0, 0.8));
@@ -68,23 +68,23 @@ TEST_CASE("normals go by the cofactors, are unit at the corners and again at the
 }
 
 TEST_CASE("zero normals take the face's") {
-    Geometry some = quad(1);
+    scene::Geometry some = quad(1);
     some.normals = {{0, 0, 0}, {0, 0, 2}, {0, 0, 0}, {0, 0, 0.5f}};
     check_same(seen({{1, some, kPlain, glm::dmat4(1)}}, look({0, 0, 5}, {0.3, 0.1, 0})),
                kLit * (5 / std::sqrt(25.1)));
     // Opposite neighbours: between them there is none.
-    Geometry opposite = quad(1);
+    scene::Geometry opposite = quad(1);
     opposite.normals = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {-1, 0, 0}};
     check_same(seen({{1, opposite, kPlain, glm::dmat4(1)}}, look({0, 0.25, 5}, {0, 0.25, 0})), kLit);
     // One-sided, a normal may point away: then it is dark.
-    Geometry away = quad(1);
+    scene::Geometry away = quad(1);
     away.normals.assign(4, glm::vec3(0, 0, -1));
     check_same(seen({{1, away, kPlain, glm::dmat4(1)}}, look({0, 0, 5}, {0, 0, 0})), glm::dvec3(0));
     check_same(seen({{1, away, two_sided(kPlain), glm::dmat4(1)}}, look({0, 0, 5}, {0, 0, 0})), kLit);
 }
 
 TEST_CASE("triangles without area, and matrices that are no numbers, show nothing") {
-    Geometry line = quad(1);
+    scene::Geometry line = quad(1);
     line.positions = {{-1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 0, 0}};
     CHECK_FALSE(shows({{1, line, two_sided(kPlain), glm::dmat4(1)}}, {0, 0, 5}));
     glm::dmat4 broken(1);
@@ -95,7 +95,7 @@ TEST_CASE("triangles without area, and matrices that are no numbers, show nothin
 }
 
 TEST_CASE("of the same geometry in the same place the higher id is in front, opaque or glass") {
-    const View view = look({1, 2, 5}, {0.1, 0.2, 0});
+    const plan::View view = look({1, 2, 5}, {0.1, 0.2, 0});
     const Part red{7, quad(1), glowing({1, 0, 0}), glm::dmat4(1)};
     const Part blue{9, quad(1), glowing({0, 0, 1}), glm::dmat4(1)};
     check_same(seen({red, blue}, view), {0, 0, 1});

@@ -9,8 +9,8 @@ using namespace vrut;
 
 namespace {
 
-Image image_of_grays(int width, int height, const std::vector<int>& grays) {
-    Image image;
+scene::Image image_of_grays(int width, int height, const std::vector<int>& grays) {
+    scene::Image image;
     image.resize(width, height);
     for (std::size_t i = 0; i < grays.size(); ++i) {
         for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = static_cast<std::uint8_t>(grays[i]);
@@ -19,32 +19,32 @@ Image image_of_grays(int width, int height, const std::vector<int>& grays) {
     return image;
 }
 
-Image noise(int width, int height) {
+scene::Image noise(int width, int height) {
     std::mt19937 random(7);
-    Image image;
+    scene::Image image;
     image.resize(width, height);
     for (std::uint8_t& byte : image.rgba) byte = static_cast<std::uint8_t>(random());
     for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
     return image;
 }
 
-glm::dvec3 texel(const Image& image, int x, int y) {
+glm::dvec3 texel(const scene::Image& image, int x, int y) {
     const auto at = 4 * static_cast<std::size_t>(y * image.width + x);
     return glm::dvec3(image.rgba[at], image.rgba[at + 1], image.rgba[at + 2]) / 255.0;
 }
 
 /// The picture on a plate that fills a view of so many pixels, `repeats` times across and up.
-ReferenceImage on_plate(const Image& image, int width, int height, const glm::vec2& repeats = {1, 1},
-                        const glm::vec2& from = {0, 0}) {
+reference::ReferenceImage on_plate(const scene::Image& image, int width, int height,
+                                   const glm::vec2& repeats = {1, 1}, const glm::vec2& from = {0, 0}) {
     const double w = width / 2.0, h = height / 2.0;
-    Geometry plate;
+    scene::Geometry plate;
     plate.positions = {{-w, -h, 0}, {w, -h, 0}, {w, h, 0}, {-w, h, 0}};
     plate.triangles = {{0, 1, 2}, {0, 2, 3}};
     plate.texcoords = {from, from + glm::vec2(repeats.x, 0), from + repeats, from + glm::vec2(0, repeats.y)};
     for (const glm::dvec3& position : plate.positions) plate.bounds.add(position);
-    Material material = material_of({0.1, 0.9, 0.1});  // the picture replaces it
+    scene::Material material = material_of({0.1, 0.9, 0.1});  // the picture replaces it
     material.texture = 0;
-    View view = pixels(width, height);
+    plan::View view = pixels(width, height);
     view.light = directional({0, 0, -1});
     return traced(scene_of({{1, plate, material, glm::dmat4(1)}}, {{"", image, false}}), view);
 }
@@ -54,8 +54,8 @@ constexpr std::array<glm::dvec2, 2> kMagnified{};
 }  // namespace
 
 TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upright") {
-    const Image image = noise(8, 6);
-    const ReferenceImage shown = on_plate(image, 8, 6);
+    const scene::Image image = noise(8, 6);
+    const reference::ReferenceImage shown = on_plate(image, 8, 6);
     for (int y = 0; y < 6; ++y)
         for (int x = 0; x < 8; ++x)
             check_same(shown.color[8 * static_cast<std::size_t>(y) + static_cast<std::size_t>(x)],
@@ -63,18 +63,18 @@ TEST_CASE("a picture as large as what it is seen on is shown texel by texel, upr
 }
 
 TEST_CASE("without texture coordinates there is no picture") {
-    Material material = material_of({0.1, 0.9, 0.1});
+    scene::Material material = material_of({0.1, 0.9, 0.1});
     material.texture = 0;
-    View view = look({0, 0, 5}, {0, 0, 0});
+    plan::View view = look({0, 0, 5}, {0, 0, 0});
     check_same(
         traced(scene_of({{1, quad(1), material, glm::dmat4(1)}}, {{"", noise(2, 2), false}}), view).color[0],
         {0.1, 0.9, 0.1});
 }
 
 TEST_CASE("magnified it is bilinear, and repeats") {
-    const Image image = noise(2, 3);
+    const scene::Image image = noise(2, 3);
     for (const glm::vec2& from : {glm::vec2(0), glm::vec2(-7, 1024)}) {
-        const ReferenceImage shown = on_plate(image, 8, 12, {1, 1}, from);
+        const reference::ReferenceImage shown = on_plate(image, 8, 12, {1, 1}, from);
         for (int y = 0; y < 12; ++y)
             for (int x = 0; x < 8; ++x) {
                 // Four pixels a texel: 1.5/4 or 0.5/4 from the nearest centre of a texel.
@@ -133,8 +133,8 @@ TEST_CASE("shrunk it is trilinear, by the longer side of the pixel in texels") {
 }
 
 TEST_CASE("a plate that is smaller than its picture shows its levels") {
-    const Image image = noise(32, 16);
-    const ReferenceImage shown = on_plate(image, 8, 8, {1, 0.5f});  // four texels across, one up
+    const scene::Image image = noise(32, 16);
+    const reference::ReferenceImage shown = on_plate(image, 8, 8, {1, 0.5f});  // four texels across, one up
     const reference::MipMap map(image);
     REQUIRE(map.width(2) == 8);
     for (int y = 0; y < 8; ++y)
@@ -150,31 +150,31 @@ TEST_CASE("a plate that is smaller than its picture shows its levels") {
 
 TEST_CASE("what a pixel spans is the derivative of what its ray meets") {
     using namespace vrut::reference;
-    View view = picture({2, 3, 4}, {0.1, 0.2, 0});
-    Geometry geometry = sphere(2, 6);
+    plan::View view = picture({2, 3, 4}, {0.1, 0.2, 0});
+    scene::Geometry geometry = sphere(2, 6);
     for (const glm::dvec3& p : geometry.positions) geometry.texcoords.emplace_back(p.x * p.y, p.z + 2 * p.x);
     view.scene = scene_of({{1, geometry, two_sided(material_of({1, 1, 1})), scaled_by({1, -2, 0.5})}});
-    const TracedScene surfaces(view);
-    const RayDifferential ray{{0.1, 0.2, -0.3},
-                              glm::normalize(glm::dvec3(-2, -3, -4)),
-                              {glm::dvec3(0.02, 0.01, -0.03), glm::dvec3(0.01, -0.02, 0)},
-                              {glm::dvec3(0.01, 0.003, -0.01), glm::dvec3(-0.002, 0.01, 0.004)}};
+    const reference::TracedScene surfaces(view);
+    const reference::RayDifferential ray{{0.1, 0.2, -0.3},
+                                         glm::normalize(glm::dvec3(-2, -3, -4)),
+                                         {glm::dvec3(0.02, 0.01, -0.03), glm::dvec3(0.01, -0.02, 0)},
+                                         {glm::dvec3(0.01, 0.003, -0.01), glm::dvec3(-0.002, 0.01, 0.004)}};
     const auto hit = surfaces.closest_opaque_hit(ray);
     REQUIRE(hit);
     const reference::TracedInstance& part = surfaces.parts()[0];
-    const SurfaceInteraction interaction = interaction_of(part, *hit, ray);
+    const reference::SurfaceInteraction interaction = reference::interaction_of(part, *hit, ray);
     for (std::size_t i = 0; i < 2; ++i) {
         constexpr double kStep = 1e-5;
         const auto moved = [&](double by) {
-            RayDifferential other = ray;
+            reference::RayDifferential other = ray;
             other.origin += ray.dorigin_dxy[i] * by;
             other.direction = glm::normalize(ray.direction + ray.ddirection_dxy[i] * by);
             const auto there = surfaces.closest_opaque_hit(other);
             REQUIRE(there);
             REQUIRE(there->triangle == hit->triangle);
-            return interaction_of(part, *there, other);
+            return reference::interaction_of(part, *there, other);
         };
-        const SurfaceInteraction after = moved(kStep), before = moved(-kStep);
+        const reference::SurfaceInteraction after = moved(kStep), before = moved(-kStep);
         const glm::dvec2 texcoord = (after.texcoord - before.texcoord) / (2 * kStep);
         const glm::dvec3 normal = (after.normal - before.normal) / (2 * kStep);
         CHECK(glm::distance(interaction.duv_dxy[i], texcoord) < 1e-6 * glm::length(texcoord));
@@ -185,26 +185,26 @@ TEST_CASE("what a pixel spans is the derivative of what its ray meets") {
 
 TEST_CASE("a pixel on a plate seen in a mirror spans what it would behind it") {
     // The mirrored plate's picture is a slope so fine that levels differ.
-    Geometry plate = quad(4);
+    scene::Geometry plate = quad(4);
     plate.texcoords = {{0, 0}, {9, 0}, {9, 9}, {0, 9}};
-    Material material = material_of({1, 1, 1});
+    scene::Material material = material_of({1, 1, 1});
     material.texture = 0;
-    Material mirror = glowing({0, 0, 0});
+    scene::Material mirror = glowing({0, 0, 0});
     mirror.reflectivity = 1;
-    View view = picture({-3, 0.5, 3}, {0, 0, 0});
+    plan::View view = picture({-3, 0.5, 3}, {0, 0, 0});
     view.light = directional({0, 0, -1});
-    const Texture texture{"", noise(64, 64), false};
+    const scene::Texture texture{"", noise(64, 64), false};
     const glm::dmat4 place = moved_by({5, 0, 3}) * turned_by(-60, {0, 1, 0.2});
     const auto with = traced(
         scene_of({{1, quad(40), mirror, glm::dmat4(1)}, {2, plate, two_sided(material), place}}, {texture}),
         view);
-    View behind = view;
+    plan::View behind = view;
     behind.light = directional({0, 0, 1});
     const auto should =
         traced(scene_of({{2, plate, two_sided(material), scaled_by({1, 1, -1}) * place}}, {texture}), behind);
     int compared = 0;
     for (std::size_t i = 0; i < with.color.size(); ++i) {
-        if (with.node[i] != 1 || should.node[i] == kNone) continue;
+        if (with.node[i] != 1 || should.node[i] == scene::kNone) continue;
         check_same(with.color[i], should.color[i], 1e-9);
         ++compared;
     }
@@ -212,14 +212,14 @@ TEST_CASE("a pixel on a plate seen in a mirror spans what it would behind it") {
 }
 
 TEST_CASE("the picture's alpha times the material's; its pixels let the background through") {
-    Image image = image_of_grays(2, 1, {255, 0});
+    scene::Image image = image_of_grays(2, 1, {255, 0});
     image.rgba[3] = 51;
-    Geometry plate = quad(1);
+    scene::Geometry plate = quad(1);
     plate.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    Material material = material_of({1, 1, 1});
+    scene::Material material = material_of({1, 1, 1});
     material.diffuse.a = 0.5;
     material.texture = 0;
-    View view = look({-0.5, 0, 1}, {-0.5, 0, 0});
+    plan::View view = look({-0.5, 0, 1}, {-0.5, 0, 0});
     view.camera.fov = 1;
     view.background.color = {0, 0, 1};
     const auto scene = scene_of({{1, plate, material, glm::dmat4(1)}}, {{"", image, true}});

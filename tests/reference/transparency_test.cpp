@@ -5,7 +5,7 @@ using namespace vrut;
 TEST_CASE("a pane of glass, before a wall and before nothing") {
     const Part wall{1, quad(4), glowing({0.2, 0.4, 0.6}), moved_by({0, 0, -3})};
     const Part pane{2, quad(1), glowing({1, 0.5, 0}, 0.25), glm::dmat4(1)};
-    View view = look({0, 0, 5}, {0.1, 0.1, 0});
+    plan::View view = look({0, 0, 5}, {0.1, 0.1, 0});
     check_same(seen({wall, pane}, view), {0.25 + 0.75 * 0.2, 0.125 + 0.75 * 0.4, 0.75 * 0.6});
     view.background.color = {0, 0, 1};
     check_same(seen({pane}, view), {0.25, 0.125, 0.75});
@@ -18,8 +18,8 @@ TEST_CASE("a pane of glass, before a wall and before nothing") {
 }
 
 TEST_CASE("light is clamped before it is blended, and all of it is multiplied by alpha") {
-    Material bright = glowing({2, 0.5, 0}, 0.5);
-    View view = look({0, 0, 5}, {0.1, 0.1, 0});
+    scene::Material bright = glowing({2, 0.5, 0}, 0.5);
+    plan::View view = look({0, 0, 5}, {0.1, 0.1, 0});
     view.background.color = {0, 0, 0};
     check_same(seen({{1, quad(1), bright, glm::dmat4(1)}}, view), {0.5, 0.25, 0});
 }
@@ -33,7 +33,7 @@ TEST_CASE("eight panes, given in any order") {
         color = own * alpha + color * (1 - alpha);
         panes.push_back({1 + (i * 3) % 8, quad(1), glowing(own, alpha), moved_by({0, 0, 0.25 * i})});
     }
-    View view = look({0, 0, 5}, {0.1, 0.2, 0});
+    plan::View view = look({0, 0, 5}, {0.1, 0.2, 0});
     view.background.color = {0, 0, 0};
     check_same(seen(panes, view), color);
     std::swap(panes[0], panes[5]);
@@ -45,7 +45,7 @@ TEST_CASE("panes that cross are each in front on one side") {
     const glm::dvec3 red(1, 0, 0), green(0, 1, 0);
     const ReferenceParts crossing{{1, quad(2), two_sided(glowing(red, 0.5)), turned_by(45, {0, 1, 0})},
                                   {2, quad(2), two_sided(glowing(green, 0.5)), turned_by(-45, {0, 1, 0})}};
-    View view = look({0, 0, 5}, {0, 0, 0});
+    plan::View view = look({0, 0, 5}, {0, 0, 0});
     view.background.color = {0, 0, 0};
     // Turned by 45 degrees about y, the right half goes to the back.
     view.camera.focus = {0.3, 0, 0};
@@ -56,21 +56,21 @@ TEST_CASE("panes that cross are each in front on one side") {
 
 TEST_CASE("a ray through an edge or a corner meets a surface once") {
     // Of 16 pixels, 8 lie exactly on the diagonals of a plate whose corner in the middle has eight triangles.
-    Geometry star;
+    scene::Geometry star;
     star.positions = {{0, 0, 0},  {2, 0, 0},   {2, 2, 0},  {0, 2, 0}, {-2, 2, 0},
                       {-2, 0, 0}, {-2, -2, 0}, {0, -2, 0}, {2, -2, 0}};
     for (unsigned i = 1; i <= 8; ++i) star.triangles.emplace_back(0, i, i % 8 + 1);
     for (const glm::dvec3& position : star.positions) star.bounds.add(position);
     for (const int size : {4, 3})  // with 3 the middle corner is a pixel's centre
         for (const double sign : {1.0, -1.0}) {
-            View view = pixels(size, size);
+            plan::View view = pixels(size, size);
             view.background.color = {0, 0, 0};
             const auto picture =
                 traced(scene_of({{1, star, glowing({1, 1, 1}, 0.5), scaled_by({sign, 1, 1})}}), view);
             for (const glm::dvec3& color : picture.color) check_same(color, glm::dvec3(0.5));
         }
     // Straight on to the pole of a ball of glass, where many edges meet, each ray goes in and out or by.
-    View view = pixels(16, 16);
+    plan::View view = pixels(16, 16);
     view.background.color = {0, 0, 0};
     const Part ball{1, sphere(6, 8), two_sided(glowing({1, 1, 1}, 0.5)), turned_by(90, {1, 0, 0})};
     const auto picture = traced(scene_of({ball}), view);

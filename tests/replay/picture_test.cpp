@@ -19,28 +19,28 @@ namespace {
 
 constexpr int kWidth = 320, kHeight = 200;
 
-Image drawn_end() {
+scene::Image drawn_end() {
     auto room = replay(read_session(), find_scene);
     REQUIRE_MESSAGE(room, room.error());
-    View view = room->visible();
+    plan::View view = room->visible();
     view.width = kWidth;
     view.height = kHeight;
     view.samples = 4;
-    Renderer renderer({}, true);
-    Image image;
-    FrameStats stats;
+    renderer::Renderer renderer({}, true);
+    scene::Image image;
+    plan::FrameStats stats;
     renderer.render(view, image, stats);
     for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
     return image;
 }
 
 /// Rows from the bottom up, as the renderer's.
-Image read_picture(const std::filesystem::path& file) {
+scene::Image read_picture(const std::filesystem::path& file) {
     png_image png{};
     png.version = PNG_IMAGE_VERSION;
     REQUIRE_MESSAGE(png_image_begin_read_from_file(&png, file.c_str()), png.message);
     png.format = PNG_FORMAT_RGBA;
-    Image image;
+    scene::Image image;
     image.resize(static_cast<int>(png.width), static_cast<int>(png.height));
     const auto bottom_up = -static_cast<png_int_32>(png.width * 4);
     REQUIRE_MESSAGE(png_image_finish_read(&png, nullptr, image.rgba.data(), bottom_up, nullptr), png.message);
@@ -50,14 +50,14 @@ Image read_picture(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("the session ends at its picture") {
-    const Image image = drawn_end();
+    const scene::Image image = drawn_end();
     const std::filesystem::path file = session_file(".png");
     if (std::getenv("VRUT_RENEW")) {
-        write_file(file, encode_png(image));
+        write_file(file, io::encode_png(image));
         MESSAGE("look at " << file.string());
         return;
     }
-    const Image expected = read_picture(file);
+    const scene::Image expected = read_picture(file);
     REQUIRE(expected.width == kWidth);
     REQUIRE(expected.height == kHeight);
     int far_off = 0;

@@ -23,7 +23,7 @@ const std::string kTurn = R"({"type":"navigate","id":3,"rotate":[5,0]})";
 /// A stage that records into a folder.
 struct RecordedStage : FolderOfLogs, Stage {
     RecordedStage(const std::string& clients, const std::filesystem::path& folder)
-        : FolderOfLogs(folder), Stage(clients, stage::scene(), options()) {
+        : FolderOfLogs(folder), Stage(clients, stage::first_scene(), options()) {
         after_message = [this](Stage& to) { tell_results(to); };
     }
 };
@@ -196,7 +196,7 @@ struct LateSink {
 
 TEST_CASE("a recording is in the state and answered when its file is open, and has what came before that") {
     LateSink sink;
-    Stage stage("ab", scene(), sink.options());
+    Stage stage("ab", first_scene(), sink.options());
     CHECK(stage.say("a", kStart));
     CHECK(stage.say("a", kTurn));
     CHECK(sink.lines.size() == 1);
@@ -215,7 +215,7 @@ TEST_CASE("a recording is in the state and answered when its file is open, and h
 
 TEST_CASE("a file that cannot be opened refuses the message, and nobody steers by it") {
     LateSink sink;
-    Stage stage("a", scene(), sink.options());
+    Stage stage("a", first_scene(), sink.options());
     stage.say("a", kStart);
     stage.room.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
     const json told = stage.told().at(0);
@@ -232,7 +232,7 @@ TEST_CASE("a file that cannot be opened refuses the message, and nobody steers b
 
 TEST_CASE("the end is answered when all is written; meanwhile another may begin") {
     LateSink sink;
-    Stage stage("a", scene(), sink.options());
+    Stage stage("a", first_scene(), sink.options());
     stage.say("a", kStart);
     const std::int64_t first = sink.begun;
     stage.say("a", kStop);  // before its file is open
@@ -256,7 +256,7 @@ TEST_CASE("the end is answered when all is written; meanwhile another may begin"
 
 TEST_CASE("an end that cannot be written is refused, with a notice") {
     LateSink sink;
-    Stage stage("a", scene(), sink.options());
+    Stage stage("a", first_scene(), sink.options());
     stage.say("a", kStart);
     stage.room.recording_opened(sink.begun, "take-1", stage.now);
     stage.say("a", kStop);
@@ -268,7 +268,7 @@ TEST_CASE("an end that cannot be written is refused, with a notice") {
 
 TEST_CASE("who left before the file was open is not answered, and the recording goes on") {
     LateSink sink;
-    Stage stage("ab", scene(), sink.options());
+    Stage stage("ab", first_scene(), sink.options());
     stage.say("a", kStart);
     stage.room.leave("a", stage.now);
     stage.room.recording_opened(sink.begun, "take-1", stage.now);
@@ -282,7 +282,7 @@ TEST_CASE("open is answered when its file was looked for, and steers and is reco
     std::int64_t request = 0;
     RoomOptions options = sink.options();
     options.load = [&](std::int64_t number, const std::string&) { request = number; };
-    Stage stage("ab", scene(), std::move(options));
+    Stage stage("ab", first_scene(), std::move(options));
     const std::string open = R"({"type":"open","id":9,"scene":"x.vrut"})";
     stage.say("b", kStart);
     stage.at(1s);

@@ -18,7 +18,7 @@ namespace {
 
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
                                                                   const std::string& sha256) {
-    server::scenes::LoadedScene found = name == "other.vrut" ? other_scene() : scene();
+    server::scenes::LoadedScene found = name == "other.vrut" ? other_scene() : first_scene();
     if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
     return found;
 }
@@ -37,7 +37,7 @@ std::string pointer(const std::string& what, double x, double y, int id = 1, con
 /// A stage whose session is recorded from some point on.
 class Recorded {
 public:
-    explicit Recorded(const std::string& clients, server::scenes::LoadedScene shown = scene())
+    explicit Recorded(const std::string& clients, server::scenes::LoadedScene shown = first_scene())
         : logs(folder.path()), stage(clients, std::move(shown), logs.options()) {
         stage.after_message = [this](Stage& told) { logs.tell_results(told); };
         spdlog::set_level(spdlog::level::warn);
@@ -80,7 +80,9 @@ private:
 class RandomSession {
 public:
     explicit RandomSession(unsigned seed)
-        : dice_(seed), recorded("ab", number(0, 1) == 0 ? scene() : other_scene()), begins_(number(0, 30)) {}
+        : dice_(seed),
+          recorded("ab", number(0, 1) == 0 ? first_scene() : other_scene()),
+          begins_(number(0, 30)) {}
 
     void play() {
         for (int step = 0; step < 80; ++step) {
@@ -112,7 +114,7 @@ private:
             stage.room.leave("b", stage.now);
             stage.join('b');
         } else if (what == 5 && number(0, 3) == 0) {
-            stage.room.show(number(0, 1) == 0 ? scene() : other_scene(), stage.now);
+            stage.room.show(number(0, 1) == 0 ? first_scene() : other_scene(), stage.now);
         } else {
             stage.say(one_of({"a", "a", "b"}), number(0, 1) == 0 ? input() : request());
         }

@@ -17,9 +17,9 @@ std::string key(const std::string& name, bool shift = false) {
     return json{{"type", "keydown"}, {"key", name}, {"code", name}, {"shiftKey", shift}}.dump();
 }
 
-std::vector<PlacedMarker> marks_in(const Stage& stage) {
+std::vector<plan::PlacedMarker> marks_in(const Stage& stage) {
     const auto markers = stage.room.visible().markers;
-    return markers ? *markers : std::vector<PlacedMarker>{};
+    return markers ? *markers : std::vector<plan::PlacedMarker>{};
 }
 
 }  // namespace
@@ -180,7 +180,7 @@ TEST_CASE("ifRevision refuses what has changed since, and only that") {
 
 TEST_CASE("f fits what is selected, or the scene") {
     Stage stage("a");
-    const double sine = std::sin(20 * kRadiansPerDegree);  // of half the view
+    const double sine = std::sin(20 * scene::kRadiansPerDegree);  // of half the view
     stage.say("a", patch(R"({"selection":{"node":2}})"));
     CHECK(stage.say("a", key("f")));
     CHECK(near_to(stage.camera().focus, {1, 0, 0}));
@@ -222,10 +222,10 @@ TEST_CASE("keys turn, pan, zoom, and toggle the ways of drawing") {
     CHECK(near_to(stage.camera().eye, {1, 0, 8}));
     // The picture moves right by 5 % of the view's height, which is 2 · 8 · tan 20° there.
     stage.say("a", key("ArrowRight", true));
-    CHECK(near_to(stage.camera().eye, {1 - 0.8 * std::tan(20 * kRadiansPerDegree), 0, 8}));
+    CHECK(near_to(stage.camera().eye, {1 - 0.8 * std::tan(20 * scene::kRadiansPerDegree), 0, 8}));
     stage.say("a", key("ArrowLeft", true));
     stage.say("a", key("ArrowRight"));  // the scene turns right: the eye goes left, about (1, 0, 0)
-    const double angle = 5 * kRadiansPerDegree;
+    const double angle = 5 * scene::kRadiansPerDegree;
     CHECK(near_to(stage.camera().eye, {1 - 8 * std::sin(angle), 0, 8 * std::cos(angle)}));
 }
 
@@ -245,7 +245,7 @@ TEST_CASE("a selection has its node's name and path") {
     stage.say("a", patch(R"({"selection":{"node":2}})"));
     CHECK(stage.state()["selection"] ==
           json::parse(R"({"node":2,"name":"Door","path":["Stage","Hinge","Door"]})"));
-    CHECK(stage.room.visible().selected != kNone);
+    CHECK(stage.room.visible().selected != scene::kNone);
 }
 
 TEST_CASE("markers are seen where their point is, go with their node, and hide with it") {
@@ -253,15 +253,15 @@ TEST_CASE("markers are seen where their point is, go with their node, and hide w
     const auto markers = [&] { return marks_in(stage); };
     CHECK(markers().empty());
     stage.say("a", patch(R"({"markers":{"free":{"point":[5,6,7]},"hinge":{"node":2,"point":[0.5,0,0]}}})"));
-    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{5, 6, 7}, "free"}, {{1.5, 0, 0}, "hinge"}});
     stage.say("a", kMoveHinge);
-    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}, {{3.5, 0, 0}, "hinge"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{5, 6, 7}, "free"}, {{3.5, 0, 0}, "hinge"}});
     stage.say("a", patch(R"({"nodes":{"1":{"active":false}}})"));
-    CHECK(markers() == std::vector<PlacedMarker>{{{5, 6, 7}, "free"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{5, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":{"node":5}}})"));  // winter, which does not show
     CHECK(markers().empty());
     stage.say("a", patch(R"({"markers":{"free":{"node":4}}})"));
-    CHECK(markers() == std::vector<PlacedMarker>{{{4, 6, 7}, "free"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{4, 6, 7}, "free"}});
     stage.say("a", patch(R"({"markers":{"free":null}})"));
     CHECK(markers().empty());
 }
@@ -286,8 +286,8 @@ TEST_CASE("home is fitted to the view until somebody moves the camera") {
     stage.say("a", patch("{}"));
     const auto distance = [&] { return glm::distance(stage.camera().eye, stage.camera().focus); };
     // A sphere of radius √½ in the smaller of both fields of view, of which the higher one has 40°.
-    const double tangent = std::tan(20 * kRadiansPerDegree);
-    CHECK(distance() == doctest::Approx(std::sqrt(0.5) / std::sin(20 * kRadiansPerDegree)));
+    const double tangent = std::tan(20 * scene::kRadiansPerDegree);
+    CHECK(distance() == doctest::Approx(std::sqrt(0.5) / std::sin(20 * scene::kRadiansPerDegree)));
     stage.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
     const double tall = std::sqrt(0.5) / std::sin(std::atan(tangent / 2));
     CHECK(distance() == doctest::Approx(tall));
@@ -456,11 +456,11 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
                                         "handle":{"point":[0,0.5,0],"node":2,"text":"pull"},
                                         "snow":{"point":[0,0,0],"node":5,"text":"off"}}})"));
     const auto markers = [&] { return marks_in(stage); };
-    REQUIRE(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
+    REQUIRE(markers() == std::vector<plan::PlacedMarker>{{{1, 2, 3}, "free"}, {{1, 0.5, 0}, "handle"}});
     stage.say("a", kMoveHinge);
-    CHECK(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{1, 2, 3}, "free"}, {{3, 0.5, 0}, "handle"}});
     stage.say("a", patch(R"({"nodes":{"3":{"activeChild":1},"1":{"active":false}}})"));
-    CHECK(markers() == std::vector<PlacedMarker>{{{1, 2, 3}, "free"}, {{-1, 0, 0}, "snow"}});
+    CHECK(markers() == std::vector<plan::PlacedMarker>{{{1, 2, 3}, "free"}, {{-1, 0, 0}, "snow"}});
     stage.say("a", patch(R"({"markers":null})"));
     CHECK(markers().empty());
 }
@@ -468,7 +468,7 @@ TEST_CASE("markers go along with their nodes, and show where those show") {
 TEST_CASE("a picture's header says where the signs in it stand") {
     Stage stage("a");
     const auto places = [&] {
-        const View& view = stage.room.visible();
+        const plan::View& view = stage.room.visible();
         return server::room::header_of(stage.room.state(), view, stage.room.view_size()).markers;
     };
     using Places = std::map<std::string, glm::dvec3>;
@@ -478,7 +478,7 @@ TEST_CASE("a picture's header says where the signs in it stand") {
     CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {1.5, 0, 0}}});
     stage.say("a", kMoveHinge);
     CHECK(places() == Places{{"free", {5, 6, 7}}, {"handle", {3.5, 0, 0}}});
-    const View before = stage.room.visible();
+    const plan::View before = stage.room.visible();
     stage.say("a", patch(R"({"markers":{"free":null,"other":{"point":[5,6,7]}}})"));
     CHECK(stage.room.visible() != before);  // so that a picture with the new name comes
     CHECK(places() == Places{{"handle", {3.5, 0, 0}}, {"other", {5, 6, 7}}});
@@ -492,39 +492,43 @@ TEST_CASE("a marker that lies out of the range of double is nowhere") {
     Stage stage("a", scene_of(text, "large.vrut"));
     stage.say("a",
               patch(R"({"markers":{"far":{"node":20,"point":[1,1,1]},"gone":{"node":22,"point":[1,1,1]}}})"));
-    const std::vector<PlacedMarker> markers = marks_in(stage);
+    const std::vector<plan::PlacedMarker> markers = marks_in(stage);
     REQUIRE(markers.size() == 1);
     CHECK(markers[0].name == "far");
 }
 
 TEST_CASE("the view has the active background's colour and pictures, or else the plain colour") {
-    SceneParts parts;
-    Material paper;
+    scene::SceneParts parts;
+    scene::Material paper;
     paper.diffuse = {0.1, 0.2, 0.3, 1};
     paper.texture = 0;
     parts.textures.resize(6);
     parts.materials = {paper};
-    const auto add = [&](Id id, NodeType type, Id parent, BackgroundData data) {
-        Node node{id, {}, type, kNone, {}, true, glm::dmat4(1), GroupData()};
-        if (type == NodeType::background) node.data = std::move(data);
+    const auto add = [&](scene::Id id, scene::NodeType type, scene::Id parent, scene::BackgroundData data) {
+        scene::Node node{id, {}, type, scene::kNone, {}, true, glm::dmat4(1), scene::GroupData()};
+        if (type == scene::NodeType::background) node.data = std::move(data);
         parts.nodes.push_back({node, parent});
     };
-    BackgroundData sky{0, {}, std::array<Index, 6>{0, 1, 2, 3, 4, 5}};
-    add(1, NodeType::assembly, 0, {});
-    add(2, NodeType::background, 1, {0, {}, {}});
-    add(3, NodeType::background, 0, sky);
-    Stage stage("a",
-                {"b", "", std::make_shared<const PlacedScene>(place(*Scene::build(std::move(parts)))), {}});
-    const auto background = [&]() -> const Background& { return stage.room.visible().background; };
+    scene::BackgroundData sky{0, {}, std::array<scene::Index, 6>{0, 1, 2, 3, 4, 5}};
+    add(1, scene::NodeType::assembly, 0, {});
+    add(2, scene::NodeType::background, 1, {0, {}, {}});
+    add(3, scene::NodeType::background, 0, sky);
+    Stage stage(
+        "a",
+        {"b",
+         "",
+         std::make_shared<const scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts)))),
+         {}});
+    const auto background = [&]() -> const plan::Background& { return stage.room.visible().background; };
 
-    CHECK(background() == Background{{0.1, 0.2, 0.3}, 0, {}});
+    CHECK(background() == plan::Background{{0.1, 0.2, 0.3}, 0, {}});
     stage.say("a", patch(R"({"backgrounds":{"active":"3","items":{"3":{"color":[1,0,0,1]}}}})"));
-    CHECK(background() == Background{{1, 0, 0}, 0, sky.cube_textures});
+    CHECK(background() == plan::Background{{1, 0, 0}, 0, sky.cube_textures});
     stage.say("a", patch(R"({"backgrounds":{"active":"color"}})"));
-    CHECK(background() == Background());
+    CHECK(background() == plan::Background());
     stage.say("a",
               patch(R"({"backgrounds":{"active":"2","color":[0,0,1,1]},"nodes":{"1":{"active":false}}})"));
-    CHECK(background() == Background{{0, 0, 1}, kNone, {}});
+    CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, {}});
 }
 
 // --- what the state says may be said back
@@ -557,7 +561,7 @@ std::vector<std::filesystem::path> scene_files() {
     for (const char* folder : folders) {
         if (!folder) continue;
         for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-            if (entry.is_regular_file() && has_reader(entry.path())) files.push_back(entry.path());
+            if (entry.is_regular_file() && io::has_reader(entry.path())) files.push_back(entry.path());
     }
     return files;
 }
@@ -568,11 +572,11 @@ TEST_CASE("every section of every scene's state can be patched back as it came, 
     const json schema = json::parse(protocol::json_schema())["$defs"]["statePatch"];
     std::size_t scenes = 0;
     for (const auto& file : scene_files()) {
-        auto read = read_scene(file);
+        auto read = io::read_scene(file);
         if (!read) continue;  // models hold some that are broken
         ++scenes;
         CAPTURE(file.string());
-        const auto placed = std::make_shared<const PlacedScene>(place(*std::move(read)));
+        const auto placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(read)));
         Stage stage("a", {"scene", "sha", placed, {}});
         stage.say("a", R"({"type":"patch","patch":{}})");
         const json state = stage.state();

@@ -321,7 +321,7 @@ TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
     server::room::RoomOptions options;
     std::int64_t request = 0;
     options.scenes = [&](std::int64_t number) { request = number; };
-    Stage stage("ahv", scene(), std::move(options));
+    Stage stage("ahv", first_scene(), std::move(options));
     stage.after_message = [&](Stage& to) {
         CHECK(to.told().empty());  // the disk has not answered yet
         to.room.scenes_listed(request, {"car.vrut", "more/bus.vrut"});

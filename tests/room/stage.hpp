@@ -20,14 +20,17 @@ using namespace std::chrono_literals;
 using nlohmann::json;
 
 inline LoadedScene scene_of(const std::string& text, const std::string& name) {
-    auto scene = read_vrut_text(text, name);
+    auto scene = io::read_vrut_text(text, name);
     REQUIRE_MESSAGE(scene.has_value(), scene.error());
-    return {name, "sha of " + name, std::make_shared<const PlacedScene>(place(*std::move(scene))), {}};
+    return {name,
+            "sha of " + name,
+            std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene))),
+            {}};
 }
 
 /// Squares of side 1 that look along +z: the door about (1, 0, 0), hung on node 1, summer and winter about
 /// (-1, 0, 0), of which summer shows. The camera stands at its node 6.
-inline LoadedScene scene() {
+inline LoadedScene first_scene() {
     return scene_of(R"(vrut-text 1
 material 1 "Red" end
 material 2 "Blue" end
@@ -65,7 +68,7 @@ inline const char* const kMoveHinge =
 class Stage {
 public:
     /// `clients` join, each a letter: h a host, v a view, others control; b calls itself Bea, others nothing.
-    explicit Stage(const std::string& clients, LoadedScene shown = scene(), RoomOptions options = {})
+    explicit Stage(const std::string& clients, LoadedScene shown = first_scene(), RoomOptions options = {})
         : room(std::move(shown), std::move(options)) {
         for (const char name : clients) join(name);
     }

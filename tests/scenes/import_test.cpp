@@ -329,12 +329,12 @@ TEST_CASE("what is read elsewhere is what is read here, progress and refusals to
         CHECK(fraction <= 1);
         last = fraction;
     });
-    const auto here = read_scene(heap);
+    const auto here = io::read_scene(heap);
     REQUIRE(here);
     REQUIRE(there);
     CHECK(last >= 0.5);
     CHECK(there->geometries()[0].positions == here->geometries()[0].positions);
     CHECK(there->notices() == here->notices());
     const fs::path none = folder.write("none.glb", "glTF");
-    CHECK(import_scene(none).error() == read_scene(none).error());
+    CHECK(import_scene(none).error() == io::read_scene(none).error());
 }

@@ -71,11 +71,11 @@ TEST_CASE("four thousand clients that die in the midst of something leave nothin
     watcher.join("view");
     let_die(server, 8, 200);  // coarser surfaces are drawn for the first time meanwhile
     watcher.wait_for_still(60s);
-    const long objects = live_gl_objects();
+    const long objects = gl::live_gl_objects();
     const double grown_mb = let_die(server, 12, 200);
     watcher.wait_for_still(60s);
-    std::printf("GL objects: %ld after 8 rounds, %ld after 20\n", objects, live_gl_objects());
-    CHECK(live_gl_objects() <= objects + 10);  // a level that few pictures had
+    std::printf("GL objects: %ld after 8 rounds, %ld after 20\n", objects, gl::live_gl_objects());
+    CHECK(gl::live_gl_objects() <= objects + 10);  // a level that few pictures had
     CHECK(server.metrics().pictures_held <= 2);
     if (kMemoryTells) CHECK(grown_mb < 8);
 }

@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kPatience{5000};
 /// Draws nothing, in the time that a picture takes.
 server::engine::FrameRenderer slow_renderer() {
     server::engine::FrameRenderer renderer;
-    renderer.step = [](RenderJob& rendering) {
+    renderer.step = [](plan::RenderJob& rendering) {
         std::this_thread::sleep_for(kPicture / rendering.view.samples);
         if (++rendering.samples < rendering.view.samples) return false;
         rendering.image.resize(rendering.view.width, rendering.view.height);

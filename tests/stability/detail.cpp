@@ -14,17 +14,17 @@ namespace vrut::stability {
 namespace {
 
 /// A ball with bumps, closed; its normals are none of its own.
-Geometry bumpy_ball(int rings) {
-    Geometry geometry = welded(sphere(1, rings, false));
+scene::Geometry bumpy_ball(int rings) {
+    scene::Geometry geometry = welded(sphere(1, rings, false));
     for (glm::dvec3& p : geometry.positions)
         p *= 1 + 0.1 * std::sin(5 * p.x + 1) * std::sin(7 * p.y) * std::sin(6 * p.z + 2);
     return mapped(geometry, 1, glm::dvec3(0));
 }
 
-const Material kBlack = material_of({0, 0, 0});
+const scene::Material kBlack = material_of({0, 0, 0});
 
 /// Of a black part, the pixels that do not lie among others of it.
-std::vector<glm::ivec2> outline_of(const Image& image) {
+std::vector<glm::ivec2> outline_of(const scene::Image& image) {
     const auto shown = [&](int x, int y) {
         return image.rgba[4 * static_cast<std::size_t>(y * image.width + x)] == 0;
     };
@@ -62,7 +62,7 @@ Study outlines_of_levels(const Laboratory& laboratory) {
         "How far the collapses have moved the surface is measured at vertices, edges and "
         "triangles, from either surface to the other, and told with a quarter more.";
     study.cost = "Part of the time that levels take to make, on a thread that gives way.";
-    Geometry whole = bumpy_ball(24);
+    scene::Geometry whole = bumpy_ball(24);
     whole.normals.assign(whole.positions.size(), {0, 0, 1});  // so that only places count
     const auto scene = scene_of({{1, whole, kBlack}});
     const auto levels = server::measure::detail_levels_of(scene);
@@ -70,15 +70,15 @@ Study outlines_of_levels(const Laboratory& laboratory) {
     for (std::size_t i = 0; i < levels->of(0).size(); ++i)
         if (levels->of(0)[i].number > 0) places.push_back(static_cast<double>(i));
     for (const double place : laboratory.chosen(places)) {
-        const DetailLevel& level = levels->of(0)[static_cast<std::size_t>(place)];
-        const auto fewer = scene_of({{1, geometry_of(whole, level), kBlack}});
+        const mesh::DetailLevel& level = levels->of(0)[static_cast<std::size_t>(place)];
+        const auto fewer = scene_of({{1, mesh::geometry_of(whole, level), kBlack}});
         double most = 0;
         for (const glm::dvec3& eye : {glm::dvec3(0, 0, 4), glm::dvec3(3, 2, 1.5), glm::dvec3(-2, 3, -1.5),
                                       glm::dvec3(-3, -1, 2), glm::dvec3(1, -3, -2), glm::dvec3(4, 0, 0)}) {
-            View view = looking(scene, eye);
+            plan::View view = looking(scene, eye);
             view.width = view.height = 1024;
-            const double told =
-                level.error * max_screen_space_scale(view_from_world(view.camera), whole.bounds, view);
+            const double told = level.error * plan::max_screen_space_scale(
+                                                  scene::view_from_world(view.camera), whole.bounds, view);
             const auto before = outline_of(drawn(laboratory, view));
             view.scene = fewer;
             const auto after = outline_of(drawn(laboratory, view));
@@ -102,7 +102,7 @@ Study popping_levels(const Laboratory& laboratory) {
         "While things move, the built-in levels of accuracy allow two pixels at most; at rest every triangle "
         "is drawn.";
     study.cost = "Where fewer pixels are allowed, more triangles are drawn.";
-    Geometry whole = bumpy_ball(48);
+    scene::Geometry whole = bumpy_ball(48);
     whole.normals.assign(whole.positions.size(), glm::vec3(0));
     for (const glm::uvec3& t : whole.triangles) {
         const auto& p = whole.positions;
@@ -113,23 +113,24 @@ Study popping_levels(const Laboratory& laboratory) {
     const auto levels = server::measure::detail_levels_of(scene);
     for (const double pixels : laboratory.chosen({0.125, 0.25, 0.5, 1, 2, 4, 8, 16})) {
         std::vector<double> jumps;
-        for (const DetailLevel& level : levels->of(0)) {
+        for (const mesh::DetailLevel& level : levels->of(0)) {
             if (level.number == 0) continue;
             // From where the level is just drawn.
-            View view;
+            plan::View view;
             for (double distance = 1.3; distance < 1e4; distance *= 1.01) {
                 view = looking(scene, glm::normalize(glm::dvec3(1, 1, 2)) * distance);
                 view.width = view.height = 512;
                 view.levels = levels;
                 view.detail =
-                    max_screen_space_scale(view_from_world(view.camera), whole.bounds, view) * level.error;
+                    plan::max_screen_space_scale(scene::view_from_world(view.camera), whole.bounds, view) *
+                    level.error;
                 if (view.detail <= pixels) break;
             }
-            FrameStats fewer, more;
+            plan::FrameStats fewer, more;
             view.detail *= 1.0001;
-            const Image after = drawn(laboratory, view, &fewer);
+            const scene::Image after = drawn(laboratory, view, &fewer);
             view.detail *= 0.999;
-            const Image before = drawn(laboratory, view, &more);
+            const scene::Image before = drawn(laboratory, view, &more);
             // Of coarse levels so far away that the ball is less than a pixel nothing is to be seen.
             if (fewer.triangles < more.triangles && !is_plain(after))
                 jumps.push_back(percent_off(before, after));

@@ -11,15 +11,15 @@ namespace vrut::stability {
 
 namespace {
 
-Image sent(const Image& image, int quality, bool subsampled) {
+scene::Image sent(const scene::Image& image, int quality, bool subsampled) {
     server::engine::JpegEncoder encoder;
     const auto file = encoder.encode(image, quality, subsampled);
-    return decode_image({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
+    return io::decode_image({reinterpret_cast<const char*>(file.data()), file.size()}).value();  // throws
 }
 
 template <class Color>
-Image picture_of(int width, int height, const Color& color) {
-    Image image;
+scene::Image picture_of(int width, int height, const Color& color) {
+    scene::Image image;
     image.resize(width, height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
@@ -46,12 +46,12 @@ Study thin_saturated_lines(const Laboratory& laboratory) {
         "sent in full colour.";
     for (const double density : laboratory.chosen({0.0625, 0.125, 0.25, 0.5, 1})) {
         const int width = static_cast<int>(std::lround(1 / density));
-        const Image lines = picture_of(256, 256, [&](int x, int y) {
+        const scene::Image lines = picture_of(256, 256, [&](int x, int y) {
             const bool line = (x + y / 3) % (8 * width) < width;
             return line ? glm::dvec3(1, 0, 0) : glm::dvec3(0.1, 0.3, 0.9);
         });
         const auto error = [&](bool subsampled) {
-            return 100 * difference(sent(lines, 85, subsampled), lines).share_above(64);
+            return 100 * compare::difference(sent(lines, 85, subsampled), lines).share_above(64);
         };
         study.baseline.points.push_back({density, error(true)});
         study.method.points.push_back({density, error(false)});
@@ -73,14 +73,14 @@ Study dark_gradients(const Laboratory& laboratory) {
     study.method.title = "as sent while things move";
     study.explanation = "At rest the picture comes at quality 90, which holds the bound.";
     study.cost = "Some 100 to 200 kB for the picture at rest, once.";
-    const Image gradient = picture_of(256, 128, [](int x, int y) {
+    const scene::Image gradient = picture_of(256, 128, [](int x, int y) {
         return glm::dvec3(0.01, 0.012, 0.016) + 0.06 * glm::dvec3(x / 255.0, x / 255.0, y / 127.0);
     });
     for (const double inverse : laboratory.chosen({1, 1.05, 1.11, 1.33, 1.67, 2.2, 3.3}))
         study.method.points.push_back(
-            {inverse,
-             1.0 * difference(sent(gradient, static_cast<int>(std::lround(100 / inverse)), true), gradient)
-                       .maximum()});
+            {inverse, 1.0 * compare::difference(
+                                sent(gradient, static_cast<int>(std::lround(100 / inverse)), true), gradient)
+                                .maximum()});
     return study;
 }
 

@@ -13,8 +13,8 @@ namespace vrut::stability {
 namespace {
 
 /// Of a colour that no light changes.
-Material glass(const glm::dvec3& color, double alpha) {
-    Material material;
+scene::Material glass(const glm::dvec3& color, double alpha) {
+    scene::Material material;
     material.emission = {color, 1};
     material.diffuse = {0, 0, 0, alpha};
     material.two_sided = true;
@@ -40,11 +40,11 @@ void compare_orders(const Laboratory& laboratory, Study& study, double count,
                     const std::vector<Part>& panes) {
     study.baseline.title = "sorted, pane by pane";
     study.method.title = "in order at each pixel, where panes have none";
-    View view = looking(scene_of(panes), {0.4, 0.7, 3.2});
-    const Image right = truth_of(view);
+    plan::View view = looking(scene_of(panes), {0.4, 0.7, 3.2});
+    const scene::Image right = truth_of(view);
     study.method.points.push_back({count, percent_off(drawn(laboratory, view), right)});
     const double exact_ms = time_of(laboratory, view);
-    view.methods.transparency = Methods::Transparency::sorted;
+    view.methods.transparency = plan::Methods::Transparency::sorted;
     study.baseline.points.push_back({count, percent_off(drawn(laboratory, view), right)});
     study.cost = "Here " + times_the_time(exact_ms, time_of(laboratory, view)) +
                  " for the most panes, which is all in the picture; nothing where panes have an order.";
@@ -131,7 +131,7 @@ void compare_close_panes(const Laboratory& laboratory, Study& study, bool nearer
     };
     for (const double inverse : laboratory.chosen({1, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e9, 1e12, 1e18})) {
         // Where no pixel shows the distance, it must not decide either.
-        const Image right = truth_of(view_of(panes(std::max(2 / inverse, 1e-9), true)));
+        const scene::Image right = truth_of(view_of(panes(std::max(2 / inverse, 1e-9), true)));
         std::vector<Part> parts = panes(2 / inverse, nearer_is_higher);
         double worst = 0;
         for (int i = 0; i < kPanes; ++i) {
@@ -195,10 +195,10 @@ Study nearly_opaque_panes(const Laboratory& laboratory) {
                 return Part{i + 1, quad(20), glass(color_of(i), alpha),
                             crossing ? turned_by(3 * i - 16, {0, 1, 0}) : moved_by({0, 0, -0.2 * i})};
             });
-            View view = looking(scene_of(panes), {0, 0, 3});
+            plan::View view = looking(scene_of(panes), {0, 0, 3});
             view.width = view.height = 16;
-            const Image image = drawn(laboratory, view);
-            const std::vector<glm::dvec3> right = trace(view).color;
+            const scene::Image image = drawn(laboratory, view);
+            const std::vector<glm::dvec3> right = reference::trace(view).color;
             const double through = std::pow(1 - alpha, kPanes);
             const glm::dvec3 weighted = glm::mix(mean, view.background.color, through);
             for (std::size_t i = 0; i < right.size(); ++i) {

@@ -10,16 +10,16 @@ namespace vrut::stability {
 
 namespace {
 
-PointerInput touch(PointerInput::Action action, const glm::dvec2& place) {
-    PointerInput input;
+navigation::PointerInput touch(navigation::PointerInput::Action action, const glm::dvec2& place) {
+    navigation::PointerInput input;
     input.action = action;
     input.client = "c1";
     input.pointer = 1;
-    input.device = PointerInput::Device::touch;
+    input.device = navigation::PointerInput::Device::touch;
     input.x = place.x;
     input.y = place.y;
-    input.button = action == PointerInput::Action::move ? -1 : 0;
-    input.buttons = action == PointerInput::Action::up ? 0 : 1;
+    input.button = action == navigation::PointerInput::Action::move ? -1 : 0;
+    input.buttons = action == navigation::PointerInput::Action::up ? 0 : 1;
     return input;
 }
 
@@ -35,8 +35,8 @@ Study moves_lost(const Laboratory& laboratory) {
         "A drag is a function of the camera at its start and of the pointers' places: moves may be merged or "
         "lost, and the last one alone decides.";
     study.cost = "None: one move is computed where several came.";
-    const Camera start = home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
-    NavigationContext context;
+    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    navigation::NavigationContext context;
     context.keep_upright = false;
     const auto place = [](int i) {
         return glm::dvec2(640 + 300 * std::sin(i * 0.05), 360 + 200 * std::sin(i * 0.08));
@@ -44,26 +44,28 @@ Study moves_lost(const Laboratory& laboratory) {
     const auto drag = [&](double percent, bool on_from_before) {
         constexpr int kMoves = 200;
         Noise noise;
-        Gestures gestures;
-        Camera camera = gestures.pointer(touch(PointerInput::Action::down, place(0)), start, context);
+        navigation::Gestures gestures;
+        scene::Camera camera =
+            gestures.pointer(touch(navigation::PointerInput::Action::down, place(0)), start, context);
         glm::dvec2 before = place(0);
         for (int i = 1; i <= kMoves; ++i) {
             if (i < kMoves && 50 * (noise.next() + 1) < percent) continue;
             if (on_from_before) {
                 const glm::dvec2 degrees = (place(i) - before) * 180.0 / context.height;
-                camera = rotated(camera, degrees.x, degrees.y, false);
+                camera = navigation::rotated(camera, degrees.x, degrees.y, false);
             } else {
-                camera = gestures.pointer(touch(PointerInput::Action::move, place(i)), camera, context);
+                camera = gestures.pointer(touch(navigation::PointerInput::Action::move, place(i)), camera,
+                                          context);
             }
             before = place(i);
         }
         return camera.eye;
     };
-    const bool turns = glm::distance(drag(0, false), start.eye) > 0.01 * focus_distance(start);
+    const bool turns = glm::distance(drag(0, false), start.eye) > 0.01 * scene::focus_distance(start);
     for (const double percent : laboratory.chosen({1, 10, 30, 50, 70, 90, 99})) {
         const auto off = [&](bool on_from_before) {
             return glm::distance(drag(percent, on_from_before), drag(0, on_from_before)) /
-                   focus_distance(start);
+                   scene::focus_distance(start);
         };
         study.baseline.points.push_back({percent, off(true)});
         study.method.points.push_back({percent, turns ? off(false) : kNothing});
@@ -81,38 +83,38 @@ Study releases_lost(const Laboratory& laboratory) {
         "A second press of a pressed pointer begins a new drag where it is; a client that leaves has its "
         "pointers lifted; the camera stays where it is.";
     study.cost = "None.";
-    const Camera start = home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
-    NavigationContext context;
+    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    navigation::NavigationContext context;
     context.keep_upright = false;
     const glm::dvec2 place(640, 360);
-    const auto degrees = [&](const Camera& a, const Camera& b) {
+    const auto degrees = [&](const scene::Camera& a, const scene::Camera& b) {
         return glm::degrees(
-            2 * std::asin(std::min(1.0, glm::distance(a.eye, b.eye) / 2 / focus_distance(start))));
+            2 * std::asin(std::min(1.0, glm::distance(a.eye, b.eye) / 2 / scene::focus_distance(start))));
     };
     for (const double pixels : laboratory.chosen({1, 3, 10, 30, 100, 300})) {
-        using Action = PointerInput::Action;
+        using Action = navigation::PointerInput::Action;
         const glm::dvec2 next = place + glm::dvec2(pixels, 0);
-        Gestures gestures;
-        Camera camera = gestures.pointer(touch(Action::down, place - 50.0), start, context);
+        navigation::Gestures gestures;
+        scene::Camera camera = gestures.pointer(touch(Action::down, place - 50.0), start, context);
         camera = gestures.pointer(touch(Action::move, place), camera, context);
-        const Camera pressed_again = gestures.pointer(touch(Action::down, next), camera, context);
+        const scene::Camera pressed_again = gestures.pointer(touch(Action::down, next), camera, context);
         gestures.lift("c1", pressed_again);
-        PointerInput other = touch(Action::down, place);
+        navigation::PointerInput other = touch(Action::down, place);
         other.client = "c2";
-        Camera after = gestures.pointer(other, pressed_again, context);
+        scene::Camera after = gestures.pointer(other, pressed_again, context);
         other = touch(Action::move, next);
         other.client = "c2";
         after = gestures.pointer(other, after, context);
         // As it is where nobody pressed before.
-        Gestures fresh;
+        navigation::Gestures fresh;
         other.action = Action::down;
         other.x = place.x;
         other.button = 0;
-        Camera alone = fresh.pointer(other, pressed_again, context);
+        scene::Camera alone = fresh.pointer(other, pressed_again, context);
         other = touch(Action::move, next);
         other.client = "c2";
         alone = fresh.pointer(other, alone, context);
-        const Camera swept = rotated(camera, pixels * 180 / context.height, 0, false);
+        const scene::Camera swept = navigation::rotated(camera, pixels * 180 / context.height, 0, false);
         study.baseline.points.push_back({pixels, degrees(swept, camera)});
         const bool turns = camera.eye != start.eye && after.eye != pressed_again.eye;
         study.method.points.push_back(
@@ -137,11 +139,12 @@ Study jittering_taps(const Laboratory& laboratory) {
         Noise noise;
         int missed = 0;
         for (int tap = 0; tap < kTaps; ++tap) {
-            Clicks clicks;
+            navigation::Clicks clicks;
             bool found = false;
             std::chrono::microseconds time{0};
             for (int press = 0; press < 2; ++press)
-                for (const auto action : {PointerInput::Action::down, PointerInput::Action::up}) {
+                for (const auto action :
+                     {navigation::PointerInput::Action::down, navigation::PointerInput::Action::up}) {
                     const glm::dvec2 place(300 + pixels * noise.next(), 200 + pixels * noise.next());
                     found = clicks.pointer(touch(action, place), {{}, time}).has_value() || found;
                     time += std::chrono::milliseconds(80);
@@ -165,7 +168,7 @@ Study jumping_clocks(const Laboratory& laboratory) {
     for (const double jump : laboratory.chosen({1, 10, 100, 1e3, 3e3, 1e4, 1e6, 1e9})) {
         double worst = 0;
         for (const double direction : {1.0, -1.0}) {
-            EventClock clock;
+            navigation::EventClock clock;
             constexpr std::chrono::milliseconds kFirst{50}, kBetween{2000};
             const auto first = clock.time({1e6, kFirst});
             const auto second = clock.time({1e6 + kBetween.count() + direction * jump, kFirst + kBetween});

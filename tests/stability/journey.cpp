@@ -19,9 +19,9 @@ namespace {
 
 /// A picture with about as much to encode as one of the car: shaded balls with edges and highlights before a
 /// gradient, the same for all sizes.
-Image balls(int width, int height) {
+scene::Image balls(int width, int height) {
     constexpr int kBalls = 36;
-    Image image;
+    scene::Image image;
     image.resize(width, height);
     const auto put = [&](int x, int y, const glm::dvec3& color) {
         std::uint8_t* pixel = &image.rgba[static_cast<std::size_t>(y * width + x) * 4];
@@ -63,12 +63,12 @@ server::net::ServerOptions options(const server::net::Deadlines& deadlines) {
 server::engine::FrameRenderer renderer_of_balls() {
     server::engine::FrameRenderer renderer;
     renderer.description = "balls";
-    auto drawn = std::make_shared<std::map<std::pair<int, int>, Image>>();
-    renderer.step = [drawn](RenderJob& rendering) {
+    auto drawn = std::make_shared<std::map<std::pair<int, int>, scene::Image>>();
+    renderer.step = [drawn](plan::RenderJob& rendering) {
         rendering.samples = rendering.view.samples;
-        const View& view = rendering.view;
-        Image& image = rendering.image;
-        Image& whole = (*drawn)[{view.width, view.height}];
+        const plan::View& view = rendering.view;
+        scene::Image& image = rendering.image;
+        scene::Image& whole = (*drawn)[{view.width, view.height}];
         if (whole.rgba.empty()) whole = balls(view.width, view.height);
         image.resize(view.width, view.height);
         const glm::dvec3 direction = view.camera.focus - view.camera.eye;

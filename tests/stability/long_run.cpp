@@ -25,9 +25,9 @@ struct Turning {
         std::vector<Part> parts;
         for (int i = 0; i < 8; ++i) {
             const int row = i / 4;
-            Material material = material_of(glm::dvec3(0.2 + 0.1 * i, 0.5, 0.4), glm::dvec3(0.4), 20);
+            scene::Material material = material_of(glm::dvec3(0.2 + 0.1 * i, 0.5, 0.4), glm::dvec3(0.4), 20);
             parts.push_back(
-                {Id(i + 1), sphere(0.5, 16), material, moved_by({i % 4 - 1.5, row - 0.5, 0.2 * i})});
+                {scene::Id(i + 1), sphere(0.5, 16), material, moved_by({i % 4 - 1.5, row - 0.5, 0.2 * i})});
         }
         view = looking(scene_of(parts), {0, 1, 6});
         view.width = 128;
@@ -35,16 +35,16 @@ struct Turning {
     }
     /// Draws the next picture; its processor time in ms, since what other programs do does not count.
     double next() {
-        view.camera = rotated(view.camera, 3, 0.1, true);
+        view.camera = navigation::rotated(view.camera, 3, 0.1, true);
         const std::clock_t before = std::clock();
         laboratory.renderer.render(view, image, stats);
         return 1000.0 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
     }
 
     const Laboratory& laboratory;
-    View view;
-    Image image;
-    FrameStats stats;
+    plan::View view;
+    scene::Image image;
+    plan::FrameStats stats;
 };
 
 constexpr int kWarmUp = 50;  // pictures
@@ -62,7 +62,7 @@ template <class Measure>
 auto with_new_renderer(Form form, const Measure& measure) {
     return std::async(std::launch::async,
                       [&] {
-                          Renderer renderer;
+                          renderer::Renderer renderer;
                           const Laboratory laboratory{renderer, form};
                           Turning turning(laboratory);
                           for (int i = 0; i < kWarmUp; ++i) turning.next();

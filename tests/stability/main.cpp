@@ -28,7 +28,7 @@ std::vector<Topic> topics_named(const std::vector<std::string>& names) {
     return chosen;
 }
 
-std::vector<Study> made(const std::vector<Topic>& chosen, Renderer& renderer) {
+std::vector<Study> made(const std::vector<Topic>& chosen, renderer::Renderer& renderer) {
     server::observe::Progress progress;
     std::vector<Study> studies;
     for (const Topic& topic : chosen) {
@@ -50,7 +50,7 @@ int main(int argc, char** argv) try {
     const std::vector<Topic> chosen = topics_named({words.begin() + 1, words.end()});
     server::observe::start_log();
     server::measure::require_gnuplot();
-    Renderer renderer;
+    renderer::Renderer renderer;
     const std::filesystem::path folder = words.front();
     std::filesystem::create_directories(folder);
     const std::vector<Study> studies = made(chosen, renderer);

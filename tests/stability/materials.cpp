@@ -16,25 +16,25 @@ namespace {
 constexpr int kSide = 192;  // of pictures of walls, in pixels
 
 /// A wall that fills the picture, with so many texels to a pixel, from its bottom left corner on.
-View wall_with(const Texture& texture, double texels) {
-    Geometry wall = quad(kSide / 2.0);
+plan::View wall_with(const scene::Texture& texture, double texels) {
+    scene::Geometry wall = quad(kSide / 2.0);
     const glm::vec2 last =
         glm::vec2(static_cast<float>(kSide * texels)) / glm::vec2(texture.image.width, texture.image.height);
     wall.texcoords = {{0, 0}, {last.x, 0}, last, {0, last.y}};
-    Material material = material_of({1, 1, 1});
+    scene::Material material = material_of({1, 1, 1});
     material.texture = 0;
-    View view = looking(scene_of({{1, wall, material}}, {texture}), {0, 0, kSide / 2.0});
+    plan::View view = looking(scene_of({{1, wall, material}}, {texture}), {0, 0, kSide / 2.0});
     view.camera.fov = 90;
     view.width = view.height = kSide;
     view.light.headlight = false;
-    view.light.type = LightData::Type::directional;
+    view.light.type = scene::LightData::Type::directional;
     view.light.direction = {0, 0, -1};
     return view;
 }
 
 /// Grey, between a quarter and three quarters.
-Texture grey_noise(int width, int height) {
-    Texture texture;
+scene::Texture grey_noise(int width, int height) {
+    scene::Texture texture;
     texture.image.resize(width, height);
     Noise noise;
     for (std::size_t at = 0; at < texture.image.rgba.size(); at += 4) {
@@ -58,9 +58,9 @@ void compare_normals(const Laboratory& laboratory, Study& study, double inverse,
         baked.geometry.normals[i] = std::isfinite(glm::dot(normal, normal)) ? normal : glm::vec3(0);
     }
     if (turned) baked.geometry = turned_inside_out(baked.geometry);
-    const View view = looking(scene_of({part}), eye);
-    const Image right = truth_of(view);
-    View inverted = view;
+    const plan::View view = looking(scene_of({part}), eye);
+    const scene::Image right = truth_of(view);
+    plan::View inverted = view;
     inverted.scene = scene_of({baked});
     study.baseline.points.push_back({inverse, percent_off(drawn(laboratory, inverted), right)});
     study.method.points.push_back({inverse, percent_off(drawn(laboratory, view), right)});
@@ -78,7 +78,7 @@ Study minified_textures(const Laboratory& laboratory) {
         "the picture is mixed.";
     study.cost = "A third more memory for a texture.";
     constexpr int kTexels = 256;
-    Texture checkers;
+    scene::Texture checkers;
     checkers.image.resize(kTexels, kTexels);
     const auto white = [](std::int64_t x, std::int64_t y) { return ((x + y) & 1) == 0; };
     for (std::size_t at = 0; at < checkers.image.rgba.size(); ++at) {
@@ -86,7 +86,7 @@ Study minified_textures(const Laboratory& laboratory) {
         checkers.image.rgba[at] = white(texel % kTexels, texel / kTexels) || at % 4 == 3 ? 255 : 0;
     }
     for (const int texels : {1, 2, 3, 4, 6, 8, 16, 32, 64}) {
-        const Image image = drawn(laboratory, wall_with(checkers, texels));
+        const scene::Image image = drawn(laboratory, wall_with(checkers, texels));
         double worst = 0, worst_of_nearest = 0;
         for (std::int64_t y = 8; y < kSide - 8; ++y)
             for (std::int64_t x = 8; x < kSide - 8; ++x) {
@@ -115,8 +115,8 @@ void compare_sizes(const Laboratory& laboratory, Study& study, double texels) {
     for (const double place : laboratory.chosen({0, 1, 2, 3, 4, 5, 6})) {
         const glm::ivec2 size = sizes[static_cast<std::size_t>(place)];
         double worst = 0;
-        for (const Texture& texture : {grey_noise(size.x, size.y), grey_noise(size.y, size.x)}) {
-            const View view = wall_with(texture, texels);
+        for (const scene::Texture& texture : {grey_noise(size.x, size.y), grey_noise(size.y, size.x)}) {
+            const plan::View view = wall_with(texture, texels);
             worst = std::max(worst, largest_error(drawn(laboratory, view), truth_of(view)));
         }
         study.method.points.push_back({1.0 * std::max(size.x, size.y) / most, worst});
@@ -162,7 +162,7 @@ Study small_matrices(const Laboratory& laboratory) {
         "Normals go by the cofactor matrix, times the sign of the determinant, brought to scale: it needs no "
         "inverse, which flattened parts have not; a normal of zero takes its face's.";
     study.cost = "None: it is computed once a part.";
-    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     for (const double inverse : laboratory.chosen({1, 10, 1e3, 1e6, 1e9, 1e12, 1e13, 1e15})) {
         const glm::dmat4 matrix = scaled_by(glm::dvec3(1, 0.5, 1) / inverse) * turned_by(30, {0, 0, 1});
         compare_normals(laboratory, study, inverse, {1, sphere(1, 12), material, matrix},
@@ -182,9 +182,9 @@ Study mirroring_matrices(const Laboratory& laboratory) {
         "Where a matrix mirrors, the sign of its determinant turns sides and normals; a part thinner than "
         "1e-12 of its size is drawn from both sides. A normal of zero takes its face's.";
     study.cost = "None: it is computed once a part.";
-    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     // A sheet with waves, its front towards x; in the middle its normals are left at zero.
-    Geometry sheet = surface(16, 16, [](double u, double v) {
+    scene::Geometry sheet = surface(16, 16, [](double u, double v) {
         return glm::dvec3(0.2 * std::sin(5 * u) * std::sin(4 * v), 2 * u - 1, 2 * v - 1);
     });
     for (const glm::dvec3& p : sheet.positions) {
@@ -216,9 +216,9 @@ Study flipped_normals(const Laboratory& laboratory) {
     study.explanation =
         "With a material that is `two-sided` a normal that points away from the viewer is negated. Without, "
         "normals are taken as they are, and such triangles stay dark.";
-    const Geometry ball = sphere(1, 24);
+    const scene::Geometry ball = sphere(1, 24);
     const auto view_of = [&](bool two_sided, double percent) {
-        Geometry flipped;
+        scene::Geometry flipped;
         flipped.bounds = ball.bounds;
         for (std::size_t i = 0; i < ball.triangles.size(); ++i) {
             const glm::uvec3& triangle = ball.triangles[i];
@@ -231,11 +231,11 @@ Study flipped_normals(const Laboratory& laboratory) {
             }
             flipped.triangles.emplace_back(first, first + 1, first + 2);
         }
-        Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+        scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
         material.two_sided = two_sided;
         return looking(scene_of({{1, flipped, material}}), {0.5, 0.7, 2.5});
     };
-    const Image right = truth_of(view_of(true, 0));
+    const scene::Image right = truth_of(view_of(true, 0));
     for (const double percent : laboratory.chosen({0.1, 0.3, 1, 3, 10, 30, 100}))
         for (const bool two_sided : {false, true})
             (two_sided ? study.method : study.baseline)

@@ -12,8 +12,8 @@ namespace vrut::stability {
 
 namespace {
 
-Material mirror_material() {
-    Material material = material_of({0.1, 0.1, 0.1});
+scene::Material mirror_material() {
+    scene::Material material = material_of({0.1, 0.1, 0.1});
     material.reflectivity = 0.9;
     return material;
 }
@@ -39,10 +39,10 @@ Study many_mirrors(const Laboratory& laboratory) {
                 {i + 1, quad(1.4 / in_row), mirror_material(),
                  moved_by({x * 3 / in_row, y * 3 / in_row, -1}) * turned_by(3.0 * i / count, {0, 1, 0})});
         }
-        const View view = looking(scene_of(parts), {0, 0, 6}, {0, 0, -1});
+        const plan::View view = looking(scene_of(parts), {0, 0, 6}, {0, 0, -1});
         study.method.points.push_back({count, percent_off(drawn(laboratory, view), truth_of(view))});
         if (count <= 16) {
-            View plain = view;
+            plan::View plain = view;
             for (Part& part : parts) part.material.reflectivity = 0;
             plain.scene = scene_of(parts);
             study.cost = "With 16 mirrors a picture takes " +
@@ -67,7 +67,7 @@ Study edge_on_mirrors(const Laboratory& laboratory) {
                       {3, box({0.3, 0.3, 0.3}), material_of({0.1, 0.8, 0.3}), moved_by({0.7, 0.4, 0})}});
         double worst = 0;
         for (const double height : {1 / inverse, 0.0, -1 / inverse}) {
-            const View view = looking(scene, {0.2, height, 4}, {0.1, 0.2 * height, 0});
+            const plan::View view = looking(scene, {0.2, height, 4}, {0.1, 0.2 * height, 0});
             worst = std::max(worst, percent_off(drawn(laboratory, view), truth_of(view)));
         }
         study.method.points.push_back({inverse, worst});
@@ -86,13 +86,13 @@ Study bent_mirrors(const Laboratory& laboratory) {
     study.cost = "A bent mirror does not show the scene.";
     constexpr double kFlat = 1e-5;  // of the radius: what a file's rounding may bend
     for (const double bulge : laboratory.chosen({1e-7, 1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 1e-2, 0.1, 0.5})) {
-        const Geometry cap = surface(16, 16, [&](double u, double v) {
+        const scene::Geometry cap = surface(16, 16, [&](double u, double v) {
             const glm::dvec2 place = glm::dvec2(u, v) * 2.0 - 1.0;
             return glm::dvec3(place, -bulge * glm::dot(place, place));
         });
         // The normal at the rim leans by the slope there, the reflection by twice that.
         const double error = glm::degrees(2 * std::atan(2 * bulge));
-        const bool is_flat = fitted_plane(cap).has_value();
+        const bool is_flat = scene::fitted_plane(cap).has_value();
         const bool is_lost = !is_flat && bulge <= kFlat;
         study.method.points.push_back({bulge, is_lost ? kNothing : is_flat ? error : 0});
     }
@@ -113,7 +113,7 @@ Study mirrors_in_mirrors(const Laboratory& laboratory) {
         "A second bounce would show the scene once more for each pair of mirrors, up to 240 times in a "
         "picture with 16.";
     const auto shining = [](const glm::dvec3& color) {
-        Material material = material_of({0, 0, 0});
+        scene::Material material = material_of({0, 0, 0});
         material.emission = {color, 1};
         material.two_sided = true;
         return material;
@@ -123,16 +123,16 @@ Study mirrors_in_mirrors(const Laboratory& laboratory) {
         {1, sphere(0.4, 12), shining({0.9, 0.2, 0.1}), moved_by({-0.9, 0.2, -0.6})},
         {2, box({0.3, 0.5, 0.3}), shining({0.2, 0.9, 0.9}), moved_by({0.9, -0.3, -0.2})}};
     for (const double percent : laboratory.chosen({1, 2, 5, 10, 15, 25, 35, 50, 65, 80})) {
-        Material mirror = shining({0.1, 0.1, 0.1});
+        scene::Material mirror = shining({0.1, 0.1, 0.1});
         mirror.reflectivity = percent / 100;
         std::vector<Part> parts = things;
         parts.push_back({8, quad(100), mirror, moved_by({0, 0, -2})});
         parts.push_back({9, quad(100), mirror, moved_by({0, 0, 2})});
-        View view = looking(scene_of(parts), {0.3, 0.4, 1.5}, {0, 0, -2});
-        const Image seen = drawn(laboratory, view);
+        plan::View view = looking(scene_of(parts), {0.3, 0.4, 1.5}, {0, 0, -2});
+        const scene::Image seen = drawn(laboratory, view);
         // What mirrors show lies behind them as behind panes of their own colour, until less than a step of a
         // byte comes through.
-        Material pane = shining({0.1, 0.1, 0.1});
+        scene::Material pane = shining({0.1, 0.1, 0.1});
         pane.diffuse.a = 1 - mirror.reflectivity;
         std::vector<Part> unfolded = things;
         const int bounces = static_cast<int>(std::ceil(std::log(0.003) / std::log(mirror.reflectivity)));

@@ -28,7 +28,8 @@ std::optional<float> met_in_float(const glm::vec3& direction, const glm::vec3& a
 
 /// The distance to the nearest of a geometry's triangles along a ray from the origin, by Möller and
 /// Trumbore's test in long double; 0 where no front is met.
-long double nearest_of_all(const Geometry& geometry, const glm::dvec3& place, const glm::dvec3& direction) {
+long double nearest_of_all(const scene::Geometry& geometry, const glm::dvec3& place,
+                           const glm::dvec3& direction) {
     using Vector = glm::vec<3, long double>;
     constexpr long double kEdge = 1e-9L;  // an edge belongs to its triangle
     long double nearest = 0;
@@ -53,7 +54,7 @@ long double nearest_of_all(const Geometry& geometry, const glm::dvec3& place, co
 std::vector<Part> ball_among_panes(int surfaces) {
     std::vector<Part> parts{{7, sphere(1, 8), material_of({1, 0, 0})},
                             {9, quad(5), material_of({0, 1, 0}), moved_by({0, 0, -3})}};
-    Material glass = material_of({0, 0, 1});
+    scene::Material glass = material_of({0, 0, 1});
     glass.diffuse.a = 0.5;
     glass.two_sided = true;
     for (int i = 1; i < surfaces; ++i)
@@ -64,8 +65,8 @@ std::vector<Part> ball_among_panes(int surfaces) {
 }
 
 /// By brute force, of parts whose positions are the world's; -1 for none.
-Id nearest_part(const std::vector<Part>& parts, const Ray& ray, bool through) {
-    Id best = -1;
+scene::Id nearest_part(const std::vector<Part>& parts, const mesh::Ray& ray, bool through) {
+    scene::Id best = -1;
     long double least = std::numeric_limits<long double>::infinity();
     for (const Part& part : parts) {
         if (through && part.material.diffuse.a < 1) continue;
@@ -93,11 +94,11 @@ Study slivers(const Laboratory& laboratory) {
         const glm::dvec3 a(0.1, 0.2, -5), b(2.1, 0.9, -6);
         const glm::dvec3 across = glm::normalize(glm::cross(b - a, glm::dvec3(0, 0, 1)));
         const glm::dvec3 c = b + across * (glm::distance(a, b) / ratio);
-        Geometry sliver;
+        scene::Geometry sliver;
         sliver.positions = {a, b, c};
         sliver.triangles = {{0, 1, 2}};
         for (const glm::dvec3& corner : sliver.positions) sliver.bounds.add(corner);
-        Material material;
+        scene::Material material;
         material.two_sided = true;
         const auto scene = scene_of({{1, sliver, material}});
         constexpr int kPicks = 200;
@@ -106,7 +107,7 @@ Study slivers(const Laboratory& laboratory) {
             const double along = (i + 0.5) / kPicks;
             const glm::dvec3 point = a + along * ((b + c) / 2.0 - a);
             const glm::dvec3 direction = glm::normalize(point);
-            missed += !pick(*scene, {glm::dvec3(0), direction}, false).has_value();
+            missed += !mesh::pick(*scene, {glm::dvec3(0), direction}, false).has_value();
             missed_in_float += !met_in_float(direction, a, b, c).has_value();
         }
         study.baseline.points.push_back({ratio, 100.0 * missed_in_float / kPicks});
@@ -125,7 +126,7 @@ Study shared_edges(const Laboratory& laboratory) {
         "Two triangles get their common edge from the same numbers, and only its sign decides: a ray on the "
         "edge meets one of the two.";
     study.cost = "None: it is the test of all triangles.";
-    const Geometry ball = welded(sphere(1, 12));
+    const scene::Geometry ball = welded(sphere(1, 12));
     for (const double distance : laboratory.chosen({2, 10, 100, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8})) {
         const glm::dvec3 place = distance * glm::normalize(glm::dvec3(0.3, -0.2, -1));
         const auto scene = scene_of({{1, mapped(ball, 1, place), material_of({1, 1, 1})}});
@@ -140,7 +141,7 @@ Study shared_edges(const Laboratory& laboratory) {
                 const glm::dvec3 direction = glm::normalize(glm::mix(a, b, along));
                 ++picks;
                 const double right = static_cast<double>(nearest_of_all(ball, place, direction));
-                const auto hit = pick(*scene, {glm::dvec3(0), direction}, false);
+                const auto hit = mesh::pick(*scene, {glm::dvec3(0), direction}, false);
                 wrong += !hit || std::abs(hit->distance - right) > 0.01;
                 double nearest = std::numeric_limits<double>::infinity();
                 for (const glm::uvec3& t : ball.triangles)
@@ -169,25 +170,25 @@ Study picks_through_glass(const Laboratory& laboratory) {
     study.cost = "None: less is asked than by a pick of what is nearest.";
     for (const double count : laboratory.chosen({1, 2, 3, 10, 100, 1000})) {
         std::vector<Part> parts = ball_among_panes(static_cast<int>(count));
-        const View view = looking(scene_of(parts), {0.2, 0.3, 6});
+        const plan::View view = looking(scene_of(parts), {0.2, 0.3, 6});
         for (Part& part : parts)
             for (glm::dvec3& position : part.geometry.positions)
                 position = glm::dvec3(part.matrix * glm::dvec4(position, 1));
-        const auto id_of = [&](Index node) {
-            return node == kNone ? -1 : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id;
+        const auto id_of = [&](scene::Index node) {
+            return node == scene::kNone ? -1 : view.scene->scene->nodes()[static_cast<std::size_t>(node)].id;
         };
-        const auto picked = [&](const Ray& ray, bool through) {
-            const auto hit = pick(*view.scene, ray, through);
-            return id_of(hit ? hit->node : kNone);
+        const auto picked = [&](const mesh::Ray& ray, bool through) {
+            const auto hit = mesh::pick(*view.scene, ray, through);
+            return id_of(hit ? hit->node : scene::kNone);
         };
-        const std::vector<Index> ids = laboratory.renderer.node_ids(view);  // rows from the bottom up
+        const std::vector<scene::Index> ids = laboratory.renderer.node_ids(view);  // rows from the bottom up
         int picks = 0, wrong = 0, wrong_in_picture = 0;
         for (int y = 4; y < view.height; y += 8)
             for (int x = 4; x < view.width; x += 8) {
                 const glm::dvec2 place((2 * x + 1.0) / view.width - 1, 1 - (2 * y + 1.0) / view.height);
                 const double aspect = 1.0 * view.width / view.height;
-                const Ray ray{view.camera.eye, direction_through(view.camera, aspect, place)};
-                const Id right = nearest_part(parts, ray, true);
+                const mesh::Ray ray{view.camera.eye, scene::direction_through(view.camera, aspect, place)};
+                const scene::Id right = nearest_part(parts, ray, true);
                 ++picks;
                 wrong += picked(ray, true) != right || picked(ray, false) != nearest_part(parts, ray, false);
                 wrong_in_picture +=

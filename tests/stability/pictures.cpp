@@ -9,25 +9,25 @@
 
 namespace vrut::stability {
 
-Image drawn(const Laboratory& laboratory, const View& view, FrameStats* stats) {
-    Image image;
-    FrameStats unused;
+scene::Image drawn(const Laboratory& laboratory, const plan::View& view, plan::FrameStats* stats) {
+    scene::Image image;
+    plan::FrameStats unused;
     laboratory.renderer.render(view, image, stats ? *stats : unused);
     return image;
 }
 
-bool is_plain(const Image& image) {
+bool is_plain(const scene::Image& image) {
     for (std::size_t i = 0; i < image.rgba.size(); ++i)
         if (image.rgba[i] != image.rgba[i % 4]) return false;
     return true;
 }
 
-double time_of(const Laboratory& laboratory, const View& view) {
+double time_of(const Laboratory& laboratory, const plan::View& view) {
     const int tries = laboratory.form == Form::whole ? 5 : 1;
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i < tries; ++i) {
-        Image image;
-        FrameStats stats;
+        scene::Image image;
+        plan::FrameStats stats;
         laboratory.renderer.render(view, image, stats);
         least = std::min(least, stats.render_ms);
     }
@@ -40,39 +40,39 @@ std::string times_the_time(double method, double baseline) {
     return text;
 }
 
-View looking(const std::shared_ptr<const PlacedScene>& scene, const glm::dvec3& eye,
-             const glm::dvec3& focus) {
-    View view;
+plan::View looking(const std::shared_ptr<const scene::PlacedScene>& scene, const glm::dvec3& eye,
+                   const glm::dvec3& focus) {
+    plan::View view;
     view.scene = scene;
     view.camera.eye = eye;
     view.camera.focus = view.camera.center = focus;
-    view.camera = with_orthogonal_up(view.camera);
+    view.camera = scene::with_orthogonal_up(view.camera);
     view.width = 192;
     view.height = 128;
     return view;
 }
 
-Image truth_of(const View& view) {
-    const ReferenceImage picture = trace(view);
-    const bool is_empty =
-        std::all_of(picture.node.begin(), picture.node.end(), [](Index node) { return node == kNone; });
-    return is_empty ? Image() : image_of(picture);
+scene::Image truth_of(const plan::View& view) {
+    const reference::ReferenceImage picture = reference::trace(view);
+    const bool is_empty = std::all_of(picture.node.begin(), picture.node.end(),
+                                      [](scene::Index node) { return node == scene::kNone; });
+    return is_empty ? scene::Image() : reference::image_of(picture);
 }
 
 namespace {
 
-bool can_be_compared(const Image& image, const Image& right) {
+bool can_be_compared(const scene::Image& image, const scene::Image& right) {
     return !right.rgba.empty() && image.rgba.size() == right.rgba.size();
 }
 
 }  // namespace
 
-double percent_off(const Image& image, const Image& right) {
-    return can_be_compared(image, right) ? 100 * difference(image, right).share_above(8) : kNothing;
+double percent_off(const scene::Image& image, const scene::Image& right) {
+    return can_be_compared(image, right) ? 100 * compare::difference(image, right).share_above(8) : kNothing;
 }
 
-double largest_error(const Image& image, const Image& right) {
-    return can_be_compared(image, right) ? difference(image, right).maximum() : kNothing;
+double largest_error(const scene::Image& image, const scene::Image& right) {
+    return can_be_compared(image, right) ? compare::difference(image, right).maximum() : kNothing;
 }
 
 }  // namespace vrut::stability

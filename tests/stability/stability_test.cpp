@@ -35,7 +35,7 @@ TEST_CASE("each method holds up to its limit") {
     const auto results = kept_results();
     CHECK(results.size() == topics().size());
     {
-        Renderer renderer(std::nullopt, true);
+        renderer::Renderer renderer(std::nullopt, true);
         const Laboratory laboratory{renderer, Form::brief};
         for (const Topic& topic : topics()) {
             CAPTURE(std::string(topic.name));
@@ -49,7 +49,7 @@ TEST_CASE("each method holds up to its limit") {
             for (const std::string& message : renderer.take_messages()) FAIL_CHECK(message);
         }
     }
-    CHECK(live_gl_objects() == 0);
+    CHECK(gl::live_gl_objects() == 0);
 }
 
 TEST_CASE("a study fails where its method does before its limit, or was not measured") {

@@ -62,7 +62,7 @@ private:
 
 /// What studies are made with.
 struct Laboratory {
-    Renderer& renderer;
+    renderer::Renderer& renderer;
     Form form = Form::whole;
 
     /// The first of `points`, which rise, the last, and in between as many as the form has time for.

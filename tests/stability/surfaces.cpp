@@ -11,7 +11,7 @@ namespace vrut::stability {
 
 namespace {
 
-Geometry in_single_precision(Geometry geometry) {
+scene::Geometry in_single_precision(scene::Geometry geometry) {
     for (glm::dvec3& position : geometry.positions) position = glm::dvec3(glm::vec3(position));
     return geometry;
 }
@@ -29,14 +29,14 @@ Study far_positions(const Laboratory& laboratory) {
         "Positions and matrices are kept in double; each part is moved to the eye in double, and only what "
         "is left, which is small where it is seen large, goes to the GPU in single precision.";
     study.cost = "A product of two matrices in double for each part and picture; no more bytes on the GPU.";
-    const Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
     for (const double distance : laboratory.chosen({1, 10, 100, 1e3, 1e4, 3e4, 1e5, 1e6, 1e7, 1e8})) {
         const glm::dvec3 there(distance, -distance, distance);
-        const Geometry body = mapped(sphere(1, 12), 1, there);
+        const scene::Geometry body = mapped(sphere(1, 12), 1, there);
         const auto scene = scene_of({{1, body, material}});
-        const View view = looking(scene, there + glm::dvec3(1, 1.5, 3), there);
-        const Image right = truth_of(view);
-        View rounded = view;
+        const plan::View view = looking(scene, there + glm::dvec3(1, 1.5, 3), there);
+        const scene::Image right = truth_of(view);
+        plan::View rounded = view;
         rounded.scene = scene_of({{1, in_single_precision(body), material}});
         study.baseline.points.push_back({distance, percent_off(drawn(laboratory, rounded), right)});
         study.method.points.push_back({distance, percent_off(drawn(laboratory, view), right)});
@@ -48,11 +48,11 @@ namespace {
 
 /// Whether a wall at `distance` hides one that stands `gap` of that behind it, with a speck at `near`.
 bool tells_apart(const Laboratory& laboratory, double near, double distance, double gap) {
-    const Material front = material_of({1, 0, 0}), back = material_of({0, 1, 0});
+    const scene::Material front = material_of({1, 0, 0}), back = material_of({0, 1, 0});
     const auto scene = scene_of({{1, quad(near / 100), back, moved_by({near * 0.2, 0, -near})},
                                  {2, quad(distance), front, moved_by({0, 0, -distance})},
                                  {3, quad(distance), back, moved_by({0, 0, -distance * (1 + gap)})}});
-    const Image image = drawn(laboratory, looking(scene, {0, 0, 0}, {0, 0, -1}));
+    const scene::Image image = drawn(laboratory, looking(scene, {0, 0, 0}, {0, 0, -1}));
     std::size_t of_front = 0, others = 0;  // pixels in the middle
     for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
         const std::size_t x = i / 4 % static_cast<std::size_t>(image.width);
@@ -109,17 +109,17 @@ Study large_triangles(const Laboratory& laboratory) {
         // Triangles of side `ratio`, as many as cover the wall, and a light 1 before it.
         const auto cells = static_cast<unsigned>(std::max(1.0, std::round(4 / ratio)));
         const double half = ratio * cells / 2;
-        Geometry wall = surface(
+        scene::Geometry wall = surface(
             cells, cells, [&](double u, double v) { return half * glm::dvec3(2 * u - 1, 2 * v - 1, 0); });
         wall.normals.assign(wall.positions.size(), {0, 0, 1});
-        View view = looking(scene_of({{1, wall, material_of({0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 20)}}),
-                            {0.3, 0.2, 2.5});
+        plan::View view = looking(scene_of({{1, wall, material_of({0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 20)}}),
+                                  {0.3, 0.2, 2.5});
         view.light.headlight = false;
         view.light.position = {0.13, 0.07, 1};
-        const Image right = truth_of(view);
+        const scene::Image right = truth_of(view);
         study.method.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});
         const double pixel_ms = time_of(laboratory, view);
-        view.methods.light = Methods::Lighting::vertex;
+        view.methods.light = plan::Methods::Lighting::vertex;
         study.cost = "Here " + times_the_time(pixel_ms, time_of(laboratory, view)) +
                      ", where one wall is all of the picture; within what times vary on the car.";
         study.baseline.points.push_back({ratio, largest_error(drawn(laboratory, view), right)});

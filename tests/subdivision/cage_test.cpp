@@ -46,18 +46,19 @@ TEST_CASE("a file of cages") {
     CHECK(scene->skins[0].cuts[0].within[0].corners[1].place == glm::dvec2(1, 0));
     REQUIRE(scene->nodes.size() == 9);
     CHECK(scene->nodes[0].part.node.matrix[3] == glm::dvec4(7, 8, 9, 1));
-    CHECK(scene->nodes[0].part.node.hinge == Hinge{{0, 1, 0}, -65});
+    CHECK(scene->nodes[0].part.node.hinge == scene::Hinge{{0, 1, 0}, -65});
     CHECK_FALSE(scene->nodes[1].part.node.hinge);
     CHECK(scene->nodes[1].tolerance == 3);
-    CHECK(std::get<GeometryData>(scene->nodes[1].part.node.data).material == 0);
+    CHECK(std::get<scene::GeometryData>(scene->nodes[1].part.node.data).material == 0);
     CHECK(scene->nodes[2].panel->cut == 0);
     CHECK(scene->nodes[3].geometry_of == 3);
     CHECK_FALSE(scene->nodes[3].part.node.active);
-    CHECK(std::get<SwitchData>(scene->nodes[4].part.node.data).active_child == SwitchData::kNoChild);
-    CHECK(std::get<LodData>(scene->nodes[5].part.node.data).ranges == std::vector<double>{1, 2.5});
-    CHECK(std::get<LightData>(scene->nodes[6].part.node.data).type == LightData::Type::spot);
-    CHECK(std::get<CameraData>(scene->nodes[7].part.node.data).fov == 50);
-    CHECK(std::get<BackgroundData>(scene->nodes[8].part.node.data).cube_map->back() == "f");
+    CHECK(std::get<scene::SwitchData>(scene->nodes[4].part.node.data).active_child ==
+          scene::SwitchData::kNoChild);
+    CHECK(std::get<scene::LodData>(scene->nodes[5].part.node.data).ranges == std::vector<double>{1, 2.5});
+    CHECK(std::get<scene::LightData>(scene->nodes[6].part.node.data).type == scene::LightData::Type::spot);
+    CHECK(std::get<scene::CameraData>(scene->nodes[7].part.node.data).fov == 50);
+    CHECK(std::get<scene::BackgroundData>(scene->nodes[8].part.node.data).cube_map->back() == "f");
 }
 
 TEST_CASE("what is wrong with a file of cages is told in one sentence") {

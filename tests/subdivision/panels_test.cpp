@@ -16,11 +16,11 @@ Outline rectangle(Outline::From from, const glm::dvec2& low, const glm::dvec2& h
     return {from, {{low, radius}, {{high.x, low.y}, radius}, {high, radius}, {{low.x, high.y}, radius}}};
 }
 
-CageNode panel_node(Id id, int cut, double edge, double thickness = 0.02) {
+CageNode panel_node(scene::Id id, int cut, double edge, double thickness = 0.02) {
     CageNode node;
     node.part.node.id = id;
-    node.part.node.type = NodeType::geometry;
-    node.part.node.data = GeometryData{};
+    node.part.node.type = scene::NodeType::geometry;
+    node.part.node.data = scene::GeometryData{};
     node.panel = Panel{0, cut, 0, thickness, edge};
     return node;
 }
@@ -30,7 +30,7 @@ CageScene scene_with(const Cage& skin, Outline outline, double edge) {
     CageScene scene;
     scene.meshes = {skin};
     scene.skins = {{0, {{"Door", kGap, {std::move(outline)}}}}};
-    scene.nodes = {panel_node(1, 0, edge), panel_node(2, kNone, edge)};
+    scene.nodes = {panel_node(1, 0, edge), panel_node(2, scene::kNone, edge)};
     return scene;
 }
 
@@ -40,10 +40,10 @@ SubdividedScene subdivided(const CageScene& cages, double count) {
     return *std::move(result);
 }
 
-const Geometry& geometry_at(const Scene& scene, Id node) {
-    const Index place = scene.find_node(node);
-    REQUIRE(place != kNone);
-    const auto& data = std::get<GeometryData>(scene.nodes()[static_cast<std::size_t>(place)].data);
+const scene::Geometry& geometry_at(const scene::Scene& scene, scene::Id node) {
+    const scene::Index place = scene.find_node(node);
+    REQUIRE(place != scene::kNone);
+    const auto& data = std::get<scene::GeometryData>(scene.nodes()[static_cast<std::size_t>(place)].data);
     return scene.geometries()[static_cast<std::size_t>(data.geometry)];
 }
 
@@ -59,7 +59,7 @@ glm::dvec3 plane_normal(double degrees) {
     return {std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)), 0};
 }
 
-double front_area(const Geometry& geometry, const glm::dvec3& normal) {
+double front_area(const scene::Geometry& geometry, const glm::dvec3& normal) {
     double area = 0;
     for (const glm::uvec3& t : geometry.triangles) {
         const glm::dvec3 a = geometry.positions[t.x];
@@ -70,7 +70,8 @@ double front_area(const Geometry& geometry, const glm::dvec3& normal) {
 }
 
 /// The edges of a shell's rim, in the plane across `normal`.
-std::vector<std::pair<glm::dvec3, glm::dvec3>> rim(const Geometry& geometry, const glm::dvec3& normal) {
+std::vector<std::pair<glm::dvec3, glm::dvec3>> rim(const scene::Geometry& geometry,
+                                                   const glm::dvec3& normal) {
     const auto flat = [&](const glm::dvec3& p) { return p - glm::dot(p, normal) * normal; };
     std::vector<std::pair<glm::dvec3, glm::dvec3>> edges;
     for (const glm::uvec3& t : geometry.triangles) {
@@ -183,15 +184,16 @@ TEST_CASE("panels of a curved skin are closed shells that look outward") {
             {"Hole", 0.001, {rectangle(Outline::From::left, {0, 0.7}, {0.1, 0.74}, 0.02)}});
         cages.skins[0].cuts.push_back(
             {"Window", 0.004, {rectangle(Outline::From::left, {-0.5, 0.925}, {0.33, 1.05}, 0.03)}});
-        cages.nodes = {panel_node(1, 1, 0.002), panel_node(2, kNone, 0.002), panel_node(3, 2, 0.001, 0.005)};
+        cages.nodes = {panel_node(1, 1, 0.002), panel_node(2, scene::kNone, 0.002),
+                       panel_node(3, 2, 0.001, 0.005)};
         const SubdividedScene result = subdivided(cages, count);
         CHECK(result.shown == doctest::Approx(count).epsilon(0.1));
-        for (const Geometry& geometry : result.scene.geometries()) {
+        for (const scene::Geometry& geometry : result.scene.geometries()) {
             CHECK(shapes::open_edges(geometry) == 0);
             CHECK(shapes::volume(geometry) > 0);
         }
         // The strip is there all along: the rest is one piece around both.
-        const Geometry& rest = geometry_at(result.scene, 2);
+        const scene::Geometry& rest = geometry_at(result.scene, 2);
         for (const double z : {-0.45, -0.38, -0.3, -0.21, -0.1, -0.02, 0.05, 0.13, 0.22, 0.28})
             CHECK(std::any_of(rest.triangles.begin(), rest.triangles.end(), [&](const glm::uvec3& t) {
                 const auto between = [&](int axis, double at) {
@@ -215,7 +217,7 @@ TEST_CASE("a panel stands in its node's space") {
     cages.nodes.push_back(hinge);
     cages.nodes[0].part.parent_id = 5;
     const SubdividedScene moved = subdivided(cages, 2000);
-    const Geometry &at_home = geometry_at(plain.scene, 1), &away = geometry_at(moved.scene, 1);
+    const scene::Geometry &at_home = geometry_at(plain.scene, 1), &away = geometry_at(moved.scene, 1);
     CHECK(shapes::volume(away) == doctest::Approx(shapes::volume(at_home)).epsilon(1e-3));
     CHECK(away.bounds.min.y == doctest::Approx(at_home.bounds.min.y - 2));
     CHECK(away.bounds.max.x == doctest::Approx(1 - at_home.bounds.min.x));
@@ -234,21 +236,21 @@ TEST_CASE("a panel of which nothing is left is told of, and one whose node flatt
 TEST_CASE("what a switch hides is not counted, what several nodes use is counted for each") {
     CageScene cages;
     cages.meshes = {shapes::cube(), shapes::cube()};
-    const auto add = [&](Id id, Id parent, NodeType type, int mesh) -> CageNode& {
+    const auto add = [&](scene::Id id, scene::Id parent, scene::NodeType type, int mesh) -> CageNode& {
         CageNode& node = cages.nodes.emplace_back();
         node.part.node.id = id;
         node.part.node.type = type;
         node.part.parent_id = parent;
         node.mesh = mesh;
-        if (type == NodeType::geometry) node.part.node.data = GeometryData{};
-        if (type == NodeType::switch_) node.part.node.data = SwitchData{1};
+        if (type == scene::NodeType::geometry) node.part.node.data = scene::GeometryData{};
+        if (type == scene::NodeType::switch_) node.part.node.data = scene::SwitchData{1};
         return node;
     };
-    add(1, 0, NodeType::switch_, kNone);
-    add(2, 1, NodeType::geometry, 0);
-    add(3, 1, NodeType::geometry, 1);
-    add(4, 1, NodeType::geometry, kNone).geometry_of = 3;
-    add(5, 0, NodeType::geometry, kNone).geometry_of = 3;
+    add(1, 0, scene::NodeType::switch_, scene::kNone);
+    add(2, 1, scene::NodeType::geometry, 0);
+    add(3, 1, scene::NodeType::geometry, 1);
+    add(4, 1, scene::NodeType::geometry, scene::kNone).geometry_of = 3;
+    add(5, 0, scene::NodeType::geometry, scene::kNone).geometry_of = 3;
     const SubdividedScene result = subdivided(cages, 4000);
     CHECK(result.shown == doctest::Approx(4000).epsilon(0.02));
     CHECK(geometry_at(result.scene, 3).triangles.size() == doctest::Approx(2000).epsilon(0.02));
@@ -269,11 +271,11 @@ TEST_CASE("a narrow strip between two panels is not torn, whatever its slant") {
         cages.meshes = {leaning_plane(0)};
         cages.skins.push_back(
             {0, {{"Before", gap, {beside(-width / 2, -9)}}, {"Behind", gap, {beside(width / 2, 9)}}}});
-        cages.nodes = {panel_node(1, 0, 0), panel_node(2, 1, 0), panel_node(3, kNone, 0)};
+        cages.nodes = {panel_node(1, 0, 0), panel_node(2, 1, 0), panel_node(3, scene::kNone, 0)};
         const double area = 1.2 * (width - gap * std::sqrt(1 + slant * slant));
         for (const double count : {8000.0, 13000.0}) {
             CAPTURE(count);
-            const Scene scene = subdivided(cages, count).scene;
+            const scene::Scene scene = subdivided(cages, count).scene;
             CHECK(front_area(geometry_at(scene, 3), {1, 0, 0}) == doctest::Approx(area).epsilon(0.002));
         }
     }

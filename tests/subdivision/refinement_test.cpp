@@ -18,12 +18,12 @@ AdaptiveMesh refined(const Cage& cage, double count) {
     return mesh;
 }
 
-Geometry refined_geometry(const Cage& cage, double count) {
+scene::Geometry refined_geometry(const Cage& cage, double count) {
     return geometry_of(refined(cage, count), !cage.texcoords.empty());
 }
 
 /// Of the triangles' longest edges to their shortest, the median.
-double slenderness(const Geometry& geometry) {
+double slenderness(const scene::Geometry& geometry) {
     std::vector<double> ratios;
     for (const glm::uvec3& t : geometry.triangles) {
         std::array<double, 3> lengths{};
@@ -38,7 +38,7 @@ double slenderness(const Geometry& geometry) {
 }
 
 /// How far the middles of triangles' edges are off the cylinder of radius 1, at most.
-double off_cylinder(const Geometry& geometry) {
+double off_cylinder(const scene::Geometry& geometry) {
     double most = 0;
     for (const glm::uvec3& t : geometry.triangles)
         for (int k = 0; k < 3; ++k) {
@@ -66,7 +66,7 @@ TEST_CASE("a smooth cage stays smooth and closed at every level") {
     for (const double count : {12.0, 50.0, 700.0, 20000.0}) {
         const AdaptiveMesh mesh = refined(shapes::cube(), count);
         CHECK(static_cast<double>(mesh.triangles().size()) == doctest::Approx(count).epsilon(0.05));
-        const Geometry geometry = geometry_of(mesh, false);
+        const scene::Geometry geometry = geometry_of(mesh, false);
         CHECK(geometry.positions.size() == mesh.vertices().size());  // no split normals
         CHECK(shapes::open_edges(geometry) == 0);
         CHECK(shapes::volume(geometry) > 0);
@@ -76,13 +76,13 @@ TEST_CASE("a smooth cage stays smooth and closed at every level") {
 }
 
 TEST_CASE("hard edges split normals, rounded ones do not") {
-    const Geometry hard = refined_geometry(shapes::cube(10), 1000);
+    const scene::Geometry hard = refined_geometry(shapes::cube(10), 1000);
     CHECK(hard.triangles.size() == 12);
     CHECK(hard.positions.size() == 24);
     CHECK(shapes::volume(hard) == doctest::Approx(8));
     CHECK(shapes::open_edges(hard) == 0);
     const AdaptiveMesh mesh = refined(shapes::cube(2.5), 3000);
-    const Geometry rounded = geometry_of(mesh, false);
+    const scene::Geometry rounded = geometry_of(mesh, false);
     CHECK(rounded.positions.size() == mesh.vertices().size());
     CHECK(shapes::volume(rounded) > 7.4);
     CHECK(shapes::volume(rounded) < 7.95);
@@ -95,7 +95,7 @@ TEST_CASE("a plane stays plane, its texture coordinates even, and needs no more 
     const glm::dvec3 across = glm::normalize(glm::dvec3(1, 2, 3)), along(2, -1, 0);
     const Cage plane =
         shapes::grid(5, [&](double u, double v) { return u * along + v * glm::cross(across, along); });
-    const Geometry geometry = refined_geometry(plane, 1e5);
+    const scene::Geometry geometry = refined_geometry(plane, 1e5);
     CHECK(geometry.triangles.size() == 50);
     for (std::size_t i = 0; i < geometry.positions.size(); ++i) {
         CHECK(std::abs(glm::dot(geometry.positions[i], across)) < 1e-6);
@@ -108,7 +108,7 @@ TEST_CASE("a plane stays plane, its texture coordinates even, and needs no more 
 TEST_CASE("a cylinder's triangles come closer to its radius the more there are") {
     double before = 1;
     for (const double count : {100.0, 1000.0, 10000.0}) {
-        const Geometry geometry = refined_geometry(shapes::cylinder(), count);
+        const scene::Geometry geometry = refined_geometry(shapes::cylinder(), count);
         const double off = off_cylinder(geometry);
         CHECK(off < before / 3);
         before = off;
@@ -117,7 +117,7 @@ TEST_CASE("a cylinder's triangles come closer to its radius the more there are")
 }
 
 TEST_CASE("triangles are long along a cylinder, and even on a ball") {
-    const Geometry tube = refined_geometry(shapes::cylinder(), 2000);
+    const scene::Geometry tube = refined_geometry(shapes::cylinder(), 2000);
     CHECK(slenderness(tube) > 8);
     CHECK(off_cylinder(tube) < 2e-4);  // halved evenly, it would take four times as many
     std::size_t across = 0;            // of the edges that bend, few lie askew
@@ -138,8 +138,8 @@ TEST_CASE("the coarser of two parts has fewer triangles, and the same asked for 
     CHECK(refinement.count() == doctest::Approx(10000).epsilon(0.01));
     CHECK(refinement.reached() > 0);
     CHECK(fine.triangles().size() > 3 * coarse.triangles().size());
-    const Geometry once = refined_geometry(shapes::cube(), 777),
-                   again = refined_geometry(shapes::cube(), 777);
+    const scene::Geometry once = refined_geometry(shapes::cube(), 777),
+                          again = refined_geometry(shapes::cube(), 777);
     CHECK(once.positions == again.positions);
     CHECK(once.triangles == again.triangles);
 }

@@ -62,7 +62,7 @@ inline Cage cylinder() {
 using Place = std::array<double, 3>;
 
 /// Half-edges without exactly one opposite, by position.
-inline int open_edges(const Geometry& geometry) {
+inline int open_edges(const scene::Geometry& geometry) {
     std::map<std::pair<Place, Place>, int> edges;
     const auto place = [&](unsigned i) {
         const glm::dvec3& p = geometry.positions[i];
@@ -78,7 +78,7 @@ inline int open_edges(const Geometry& geometry) {
     return open;
 }
 
-inline double volume(const Geometry& geometry) {
+inline double volume(const scene::Geometry& geometry) {
     double six = 0;
     for (const glm::uvec3& t : geometry.triangles)
         six +=

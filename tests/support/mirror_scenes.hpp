@@ -6,30 +6,30 @@
 
 namespace vrut::mirror_scenes {
 
-inline const Material kRed = material_of({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20);
+inline const scene::Material kRed = material_of({0.8, 0.2, 0.1}, {0.4, 0.4, 0.4}, 20);
 
 /// Looks the same under any light.
-inline Material paint(const glm::dvec3& color, double alpha = 1) {
-    Material material;
+inline scene::Material paint(const glm::dvec3& color, double alpha = 1) {
+    scene::Material material;
     material.emission = {color, 1};
     material.diffuse = {0, 0, 0, alpha};
     material.two_sided = true;
     return material;
 }
 
-inline Material mirror_of(double reflectivity, const glm::dvec3& color = {0.3, 0.2, 0.1}) {
-    Material material = paint(color);
+inline scene::Material mirror_of(double reflectivity, const glm::dvec3& color = {0.3, 0.2, 0.1}) {
+    scene::Material material = paint(color);
     material.reflectivity = reflectivity;
     return material;
 }
 
-inline Part floor_mirror(Id id, double half = 3) {
+inline Part floor_mirror(scene::Id id, double half = 3) {
     return {id, quad(half), mirror_of(1), turned_by(-90, {1, 0, 0})};
 }
 
-inline FramePlan plan_of(const std::vector<Part>& parts, View view) {
+inline plan::FramePlan plan_of(const std::vector<Part>& parts, plan::View view) {
     view.scene = scene_of(parts);
-    return plan_frame(view);
+    return plan::plan_frame(view);
 }
 
 /// A ball before a hundred mirrors of several sizes, and one that is seen edge-on.

@@ -29,10 +29,10 @@ private:
 };
 
 /// Forty boxes, balls and plates about the origin, in one material; ids from 1.
-inline std::vector<Part> random_parts(Dice& dice, const Material& material) {
+inline std::vector<Part> random_parts(Dice& dice, const scene::Material& material) {
     const std::array geometries{box({1, 0.1, 0.4}), sphere(0.7, 4), quad(1.2)};
     std::vector<Part> parts;
-    for (Id id = 1; id <= 40; ++id)
+    for (scene::Id id = 1; id <= 40; ++id)
         parts.push_back({id, geometries[static_cast<std::size_t>(id) % 3], material, dice.matrix()});
     return parts;
 }

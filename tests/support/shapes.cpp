@@ -9,39 +9,46 @@ namespace vrut {
 
 namespace {
 
-void measure(Geometry& geometry) {
+void measure(scene::Geometry& geometry) {
     geometry.bounds = {};
     for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
 }
 
 }  // namespace
 
-std::shared_ptr<const PlacedScene> scene_of(const std::vector<Part>& given, std::vector<Texture> textures) {
-    SceneParts parts;
+std::shared_ptr<const scene::PlacedScene> scene_of(const std::vector<Part>& given,
+                                                   std::vector<scene::Texture> textures) {
+    scene::SceneParts parts;
     parts.textures = std::move(textures);
     for (const Part& part : given) {
-        const auto index = static_cast<Index>(parts.nodes.size());
+        const auto index = static_cast<scene::Index>(parts.nodes.size());
         parts.materials.push_back(part.material);
         parts.geometries.push_back(part.geometry);
-        parts.nodes.push_back(
-            {Node{part.id, {}, NodeType::geometry, kNone, {}, true, part.matrix, GeometryData{index, index}},
-             0});
+        parts.nodes.push_back({scene::Node{part.id,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           part.matrix,
+                                           scene::GeometryData{index, index}},
+                               0});
     }
-    auto scene = Scene::build(std::move(parts));
+    auto scene = scene::Scene::build(std::move(parts));
     if (!scene) throw std::logic_error(scene.error().message);
-    return std::make_shared<PlacedScene>(place(*std::move(scene)));
+    return std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
-Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular, double shininess) {
-    Material material;
+scene::Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular, double shininess) {
+    scene::Material material;
     material.diffuse = {diffuse, 1};
     material.specular = {specular, 1};
     material.shininess = shininess;
     return material;
 }
 
-Geometry quad(double half, bool normals) {
-    Geometry geometry;
+scene::Geometry quad(double half, bool normals) {
+    scene::Geometry geometry;
     geometry.positions = {{-half, -half, 0}, {half, -half, 0}, {half, half, 0}, {-half, half, 0}};
     geometry.triangles = {{0, 1, 2}, {0, 2, 3}};
     if (normals) geometry.normals.assign(4, glm::vec3(0, 0, 1));
@@ -49,17 +56,17 @@ Geometry quad(double half, bool normals) {
     return geometry;
 }
 
-Geometry box(const glm::dvec3& half) {
-    Geometry geometry;
-    for (const glm::dvec3& corner : corners({-half, half})) geometry.positions.push_back(corner);
+scene::Geometry box(const glm::dvec3& half) {
+    scene::Geometry geometry;
+    for (const glm::dvec3& corner : math::corners({-half, half})) geometry.positions.push_back(corner);
     geometry.triangles = {{1, 3, 7}, {1, 7, 5}, {0, 4, 6}, {0, 6, 2}, {2, 6, 7}, {2, 7, 3},
                           {0, 1, 5}, {0, 5, 4}, {4, 5, 7}, {4, 7, 6}, {0, 2, 3}, {0, 3, 1}};
     measure(geometry);
     return geometry;
 }
 
-Geometry sphere(double radius, int rings, bool normals) {
-    Geometry geometry;
+scene::Geometry sphere(double radius, int rings, bool normals) {
+    scene::Geometry geometry;
     const int columns = 2 * rings;
     for (int ring = 0; ring <= rings; ++ring)
         for (int column = 0; column <= columns; ++column) {
@@ -81,8 +88,9 @@ Geometry sphere(double radius, int rings, bool normals) {
     return geometry;
 }
 
-Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3(double u, double v)>& at) {
-    Geometry geometry;
+scene::Geometry surface(unsigned columns, unsigned rows,
+                        const std::function<glm::dvec3(double u, double v)>& at) {
+    scene::Geometry geometry;
     for (unsigned row = 0; row <= rows; ++row)
         for (unsigned column = 0; column <= columns; ++column) {
             geometry.positions.push_back(at(1.0 * column / columns, 1.0 * row / rows));
@@ -95,19 +103,19 @@ Geometry surface(unsigned columns, unsigned rows, const std::function<glm::dvec3
     return geometry;
 }
 
-Geometry mapped(Geometry geometry, double scale, const glm::dvec3& offset) {
+scene::Geometry mapped(scene::Geometry geometry, double scale, const glm::dvec3& offset) {
     for (glm::dvec3& position : geometry.positions) position = position * scale + offset;
     measure(geometry);
     return geometry;
 }
 
-Geometry welded(Geometry geometry) {
+scene::Geometry welded(scene::Geometry geometry) {
     for (glm::dvec3& position : geometry.positions) position = glm::round(position * 0x1p30) / 0x1p30;
     measure(geometry);
     return geometry;
 }
 
-Geometry turned_inside_out(Geometry geometry) {
+scene::Geometry turned_inside_out(scene::Geometry geometry) {
     for (glm::uvec3& triangle : geometry.triangles) std::swap(triangle.y, triangle.z);
     return geometry;
 }

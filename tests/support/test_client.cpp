@@ -45,9 +45,9 @@ Json header_of(const std::string& jpeg) {
 }  // namespace
 
 server::scenes::LoadedScene scene_of(const std::string& text, const std::string& name) {
-    auto scene = read_vrut_text(text, name);
+    auto scene = io::read_vrut_text(text, name);
     REQUIRE_MESSAGE(scene.has_value(), scene.error());
-    return {name, "", std::make_shared<const PlacedScene>(place(*std::move(scene))), {}};
+    return {name, "", std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene))), {}};
 }
 
 /// Copied from what is made once: byte by byte it would take long under the sanitizers.
@@ -69,10 +69,10 @@ static void fill_with_noise(std::vector<std::uint8_t>& bytes, std::size_t seed) 
 server::engine::FrameRendererFactory FakeRenderer::factory() const {
     return [*this] {
         server::engine::FrameRenderer renderer{"fake", false, 16384, {}};
-        renderer.step = [*this](RenderJob& rendering) {
+        renderer.step = [*this](plan::RenderJob& rendering) {
             if (takes.count() > 0) std::this_thread::sleep_for(takes);
             if (++rendering.samples < rendering.view.samples) return false;
-            Image& image = rendering.image;
+            scene::Image& image = rendering.image;
             image.resize(rendering.view.width, rendering.view.height);
             const double x = std::abs(rendering.view.camera.eye.x);
             std::fill(image.rgba.begin(), image.rgba.end(), static_cast<std::uint8_t>(x * 40));

@@ -9,25 +9,26 @@
 namespace vrut {
 
 /// A small view from `eye` towards `focus`.
-inline View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
-    View view;
+inline plan::View view_from(const glm::dvec3& eye, const glm::dvec3& focus = glm::dvec3(0)) {
+    plan::View view;
     view.camera.eye = eye;
     view.camera.focus = focus;
-    view.camera = with_orthogonal_up(view.camera);
+    view.camera = scene::with_orthogonal_up(view.camera);
     view.width = 96;
     view.height = 64;
     return view;
 }
 
-inline std::shared_ptr<const std::vector<PlacedMarker>> markers_at(const std::vector<glm::dvec3>& points) {
-    std::vector<PlacedMarker> markers;
+inline std::shared_ptr<const std::vector<plan::PlacedMarker>> markers_at(
+    const std::vector<glm::dvec3>& points) {
+    std::vector<plan::PlacedMarker> markers;
     for (const glm::dvec3& point : points) markers.push_back({point});
-    return std::make_shared<const std::vector<PlacedMarker>>(std::move(markers));
+    return std::make_shared<const std::vector<plan::PlacedMarker>>(std::move(markers));
 }
 
 /// Straight on to the plane z = 0, before white; a unit is a pixel.
-inline View pixel_view(int width, int height) {
-    View view;
+inline plan::View pixel_view(int width, int height) {
+    plan::View view;
     view.camera.fov = 90;
     view.camera.eye = {0, 0, height / 2.0};
     view.camera.focus = {0, 0, 0};
@@ -38,9 +39,10 @@ inline View pixel_view(int width, int height) {
 }
 
 /// In that plane, in pixels from the picture's top left.
-inline Geometry rectangle(double left, double top, double right, double bottom, const View& view) {
+inline scene::Geometry rectangle(double left, double top, double right, double bottom,
+                                 const plan::View& view) {
     const double w = view.width / 2.0, h = view.height / 2.0;
-    Geometry geometry;
+    scene::Geometry geometry;
     geometry.positions = {{left - w, h - bottom, 0},
                           {right - w, h - bottom, 0},
                           {right - w, h - top, 0},

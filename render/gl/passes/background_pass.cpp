@@ -6,7 +6,7 @@
 #include "gl/passes/drawing.hpp"
 #include "gl/passes/texture_filter.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -54,8 +54,8 @@ GlProgram make(std::string_view shader) {
 
 }  // namespace
 
-void BackgroundPass::draw(const CameraMatrices& camera, const View& view, GpuScene& scene,
-                          FrameStats& stats) {
+void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, GpuScene& scene,
+                          plan::FrameStats& stats) {
     if (!empty_vertex_array_) {
         empty_vertex_array_ = make_vertex_array();
         clamped_ = make_clamping_sampler();
@@ -90,4 +90,4 @@ void BackgroundPass::draw(const CameraMatrices& camera, const View& view, GpuSce
     ++stats.passes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -2,17 +2,17 @@
 
 #include "gl/passes/surface_programs.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// A picture or a panorama behind everything; a plain colour needs no pass.
 class BackgroundPass {
 public:
-    static bool is_needed(const View& view) {
-        return view.scene && (view.background.cube_map || view.background.texture != kNone);
+    static bool is_needed(const plan::View& view) {
+        return view.scene && (view.background.cube_map || view.background.texture != scene::kNone);
     }
     /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. A picture is stretched
     /// over the view; of a panorama each pixel shows what lies in the direction of its ray.
-    void draw(const CameraMatrices& camera, const View& view, GpuScene& scene, FrameStats& stats);
+    void draw(const CameraMatrices& camera, const plan::View& view, GpuScene& scene, plan::FrameStats& stats);
 
 private:
     GlProgram image_program_, environment_program_;
@@ -20,4 +20,4 @@ private:
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

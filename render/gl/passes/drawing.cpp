@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace vrut {
+namespace vrut::gl {
 
 void set_up_drawing() {
     glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -18,8 +18,8 @@ void set_up_drawing() {
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void set_cull_mode(const DrawItem& item, bool front_only) {
-    if (item.cull_mode == CullMode::none && !front_only)
+void set_cull_mode(const plan::DrawItem& item, bool front_only) {
+    if (item.cull_mode == plan::CullMode::none && !front_only)
         glDisable(GL_CULL_FACE);
     else
         glEnable(GL_CULL_FACE);
@@ -27,13 +27,13 @@ void set_cull_mode(const DrawItem& item, bool front_only) {
     glFrontFace(item.mirrored ? GL_CW : GL_CCW);
 }
 
-void scissor(const PixelBox& box) {
+void scissor(const plan::PixelBox& box) {
     glScissor(box.low.x, box.low.y, std::max(box.size().x, 0), std::max(box.size().y, 0));
 }
 
 namespace {
 
-void draw_indices(const GlVertexArray& vertex_array, GLsizei count, FrameStats& stats) {
+void draw_indices(const GlVertexArray& vertex_array, GLsizei count, plan::FrameStats& stats) {
     glBindVertexArray(vertex_array.get());
     glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
     ++stats.draws;
@@ -42,12 +42,12 @@ void draw_indices(const GlVertexArray& vertex_array, GLsizei count, FrameStats& 
 
 }  // namespace
 
-void draw_triangles(const GpuGeometry& geometry, FrameStats& stats) {
+void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats) {
     draw_indices(geometry.vertex_array, geometry.index_count, stats);
 }
 
-void draw_triangles(const GpuTriangles& triangles, FrameStats& stats) {
+void draw_triangles(const GpuTriangles& triangles, plan::FrameStats& stats) {
     draw_indices(triangles.vertex_array, triangles.index_count, stats);
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

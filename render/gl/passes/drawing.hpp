@@ -6,7 +6,7 @@
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// One triangle that holds the whole picture; its corners need no attributes.
 inline constexpr std::string_view kScreenShader = R"(#version 450 core
@@ -17,13 +17,13 @@ void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3
 void set_up_drawing();
 
 /// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
-void set_cull_mode(const DrawItem& item, bool front_only = false);
+void set_cull_mode(const plan::DrawItem& item, bool front_only = false);
 
 /// Nothing outside the box is drawn or cleared, while GL_SCISSOR_TEST is enabled.
-void scissor(const PixelBox& box);
+void scissor(const plan::PixelBox& box);
 
 /// With the current program; adds to the draws and triangles of `stats`.
-void draw_triangles(const GpuGeometry& geometry, FrameStats& stats);
-void draw_triangles(const GpuTriangles& triangles, FrameStats& stats);
+void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats);
+void draw_triangles(const GpuTriangles& triangles, plan::FrameStats& stats);
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -2,11 +2,11 @@
 
 #include "scene/colors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
-void draw_lines(const GpuEdges& edges, FrameStats& stats) {
+void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
     if (edges.index_count == 0) return;  // triangles that are points
     glBindVertexArray(edges.vertex_array.get());
     glDrawElements(GL_LINES, edges.index_count, GL_UNSIGNED_INT, nullptr);
@@ -16,15 +16,15 @@ void draw_lines(const GpuEdges& edges, FrameStats& stats) {
 
 }  // namespace
 
-void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
-                    const glm::dmat4& clip_from_view, SurfacePrograms& programs, FrameStats& stats) {
+void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+                    const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
-    const bool stylized = mode == DrawMode::stylized;
+    const bool stylized = mode == plan::DrawMode::stylized;
     glDepthMask(!stylized);  // of one colour, none hides another
-    if (stylized) solid_color_.use(kStylizedEdges, clip_from_view);
-    for (const DrawItem& item : items) {
+    if (stylized) solid_color_.use(scene::kStylizedEdges, clip_from_view);
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
         if (stylized)
             set_transform(item, geometry);
@@ -36,15 +36,15 @@ void EdgePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode m
     glDepthMask(GL_TRUE);
 }
 
-void EdgePass::draw_overlay(std::span<const DrawItem> items, GpuScene& scene, const glm::dvec3& color,
-                            const glm::dmat4& clip_from_view, FrameStats& stats) {
+void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dvec3& color,
+                            const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
     solid_color_.use(color, clip_from_view);
-    for (const DrawItem& item : items) {
+    for (const plan::DrawItem& item : items) {
         set_transform(item, scene.geometry(item.geometry));
         draw_lines(scene.edges(item.geometry), stats);
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -4,7 +4,7 @@
 
 #include "gl/passes/drawing.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -27,29 +27,29 @@ struct Target {
 
 }  // namespace
 
-std::vector<Index> IdPass::draw(std::span<const DrawItem> items, GpuScene& scene, int width, int height,
-                                const glm::dmat4& clip_from_view) {
+std::vector<scene::Index> IdPass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, int width,
+                                       int height, const glm::dmat4& clip_from_view) {
     const Target target(width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
     glViewport(0, 0, width, height);
-    glClearBufferiv(GL_COLOR, 0, &kNone);
+    glClearBufferiv(GL_COLOR, 0, &scene::kNone);
     glClear(GL_DEPTH_BUFFER_BIT);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
     program_.use(clip_from_view);
-    FrameStats stats;
-    for (const DrawItem& item : items) {
+    plan::FrameStats stats;
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
         program_.set_node(item.node);
         set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
-    std::vector<Index> nodes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    std::vector<scene::Index> nodes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_INT, nodes.data());
     return nodes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

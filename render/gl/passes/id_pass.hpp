@@ -5,18 +5,18 @@
 
 #include "gl/passes/surface_programs.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// Which node each pixel shows, for a judge of pictures: all surfaces as if they were opaque.
 class IdPass {
 public:
     /// What is drawn at the centres of width × height pixels, as indices of nodes, kNone for nothing; rows
     /// from the bottom up. `items` are by rising id.
-    std::vector<Index> draw(std::span<const DrawItem> items, GpuScene& scene, int width, int height,
-                            const glm::dmat4& clip_from_view);
+    std::vector<scene::Index> draw(std::span<const plan::DrawItem> items, GpuScene& scene, int width,
+                                   int height, const glm::dmat4& clip_from_view);
 
 private:
     NodeIdProgram program_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

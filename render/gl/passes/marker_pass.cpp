@@ -7,7 +7,7 @@
 #include "plan/frame_plan.hpp"
 #include "scene/colors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -86,7 +86,7 @@ void main() {
 }  // namespace
 
 void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
-                      const Framebuffer& target, FrameStats& stats) {
+                      const Framebuffer& target, plan::FrameStats& stats) {
     if (!program_) {
         program_ = make_program(kVertexShader, kFragmentShader);
         empty_vertex_array_ = make_vertex_array();
@@ -105,9 +105,9 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
     glBindVertexArray(empty_vertex_array_.get());
     const glm::mat4 clip(clip_from_view);
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
-    glUniform1f(radius_at, static_cast<float>(marker_radius(target.height())));
+    glUniform1f(radius_at, static_cast<float>(plan::marker_radius(target.height())));
     glUniform1i(judged_at, fade == MarkerFade::by_depth);
-    const glm::vec3 color(kMarkerColor);
+    const glm::vec3 color(scene::kMarkerColor);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     for (std::size_t first = 0; first < points.size(); first += kBatch) {
         const std::size_t count = std::min(points.size() - first, kBatch);
@@ -124,4 +124,4 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
     ++stats.passes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

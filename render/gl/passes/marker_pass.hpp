@@ -6,7 +6,7 @@
 #include "gl/shader_program.hpp"
 #include "plan/view.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// Round signs of constant size in pixels over the picture, each around its point: full where the point is
 /// seen, and the fainter the more of its surroundings is hidden.
@@ -18,7 +18,7 @@ public:
     /// `points` in view space, all before the eye, are drawn in that order into `target`, whose depth is the
     /// scene's; it is bound afterwards. Adds its draws to `stats`.
     void draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
-              const Framebuffer& target, FrameStats& stats);
+              const Framebuffer& target, plan::FrameStats& stats);
 
 private:
     GlProgram program_;
@@ -26,4 +26,4 @@ private:
     GlVertexArray empty_vertex_array_;  ///< a sign's corners need no attributes
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -2,10 +2,10 @@
 
 #include "gl/passes/drawing.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
-std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene& scene,
-                                   const glm::dmat4& clip_from_view, FrameStats& stats) {
+std::vector<bool> MirrorPass::seen(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
+                                   const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
     solid_color_.use(glm::dvec3(0), clip_from_view);
     glEnable(GL_DEPTH_TEST);
@@ -32,8 +32,8 @@ std::vector<bool> MirrorPass::seen(std::span<const MirrorItem> mirrors, GpuScene
     return result;
 }
 
-void MirrorPass::open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
-                      const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats) {
+void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
+                      const glm::dvec3& background, const Framebuffer& picture, plan::FrameStats& stats) {
     if (!target_ || target_->width() != picture.width() || target_->height() != picture.height() ||
         target_->rgba16() != picture.rgba16()) {
         target_.reset();
@@ -56,14 +56,14 @@ void MirrorPass::open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat
     glDepthRange(0, 1);
 }
 
-void MirrorPass::bind(const MirrorItem& mirror) const {
+void MirrorPass::bind(const plan::MirrorItem& mirror) const {
     target_->bind();
     glEnable(GL_SCISSOR_TEST);
     scissor(mirror.box);
 }
 
-void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
-                       SurfacePrograms& programs, FrameStats& stats) {
+void MirrorPass::close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+                       SurfacePrograms& programs, plan::FrameStats& stats) {
     picture.bind();
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
@@ -80,4 +80,4 @@ void MirrorPass::close(const MirrorItem& mirror, GpuScene& scene, const Framebuf
     ++stats.passes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -7,7 +7,7 @@
 #include "gl/framebuffer.hpp"
 #include "gl/passes/surface_programs.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// Flat mirrors. What is seen in one is drawn from the same eye with the scene reflected about its plane,
 /// into a target like the picture's own, where it keeps its pixels; the surface then takes each pixel from
@@ -16,17 +16,17 @@ class MirrorPass {
 public:
     /// Which mirrors are seen from `clip_from_view` in the current target, behind nothing that has been drawn
     /// there.
-    std::vector<bool> seen(std::span<const MirrorItem> mirrors, GpuScene& scene,
-                           const glm::dmat4& clip_from_view, FrameStats& stats);
+    std::vector<bool> seen(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
+                           const glm::dmat4& clip_from_view, plan::FrameStats& stats);
     /// Makes the target that a mirror's reflection is drawn into the current one, empty before `background`
     /// and open only at the pixels that the mirror can be seen at.
-    void open(const MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
-              const glm::dvec3& background, const Framebuffer& picture, FrameStats& stats);
+    void open(const plan::MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
+              const glm::dvec3& background, const Framebuffer& picture, plan::FrameStats& stats);
     /// Makes that target the current one again.
-    void bind(const MirrorItem& mirror) const;
+    void bind(const plan::MirrorItem& mirror) const;
     /// Draws the surface, with what was drawn since, into `picture`, which is bound afterwards.
-    void close(const MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
-               SurfacePrograms& programs, FrameStats& stats);
+    void close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+               SurfacePrograms& programs, plan::FrameStats& stats);
     /// Gives back what the driver holds for mirrors.
     void release() {
         target_.reset();
@@ -39,4 +39,4 @@ private:
     std::vector<GlQuery> queries_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

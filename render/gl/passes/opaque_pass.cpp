@@ -3,11 +3,11 @@
 #include "gl/passes/drawing.hpp"
 #include "scene/colors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
-void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode mode,
-                      SurfacePrograms& programs, FrameStats& stats) {
-    const bool stylized = mode == DrawMode::stylized;
+void OpaquePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+                      SurfacePrograms& programs, plan::FrameStats& stats) {
+    const bool stylized = mode == plan::DrawMode::stylized;
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
@@ -16,24 +16,24 @@ void OpaquePass::draw(std::span<const DrawItem> items, GpuScene& scene, DrawMode
         glEnable(GL_POLYGON_OFFSET_FILL);
         glPolygonOffset(-1, -16);
     }
-    for (const DrawItem& item : items) {
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::faces, item, geometry,
-                     stylized ? stylized_faces() : scene.scene()->material(item.material));
+                     stylized ? scene::stylized_faces() : scene.scene()->material(item.material));
         set_cull_mode(item);
         draw_triangles(geometry, stats);
     }
     glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-void OpaquePass::reset_depth(std::span<const DrawItem> items, GpuScene& scene,
-                             const glm::dmat4& clip_from_view, FrameStats& stats) {
+void OpaquePass::reset_depth(std::span<const plan::DrawItem> items, GpuScene& scene,
+                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     solid_color_.use(glm::dvec3(0), clip_from_view);
-    for (const DrawItem& item : items) {
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
         set_cull_mode(item);
@@ -43,4 +43,4 @@ void OpaquePass::reset_depth(std::span<const DrawItem> items, GpuScene& scene,
     glDepthRange(0, 1);
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

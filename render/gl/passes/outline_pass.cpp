@@ -6,7 +6,7 @@
 
 #include "scene/colors.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -64,17 +64,17 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
-void use(const GlProgram& program, int width, const PixelBox& box, const GlTexture& texture) {
+void use(const GlProgram& program, int width, const plan::PixelBox& box, const GlTexture& texture) {
     glUseProgram(program.get());
     glUniform1i(width_at, width);
     glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
     glBindTextureUnit(0, texture.get());
 }
 
-PixelBox box_of(const DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
-                const glm::ivec2& picture) {
-    const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-    return pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+plan::PixelBox box_of(const plan::DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
+                      const glm::ivec2& picture) {
+    const math::Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+    return plan::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
 }
 
 }  // namespace
@@ -100,14 +100,14 @@ void OutlinePass::prepare(const Framebuffer& target) {
     empty_vertex_array_ = make_vertex_array();
 }
 
-void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
                         const glm::dmat4& clip_from_view, const Framebuffer& target) {
     prepare(target);
     const glm::ivec2 picture{target.width(), target.height()};
     const int width = outline_width(target.height());
     box_ = {picture, {0, 0}};
-    for (const DrawItem& item : items) {
-        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+    for (const plan::DrawItem& item : items) {
+        const plan::PixelBox box = box_of(item, scene, clip_from_view, picture);
         box_ = {glm::min(box_.low, box.low - width), glm::max(box_.high, box.high + width)};
     }
     box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
@@ -118,8 +118,8 @@ void OutlinePass::begin(std::span<const DrawItem> items, const GpuScene& scene,
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-void OutlinePass::draw_mask(std::span<const DrawItem> items, GpuScene& scene,
-                            const glm::dmat4& clip_from_view, FrameStats& stats) {
+void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& scene,
+                            const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     const glm::ivec2 picture{mask_->width, mask_->height};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     glDisable(GL_DEPTH_TEST);
@@ -129,12 +129,12 @@ void OutlinePass::draw_mask(std::span<const DrawItem> items, GpuScene& scene,
     scissor(box_);
     glClearColor(1, 1, 1, 1);
     solid_color_.use(glm::dvec3(1), clip_from_view);
-    for (const DrawItem& item : items) {
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
-        const PixelBox box = box_of(item, scene, clip_from_view, picture);
+        const plan::PixelBox box = box_of(item, scene, clip_from_view, picture);
         if (box.size().x > 2 || box.size().y > 2) continue;
         scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);
@@ -142,7 +142,7 @@ void OutlinePass::draw_mask(std::span<const DrawItem> items, GpuScene& scene,
     }
 }
 
-void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
+void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     const int width = outline_width(target.height());
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
@@ -155,7 +155,7 @@ void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.bind();
     use(outline_program_, width, box_, mask_->across);
-    const glm::vec3 color(kSelection);
+    const glm::vec3 color(scene::kSelection);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindTextureUnit(0, 0);
@@ -164,4 +164,4 @@ void OutlinePass::draw(const Framebuffer& target, FrameStats& stats) {
     ++stats.passes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

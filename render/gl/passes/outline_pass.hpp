@@ -7,7 +7,7 @@
 #include "gl/passes/drawing.hpp"
 #include "gl/passes/surface_programs.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// An outline around all that some nodes cover, of constant width in pixels, over everything. What they
 /// cover, seen or hidden, is drawn as a mask; then each pixel outside that has some of it within the width is
@@ -16,13 +16,13 @@ namespace vrut {
 class OutlinePass {
 public:
     /// Begins an outline around items in a picture like `target`: each is to be covered before it is drawn.
-    void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
+    void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const Framebuffer& target);
     /// Draws items into the mask, which is bound afterwards; adds to the draws and triangles of `stats`.
-    void draw_mask(std::span<const DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
-                   FrameStats& stats);
+    void draw_mask(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
+                   plan::FrameStats& stats);
     /// Draws the outline into `target`, which is bound afterwards.
-    void draw(const Framebuffer& target, FrameStats& stats);
+    void draw(const Framebuffer& target, plan::FrameStats& stats);
 
 private:
     void prepare(const Framebuffer& target);
@@ -34,7 +34,7 @@ private:
         GlFramebuffer covered_target, across_target;
     };
     std::optional<Mask> mask_;
-    PixelBox box_;  ///< the outline, and all that it surrounds
+    plan::PixelBox box_;  ///< the outline, and all that it surrounds
     SolidColorProgram solid_color_;
     GlProgram distance_program_, outline_program_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
@@ -43,4 +43,4 @@ private:
 /// Width of an outline in a picture of that height: 2 pixels at 1 megapixel (1152 x 864).
 int outline_width(int picture_height);
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -58,11 +58,11 @@ void main() {
 
 /// Into so many parts of about the same size, one above the other, or beside it if the box is wider than
 /// high; fewer where there are not so many pixels.
-void split(const PixelBox& box, std::uint64_t parts, std::vector<PixelBox>& into) {
+void split(const plan::PixelBox& box, std::uint64_t parts, std::vector<plan::PixelBox>& into) {
     const int along = box.size().x > box.size().y ? 0 : 1, length = box.size()[along];
     const int count = static_cast<int>(std::min(parts, static_cast<std::uint64_t>(length)));
     for (int i = 0; i < count; ++i) {
-        PixelBox& part = into.emplace_back(box);
+        plan::PixelBox& part = into.emplace_back(box);
         part.low[along] = box.low[along] + length * i / count;
         part.high[along] = box.low[along] + length * (i + 1) / count;
     }
@@ -90,16 +90,17 @@ void PerPixelListsPass::release() {
     pixels_ = 0;
 }
 
-void PerPixelListsPass::begin(std::span<const DrawItem> items, const GpuScene& scene,
+void PerPixelListsPass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
                               const glm::dmat4& clip_from_view, const glm::ivec2& picture,
-                              const PixelBox& within) {
-    PixelBox all{picture, {0, 0}};
-    for (const DrawItem& item : items) {
-        const Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-        const PixelBox box = pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+                              const plan::PixelBox& within) {
+    plan::PixelBox all{picture, {0, 0}};
+    for (const plan::DrawItem& item : items) {
+        const math::Bounds& bounds =
+            scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
+        const plan::PixelBox box = plan::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
-    all = intersection(all, within);
+    all = plan::intersection(all, within);
     if (all.empty()) return;
     prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
     pending_boxes_.push_back(all);
@@ -123,14 +124,14 @@ void PerPixelListsPass::clear_lists() const {
                               GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
 }
 
-void PerPixelListsPass::collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
-                                SurfacePrograms& programs, FrameStats& stats) {
+void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size_t first, GpuScene& scene,
+                                SurfacePrograms& programs, plan::FrameStats& stats) {
     bind();
     if (first == 0) clear_lists();
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const DrawItem& item = items[i];
+        const plan::DrawItem& item = items[i];
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::per_pixel_glass, item, geometry,
                      scene.scene()->material(item.material));
@@ -143,10 +144,10 @@ void PerPixelListsPass::collect(std::span<const DrawItem> items, std::size_t fir
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
-std::uint64_t PerPixelListsPass::composite(FrameStats& stats) {
+std::uint64_t PerPixelListsPass::composite(plan::FrameStats& stats) {
     GLuint fragment_count = 0;
     glGetNamedBufferSubData(fragments_.get(), 0, sizeof fragment_count, &fragment_count);
-    const PixelBox box = pending_boxes_.back();
+    const plan::PixelBox box = pending_boxes_.back();
     pending_boxes_.pop_back();
     if (const std::size_t most = max_fragments(pixels_);
         fragment_count <= most || box.size() == glm::ivec2(1))
@@ -156,7 +157,7 @@ std::uint64_t PerPixelListsPass::composite(FrameStats& stats) {
     return fragment_count;
 }
 
-void PerPixelListsPass::blend(FrameStats& stats) {
+void PerPixelListsPass::blend(plan::FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glDisable(GL_CLIP_DISTANCE0);
@@ -172,4 +173,4 @@ void PerPixelListsPass::blend(FrameStats& stats) {
     ++stats.passes;
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

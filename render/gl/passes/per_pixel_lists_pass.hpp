@@ -9,7 +9,7 @@
 #include "gl/passes/drawing.hpp"
 #include "gl/passes/surface_programs.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// Faces of transparent materials whose order changes from pixel to pixel. Those that the depth lets through
 /// are kept in a list for each pixel, which is then composited from near to far; at equal depth the item that
@@ -20,18 +20,18 @@ class PerPixelListsPass {
 public:
     /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
     /// composited, again and again while it is drawing.
-    void begin(std::span<const DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
-               const glm::ivec2& picture, const PixelBox& within);
+    void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
+               const glm::ivec2& picture, const plan::PixelBox& within);
     bool is_drawing() const { return !pending_boxes_.empty(); }
     /// The part of the picture for which items are collected.
-    const PixelBox& box() const { return pending_boxes_.back(); }
+    const plan::PixelBox& box() const { return pending_boxes_.back(); }
     /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
     /// `stats`.
-    void collect(std::span<const DrawItem> items, std::size_t first, GpuScene& scene,
-                 SurfacePrograms& programs, FrameStats& stats);
+    void collect(std::span<const plan::DrawItem> items, std::size_t first, GpuScene& scene,
+                 SurfacePrograms& programs, plan::FrameStats& stats);
     /// Draws all that was collected into the bound target, or divides the box where it does not fit; how many
     /// layers there are.
-    std::uint64_t composite(FrameStats& stats);
+    std::uint64_t composite(plan::FrameStats& stats);
     /// Gives up what it is drawing.
     void abandon() { pending_boxes_.clear(); }
     /// Gives its memory back until it draws again.
@@ -47,13 +47,13 @@ private:
     void prepare(std::size_t pixels);
     void bind() const;
     void clear_lists() const;
-    void blend(FrameStats& stats);
+    void blend(plan::FrameStats& stats);
 
-    std::vector<PixelBox> pending_boxes_;  // the last one first
+    std::vector<plan::PixelBox> pending_boxes_;  // the last one first
     std::size_t pixels_ = 0;
     GlBuffer fragments_, heads_;
     GlProgram composite_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
-}  // namespace vrut
+}  // namespace vrut::gl

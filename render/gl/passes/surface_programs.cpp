@@ -6,7 +6,7 @@
 
 #include "gl/passes/texture_filter.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 namespace {
 
@@ -260,12 +260,12 @@ void set(GLint location, const glm::vec3& value) { glUniform3fv(location, 1, glm
 
 /// 1 - cos, exact near 0.
 double short_of_one(double degrees) {
-    const double sine = std::sin(degrees * kRadiansPerDegree / 2);
+    const double sine = std::sin(degrees * scene::kRadiansPerDegree / 2);
     return 2 * sine * sine;
 }
 
-ViewUniforms view_uniforms_of(const CameraMatrices& camera, const View& view) {
-    const Light& light = view.light;
+ViewUniforms view_uniforms_of(const CameraMatrices& camera, const plan::View& view) {
+    const scene::Light& light = view.light;
     ViewUniforms uniforms{};
     uniforms.clip_from_view = glm::mat4(camera.clip_from_view);
     uniforms.world_from_view = glm::mat3x4(glm::mat3(glm::transpose(glm::dmat3(camera.view_from_world))));
@@ -276,7 +276,7 @@ ViewUniforms view_uniforms_of(const CameraMatrices& camera, const View& view) {
                         glm::dvec4(light.headlight ? view.camera.eye : light.position, 1));
     // The shader squares it; from so far its light is parallel.
     const double distance = glm::length(position);
-    if (distance > kMaxDrawDistance) position *= kMaxDrawDistance / distance;
+    if (distance > scene::kMaxDrawDistance) position *= scene::kMaxDrawDistance / distance;
     uniforms.light_position = glm::vec4(glm::vec3(position), 1);
     uniforms.light_direction = glm::vec4(glm::vec3(glm::dmat3(camera.view_from_world) * light.direction), 0);
     uniforms.cone = {static_cast<float>(short_of_one(0.45 * light.angle)),
@@ -300,7 +300,7 @@ void set_clip(const glm::dmat4& clip_from_view) {
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
-void set_clip_plane(const DrawItem& item, const GpuGeometry& geometry) {
+void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
     if (!item.clip_plane) {
         glDisable(GL_CLIP_DISTANCE0);
         return;
@@ -331,16 +331,16 @@ layout(std430, binding = 1) buffer Lists {
 int head_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
 )";
 
-SurfacePrograms::LightKind SurfacePrograms::kind_of(const Light& light, const CameraMatrices& camera) {
+SurfacePrograms::LightKind SurfacePrograms::kind_of(const scene::Light& light, const CameraMatrices& camera) {
     // It stays at the true eye, which in a mirror is not the one that sees.
     const bool reflected = glm::determinant(glm::dmat3(camera.view_from_world)) < 0;
     if (light.headlight) return reflected ? LightKind::point : LightKind::headlight;
     switch (light.type) {
-        case LightData::Type::directional:
+        case scene::LightData::Type::directional:
             return LightKind::directional;
-        case LightData::Type::spot:
+        case scene::LightData::Type::spot:
             return LightKind::spot;
-        case LightData::Type::point:
+        case scene::LightData::Type::point:
             break;
     }
     return LightKind::point;
@@ -361,7 +361,7 @@ GlProgram SurfacePrograms::make(const ProgramKey& key) {
     define(layered, "LAYERED");
     define(key.kind == SurfaceKind::mirror, "MIRROR");
     define(key.clipped, "CLIPPED");
-    const bool at_vertex = key.lit_at == Methods::Lighting::vertex;
+    const bool at_vertex = key.lit_at == plan::Methods::Lighting::vertex;
     define(at_vertex, "LIT_AT_VERTEX");
     define(!at_vertex || key.environment, "NEEDS_NORMAL");
     head += kViewUniformsBlock;
@@ -372,7 +372,7 @@ GlProgram SurfacePrograms::make(const ProgramKey& key) {
                         head + (at_vertex ? none : phong) + needed + std::string(kFragmentShader));
 }
 
-void SurfacePrograms::begin(const CameraMatrices& camera, const View& view, GpuScene* scene) {
+void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene) {
     scene_ = scene;
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, camera);
@@ -383,10 +383,10 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const View& view, GpuS
     glBindBufferBase(GL_UNIFORM_BUFFER, kViewUniformsBinding, view_uniforms_.get());
 }
 
-void SurfacePrograms::use(SurfaceKind kind, const DrawItem& item, const GpuGeometry& geometry,
-                          const Material& material) {
-    const ProgramKey key{kind,   light_, item.texture != kNone, item.environment, item.clip_plane.has_value(),
-                         lit_at_};
+void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
+                          const scene::Material& material) {
+    const ProgramKey key{
+        kind, light_, item.texture != scene::kNone, item.environment, item.clip_plane.has_value(), lit_at_};
     GlProgram& program = programs_[key];
     if (!program) program = make(key);
     glUseProgram(program.get());
@@ -402,7 +402,7 @@ void SurfacePrograms::use(SurfaceKind kind, const DrawItem& item, const GpuGeome
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
-    glUniform1i(two_sided_at, item.cull_mode != CullMode::back || kind == SurfaceKind::edges);
+    glUniform1i(two_sided_at, item.cull_mode != plan::CullMode::back || kind == SurfaceKind::edges);
     if (kind == SurfaceKind::glass || kind == SurfaceKind::per_pixel_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
     if (kind == SurfaceKind::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
@@ -422,15 +422,15 @@ void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
     set_clip(clip_from_view);
 }
 
-void NodeIdProgram::set_node(Index number) { glUniform1i(node_at, number); }
+void NodeIdProgram::set_node(scene::Index number) { glUniform1i(node_at, number); }
 
 void set_draw_order(GLuint order) { glUniform1ui(order_at, order); }
 
-void set_transform(const DrawItem& item, const GpuGeometry& geometry) {
+void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
     glm::dmat4 view_from_local = item.view_from_node;
     view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin, 1);
     const glm::mat4 view(view_from_local);
     glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

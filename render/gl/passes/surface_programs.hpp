@@ -9,7 +9,7 @@
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
 /// From where a target's contents are seen. In a mirror the view from the world is a reflected one.
 struct CameraMatrices {
@@ -32,9 +32,10 @@ public:
     static constexpr GLuint kReflectionUnit = 2;
 
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
-    void begin(const CameraMatrices& camera, const View& view, GpuScene* scene);
+    void begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene);
     /// Makes the program for this item the current one and gives it all that it needs.
-    void use(SurfaceKind kind, const DrawItem& item, const GpuGeometry& geometry, const Material& material);
+    void use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
+             const scene::Material& material);
 
 private:
     enum class LightKind { headlight, point, directional, spot };
@@ -44,7 +45,7 @@ private:
         bool textured = false;
         bool environment = false;
         bool clipped = false;
-        Methods::Lighting lit_at = Methods::Lighting::pixel;
+        plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
 
         bool operator<(const ProgramKey& other) const {
             const auto key = [](const ProgramKey& v) {
@@ -53,15 +54,15 @@ private:
             return key(*this) < key(other);
         }
     };
-    static LightKind kind_of(const Light& light, const CameraMatrices& camera);
+    static LightKind kind_of(const scene::Light& light, const CameraMatrices& camera);
     static GlProgram make(const ProgramKey& key);
 
     LightKind light_ = LightKind::headlight;
-    Methods::Lighting lit_at_ = Methods::Lighting::pixel;
+    plan::Methods::Lighting lit_at_ = plan::Methods::Lighting::pixel;
     std::map<ProgramKey, GlProgram> programs_;
     GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
-    std::optional<std::array<Index, 6>> cube_map_;
+    std::optional<std::array<scene::Index, 6>> cube_map_;
 };
 
 /// One colour everywhere.
@@ -78,7 +79,7 @@ class NodeIdProgram {
 public:
     void use(const glm::dmat4& clip_from_view);
     /// Of what is drawn from here on.
-    void set_node(Index number);
+    void set_node(scene::Index number);
 
 private:
     GlProgram program_;
@@ -93,6 +94,6 @@ inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
 void set_draw_order(GLuint order);
 
 /// Where the next draw of the current program lies.
-void set_transform(const DrawItem& item, const GpuGeometry& geometry);
+void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry);
 
-}  // namespace vrut
+}  // namespace vrut::gl

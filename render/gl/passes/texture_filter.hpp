@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace vrut {
+namespace vrut::gl {
 
 /// For fragment shaders: textures of upload_texture() and upload_cube_map(). Bilinear where a pixel is
 /// smaller than a texel, else trilinear at the level log2 of the pixel's longer side in texels. Drivers
@@ -39,4 +39,4 @@ vec3 sample_environment(samplerCube environment_map, vec3 direction, vec3 across
 }
 )";
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -2,15 +2,15 @@
 
 #include "gl/passes/drawing.hpp"
 
-namespace vrut {
+namespace vrut::gl {
 
-void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
-                           FrameStats& stats) {
+void TransparentPass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
+                           plan::FrameStats& stats) {
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const DrawItem& item : items) {
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::glass, item, geometry,
                      scene.scene()->material(item.material));
@@ -25,4 +25,4 @@ void TransparentPass::draw(std::span<const DrawItem> items, GpuScene& scene, Sur
     glDepthMask(GL_TRUE);
 }
 
-}  // namespace vrut
+}  // namespace vrut::gl

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -36,4 +36,4 @@ double metres_per_unit(const aiScene& scene, AssimpFormat format) {
     return std::isfinite(centimetres) && centimetres > 0 ? double{centimetres} / 100 : 1;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

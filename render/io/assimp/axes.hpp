@@ -7,7 +7,7 @@
 #include "io/assimp/format.hpp"
 #include "io/conversion_warnings.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Turns the file's axes so that y is up, where it says that another is and assimp 5.2 leaves them as they
 /// are.
@@ -16,4 +16,4 @@ glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Conversi
 /// Metres per unit, where the file tells and assimp 5.2 has not scaled by it; else 1.
 double metres_per_unit(const aiScene& scene, AssimpFormat format);
 
-}  // namespace vrut
+}  // namespace vrut::io

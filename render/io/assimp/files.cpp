@@ -8,7 +8,7 @@
 #include "base/file_bytes.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -78,16 +78,16 @@ std::string without_percent_codes(std::string_view uri) {
 }  // namespace
 
 std::string file_name_of_uri(const std::filesystem::path& folder, const std::string& address) {
-    return find_below(folder, address) ? address : without_percent_codes(address);
+    return base::find_below(folder, address) ? address : without_percent_codes(address);
 }
 
 std::string file_name_of_foreign_path(const std::filesystem::path& folder, const std::string& address) {
     std::string name = file_name_of_uri(folder, address);
-    if (find_below(folder, name)) return name;
+    if (base::find_below(folder, name)) return name;
     std::replace(name.begin(), name.end(), '\\', '/');
-    if (find_below(folder, name)) return name;
+    if (base::find_below(folder, name)) return name;
     const std::string last = name.substr(name.rfind('/') + 1);
-    return find_below(folder, last) ? last : name;
+    return base::find_below(folder, last) ? last : name;
 }
 
 SceneFiles::SceneFiles(std::filesystem::path scene_file, std::string head)
@@ -98,24 +98,24 @@ SceneFiles::SceneFiles(std::filesystem::path scene_file, std::string head)
 tl::expected<std::filesystem::path, std::string> SceneFiles::find(const std::string& name) const {
     if (name == main_name_) return scene_file_;
     const auto folder = scene_file_.parent_path();
-    return find_below(folder, file_name_of_uri(folder, name));
+    return base::find_below(folder, file_name_of_uri(folder, name));
 }
 
 bool SceneFiles::Exists(const char* name) const { return find(name).has_value(); }
 
 Assimp::IOStream* SceneFiles::Open(const char* name, const char* /*mode*/) {
     const auto file = find(name);
-    auto stream = file && !file_error(*file)
+    auto stream = file && !base::file_error(*file)
                       ? std::make_unique<FileStream>(*file, name == main_name_ ? head_ : std::string_view())
                       : nullptr;
     if (stream && stream->good()) return stream.release();
     // assimp looks again under names that it makes up from the first.
     if (rejection_.empty())
         rejection_ = "'" + excerpt(name) +
-                     "': " + (!file ? file.error() : file_error(*file).value_or("it cannot be opened"));
+                     "': " + (!file ? file.error() : base::file_error(*file).value_or("it cannot be opened"));
     return nullptr;
 }
 
 void SceneFiles::Close(Assimp::IOStream* stream) { delete stream; }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <tl/expected.hpp>
 
-namespace vrut {
+namespace vrut::io {
 
 /// What a file in the folder or below it is called that an address names: as the address writes it, or else,
 /// where there is none by that name, without codes such as `%20` for a space.
@@ -42,4 +42,4 @@ private:
     std::string rejection_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::io

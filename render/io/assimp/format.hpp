@@ -1,6 +1,6 @@
 #pragma once
 
-namespace vrut {
+namespace vrut::io {
 
 /// The formats that assimp reads for us. Of the others that it knows, none carries cars that do not come in
 /// one of these as well, and each would be one more that could go wrong on files from anywhere.
@@ -25,4 +25,4 @@ constexpr const char* importer_name(AssimpFormat format) {
     return "";
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

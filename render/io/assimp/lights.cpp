@@ -5,7 +5,7 @@
 
 #include "io/assimp/materials.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -65,7 +65,8 @@ glm::dmat4 turn_to(const glm::dvec3& direction) {
 
 }  // namespace
 
-std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, ConversionWarnings& warnings) {
+std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat format,
+                                          ConversionWarnings& warnings) {
     if (from.mHorizontalFOV <= 0) {
         warnings.add("a camera without perspective is not read");
         return std::nullopt;
@@ -75,10 +76,10 @@ std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Co
         warnings.add("a camera whose field of view is no number is not read");
         return std::nullopt;
     }
-    Node node;
+    scene::Node node;
     node.name = "camera";
-    node.type = NodeType::camera;
-    CameraData& camera = node.data.emplace<CameraData>();
+    node.type = scene::NodeType::camera;
+    scene::CameraData& camera = node.data.emplace<scene::CameraData>();
     if (is_unread(from, format))
         warnings.add("a camera's field of view is not read: it is 40 degrees");
     else
@@ -89,17 +90,18 @@ std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, Co
     return node;
 }
 
-std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, ConversionWarnings& warnings) {
-    Node node;
+std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat format,
+                                         ConversionWarnings& warnings) {
+    scene::Node node;
     node.name = "light";
-    node.type = NodeType::light;
-    LightData& light = node.data.emplace<LightData>();
+    node.type = scene::NodeType::light;
+    scene::LightData& light = node.data.emplace<scene::LightData>();
     switch (from.mType) {
         case aiLightSource_DIRECTIONAL:
-            light.type = LightData::Type::directional;
+            light.type = scene::LightData::Type::directional;
             break;
         case aiLightSource_SPOT:
-            light.type = LightData::Type::spot;
+            light.type = scene::LightData::Type::spot;
             break;
         case aiLightSource_POINT:
             break;
@@ -109,9 +111,9 @@ std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, Conv
     }
     light.color = glm::dvec4(color_of(from, format), 1);
     light.attenuation = attenuation_of(from, format, warnings);
-    if (light.type == LightData::Type::spot) light.angle = cone_of(from, format);
-    if (light.type != LightData::Type::point) node.matrix = turn_to(vector_of(from.mDirection));
+    if (light.type == scene::LightData::Type::spot) light.angle = cone_of(from, format);
+    if (light.type != scene::LightData::Type::point) node.matrix = turn_to(vector_of(from.mDirection));
     return node;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -9,11 +9,13 @@
 #include "io/conversion_warnings.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// What hangs in the node of that name: a camera, or none where it is of a kind that we have not.
-std::optional<Node> convert_camera(const aiCamera& from, AssimpFormat format, ConversionWarnings& warnings);
+std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat format,
+                                          ConversionWarnings& warnings);
 /// The same of a light. Its matrix turns it where it shines.
-std::optional<Node> convert_light(const aiLight& from, AssimpFormat format, ConversionWarnings& warnings);
+std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat format,
+                                         ConversionWarnings& warnings);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -9,7 +9,7 @@
 #include "io/assimp/text.hpp"
 #include "io/assimp/textures.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -49,7 +49,7 @@ double phong_exponent(double roughness) {
     return std::clamp((sharpness - 1) / 2, 1.0, 10'000.0);
 }
 
-void convert_highlight(const aiMaterial& from, Material& material) {
+void convert_highlight(const aiMaterial& from, scene::Material& material) {
     constexpr double kDielectric = 0.22;  // how a reflectance of 4 % displays
     const double metallic = part_of(from, "$mat.metallicFactor", 0);
     const double roughness =
@@ -62,7 +62,7 @@ void convert_highlight(const aiMaterial& from, Material& material) {
 }
 
 /// Metal and roughness.
-void convert_metallic_roughness(const aiMaterial& from, Material& material) {
+void convert_metallic_roughness(const aiMaterial& from, scene::Material& material) {
     const aiColor4D base = color_of(from, "$clr.diffuse").value_or(aiColor4D(0.6F, 0.6F, 0.6F, 1));
     material.diffuse =
         glm::dvec4(srgb_encoded(base), alpha_mode(from) == "BLEND" ? in_unit_range(base.a) : 1);
@@ -74,7 +74,7 @@ void convert_metallic_roughness(const aiMaterial& from, Material& material) {
 }
 
 /// Colours and exponent of Phong's model.
-void convert_phong(const aiMaterial& from, AssimpFormat format, Material& material) {
+void convert_phong(const aiMaterial& from, AssimpFormat format, scene::Material& material) {
     const aiColor4D white(1, 1, 1, 1), black(0, 0, 0, 1);
     const bool none_told = format == AssimpFormat::stl || format == AssimpFormat::ply;
     const aiColor4D diffuse = color_of(from, "$clr.diffuse").value_or(white);
@@ -96,9 +96,10 @@ glm::dvec3 srgb_from_linear(const aiColor3D& color) {
     return {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
 }
 
-Material convert_material(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                          AssimpFormat format, ConversionWarnings& warnings) {
-    Material material;
+scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
+                                 const std::filesystem::path& folder, AssimpFormat format,
+                                 ConversionWarnings& warnings) {
+    scene::Material material;
     aiString name;
     if (from.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = text_of(name);
     if (format == AssimpFormat::gltf)
@@ -112,4 +113,4 @@ Material convert_material(const aiMaterial& from, const aiScene& scene, const st
     return material;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

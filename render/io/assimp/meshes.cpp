@@ -8,7 +8,7 @@
 #include "io/assimp/text.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -33,7 +33,7 @@ void release(T*& array) {
     array = nullptr;
 }
 
-void move_vertices(aiMesh& mesh, Geometry& geometry) {
+void move_vertices(aiMesh& mesh, scene::Geometry& geometry) {
     require_coordinates(mesh.mVertices, "vertex", mesh);
     geometry.positions.reserve(mesh.mNumVertices);
     for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v)
@@ -41,7 +41,7 @@ void move_vertices(aiMesh& mesh, Geometry& geometry) {
     release(mesh.mVertices);
 }
 
-void move_normals(aiMesh& mesh, Geometry& geometry) {
+void move_normals(aiMesh& mesh, scene::Geometry& geometry) {
     if (!mesh.HasNormals()) return;
     require_coordinates(mesh.mNormals, "normal", mesh);
     geometry.normals.reserve(mesh.mNumVertices);
@@ -51,7 +51,7 @@ void move_normals(aiMesh& mesh, Geometry& geometry) {
 }
 
 /// assimp has turned v upwards already, as we have it.
-void move_texcoords(aiMesh& mesh, Geometry& geometry) {
+void move_texcoords(aiMesh& mesh, scene::Geometry& geometry) {
     if (!mesh.HasTextureCoords(0)) return;
     require_coordinates(mesh.mTextureCoords[0], "texture coordinate", mesh);
     geometry.texcoords.reserve(mesh.mNumVertices);
@@ -60,7 +60,7 @@ void move_texcoords(aiMesh& mesh, Geometry& geometry) {
     release(mesh.mTextureCoords[0]);
 }
 
-void move_triangles(aiMesh& mesh, Geometry& geometry) {
+void move_triangles(aiMesh& mesh, scene::Geometry& geometry) {
     geometry.triangles.reserve(mesh.mNumFaces);
     unsigned last = 0;
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
@@ -88,7 +88,7 @@ void remap(std::vector<T>& values, const std::vector<unsigned>& numbers, std::si
 }
 
 /// Makes one of vertices that are equal in everything: most readers of assimp give each corner its own.
-void weld(Geometry& geometry) {
+void weld(scene::Geometry& geometry) {
     std::vector<meshopt_Stream> streams;
     add_stream(geometry.positions, streams);
     add_stream(geometry.normals, streams);
@@ -119,8 +119,8 @@ void check_faces(const aiMesh& mesh) {
     }
 }
 
-Geometry convert_geometry(aiMesh& mesh, AssimpFormat format) {
-    Geometry geometry;
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format) {
+    scene::Geometry geometry;
     move_triangles(mesh, geometry);
     move_vertices(mesh, geometry);
     if (format != AssimpFormat::stl) move_normals(mesh, geometry);  // there each triangle has its own
@@ -138,4 +138,4 @@ void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings) 
         warnings.add("a mesh of points or lines is not shown");
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -10,7 +10,7 @@
 #include "io/conversion_warnings.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Why the file's scene is none, without the file's name.
 struct ImportError : std::runtime_error {
@@ -27,8 +27,8 @@ void check_faces(const aiMesh& mesh);
 
 /// The mesh's triangles, by the rules that assimp_scene.hpp tells; frees what it has taken over. The mesh is
 /// checked. Throws Refused.
-Geometry convert_geometry(aiMesh& mesh, AssimpFormat format);
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format);
 
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -10,7 +10,7 @@
 #include "base/file_bytes.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -109,10 +109,10 @@ private:
 }  // namespace
 
 std::optional<std::string> ply_error(const std::filesystem::path& path) try {
-    auto file = FileReader::open(path);
+    auto file = base::FileReader::open(path);
     if (!file) return file.error();
     std::string head(std::min<std::uintmax_t>(file->size(), kMostHeader), '\0');
-    if (!file->read(head.data(), head.size())) return std::string(kCutShort);
+    if (!file->read(head.data(), head.size())) return std::string(base::kCutShort);
     if (head.size() < 3 || (head[0] | 32) != 'p' || (head[1] | 32) != 'l' || (head[2] | 32) != 'y')
         return std::nullopt;
     PlyHeader(std::move(head)).check(file->size());
@@ -121,4 +121,4 @@ std::optional<std::string> ply_error(const std::filesystem::path& path) try {
     return fault.what;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

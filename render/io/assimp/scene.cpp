@@ -25,7 +25,7 @@
 #include "io/vrut/tokenizer.hpp"
 #include "mesh/watertight.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -36,7 +36,7 @@ public:
                     const std::filesystem::path& path, const ReadProgress& progress)
         : scene_(scene), format_(format), path_(path), progress_(progress), warnings_(std::move(warnings)) {}
 
-    SceneParts convert() {
+    scene::SceneParts convert() {
         parts_.name = path_.stem().string();
         parts_.unit = metres_per_unit(scene_, format_);
         for (unsigned i = 0; i < scene_.mNumCameras; ++i)
@@ -65,10 +65,10 @@ private:
             if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw ImportError("a mesh has no material");
             used[scene_.mMeshes[i]->mMaterialIndex] = true;
         }
-        materials_.assign(scene_.mNumMaterials, kNone);
+        materials_.assign(scene_.mNumMaterials, scene::kNone);
         for (unsigned i = 0; i < scene_.mNumMaterials; ++i) {
             if (!used[i]) continue;
-            materials_[i] = static_cast<Index>(parts_.materials.size());
+            materials_[i] = static_cast<scene::Index>(parts_.materials.size());
             parts_.materials.push_back(
                 convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, warnings_));
             parts_.materials.back().id = materials_[i];
@@ -86,14 +86,14 @@ private:
     }
 
     /// kNone: there is nothing in it that could be drawn.
-    Index add_geometry(aiMesh& mesh) {
+    scene::Index add_geometry(aiMesh& mesh) {
         report_unsupported_parts(mesh, warnings_);
-        if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return kNone;
-        Geometry geometry = convert_geometry(mesh, format_);
-        if (geometry.triangles.empty()) return kNone;
-        geometry.id = static_cast<Id>(parts_.geometries.size());
+        if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return scene::kNone;
+        scene::Geometry geometry = convert_geometry(mesh, format_);
+        if (geometry.triangles.empty()) return scene::kNone;
+        geometry.id = static_cast<scene::Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));
-        return static_cast<Index>(parts_.geometries.size() - 1);
+        return static_cast<scene::Index>(parts_.geometries.size() - 1);
     }
 
     /// Those that may be drawn from one side and look the same: opaque, and on closed parts only.
@@ -102,15 +102,15 @@ private:
         std::vector<bool> open(parts_.materials.size());
         for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
             const auto material = static_cast<std::size_t>(materials_[scene_.mMeshes[i]->mMaterialIndex]);
-            if (geometries_[i] != kNone && !open[material])
+            if (geometries_[i] != scene::kNone && !open[material])
                 open[material] =
-                    !is_watertight(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
+                    !mesh::is_watertight(parts_.geometries[static_cast<std::size_t>(geometries_[i])], go_on);
         }
         for (std::size_t i = 0; i < open.size(); ++i) {
-            Material& material = parts_.materials[i];
+            scene::Material& material = parts_.materials[i];
             const bool transparent =
                 material.diffuse.a < 1 ||
-                (material.texture != kNone &&
+                (material.texture != scene::kNone &&
                  parts_.textures[static_cast<std::size_t>(material.texture)].transparent);
             material.two_sided = open[i] || transparent;
         }
@@ -122,11 +122,11 @@ private:
     void convert_nodes() {
         struct PendingNode {
             const aiNode* node;
-            Id parent;
+            scene::Id parent;
             glm::dmat4 matrix;  // parent from node
         };
         std::vector<PendingNode> open;
-        const auto open_children = [&](const aiNode& node, Id id, const glm::dmat4& matrix) {
+        const auto open_children = [&](const aiNode& node, scene::Id id, const glm::dmat4& matrix) {
             for (unsigned i = node.mNumChildren; i-- > 0;)
                 open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
         };
@@ -161,39 +161,39 @@ private:
     }
 
     /// What a node shows: it alone is the node itself, several hang below it.
-    Id add_node(const aiNode& from, Id parent, const glm::dmat4& matrix) {
-        std::vector<Node> contents;
+    scene::Id add_node(const aiNode& from, scene::Id parent, const glm::dmat4& matrix) {
+        std::vector<scene::Node> contents;
         for (unsigned i = 0; i < from.mNumMeshes; ++i) add_mesh(from.mMeshes[i], contents);
         add_named(cameras_, scene_.mCameras, convert_camera, from, contents);
         add_named(lights_, scene_.mLights, convert_light, from, contents);
         const bool alone =
             contents.size() == 1 && from.mNumChildren == 0 && contents.front().matrix == glm::dmat4(1);
-        Node node = alone ? std::move(contents.front()) : Node{};
+        scene::Node node = alone ? std::move(contents.front()) : scene::Node{};
         node.name = text_of(from.mName);
         if (node.name.empty() && is_one_part()) node.name = parts_.name;
         node.matrix = matrix;
-        const Id id = add(std::move(node), parent);
+        const scene::Id id = add(std::move(node), parent);
         if (!alone)
-            for (Node& content : contents) add(std::move(content), id);
+            for (scene::Node& content : contents) add(std::move(content), id);
         return id;
     }
 
     /// A format of one part, which often has no name.
     bool is_one_part() const { return format_ == AssimpFormat::stl || format_ == AssimpFormat::ply; }
 
-    Id add(Node node, Id parent) {
-        node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+    scene::Id add(scene::Node node, scene::Id parent) {
+        node.id = static_cast<scene::Id>(parts_.nodes.size()) + 1;
         parts_.nodes.push_back({std::move(node), parent});
         return parts_.nodes.back().node.id;
     }
 
-    void add_mesh(unsigned mesh, std::vector<Node>& contents) const {
+    void add_mesh(unsigned mesh, std::vector<scene::Node>& contents) const {
         if (mesh >= geometries_.size()) throw ImportError("a node has a mesh that there is not");
-        if (geometries_[mesh] == kNone) return;
-        Node& node = contents.emplace_back();
+        if (geometries_[mesh] == scene::kNone) return;
+        scene::Node& node = contents.emplace_back();
         node.name = text_of(scene_.mMeshes[mesh]->mName);
-        node.type = NodeType::geometry;
-        node.data = GeometryData{geometries_[mesh], materials_[scene_.mMeshes[mesh]->mMaterialIndex]};
+        node.type = scene::NodeType::geometry;
+        node.data = scene::GeometryData{geometries_[mesh], materials_[scene_.mMeshes[mesh]->mMaterialIndex]};
     }
 
     using IndicesByName = std::multimap<std::string, unsigned>;
@@ -201,7 +201,7 @@ private:
     /// assimp knows cameras and lights by their nodes' names; of nodes with one name each has the next.
     template <class T, class Conversion>
     void add_named(IndicesByName& names, T* const* all, Conversion conversion, const aiNode& from,
-                   std::vector<Node>& contents) {
+                   std::vector<scene::Node>& contents) {
         const auto found = names.find(from.mName.C_Str());
         if (found == names.end()) return;
         const unsigned number = found->second;
@@ -229,10 +229,10 @@ private:
     const AssimpFormat format_;
     const std::filesystem::path& path_;
     const ReadProgress& progress_;
-    SceneParts parts_;
+    scene::SceneParts parts_;
     ConversionWarnings warnings_;
-    std::vector<Index> materials_, geometries_;  // ours for each of assimp's
-    std::vector<bool> ignore_alpha_;             // for each of ours
+    std::vector<scene::Index> materials_, geometries_;  // ours for each of assimp's
+    std::vector<bool> ignore_alpha_;                    // for each of ours
     IndicesByName cameras_, lights_;
 };
 
@@ -322,4 +322,4 @@ PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat fo
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -5,7 +5,7 @@
 #include "io/assimp/format.hpp"
 #include "io/read_scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Reads a scene in one of the formats that assimp knows, with its pictures, material libraries and buffers,
 /// which lie in its folder or below it or inside it. Its nodes become assemblies and geometry nodes, numbered
@@ -48,4 +48,4 @@ PartsResult read_assimp_scene(const std::filesystem::path& path, const ReadProgr
     return read_assimp_scene(path, format, progress);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

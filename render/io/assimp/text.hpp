@@ -6,12 +6,12 @@
 
 #include "base/utf8.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// A name that assimp gives, up to where it is no UTF-8: assimp cuts long ones anywhere.
 inline std::string text_of(const aiString& text) {
     const std::string_view bytes(text.C_Str());
-    return std::string(bytes.substr(0, find_invalid_utf8(bytes)));
+    return std::string(bytes.substr(0, base::find_invalid_utf8(bytes)));
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -13,7 +13,7 @@
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -51,10 +51,10 @@ void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, Con
     if (from.GetTextureCount(type) > 1) warnings.add("of several pictures on top of each other one is shown");
 }
 
-using TextureResult = tl::expected<Index, std::string>;
+using TextureResult = tl::expected<scene::Index, std::string>;
 
 TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint64_t max_pixels,
-                              std::vector<Texture>& textures) {
+                              std::vector<scene::Texture>& textures) {
     unsigned index = 0;
     const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), index);
     if (error != std::errc() || end != name.data() + name.size() || index >= scene.mNumTextures)
@@ -68,7 +68,7 @@ TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint
     if (!image) return tl::unexpected(image.error());
     const bool transparent = has_transparent_pixel(*image);
     textures.push_back({name, *std::move(image), transparent});
-    return static_cast<Index>(textures.size() - 1);
+    return static_cast<scene::Index>(textures.size() - 1);
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ bool has_texture(const aiMaterial& material, aiTextureType type) {
 }
 
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                      AssimpFormat format, Material& material, ConversionWarnings& warnings) {
+                      AssimpFormat format, scene::Material& material, ConversionWarnings& warnings) {
     const aiTextureType type = color_texture_type(from);
     if (!has_texture(from, type)) return;
     material.image = name_of(texture_name(from, type), scene, folder, format);
@@ -116,13 +116,13 @@ bool ignores_alpha(const aiMaterial& material, AssimpFormat format) {
     return opacity.empty() || opacity != texture_name(material, color_texture_type(material));
 }
 
-void decode_embedded_textures(aiScene& scene, std::vector<Material>& materials,
-                              std::vector<Texture>& textures, const std::string& file,
+void decode_embedded_textures(aiScene& scene, std::vector<scene::Material>& materials,
+                              std::vector<scene::Texture>& textures, const std::string& file,
                               std::vector<std::string>& notices) {
     Notices faults;
     std::map<std::string, TextureResult> known;
     std::uint64_t pixels_left = kMaxTexturePixels;
-    for (Material& material : materials) {
+    for (scene::Material& material : materials) {
         if (!material.image.starts_with('*')) continue;
         auto found = known.find(material.image);
         if (found == known.end()) {
@@ -144,29 +144,29 @@ void decode_embedded_textures(aiScene& scene, std::vector<Material>& materials,
     faults.append_to(notices);
 }
 
-void make_textures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
-                          std::vector<Texture>& textures) {
+void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<scene::Texture>& textures) {
     std::vector<bool> keeps_alpha(textures.size());
     for (std::size_t i = 0; i < materials.size(); ++i)
-        if (materials[i].texture != kNone && !ignore_alpha[i])
+        if (materials[i].texture != scene::kNone && !ignore_alpha[i])
             keeps_alpha[static_cast<std::size_t>(materials[i].texture)] = true;
-    std::map<Index, Index> opaque;  // by the picture that it was made from
+    std::map<scene::Index, scene::Index> opaque;  // by the picture that it was made from
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        const Index from = materials[i].texture;
-        if (from == kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)
+        const scene::Index from = materials[i].texture;
+        if (from == scene::kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)
             continue;
         const auto [found, is_new] = opaque.emplace(from, from);
         if (is_new && keeps_alpha[static_cast<std::size_t>(from)]) {
-            found->second = static_cast<Index>(textures.size());
+            found->second = static_cast<scene::Index>(textures.size());
             textures.push_back(textures[static_cast<std::size_t>(from)]);
         }
         materials[i].texture = found->second;
     }
     for (const auto& [from, made] : opaque) {
-        Texture& texture = textures[static_cast<std::size_t>(made)];
+        scene::Texture& texture = textures[static_cast<std::size_t>(made)];
         for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
         texture.transparent = false;
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

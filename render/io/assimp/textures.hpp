@@ -11,14 +11,14 @@
 #include "io/conversion_warnings.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 bool has_texture(const aiMaterial& material, aiTextureType type);
 
 /// Gives a material the name of its colour's picture, where it has one: a file in `folder`, or `*` and a
 /// number where it lies inside the scene's file.
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                      AssimpFormat format, Material& material, ConversionWarnings& warnings);
+                      AssimpFormat format, scene::Material& material, ConversionWarnings& warnings);
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings);
 
 /// Of glTF.
@@ -27,12 +27,12 @@ std::string alpha_mode(const aiMaterial& material);
 bool ignores_alpha(const aiMaterial& material, AssimpFormat format);
 
 /// Decodes the pictures inside the file that `materials` name into `textures`, and frees them.
-void decode_embedded_textures(aiScene& scene, std::vector<Material>& materials,
-                              std::vector<Texture>& textures, const std::string& file,
+void decode_embedded_textures(aiScene& scene, std::vector<scene::Material>& materials,
+                              std::vector<scene::Texture>& textures, const std::string& file,
                               std::vector<std::string>& notices);
 
 /// Gives those of the materials that ignore alpha pictures without it.
-void make_textures_opaque(std::vector<Material>& materials, const std::vector<bool>& ignore_alpha,
-                          std::vector<Texture>& textures);
+void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<scene::Texture>& textures);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -3,7 +3,7 @@
 #include <bit>
 #include <ostream>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -22,7 +22,7 @@ public:
         views_.open_array();
     }
 
-    void add(const Geometry& geometry) {
+    void add(const scene::Geometry& geometry) {
         const std::size_t count = geometry.positions.size(), corners = geometry.triangles.size() * 3;
         open_accessor(kFloatComponent, "VEC3", count, count * 12, kVertices);
         write_range(geometry);
@@ -59,7 +59,7 @@ private:
         json_.number(count, "count").string(type, "type");
     }
 
-    void write_range(const Geometry& geometry) {
+    void write_range(const scene::Geometry& geometry) {
         glm::vec3 least(geometry.positions[0]), most = least;
         for (const glm::dvec3& position : geometry.positions) {
             least = glm::min(least, glm::vec3(position));
@@ -81,7 +81,7 @@ void write_rows(const Rows& rows, std::ostream& out) {
                   static_cast<std::streamsize>(rows.size() * sizeof rows[0]));
 }
 
-void write_geometry(const Geometry& geometry, std::ostream& out) {
+void write_geometry(const scene::Geometry& geometry, std::ostream& out) {
     write_rows(std::vector<glm::vec3>(geometry.positions.begin(), geometry.positions.end()), out);
     std::vector<glm::vec3> normals;
     for (const glm::vec3& normal : geometry.normals) {
@@ -97,7 +97,7 @@ void write_geometry(const Geometry& geometry, std::ostream& out) {
 
 }  // namespace
 
-bool GltfBinaryChunk::add(const Geometry& geometry) {
+bool GltfBinaryChunk::add(const scene::Geometry& geometry) {
     const auto [found, is_new] = accessors_.emplace(&geometry, Accessors{});
     if (!is_new) return false;
     geometries_.push_back(&geometry);
@@ -111,14 +111,14 @@ bool GltfBinaryChunk::add(const Geometry& geometry) {
 std::uint64_t GltfBinaryChunk::describe(JsonWriter& json) const {
     if (geometries_.empty()) return 0;  // then there are no pictures either
     Description description(json);
-    for (const Geometry* const geometry : geometries_) description.add(*geometry);
+    for (const scene::Geometry* const geometry : geometries_) description.add(*geometry);
     for (const auto& png : pngs_) description.open_view(png.size()).close();
     return description.close();
 }
 
 void GltfBinaryChunk::write(std::ostream& out, const WriteProgress& progress) const {
     std::size_t done = 0;
-    for (const Geometry* const geometry : geometries_) {
+    for (const scene::Geometry* const geometry : geometries_) {
         write_geometry(*geometry, out);
         if (progress) progress(static_cast<double>(++done) / static_cast<double>(geometries_.size()));
     }
@@ -128,4 +128,4 @@ void GltfBinaryChunk::write(std::ostream& out, const WriteProgress& progress) co
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -12,7 +12,7 @@
 #include "io/gltf/document.hpp"
 #include "io/gltf/json_scanner.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -114,7 +114,7 @@ private:
         std::set<std::filesystem::path> files = {path_};
         for (const GltfBuffer& buffer : document_.buffers)
             if (!buffer.uri.empty() && !buffer.uri.starts_with("data:"))
-                if (const auto file = find_below(folder, file_name_of_uri(folder, buffer.uri)))
+                if (const auto file = base::find_below(folder, file_name_of_uri(folder, buffer.uri)))
                     files.insert(*file);
         std::uint64_t total = 0;
         for (const auto& file : files) {
@@ -232,7 +232,7 @@ std::string read_glb_head(const std::filesystem::path& path) {
 
 std::string read_head(const std::filesystem::path& path, bool binary) {
     if (binary) return read_glb_head(path);
-    auto bytes = read_bytes(path);
+    auto bytes = base::read_bytes(path);
     if (!bytes) reject(bytes.error());
     return *std::move(bytes);
 }
@@ -253,4 +253,4 @@ tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& p
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

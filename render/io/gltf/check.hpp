@@ -6,7 +6,7 @@
 
 #include "io/conversion_warnings.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// A glTF file for assimp.
 struct CheckedGltf {
@@ -26,4 +26,4 @@ struct CheckedGltf {
 /// Else why the file is none, without its name.
 tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& path);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -9,7 +9,7 @@
 #include "io/gltf/json_scanner.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -34,7 +34,7 @@ public:
         : result_(result), json_(std::string_view(result.head).substr(start)), scan_(json_) {}
 
     GltfDocument read() {
-        if (find_invalid_utf8(json_) != std::string_view::npos) fail("its JSON is not UTF-8");
+        if (base::find_invalid_utf8(json_) != std::string_view::npos) fail("its JSON is not UTF-8");
         const std::pair<std::string_view, void (GltfReader::*)()> parts[] = {
             {"accessors", &GltfReader::read_accessors}, {"bufferViews", &GltfReader::read_views},
             {"buffers", &GltfReader::read_buffers},     {"images", &GltfReader::read_images},
@@ -296,4 +296,4 @@ void hide_member(CheckedGltf& gltf, std::string_view name) {
 
 GltfDocument read_gltf(CheckedGltf& gltf, std::size_t start) { return GltfReader(gltf, start).read(); }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -8,7 +8,7 @@
 
 #include "io/gltf/check.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 using Index32 = std::optional<std::uint32_t>;
 
@@ -59,4 +59,4 @@ void hide_member(CheckedGltf& gltf, std::string_view name);
 /// kinds of pictures. Names in the document are parts of the head. Throws JsonError.
 GltfDocument read_gltf(CheckedGltf& gltf, std::size_t start);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -5,7 +5,7 @@
 #include <optional>
 #include <unordered_set>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -160,4 +160,4 @@ void JsonScan::skip() {
     } while (depth_ > outside);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

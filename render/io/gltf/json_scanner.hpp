@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace vrut {
+namespace vrut::io {
 
 struct JsonError : std::runtime_error {
     using std::runtime_error::runtime_error;
@@ -49,4 +49,4 @@ private:
 /// more. What is no escape stands for itself.
 std::string decoded_string(std::string_view written, std::size_t most = std::string_view::npos);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vrut {
+namespace vrut::io {
 
 /// Text of JSON (RFC 8259), value by value; commas are put by itself. Strings are UTF-8.
 class JsonWriter {
@@ -86,4 +86,4 @@ private:
     bool first_ = true;
 };
 
-}  // namespace vrut
+}  // namespace vrut::io

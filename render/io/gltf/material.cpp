@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -48,7 +48,7 @@ std::pair<double, double> range_of_k(double shininess) {
     return {1 - roughness_of(shininess), 1 - roughness_of(shininess)};
 }
 
-void convert_highlight(const Material& from, const glm::dvec3& c, GltfMaterial& material,
+void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMaterial& material,
                        ConversionWarnings& warnings) {
     const glm::dvec3 wanted(from.specular);
     const auto [least_k, most_k] = range_of_k(from.shininess);
@@ -73,9 +73,10 @@ glm::dvec3 linear_from_srgb(const glm::dvec3& displayed) {
     return {linear(displayed.r), linear(displayed.g), linear(displayed.b)};
 }
 
-GltfMaterial gltf_material(const Scene& scene, const Material& from, ConversionWarnings& warnings) {
+GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& from,
+                           ConversionWarnings& warnings) {
     GltfMaterial material;
-    const bool has_texture = from.texture != kNone;
+    const bool has_texture = from.texture != scene::kNone;
     const glm::dvec3 diffuse(from.diffuse), c = has_texture ? glm::dvec3(1) : glm::clamp(diffuse, 0.0, 1.0);
     material.base = linear_from_srgb(c);
     material.alpha = std::clamp(from.diffuse.a, 0.0, 1.0);
@@ -92,4 +93,4 @@ GltfMaterial gltf_material(const Scene& scene, const Material& from, ConversionW
     return material;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

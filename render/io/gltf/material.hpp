@@ -5,7 +5,7 @@
 #include "io/conversion_warnings.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Factors of a glTF material, linear.
 struct GltfMaterial {
@@ -23,6 +23,7 @@ glm::dvec3 linear_from_srgb(const glm::dvec3& displayed);
 
 /// The material that the reader's rule (assimp_scene.hpp) turns into this one, or the nearest to it; what
 /// differs is told. Under a picture the base colour is white.
-GltfMaterial gltf_material(const Scene& scene, const Material& material, ConversionWarnings& warnings);
+GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,
+                           ConversionWarnings& warnings);
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -10,7 +10,7 @@
 #include "io/texture_writer.hpp"
 #include "io/visible_shapes.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -18,7 +18,7 @@ constexpr std::string_view kLights = "KHR_lights_punctual";
 constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
 /// The frame in which a camera looks along -z, with y upwards.
-glm::dmat4 frame_of(const CameraData& camera) {
+glm::dmat4 frame_of(const scene::CameraData& camera) {
     const glm::dvec3 z = glm::normalize(camera.eye - camera.focus);
     const glm::dvec3 x = glm::normalize(glm::cross(camera.up, z));
     glm::dmat4 frame(glm::dmat3(x, glm::cross(z, x), z));
@@ -28,21 +28,21 @@ glm::dmat4 frame_of(const CameraData& camera) {
 
 /// Whether the matrix turns, scales and moves, as glTF asks for, and neither shears nor flattens.
 bool keeps_right_angles(const glm::dmat4& matrix) {
-    return std::abs(std::abs(relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
+    return std::abs(std::abs(scene::relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
 }
 
 class GlbWriter {
 public:
-    GlbWriter(const Scene& scene, ConversionWarnings& warnings) : scene_(scene), warnings_(warnings) {
+    GlbWriter(const scene::Scene& scene, ConversionWarnings& warnings) : scene_(scene), warnings_(warnings) {
         shapes_ = shown_shapes(scene, warnings);
         for (const ShownShape& shape : shapes_) add_shape(shape);
-        for (const Index material : material_list_)
-            if (const Index texture = scene_.material(material).texture; texture != kNone)
+        for (const scene::Index material : material_list_)
+            if (const scene::Index texture = scene_.material(material).texture; texture != scene::kNone)
                 images_.emplace(texture, 0);
         int place = 0;
         for (auto& [texture, own] : images_) {
             own = place++;
-            const Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
+            const scene::Texture& from = scene_.textures()[static_cast<std::size_t>(texture)];
             buffer_.add_image(encode_png(from.image, from.transparent));
         }
     }
@@ -72,7 +72,7 @@ public:
 private:
     // --- what is written, and where
 
-    using MeshKey = std::pair<const Geometry*, Index>;  // with a material
+    using MeshKey = std::pair<const scene::Geometry*, scene::Index>;  // with a material
 
     void add_shape(const ShownShape& shape) {
         const MeshKey mesh{shape.geometry, shape.material};
@@ -86,7 +86,7 @@ private:
         if (buffer_.add(*shape.geometry)) report_rounding(*shape.geometry);
     }
 
-    void report_rounding(const Geometry& geometry) {
+    void report_rounding(const scene::Geometry& geometry) {
         for (const glm::dvec3& position : geometry.positions)
             if (glm::dvec3(glm::vec3(position)) != position)
                 return warnings_.add("a geometry's positions are rounded to single precision");
@@ -98,8 +98,8 @@ private:
         json_.open_object("asset").string("2.0", "version").string("vrut-preview", "generator").close();
         json_.number(0, "scene");
         bool lights = false, glossiness = false;
-        for (const Node& node : scene_.nodes()) lights = lights || node.type == NodeType::light;
-        for (const Index material : material_list_) {
+        for (const scene::Node& node : scene_.nodes()) lights = lights || node.type == scene::NodeType::light;
+        for (const scene::Index material : material_list_) {
             converted_.push_back(gltf_material(scene_, scene_.material(material), warnings_));
             glossiness = glossiness || converted_.back().specular;
         }
@@ -113,31 +113,32 @@ private:
     /// Ours without the root, unless it moves them all; cameras that do not look along -z get nodes of their
     /// own below.
     void write_nodes() {
-        const std::vector<Node>& nodes = scene_.nodes();
+        const std::vector<scene::Node>& nodes = scene_.nodes();
         const bool has_root = nodes[0].matrix != glm::dmat4(1);
         const int first = has_root ? 0 : 1;
         int next = static_cast<int>(nodes.size()) - first;
-        std::vector<std::pair<Index, int>> extra;  // cameras with a frame, and their nodes
+        std::vector<std::pair<scene::Index, int>> extra;  // cameras with a frame, and their nodes
         json_.open_array("nodes");
         for (std::size_t i = static_cast<std::size_t>(first); i < nodes.size(); ++i) {
-            const auto* const camera = std::get_if<CameraData>(&nodes[i].data);
+            const auto* const camera = std::get_if<scene::CameraData>(&nodes[i].data);
             const bool framed = camera != nullptr && frame_of(*camera) != glm::dmat4(1);
             const bool below = framed && !nodes[i].children.empty();
-            if (below) extra.emplace_back(static_cast<Index>(i), next++);
-            write_node(static_cast<Index>(i), first, framed && !below ? frame_of(*camera) : glm::dmat4(1),
-                       below ? extra.back().second : kNone);
+            if (below) extra.emplace_back(static_cast<scene::Index>(i), next++);
+            write_node(static_cast<scene::Index>(i), first,
+                       framed && !below ? frame_of(*camera) : glm::dmat4(1),
+                       below ? extra.back().second : scene::kNone);
         }
         for (const auto& [node, place] : extra) write_extra_camera(node);
         json_.close();
         json_.open_array("scenes").open_object().string(nodes[0].name, "name").open_array("nodes");
         if (has_root) json_.number(0);
-        for (const Index child : nodes[0].children)
+        for (const scene::Index child : nodes[0].children)
             if (!has_root) json_.number(child - first);
         json_.close().close().close();
     }
 
-    void write_node(Index index, int first, const glm::dmat4& frame, int extra_child) {
-        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+    void write_node(scene::Index index, int first, const glm::dmat4& frame, int extra_child) {
+        const scene::Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
         json_.open_object().string(node.name, "name");
         if (const glm::dmat4 matrix = node.matrix * frame; matrix != glm::dmat4(1))
             json_.numbers(&matrix[0][0], 16, "matrix");
@@ -145,40 +146,40 @@ private:
             warnings_.add(
                 "a matrix that shears or flattens is kept, though glTF knows none: other programs may refuse "
                 "it");
-        if (!node.children.empty() || extra_child != kNone) {
+        if (!node.children.empty() || extra_child != scene::kNone) {
             json_.open_array("children");
-            for (const Index child : node.children) json_.number(child - first);
-            if (extra_child != kNone) json_.number(extra_child);
+            for (const scene::Index child : node.children) json_.number(child - first);
+            if (extra_child != scene::kNone) json_.number(extra_child);
             json_.close();
         }
         if (const auto mesh = mesh_of_node_.find(index); mesh != mesh_of_node_.end())
             json_.number(mesh->second, "mesh");
-        if (node.type == NodeType::camera && extra_child == kNone) add_camera(index);
-        if (node.type == NodeType::light) add_light(index);
+        if (node.type == scene::NodeType::camera && extra_child == scene::kNone) add_camera(index);
+        if (node.type == scene::NodeType::light) add_light(index);
         json_.close();
     }
 
-    void write_extra_camera(Index index) {
-        const Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
-        const glm::dmat4 frame = frame_of(std::get<CameraData>(node.data));
+    void write_extra_camera(scene::Index index) {
+        const scene::Node& node = scene_.nodes()[static_cast<std::size_t>(index)];
+        const glm::dmat4 frame = frame_of(std::get<scene::CameraData>(node.data));
         json_.open_object().string(node.name + " camera", "name").numbers(&frame[0][0], 16, "matrix");
         add_camera(index);
         json_.close();
     }
 
-    void add_camera(Index node) {
+    void add_camera(scene::Index node) {
         json_.number(cameras_.size(), "camera");
-        cameras_.push_back(&std::get<CameraData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+        cameras_.push_back(&std::get<scene::CameraData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
     }
 
-    void add_light(Index node) {
+    void add_light(scene::Index node) {
         json_.open_object("extensions").open_object(kLights).number(lights_.size(), "light").close().close();
-        lights_.push_back(&std::get<LightData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
+        lights_.push_back(&std::get<scene::LightData>(scene_.nodes()[static_cast<std::size_t>(node)].data));
     }
 
     void write_cameras_and_lights() {
         if (!cameras_.empty()) json_.open_array("cameras");
-        for (const CameraData* const camera : cameras_) {
+        for (const scene::CameraData* const camera : cameras_) {
             json_.open_object().string("perspective", "type").open_object("perspective");
             json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
             if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
@@ -187,16 +188,16 @@ private:
         if (!cameras_.empty()) json_.close();
         if (lights_.empty()) return;
         json_.open_object("extensions").open_object(kLights).open_array("lights");
-        for (const LightData* const light : lights_) write_light(*light);
+        for (const scene::LightData* const light : lights_) write_light(*light);
         json_.close().close().close();
     }
 
-    void write_light(const LightData& light) {
+    void write_light(const scene::LightData& light) {
         constexpr std::string_view kTypes[] = {"point", "directional", "spot"};
         const glm::dvec3 color = linear_from_srgb(light.color);
         json_.open_object().string(kTypes[static_cast<std::size_t>(light.type)], "type");
         json_.numbers(&color[0], 3, "color");
-        if (light.type == LightData::Type::spot) {
+        if (light.type == scene::LightData::Type::spot) {
             const double cone = glm::radians(std::max(light.angle, 0.1));
             json_.open_object("spot")
                 .number(0.45 * cone, "innerConeAngle")
@@ -215,8 +216,8 @@ private:
             const GltfBinaryChunk::Accessors& accessors = buffer_.accessors_of(*geometry);
             json_.open_object().open_array("primitives").open_object().open_object("attributes");
             json_.number(accessors.positions, "POSITION");
-            if (accessors.normals != kNone) json_.number(accessors.normals, "NORMAL");
-            if (accessors.texcoords != kNone) json_.number(accessors.texcoords, "TEXCOORD_0");
+            if (accessors.normals != scene::kNone) json_.number(accessors.normals, "NORMAL");
+            if (accessors.texcoords != scene::kNone) json_.number(accessors.texcoords, "TEXCOORD_0");
             json_.close().number(accessors.indices, "indices").number(materials_.at(material), "material");
             json_.close().close().close();
         }
@@ -231,7 +232,7 @@ private:
         json_.close();
     }
 
-    void write_material(const Material& from, const GltfMaterial& material) {
+    void write_material(const scene::Material& from, const GltfMaterial& material) {
         const glm::dvec4 base(material.base, material.alpha);
         json_.open_object().string(from.name, "name").open_object("pbrMetallicRoughness");
         json_.numbers(&base[0], 4, "baseColorFactor");
@@ -251,8 +252,9 @@ private:
         json_.close();
     }
 
-    void write_texture(const Material& from, std::string_view name) {
-        if (from.texture != kNone) json_.open_object(name).number(images_.at(from.texture), "index").close();
+    void write_texture(const scene::Material& from, std::string_view name) {
+        if (from.texture != scene::kNone)
+            json_.open_object(name).number(images_.at(from.texture), "index").close();
     }
 
     void write_textures() {
@@ -269,17 +271,17 @@ private:
         json_.close();
     }
 
-    const Scene& scene_;
+    const scene::Scene& scene_;
     ConversionWarnings& warnings_;
     std::vector<ShownShape> shapes_;
     std::map<MeshKey, int> meshes_;
     std::vector<MeshKey> mesh_list_;
-    std::map<Index, int> mesh_of_node_, materials_, images_;  // places in the file
-    std::vector<Index> material_list_;
+    std::map<scene::Index, int> mesh_of_node_, materials_, images_;  // places in the file
+    std::vector<scene::Index> material_list_;
     std::vector<GltfMaterial> converted_;  // for each of them
     GltfBinaryChunk buffer_;
-    std::vector<const CameraData*> cameras_;
-    std::vector<const LightData*> lights_;
+    std::vector<const scene::CameraData*> cameras_;
+    std::vector<const scene::LightData*> lights_;
     JsonWriter json_;
     std::uint64_t size_ = 0;  // of the binary chunk
 };
@@ -293,13 +295,13 @@ void write_words(std::ostream& out, std::initializer_list<std::uint64_t> words) 
 
 }  // namespace
 
-void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFiles& files,
+void write_glb(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                ConversionWarnings& warnings, const WriteProgress& progress) {
     GlbWriter writer(scene, warnings);
     report_lost_nodes(scene, warnings);
     const std::string json = writer.describe();
     const std::uint64_t binary = writer.size(), all = 12 + 8 + json.size() + (binary > 0 ? 8 + binary : 0);
-    if (all > UINT32_MAX) throw WriteError(path.string() + ": a GLB file holds at most 4 GiB");
+    if (all > UINT32_MAX) throw base::WriteError(path.string() + ": a GLB file holds at most 4 GiB");
     constexpr std::uint32_t kGltf = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
     files.write(path, [&](std::ostream& out) {
         write_words(out, {kGltf, 2, all, json.size(), kJson});
@@ -310,4 +312,4 @@ void write_glb(const Scene& scene, const std::filesystem::path& path, OutputFile
     });
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -8,7 +8,7 @@
 #include "base/utf8.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -144,7 +144,7 @@ std::string osb_name(const OsbFile& file, const OsbContainer& container) {
         auto text = attachment->find("name");
         if (!text) continue;
         const std::string_view name = text->take_string("a name").substr(0, 1000);
-        return std::string(name.substr(0, find_invalid_utf8(name)));
+        return std::string(name.substr(0, base::find_invalid_utf8(name)));
     }
     return {};
 }
@@ -190,4 +190,4 @@ void OsbFile::read_fields(OsbCursor& cursor) {
     }
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

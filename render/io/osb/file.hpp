@@ -12,7 +12,7 @@
 
 #include "base/salted_hash.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// "at byte N: expected …, found …"; caught by the reader, which knows the file's name.
 struct OsbError : std::runtime_error {
@@ -95,10 +95,10 @@ private:
     std::size_t size_;
     std::vector<OsbField> fields_;
     std::vector<OsbContainer> containers_;
-    std::unordered_map<std::uint32_t, std::size_t, SaltedHash> index_of_;
+    std::unordered_map<std::uint32_t, std::size_t, base::SaltedHash> index_of_;
 };
 
 /// What a Name that is attached to the container calls it: at most 1,000 bytes of UTF-8; empty without one.
 std::string osb_name(const OsbFile& file, const OsbContainer& container);
 
-}  // namespace vrut
+}  // namespace vrut::io

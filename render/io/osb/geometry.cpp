@@ -4,7 +4,7 @@
 
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -83,7 +83,7 @@ public:
                        std::size_t& work_left)
         : file_(file), container_(container), warnings_(warnings), work_left_(work_left) {}
 
-    Geometry build() {
+    scene::Geometry build() {
         types_ = find("types", kIntegers);
         lengths_ = find("lengths", kIntegers);
         indices_ = find("indices", kIntegers);
@@ -232,14 +232,14 @@ private:
     std::optional<OsbArray> types_, lengths_, indices_;
     std::array<std::optional<OsbArray>, 3> arrays_;  // positions, normals, texture coordinates
     IndexMapping mapping_;
-    Geometry geometry_;
-    std::unordered_map<IndexTuple, unsigned, SaltedHash> known_;
+    scene::Geometry geometry_;
+    std::unordered_map<IndexTuple, unsigned, base::SaltedHash> known_;
     std::vector<unsigned> vertices_;  // of the primitive at hand
 };
 
 }  // namespace
 
-Index OsbGeometries::take(const OsbContainer& container) {
+scene::Index OsbGeometries::take(const OsbContainer& container) {
     if (const auto known = known_containers_.find(container.id); known != known_containers_.end())
         return known->second;
     std::vector<std::uint32_t> arrays;
@@ -248,16 +248,16 @@ Index OsbGeometries::take(const OsbContainer& container) {
     if (const OsbField* mapping = container.find_type("MFUInt16"))
         for (OsbCursor cursor = mapping->data; cursor.left() > 1;)
             arrays.push_back(cursor.take_unsigned(2, "a mapping"));
-    const auto [found, is_new] = known_.emplace(std::move(arrays), kNone);
+    const auto [found, is_new] = known_.emplace(std::move(arrays), scene::kNone);
     if (is_new) found->second = add(OsbGeometryBuilder(file_, container, warnings_, work_left_).build());
     return known_containers_[container.id] = found->second;
 }
 
-Index OsbGeometries::add(Geometry geometry) {
-    if (geometry.triangles.empty()) return kNone;
-    geometry.id = static_cast<Id>(all.size());
+scene::Index OsbGeometries::add(scene::Geometry geometry) {
+    if (geometry.triangles.empty()) return scene::kNone;
+    geometry.id = static_cast<scene::Id>(all.size());
     all.push_back(std::move(geometry));
-    return static_cast<Index>(all.size() - 1);
+    return static_cast<scene::Index>(all.size() - 1);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

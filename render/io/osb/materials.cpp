@@ -6,7 +6,7 @@
 #include "io/image_file.hpp"
 #include "io/scene_textures.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -18,7 +18,7 @@ glm::dvec4 color(const OsbContainer& from, std::string_view field, double otherw
 }
 
 /// What a SimpleMaterial and a MaterialChunk have in common.
-void read_phong(const OsbContainer& from, double alpha, Material& material) {
+void read_phong(const OsbContainer& from, double alpha, scene::Material& material) {
     material.ambient = color(from, "ambient", 0, 1) * glm::dvec4(kSceneLight, kSceneLight, kSceneLight, 1);
     material.diffuse = color(from, "diffuse", 0, alpha);
     material.specular = color(from, "specular", 0, 1);
@@ -47,8 +47,8 @@ std::size_t channels_of(std::int32_t pixel_format) {
 }
 
 /// Both have their rows from the bottom up.
-Image image_of(std::string_view pixels, int width, int height, std::size_t channels) {
-    Image image;
+scene::Image image_of(std::string_view pixels, int width, int height, std::size_t channels) {
+    scene::Image image;
     image.width = width;
     image.height = height;
     image.rgba.reserve(pixels.size() / channels * 4);
@@ -63,28 +63,28 @@ Image image_of(std::string_view pixels, int width, int height, std::size_t chann
 
 }  // namespace
 
-Index OsbMaterials::take(std::uint32_t id) {
-    const auto [found, is_new] = known_.emplace(id, kNone);
+scene::Index OsbMaterials::take(std::uint32_t id) {
+    const auto [found, is_new] = known_.emplace(id, scene::kNone);
     const OsbContainer* const from = file_.find(id);
     if (!is_new || from == nullptr) return found->second;
     const bool simple = from->type == "SimpleMaterial" || from->type == "SimpleTexturedMaterial";
-    if (!simple && from->type != "ChunkMaterial") return kNone;
-    Material material;
-    material.id = static_cast<Id>(all.size());
+    if (!simple && from->type != "ChunkMaterial") return scene::kNone;
+    scene::Material material;
+    material.id = static_cast<scene::Id>(all.size());
     material.name = osb_name(file_, *from);
     material.two_sided = true;
     if (simple) read_simple(*from, material);
     read_chunks(*from, material);
     all.push_back(std::move(material));
-    return found->second = static_cast<Index>(all.size() - 1);
+    return found->second = static_cast<scene::Index>(all.size() - 1);
 }
 
-void OsbMaterials::read_simple(const OsbContainer& from, Material& material) {
+void OsbMaterials::read_simple(const OsbContainer& from, scene::Material& material) {
     read_phong(from, 1 - std::clamp(from.real("transparency", 0), 0.0, 1.0), material);
     read_image(from.pointer("image"), material);
 }
 
-void OsbMaterials::read_chunks(const OsbContainer& from, Material& material) {
+void OsbMaterials::read_chunks(const OsbContainer& from, scene::Material& material) {
     auto ids = from.find("chunks");
     for (std::size_t left = ids ? ids->take_count(4, "a count") : 0; left > 0; --left) {
         const OsbContainer* const chunk = file_.find(ids->take_unsigned(4, "an id"));
@@ -102,31 +102,31 @@ void OsbMaterials::read_chunks(const OsbContainer& from, Material& material) {
     }
 }
 
-void OsbMaterials::read_image(std::uint32_t id, Material& material) {
+void OsbMaterials::read_image(std::uint32_t id, scene::Material& material) {
     const OsbContainer* const image = file_.find(id);
     if (image == nullptr || image->type != "Image") return;
     const auto pixels = image->find("pixel");
     auto name = image->find("name");
     if (pixels && pixels->left() > 4) {
-        const auto [found, is_new] = known_textures_.emplace(id, kNone);
+        const auto [found, is_new] = known_textures_.emplace(id, scene::kNone);
         if (is_new) found->second = decode(*image, *pixels);
         material.texture = found->second;
     } else if (image->find("cpixel")) {
         warnings_.add("a picture that is compressed inside the file is not shown");
     } else if (name) {
         const std::string_view file = name->take_string("a name");
-        if (file.size() < 1000) material.image = file.substr(0, find_invalid_utf8(file));
+        if (file.size() < 1000) material.image = file.substr(0, base::find_invalid_utf8(file));
     }
 }
 
-Index OsbMaterials::decode(const OsbContainer& image, OsbCursor pixels) {
+scene::Index OsbMaterials::decode(const OsbContainer& image, OsbCursor pixels) {
     constexpr std::int32_t kBytes = 0x1401;  // GL_UNSIGNED_BYTE
     const std::int32_t width = image.integer("width", 0), height = image.integer("height", 0);
     const std::size_t channels = channels_of(image.integer("pixelFormat", 0));
     const std::size_t at = pixels.at(), size = pixels.take_count(1, "a count of bytes");
     if (channels == 0 || image.integer("dataType", kBytes) != kBytes || image.integer("depth", 1) > 1) {
         warnings_.add("a picture that is no plain one of bytes is not shown");
-        return kNone;
+        return scene::kNone;
     }
     const std::uint64_t pixel_count = std::uint64_t(std::max(width, 0)) * std::uint64_t(std::max(height, 0));
     if (pixel_count == 0 || pixel_count > size / channels)
@@ -135,13 +135,13 @@ Index OsbMaterials::decode(const OsbContainer& image, OsbCursor pixels) {
                        std::to_string(size));
     if (pixel_count > kMaxImagePixels || std::max(width, height) > static_cast<std::int32_t>(kMaxImageSide)) {
         warnings_.add("a picture that is too large is not shown");
-        return kNone;
+        return scene::kNone;
     }
     const std::string_view bytes = pixels.take(static_cast<std::size_t>(pixel_count) * channels, "pixels");
-    Texture texture{"", image_of(bytes, width, height, channels), false};
+    scene::Texture texture{"", image_of(bytes, width, height, channels), false};
     texture.transparent = has_transparent_pixel(texture.image);
     textures.push_back(std::move(texture));
-    return static_cast<Index>(textures.size() - 1);
+    return static_cast<scene::Index>(textures.size() - 1);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -4,7 +4,7 @@
 #include "io/osb/file.hpp"
 #include "scene/scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Turns OpenSG's materials into ours, by the rule that osb_scene.hpp tells.
 class OsbMaterials {
@@ -13,20 +13,20 @@ public:
 
     /// The place in `all` of the material with this id, made when it is first asked for; kNone for an id that
     /// is none of a material that is known. Throws OsbError.
-    Index take(std::uint32_t id);
+    scene::Index take(std::uint32_t id);
 
-    std::vector<Material> all;
-    std::vector<Texture> textures;  ///< that lie in the file
+    std::vector<scene::Material> all;
+    std::vector<scene::Texture> textures;  ///< that lie in the file
 
 private:
-    void read_simple(const OsbContainer& from, Material& material);
-    void read_chunks(const OsbContainer& from, Material& material);
-    void read_image(std::uint32_t id, Material& material);
-    Index decode(const OsbContainer& image, OsbCursor pixels);
+    void read_simple(const OsbContainer& from, scene::Material& material);
+    void read_chunks(const OsbContainer& from, scene::Material& material);
+    void read_image(std::uint32_t id, scene::Material& material);
+    scene::Index decode(const OsbContainer& image, OsbCursor pixels);
 
     const OsbFile& file_;
     ConversionWarnings& warnings_;
-    std::unordered_map<std::uint32_t, Index, SaltedHash> known_, known_textures_;
+    std::unordered_map<std::uint32_t, scene::Index, base::SaltedHash> known_, known_textures_;
 };
 
-}  // namespace vrut
+}  // namespace vrut::io

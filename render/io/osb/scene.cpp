@@ -12,7 +12,7 @@
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -98,25 +98,25 @@ bool is_light(std::string_view type) {
     return type == "PointLight" || type == "DirectionalLight" || type == "SpotLight";
 }
 
-Node light_of(const OsbContainer& core) {
-    Node node;
+scene::Node light_of(const OsbContainer& core) {
+    scene::Node node;
     node.name = "light";
-    node.type = NodeType::light;
+    node.type = scene::NodeType::light;
     node.active = core.flag("on", true);
-    auto& light = node.data.emplace<LightData>();
+    auto& light = node.data.emplace<scene::LightData>();
     light.color = glm::dvec4(glm::clamp(core.vec3("diffuse", glm::dvec3(1)), 0.0, 1e6), 1);
     light.attenuation = {core.real("constantAttenuation", 1), core.real("linearAttenuation", 0),
                          core.real("quadraticAttenuation", 0)};
     light.attenuation = glm::max(light.attenuation, 0.0);
     const glm::dvec3 direction = core.vec3("direction", {0, 0, 1});
     if (core.type == "DirectionalLight") {
-        light.type = LightData::Type::directional;
+        light.type = scene::LightData::Type::directional;
         node.matrix = frame_along(direction);  // towards the light
         return node;
     }
     node.matrix = glm::translate(core.vec3("position", {}));
     if (core.type != "SpotLight") return node;
-    light.type = LightData::Type::spot;
+    light.type = scene::LightData::Type::spot;
     light.angle = std::clamp(2 * glm::degrees(core.real("spotCutOff", 0)), 0.0, 180.0);
     node.matrix = node.matrix * frame_along(-direction);
     return node;
@@ -127,7 +127,7 @@ public:
     OsbReader(std::string_view bytes, std::string file, const ReadProgress& progress)
         : file_name_(std::move(file)), progress_(progress), file_(bytes) {}
 
-    SceneParts read() {
+    scene::SceneParts read() {
         parts_.name = std::filesystem::path(file_name_).stem().string();
         if (!file_.containers().empty()) read_nodes();
         add_lights();
@@ -142,15 +142,15 @@ public:
 private:
     struct OsbPendingNode {
         const OsbContainer* node;
-        Id parent;
-        Index material;  ///< that a group above gives to all below it
+        scene::Id parent;
+        scene::Index material;  ///< that a group above gives to all below it
     };
 
     /// From the root, which comes first, downwards; without recursion, since a chain may be long.
     void read_nodes() {
         const OsbContainer& root = file_.containers().front();
         if (root.type != "Node") throw OsbError(root.at, "a Node first", "'" + excerpt(root.type) + "'");
-        std::vector<OsbPendingNode> open{{&root, 0, kNone}};
+        std::vector<OsbPendingNode> open{{&root, 0, scene::kNone}};
         ids_.emplace(root.id, 0);
         std::vector<OsbPendingNode> children;
         while (!open.empty()) {
@@ -184,8 +184,8 @@ private:
     }
 
     void add_node(const OsbPendingNode& pending, std::vector<OsbPendingNode>& children) {
-        Node node;
-        node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+        scene::Node node;
+        node.id = static_cast<scene::Id>(parts_.nodes.size()) + 1;
         node.name = osb_name(file_, *pending.node);
         node.active = pending.node->integer("travMask", -1) != 0;
         for (OsbPendingNode& child : children) child.parent = node.id;
@@ -197,23 +197,24 @@ private:
         parts_.nodes.push_back({std::move(node), pending.parent});
     }
 
-    void read_core(const OsbContainer& core, const OsbPendingNode& pending, Node& node,
+    void read_core(const OsbContainer& core, const OsbPendingNode& pending, scene::Node& node,
                    std::vector<OsbPendingNode>& children) {
         if (core.type == "Transform" || core.type == "ComponentTransform") {
             node.matrix = matrix_of(core);
         } else if (core.type == "Geometry") {
-            const Index material =
-                pending.material != kNone ? pending.material : materials_.take(core.pointer("material"));
-            node.type = NodeType::geometry;
-            node.data = GeometryData{geometries_.take(core), material};
+            const scene::Index material = pending.material != scene::kNone
+                                              ? pending.material
+                                              : materials_.take(core.pointer("material"));
+            node.type = scene::NodeType::geometry;
+            node.data = scene::GeometryData{geometries_.take(core), material};
         } else if (core.type == "Switch") {
-            node.type = NodeType::switch_;
-            node.data =
-                SwitchData{std::max(core.integer("choice", SwitchData::kNoChild), SwitchData::kAllChildren)};
+            node.type = scene::NodeType::switch_;
+            node.data = scene::SwitchData{std::max(core.integer("choice", scene::SwitchData::kNoChild),
+                                                   scene::SwitchData::kAllChildren)};
         } else if (core.type == "DistanceLOD") {
-            node.type = NodeType::lod;
-            node.data = LodData{ranges_of(core, children.size())};
-        } else if (core.type == "MaterialGroup" && pending.material == kNone) {
+            node.type = scene::NodeType::lod;
+            node.data = scene::LodData{ranges_of(core, children.size())};
+        } else if (core.type == "MaterialGroup" && pending.material == scene::kNone) {
             for (OsbPendingNode& child : children) child.material = materials_.take(core.pointer("material"));
         } else if (is_light(core.type)) {
             lights_.push_back({&core, node.id});
@@ -236,8 +237,8 @@ private:
     /// Where their beacons are, or else where they hang.
     void add_lights() {
         for (const auto& [core, own] : lights_) {
-            Node node = light_of(*core);
-            node.id = static_cast<Id>(parts_.nodes.size()) + 1;
+            scene::Node node = light_of(*core);
+            node.id = static_cast<scene::Id>(parts_.nodes.size()) + 1;
             const auto beacon = ids_.find(core->pointer("beacon"));
             parts_.nodes.push_back({std::move(node), beacon != ids_.end() ? beacon->second : own});
             warnings_.add(
@@ -264,11 +265,11 @@ private:
     ConversionWarnings warnings_;
     OsbGeometries geometries_{file_, warnings_};
     OsbMaterials materials_{file_, warnings_};
-    SceneParts parts_;
-    std::unordered_map<std::uint32_t, Id, SaltedHash> ids_;  // ours, of the nodes met
+    scene::SceneParts parts_;
+    std::unordered_map<std::uint32_t, scene::Id, base::SaltedHash> ids_;  // ours, of the nodes met
     struct OsbLight {
         const OsbContainer* core;
-        Id node;
+        scene::Id node;
     };
     std::vector<OsbLight> lights_;
 };
@@ -284,11 +285,11 @@ PartsResult read_osb_parts(std::string_view bytes, const std::string& file, cons
 }
 
 PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress) {
-    const auto bytes = read_bytes(path);
+    const auto bytes = base::read_bytes(path);
     if (!bytes) return tl::unexpected(path.string() + ": " + bytes.error());
     auto parts = read_osb_parts(*bytes, path.string(), progress);
     if (parts) read_textures(*parts, path, progress);
     return parts;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

@@ -4,7 +4,7 @@
 
 #include "io/read_scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Reads a scene in the OpenSG binary format 1.0 (see OsbFile), as OpenSG 1.8 writes it: its nodes, numbered
 /// from the root downwards as they stand in the file, with their names, and of their cores groups,
@@ -27,4 +27,4 @@ PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress
 PartsResult read_osb_parts(std::string_view bytes, const std::string& file,
                            const ReadProgress& progress = {});
 
-}  // namespace vrut
+}  // namespace vrut::io

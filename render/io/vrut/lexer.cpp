@@ -8,7 +8,7 @@
 
 #include "base/utf8.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -35,7 +35,8 @@ public:
         : chunk_(chunk), begin_(chunk.text.data()), at_(begin_), end_(begin_ + chunk.text.size() - 1) {}
 
     void run() {
-        const std::size_t invalid = find_invalid_utf8({begin_, static_cast<std::size_t>(end_ - begin_)});
+        const std::size_t invalid =
+            base::find_invalid_utf8({begin_, static_cast<std::size_t>(end_ - begin_)});
         const bool valid = invalid == std::string_view::npos;
         if (!valid) end_before(invalid);
         while (skip_space() && add_token()) {
@@ -174,4 +175,4 @@ void lex(Chunk& chunk) {
     Lexer(chunk).run();
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

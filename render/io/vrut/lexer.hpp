@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace vrut {
+namespace vrut::io {
 
 /// What a sentence repeats of the file: printable, at most so many bytes, and whole characters.
 std::string excerpt(std::string_view text, std::size_t most = 40);
@@ -44,4 +44,4 @@ struct Chunk {
 /// that are not UTF-8, numbers and strings that are none, and what is longer than kMaxTokenBytes.
 void lex(Chunk& chunk);
 
-}  // namespace vrut
+}  // namespace vrut::io

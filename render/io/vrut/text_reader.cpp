@@ -12,7 +12,7 @@
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -23,15 +23,15 @@ constexpr double kMaxColor = 1e6;
 struct NodeKind {
     std::string_view keyword;
     int number;  // VRUT's own; lod and sound are a guess
-    NodeType type;
+    scene::NodeType type;
 };
 
 constexpr NodeKind kNodeKinds[] = {
-    {"assembly", 0, NodeType::assembly}, {"root", 1, NodeType::root},
-    {"camera", 2, NodeType::camera},     {"geometry", 3, NodeType::geometry},
-    {"light", 4, NodeType::light},       {"lod", 5, NodeType::lod},
-    {"switch", 6, NodeType::switch_},    {"background", 7, NodeType::background},
-    {"sound", 8, NodeType::sound},
+    {"assembly", 0, scene::NodeType::assembly}, {"root", 1, scene::NodeType::root},
+    {"camera", 2, scene::NodeType::camera},     {"geometry", 3, scene::NodeType::geometry},
+    {"light", 4, scene::NodeType::light},       {"lod", 5, scene::NodeType::lod},
+    {"switch", 6, scene::NodeType::switch_},    {"background", 7, scene::NodeType::background},
+    {"sound", 8, scene::NodeType::sound},
 };
 
 struct BlockMember {
@@ -41,8 +41,8 @@ struct BlockMember {
 
 /// Ids that a node's block names, to be looked up when the whole file is read.
 struct References {
-    Id geometry = -1;  // -1: none given
-    Id material = -1;
+    scene::Id geometry = -1;  // -1: none given
+    scene::Id material = -1;
 };
 
 class VrutTextReader {
@@ -50,7 +50,7 @@ public:
     VrutTextReader(TextSource source, const std::string& file, unsigned threads)
         : tokens_(std::move(source), threads), file_(file) {}
 
-    SceneParts read() {
+    scene::SceneParts read() {
         if (tokens_.peek().kind != Token::Kind::word || tokens_.peek().text() != "vrut-text")
             tokens_.fail_expected("'vrut-text 1'");
         tokens_.take();
@@ -138,11 +138,11 @@ private:
         return point;
     }
 
-    Id take_id(std::string_view what) { return tokens_.take_integer(what, 0, kMaxId); }
+    scene::Id take_id(std::string_view what) { return tokens_.take_integer(what, 0, scene::kMaxId); }
 
     template <class Ids>
-    void remember(Ids& ids, Id id, std::size_t index, std::size_t line, const char* kind) {
-        if (!ids.emplace(id, static_cast<Index>(index)).second)
+    void remember(Ids& ids, scene::Id id, std::size_t index, std::size_t line, const char* kind) {
+        if (!ids.emplace(id, static_cast<scene::Index>(index)).second)
             throw ParseError(
                 line, std::string("expected each ") + kind + " once, found " + std::to_string(id) + " twice");
     }
@@ -150,7 +150,7 @@ private:
     // --- blocks
 
     void read_material(std::size_t line) {
-        Material material;
+        scene::Material material;
         material.id = take_id("the material's id");
         material.name = tokens_.take_string("the material's name");
         const BlockMember members[] = {
@@ -169,7 +169,7 @@ private:
     }
 
     void read_geometry(std::size_t line) {
-        Geometry geometry;
+        scene::Geometry geometry;
         geometry.id = take_id("the geometry's id");
         std::size_t normals_line = 0, texcoords_line = 0, triangles_line = 0;
         const BlockMember members[] = {
@@ -224,7 +224,7 @@ private:
         parts_.geometries.push_back(std::move(geometry));
     }
 
-    NodeType take_node_type() {
+    scene::NodeType take_node_type() {
         const Token& token = tokens_.peek();
         for (const NodeKind& kind : kNodeKinds) {
             const bool by_word = token.kind == Token::Kind::word && token.text() == kind.keyword;
@@ -239,10 +239,10 @@ private:
     }
 
     void read_node(std::size_t line) {
-        SceneParts::PartNode part;
+        scene::SceneParts::PartNode part;
         References references;
         part.line = line;
-        Node& node = part.node;
+        scene::Node& node = part.node;
         node.id = take_id("the node's id");
         node.name = tokens_.take_string("the node's name");
         node.type = take_node_type();
@@ -252,11 +252,11 @@ private:
             {"active", [&] { node.active = tokens_.take_flag("active"); }},
             {"matrix", [&] { read_matrix(node.matrix); }},
         };
-        if (node.type == NodeType::assembly || node.type == NodeType::geometry)
+        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry)
             members.push_back({"hinge", [&] { read_hinge(node.hinge.emplace()); }});
         add_members_of_type(node, references, members);
         read_members("node " + std::to_string(node.id), members);
-        if (node.type == NodeType::sound)
+        if (node.type == scene::NodeType::sound)
             notice(line, "node " + std::to_string(node.id) + " is a sound and was kept as a group");
         parts_.nodes.push_back(std::move(part));
         references_.push_back(references);
@@ -274,7 +274,7 @@ private:
             throw ParseError(line, "expected 0 0 0 1 as the matrix's last row, found another");
     }
 
-    void read_hinge(Hinge& hinge) {
+    void read_hinge(scene::Hinge& hinge) {
         const std::size_t line = tokens_.line();
         hinge.axis = take_point("the hinge's axis");
         if (hinge.axis == glm::dvec3(0))
@@ -282,24 +282,24 @@ private:
         hinge.degrees = tokens_.take_number("the hinge's degrees", -360, 360);
     }
 
-    void add_members_of_type(Node& node, References& references, std::vector<BlockMember>& members) {
+    void add_members_of_type(scene::Node& node, References& references, std::vector<BlockMember>& members) {
         const auto material = [&] { references.material = take_id("the material's id"); };
         switch (node.type) {
-            case NodeType::geometry:
-                node.data = GeometryData{};
+            case scene::NodeType::geometry:
+                node.data = scene::GeometryData{};
                 members.push_back({"geometry", [&] { references.geometry = take_id("the geometry's id"); }});
                 members.push_back({"material", material});
                 break;
-            case NodeType::camera: {
-                auto& camera = node.data.emplace<CameraData>();
+            case scene::NodeType::camera: {
+                auto& camera = node.data.emplace<scene::CameraData>();
                 members.push_back({"eye", [&] { camera.eye = take_point("the eye"); }});
                 members.push_back({"focus", [&] { camera.focus = take_point("the focus"); }});
                 members.push_back({"up", [&] { camera.up = take_point("up"); }});
                 members.push_back({"fov", [&] { camera.fov = tokens_.take_number("fov", 1, 170); }});
                 break;
             }
-            case NodeType::light: {
-                auto& light = node.data.emplace<LightData>();
+            case scene::NodeType::light: {
+                auto& light = node.data.emplace<scene::LightData>();
                 members.push_back({"type", [&] { light.type = take_light_type(); }});
                 members.push_back({"color", [&] { light.color = take_color("color"); }});
                 members.push_back({"attenuation", [&] {
@@ -310,16 +310,16 @@ private:
                 members.push_back({"angle", [&] { light.angle = tokens_.take_number("angle", 0, 180); }});
                 break;
             }
-            case NodeType::switch_: {
-                auto& data = node.data.emplace<SwitchData>();
+            case scene::NodeType::switch_: {
+                auto& data = node.data.emplace<scene::SwitchData>();
                 members.push_back({"active-child", [&] {
                                        data.active_child = static_cast<int>(
                                            tokens_.take_integer("active-child", -2, 1 << 30));
                                    }});
                 break;
             }
-            case NodeType::lod: {
-                auto& data = node.data.emplace<LodData>();
+            case scene::NodeType::lod: {
+                auto& data = node.data.emplace<scene::LodData>();
                 members.push_back({"ranges", [&] {
                                        while (tokens_.peek().kind == Token::Kind::number)
                                            data.ranges.push_back(
@@ -327,8 +327,8 @@ private:
                                    }});
                 break;
             }
-            case NodeType::background: {
-                auto& data = node.data.emplace<BackgroundData>();
+            case scene::NodeType::background: {
+                auto& data = node.data.emplace<scene::BackgroundData>();
                 members.push_back({"material", material});
                 members.push_back({"cube-map", [&] {
                                        auto& faces = data.cube_map.emplace();
@@ -337,27 +337,28 @@ private:
                                    }});
                 break;
             }
-            case NodeType::assembly:
-            case NodeType::root:
-            case NodeType::sound:
+            case scene::NodeType::assembly:
+            case scene::NodeType::root:
+            case scene::NodeType::sound:
                 break;
         }
     }
 
-    LightData::Type take_light_type() {
+    scene::LightData::Type take_light_type() {
         const std::size_t line = tokens_.line();
         const std::string_view word = tokens_.take_word("point, directional or spot");
-        if (word == "point") return LightData::Type::point;
-        if (word == "directional") return LightData::Type::directional;
-        if (word == "spot") return LightData::Type::spot;
+        if (word == "point") return scene::LightData::Type::point;
+        if (word == "directional") return scene::LightData::Type::directional;
+        if (word == "spot") return scene::LightData::Type::spot;
         throw ParseError(line, "expected point, directional or spot, found '" + excerpt(word) + "'");
     }
 
     // --- after the last block
 
     template <class Ids>
-    static Index look_up(const Ids& ids, Id id, std::size_t line, Id node, const char* kind) {
-        if (id < 0) return kNone;
+    static scene::Index look_up(const Ids& ids, scene::Id id, std::size_t line, scene::Id node,
+                                const char* kind) {
+        if (id < 0) return scene::kNone;
         const auto found = ids.find(id);
         if (found == ids.end())
             throw ParseError(line, "expected " + std::string(kind) + " " + std::to_string(id) + " of node " +
@@ -369,11 +370,11 @@ private:
         for (std::size_t i = 0; i < references_.size(); ++i) {
             auto& [node, parent_id, line] = parts_.nodes[i];
             const References& ids = references_[i];
-            const Index material = look_up(material_ids_, ids.material, line, node.id, "material");
-            if (auto* data = std::get_if<GeometryData>(&node.data)) {
+            const scene::Index material = look_up(material_ids_, ids.material, line, node.id, "material");
+            if (auto* data = std::get_if<scene::GeometryData>(&node.data)) {
                 data->geometry = look_up(geometry_ids_, ids.geometry, line, node.id, "geometry");
                 data->material = material;
-            } else if (auto* background = std::get_if<BackgroundData>(&node.data)) {
+            } else if (auto* background = std::get_if<scene::BackgroundData>(&node.data)) {
                 background->material = material;
             }
         }
@@ -381,9 +382,9 @@ private:
 
     Tokenizer tokens_;
     const std::string& file_;
-    SceneParts parts_;
+    scene::SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
-    std::unordered_map<Id, Index, SaltedHash> material_ids_, geometry_ids_;
+    std::unordered_map<scene::Id, scene::Index, base::SaltedHash> material_ids_, geometry_ids_;
     Notices notices_;
 };
 
@@ -400,7 +401,7 @@ TextSource source_of(std::string_view text) {
             }};
 }
 
-TextSource source_of(FileReader& file) {
+TextSource source_of(base::FileReader& file) {
     return {static_cast<std::size_t>(file.size()), [&file](char* to, std::size_t count) {
                 if (!file.read(to, count)) throw CutShort();
             }};
@@ -434,13 +435,13 @@ PartsResult read_vrut_parts(std::string_view text, const std::string& file, cons
 
 PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) try {
     const std::string file = path.string();
-    auto reader = FileReader::open(path);
+    auto reader = base::FileReader::open(path);
     if (!reader) return tl::unexpected(file + ": " + reader.error());
     auto parts = parse_parts(source_of(*reader), file, progress, reading_threads());
     if (parts) read_textures(*parts, path, progress);
     return parts;
 } catch (const CutShort&) {
-    return tl::unexpected(path.string() + ": " + std::string(kCutShort));
+    return tl::unexpected(path.string() + ": " + std::string(base::kCutShort));
 }
 
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress) {
@@ -449,4 +450,4 @@ ReadResult read_vrut_text(std::string_view text, const std::string& file, const 
     return build_scene(*std::move(parts), file);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

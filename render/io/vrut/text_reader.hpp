@@ -4,7 +4,7 @@
 
 #include "io/read_scene.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
 /// The sentence is about the first fault of the text. No word, number or string may be longer than
@@ -22,4 +22,4 @@ PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress
 /// The same, as a scene without the pictures that it names.
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
 
-}  // namespace vrut
+}  // namespace vrut::io

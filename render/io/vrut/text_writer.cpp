@@ -7,7 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -24,13 +24,13 @@ public:
     VrutTextWriter(std::ostream& out, const std::vector<std::string>& pictures)
         : out_(out), pictures_(pictures) {}
 
-    void write(const Scene& scene, const std::string& comment) {
+    void write(const scene::Scene& scene, const std::string& comment) {
         text("vrut-text 1\n");
         write_comment(comment);
         text("unit").number(scene.unit()).text("\n");
-        for (const Material& material : scene.materials()) write_material(material);
-        for (const Geometry& geometry : scene.geometries()) write_geometry(geometry);
-        for (const Node& node : scene.nodes()) write_node(scene, node);
+        for (const scene::Material& material : scene.materials()) write_material(material);
+        for (const scene::Geometry& geometry : scene.geometries()) write_geometry(geometry);
+        for (const scene::Node& node : scene.nodes()) write_node(scene, node);
         flush();
     }
 
@@ -87,7 +87,7 @@ private:
         }
     }
 
-    void write_material(const Material& material) {
+    void write_material(const scene::Material& material) {
         text("\nmaterial").number(material.id).string(material.name);
         text("\n  ambient").numbers(material.ambient);
         text("  diffuse").numbers(material.diffuse);
@@ -108,11 +108,12 @@ private:
         for (const auto& row : rows) text("\n ").numbers(row);
     }
 
-    const std::string& picture(Index texture, const std::string& own) const {
-        return texture == kNone || pictures_.empty() ? own : pictures_[static_cast<std::size_t>(texture)];
+    const std::string& picture(scene::Index texture, const std::string& own) const {
+        return texture == scene::kNone || pictures_.empty() ? own
+                                                            : pictures_[static_cast<std::size_t>(texture)];
     }
 
-    void write_geometry(const Geometry& geometry) {
+    void write_geometry(const scene::Geometry& geometry) {
         text("\ngeometry").number(geometry.id);
         write_rows("vertices", geometry.positions);
         write_rows("normals", geometry.normals);
@@ -121,9 +122,9 @@ private:
         text("\nend\n");
     }
 
-    void write_node(const Scene& scene, const Node& node) {
-        text("\nnode").number(node.id).string(node.name).text(" ").text(name_of(node.type));
-        if (node.parent != kNone)
+    void write_node(const scene::Scene& scene, const scene::Node& node) {
+        text("\nnode").number(node.id).string(node.name).text(" ").text(scene::name_of(node.type));
+        if (node.parent != scene::kNone)
             text("  parent").number(scene.nodes()[static_cast<std::size_t>(node.parent)].id);
         if (!node.active) text("  active 0");
         if (!is_identity(node.matrix)) {
@@ -139,46 +140,46 @@ private:
 
     // --- what nodes of each type hold
 
-    void write_material_of(const Scene& scene, Index material) {
-        if (material != kNone) text("  material").number(scene.material(material).id);
+    void write_material_of(const scene::Scene& scene, scene::Index material) {
+        if (material != scene::kNone) text("  material").number(scene.material(material).id);
     }
 
-    void write_data(const Scene&, const GroupData&) {}
+    void write_data(const scene::Scene&, const scene::GroupData&) {}
 
-    void write_data(const Scene& scene, const GeometryData& data) {
-        if (data.geometry != kNone)
+    void write_data(const scene::Scene& scene, const scene::GeometryData& data) {
+        if (data.geometry != scene::kNone)
             text("  geometry").number(scene.geometries()[static_cast<std::size_t>(data.geometry)].id);
         write_material_of(scene, data.material);
     }
 
-    void write_data(const Scene&, const CameraData& camera) {
+    void write_data(const scene::Scene&, const scene::CameraData& camera) {
         text("  eye").numbers(camera.eye).text("  focus").numbers(camera.focus);
         text("  up").numbers(camera.up).text("  fov").number(camera.fov);
     }
 
-    void write_data(const Scene&, const LightData& light) {
+    void write_data(const scene::Scene&, const scene::LightData& light) {
         constexpr std::string_view kNames[] = {"point", "directional", "spot"};
         text("  type ").text(kNames[static_cast<std::size_t>(light.type)]);
         text("  color").numbers(light.color).text("  attenuation").numbers(light.attenuation);
         text("  angle").number(light.angle);
     }
 
-    void write_data(const Scene&, const SwitchData& data) {
+    void write_data(const scene::Scene&, const scene::SwitchData& data) {
         text("  active-child").number(data.active_child);
     }
 
-    void write_data(const Scene&, const LodData& lod) {
+    void write_data(const scene::Scene&, const scene::LodData& lod) {
         if (lod.ranges.empty()) return;
         text("  ranges");
         for (const double range : lod.ranges) number(range);
     }
 
-    void write_data(const Scene& scene, const BackgroundData& background) {
+    void write_data(const scene::Scene& scene, const scene::BackgroundData& background) {
         write_material_of(scene, background.material);
         if (!background.cube_map) return;
         text("  cube-map");
         for (std::size_t i = 0; i < 6; ++i)
-            string(picture(background.cube_textures ? (*background.cube_textures)[i] : kNone,
+            string(picture(background.cube_textures ? (*background.cube_textures)[i] : scene::kNone,
                            (*background.cube_map)[i]));
     }
 
@@ -189,9 +190,9 @@ private:
 
 }  // namespace
 
-void write_vrut_text(const Scene& scene, std::ostream& out, const std::string& comment,
+void write_vrut_text(const scene::Scene& scene, std::ostream& out, const std::string& comment,
                      const std::vector<std::string>& pictures) {
     VrutTextWriter(out, pictures).write(scene, comment);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

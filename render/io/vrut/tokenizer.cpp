@@ -4,7 +4,7 @@
 #include <charconv>
 #include <utility>
 
-namespace vrut {
+namespace vrut::io {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::size_t Tokenizer::take_count(std::string_view what, std::size_t bytes_each)
     return count;
 }
 
-}  // namespace vrut
+}  // namespace vrut::io

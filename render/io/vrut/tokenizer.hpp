@@ -10,7 +10,7 @@
 
 #include "io/vrut/lexer.hpp"
 
-namespace vrut {
+namespace vrut::io {
 
 /// What is wrong with a text and where; caught by the reader, which knows the file's name.
 struct ParseError : std::runtime_error {
@@ -100,4 +100,4 @@ inline std::int64_t Tokenizer::take_integer(std::string_view what, std::int64_t 
     fail_outside(what, min, max);
 }
 
-}  // namespace vrut
+}  // namespace vrut::io
