@@ -4,7 +4,6 @@
 
 #include "gl/passes/drawing.hpp"
 #include "math/sample_sequence.hpp"
-#include "plan/projection.hpp"
 #include "scene/colors.hpp"
 
 namespace vrut::gl {
@@ -22,7 +21,9 @@ glm::dmat4 clip_of(const plan::RenderJob& job) {
     const plan::View& view = job.view;
     const double near =
         scene::fit_clip_range(view.camera, view.scene ? view.scene->bounds : math::Bounds()).near;
-    return plan::reversed_clip_from_view(view, near, math::sample_offset(job.samples, view.samples));
+    const glm::dvec2 offset = math::sample_offset(job.samples, view.samples);  // pixels, y down
+    return math::reversed_clip_from_view(plan::projection_of(view), near,
+                                         glm::dvec2(-2, 2) * offset / glm::dvec2(view.width, view.height));
 }
 
 }  // namespace
@@ -82,7 +83,7 @@ CameraMatrices SampleDrawing::camera_in(const plan::MirrorItem* mirror) const {
                   : camera_;
 }
 
-plan::PixelBox SampleDrawing::full_viewport() const {
+math::PixelBox SampleDrawing::full_viewport() const {
     return {{0, 0}, {targets_->image_target->width(), targets_->image_target->height()}};
 }
 
@@ -117,7 +118,7 @@ bool SampleDrawing::execute(const plan::DrawCommand& command, StepContext& step)
 }
 
 std::span<const plan::DrawItem> SampleDrawing::next_batch(const plan::DrawCommand& command,
-                                                          const plan::PixelBox& box,
+                                                          const math::PixelBox& box,
                                                           StepContext& step) const {
     return step.budget.next_batch(command.items.subspan(item_), *step.scene->scene(), camera_.clip_from_view,
                                   box, full_viewport().high,

@@ -73,9 +73,9 @@ private:
     void find_mirrors(const plan::DrawCommand& command, StepContext& step);
     void open(const plan::MirrorItem& mirror, StepContext& step);
     bool is_hidden(const plan::MirrorItem* mirror) const;
-    std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const plan::PixelBox& box,
+    std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const math::PixelBox& box,
                                                StepContext& step) const;
-    plan::PixelBox full_viewport() const;
+    math::PixelBox full_viewport() const;
     CameraMatrices camera_in(const plan::MirrorItem* mirror) const;
 
     std::weak_ptr<const plan::FramePlanner> planner_;

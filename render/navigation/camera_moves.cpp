@@ -47,7 +47,7 @@ scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, do
     const double extent = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
     const double radius = std::max(extent, closest_at(bounds.center()));
     const double half_fov = camera.fov * scene::kRadiansPerDegree / 2;
-    const double half_width = std::atan(std::tan(half_fov) * aspect);
+    const double half_width = std::atan(scene::projection_of(camera, aspect).right);
     scene::Camera result = camera;
     const glm::dvec3 view = scene::view_direction(camera);
     result.focus = result.center = bounds.center();
@@ -83,8 +83,7 @@ scene::Camera rotated(const scene::Camera& camera, double right, double down, bo
 
 scene::Camera panned(const scene::Camera& camera, double right, double down) {
     if (right == 0 && down == 0) return camera;
-    const double height =
-        2 * scene::focus_distance(camera) * std::tan(camera.fov * scene::kRadiansPerDegree / 2);
+    const double height = scene::focus_distance(camera) * scene::projection_of(camera, 1).height();
     const glm::dvec3 shift = (camera.up * down - scene::right_direction(camera) * right) * height;
     scene::Camera result = camera;
     result.eye += shift;

@@ -94,9 +94,8 @@ private:
 bool is_beyond_near_plane(const math::Bounds& in_view, const View& view) {
     const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near * (1 + kNearMargin);
     if (-in_view.max.z > near) return true;
-    const double half = std::tan(view.camera.fov * scene::kRadiansPerDegree / 2);
-    const double aspect = static_cast<double>(view.width) / view.height;
-    const double corner = near * std::sqrt(1 + half * half * (1 + aspect * aspect));
+    const math::Projection sides = projection_of(view);
+    const double corner = near * glm::length(glm::dvec3(sides.right, sides.top, 1));
     return glm::length(glm::clamp(glm::dvec3(0), in_view.min, in_view.max)) > corner;
 }
 
@@ -121,12 +120,12 @@ double max_screen_space_scale(const glm::dmat4& view_from_node, const math::Boun
     if (!(depth > 0)) return std::numeric_limits<double>::infinity();
     // A step s at depth z and at an angle a to the line of sight is seen no longer than s / (z cos a): it is
     // longest at right angles to the ray, in the plane of both.
-    const double half = std::tan(view.camera.fov * scene::kRadiansPerDegree / 2);
-    const glm::dvec2 corner = half * glm::dvec2(static_cast<double>(view.width) / view.height, 1);
+    const math::Projection sides = projection_of(view);
+    const glm::dvec2 corner(sides.right, sides.top);
     const glm::dvec2 aside = glm::min(
         glm::max(glm::abs(glm::dvec2(in_view.min)), glm::abs(glm::dvec2(in_view.max))) / depth, corner);
     const double obliquity = std::sqrt(1 + glm::dot(aside, aside));
-    return max_scale(glm::dmat3(view_from_node)) * obliquity * view.height / (2 * half * depth);
+    return max_scale(glm::dmat3(view_from_node)) * obliquity * view.height / (sides.height() * depth);
 }
 
 void select_levels(FramePlan& plan, const View& view) {

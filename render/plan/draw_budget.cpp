@@ -19,15 +19,15 @@ std::int64_t cost_of(const DrawItem& item, const scene::Geometry& geometry, bool
 }  // namespace
 
 std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
-                                                 const glm::dmat4& clip_from_view, const PixelBox& box,
+                                                 const glm::dmat4& clip_from_view, const math::PixelBox& box,
                                                  const glm::ivec2& viewport,
                                                  const std::function<bool(const DrawItem&)>& is_uploaded) {
     std::size_t count = 0;
     for (; count < items.size() && !is_spent(); ++count) {
         const DrawItem& item = items[count];
         const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
-        const PixelBox covered =
-            intersection(pixel_box(geometry.bounds, clip_from_view * item.view_from_node, viewport), box);
+        const math::PixelBox covered = math::intersection(
+            pixel_box(geometry.bounds, clip_from_view * item.view_from_node, viewport), box);
         if (!covered.empty()) spend_pixels(std::int64_t{covered.size().x} * covered.size().y);
         spend(cost_of(item, geometry, is_uploaded(item)));
     }

@@ -22,7 +22,7 @@ public:
     /// The first of `items`, as many as may be drawn within `box`: one at least if it is not spent.
     /// `is_uploaded` says whether an item's geometry is on the GPU already.
     std::span<const DrawItem> next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
-                                         const glm::dmat4& clip_from_view, const PixelBox& box,
+                                         const glm::dmat4& clip_from_view, const math::PixelBox& box,
                                          const glm::ivec2& viewport,
                                          const std::function<bool(const DrawItem&)>& is_uploaded);
 

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <optional>
 
+#include "math/frustum.hpp"
 #include "plan/detail_plan.hpp"
 #include "plan/draw_budget.hpp"
-#include "plan/frustum.hpp"
 #include "plan/mirror_plan.hpp"
 #include "plan/transparency_cache.hpp"
 #include "plan/transparency_plan.hpp"
@@ -127,17 +127,17 @@ std::vector<DrawItem> extract(std::vector<DrawItem>& items, const std::vector<bo
 
 /// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
 /// pixels of the picture.
-Frustum frustum_of(const View& view, double margin) {
-    return frustum_of(view.camera, static_cast<double>(view.width) / view.height,
-                      ndc_with_margin(view.width, view.height, margin));
+math::Frustum frustum_of(const View& view, double margin) {
+    return math::frustum_of(
+        math::cropped(projection_of(view), math::ndc_with_margin(view.width, view.height, margin)));
 }
 
 void cull_frustum(std::vector<DrawItem>& items, const View& view) {
-    const Frustum frustum = frustum_of(view, 1);
+    const math::Frustum frustum = frustum_of(view, 1);
     const auto& geometries = view.scene->scene->geometries();
     std::erase_if(items, [&](const DrawItem& item) {
-        return is_outside(frustum, item.view_from_node,
-                          geometries[static_cast<std::size_t>(item.geometry)].bounds);
+        return math::is_outside(frustum, item.view_from_node,
+                                geometries[static_cast<std::size_t>(item.geometry)].bounds);
     });
 }
 
@@ -145,11 +145,11 @@ void cull_frustum(std::vector<DrawItem>& items, const View& view) {
 std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matrix) {
     std::vector<glm::dvec3> markers;
     if (!view.markers) return markers;
-    const Frustum frustum = frustum_of(view, marker_radius(view.height) + 1);
+    const math::Frustum frustum = frustum_of(view, marker_radius(view.height) + 1);
     for (const PlacedMarker& marker : *view.markers) {
         const glm::dvec3 point(view_matrix * glm::dvec4(marker.point, 1));
         if (!(glm::length(point) < scene::kMaxDrawDistance && point.z < 0)) continue;
-        if (!is_outside(frustum, glm::dmat4(1), {point, point})) markers.push_back(point);
+        if (!math::is_outside(frustum, glm::dmat4(1), {point, point})) markers.push_back(point);
     }
     std::stable_sort(markers.begin(), markers.end(),
                      [](const glm::dvec3& a, const glm::dvec3& b) { return a.z < b.z; });

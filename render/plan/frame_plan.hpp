@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "plan/projection.hpp"
+#include "math/pixel_box.hpp"
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
 
@@ -59,7 +59,7 @@ bool is_flattened(const glm::dmat4& view_from_node);
 struct MirrorItem {
     DrawItem surface;
     glm::dmat4 reflection{1};  ///< about its plane, in view space
-    PixelBox box;              ///< all that it can cover
+    math::PixelBox box;        ///< all that it can cover
     DrawLists reflected;
 };
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "plan/frustum.hpp"
+#include "math/frustum.hpp"
 #include "plan/transparency_plan.hpp"
 
 namespace vrut::plan {
@@ -112,11 +112,11 @@ void keep_largest(std::vector<MirrorCandidate>& mirrors) {
 }
 
 /// A pixel more on all sides: samples lie beside the pixels' centres.
-PixelBox box_of(const DrawItem& item, const scene::Scene& scene, const glm::dmat4& clip_from_view,
-                const glm::ivec2& viewport) {
-    const PixelBox box =
-        pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, viewport);
-    return intersection({box.low - 1, box.high + 1}, {{0, 0}, viewport});
+math::PixelBox box_of(const DrawItem& item, const scene::Scene& scene, const glm::dmat4& clip_from_view,
+                      const glm::ivec2& viewport) {
+    const math::PixelBox box =
+        math::pixel_box(geometry_of(scene, item).bounds, clip_from_view * item.view_from_node, viewport);
+    return math::intersection({box.low - 1, box.high + 1}, {{0, 0}, viewport});
 }
 
 bool are_coincident(const DrawItem& a, const DrawItem& b) {
@@ -148,14 +148,15 @@ std::optional<DrawItem> reflected(const DrawItem& item, const scene::Scene& scen
 std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const math::Plane& plane,
                                       std::span<const DrawItem> shown, const View& view) {
     const glm::dvec2 scale = 2.0 / glm::dvec2(view.width, view.height);
-    const NdcRect area{glm::dvec2(mirror.box.low) * scale - 1.0, glm::dvec2(mirror.box.high) * scale - 1.0};
-    const Frustum frustum = frustum_of(view.camera, static_cast<double>(view.width) / view.height, area);
+    const math::NdcRect area{glm::dvec2(mirror.box.low) * scale - 1.0,
+                             glm::dvec2(mirror.box.high) * scale - 1.0};
+    const math::Frustum frustum = math::frustum_of(math::cropped(projection_of(view), area));
     const scene::Scene& scene = *view.scene->scene;
     std::vector<DrawItem> items;
     for (const DrawItem& item : shown) {
         if (are_coincident(item, mirror.surface)) continue;
         const auto image = reflected(item, scene, plane, mirror.reflection);
-        if (image && !is_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
+        if (image && !math::is_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
             items.push_back(*image);
     }
     return items;
@@ -172,8 +173,8 @@ std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span
                                         const View& view) {
     const scene::Scene& scene = *view.scene->scene;
     const glm::ivec2 viewport(view.width, view.height);
-    const glm::dmat4 clip_from_view =
-        reversed_clip_from_view(view, scene::fit_clip_range(view.camera, view.scene->bounds).near);
+    const glm::dmat4 clip_from_view = math::reversed_clip_from_view(
+        projection_of(view), scene::fit_clip_range(view.camera, view.scene->bounds).near);
     std::vector<MirrorCandidate> chosen = candidates(opaque, scene, clip_from_view, viewport);
     if (chosen.empty()) return {};
     keep_largest(chosen);

@@ -76,6 +76,11 @@ struct View {
     bool operator==(const View&) const = default;
 };
 
+/// What the view's camera sees in its picture.
+inline math::Projection projection_of(const View& view) {
+    return scene::projection_of(view.camera, static_cast<double>(view.width) / view.height);
+}
+
 /// What a picture took.
 struct FrameStats {
     int passes = 0;

@@ -72,7 +72,7 @@ std::vector<Tracer::VisibleHit> Tracer::hits_at(const glm::dvec2& raster) const 
 RayDifferential Tracer::generate_ray(const glm::dvec2& raster) const {
     const glm::dvec3 view = scene::view_direction(view_.camera), right = scene::right_direction(view_.camera);
     const glm::dvec3 up = glm::cross(right, view);
-    const double pixel = 2 * std::tan(view_.camera.fov * scene::kRadiansPerDegree / 2) / view_.height;
+    const double pixel = plan::projection_of(view_).height() / view_.height;
     const glm::dvec3 way = view + right * ((raster.x - view_.width / 2.0) * pixel) +
                            up * ((view_.height / 2.0 - raster.y) * pixel);
     const double length = glm::length(way);

@@ -11,7 +11,6 @@
 #include "gl/passes/id_pass.hpp"
 #include "gl/sample_drawing.hpp"
 #include "plan/frame_plan.hpp"
-#include "plan/projection.hpp"
 #include "plan/transparency_cache.hpp"
 
 namespace vrut::renderer {
@@ -207,7 +206,7 @@ std::vector<scene::Index> Renderer::node_ids(const plan::View& view) {
         impl_->use_scene(view.scene->scene);
         const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near;
         return impl_->ids.draw(plan::visible_faces(view), *impl_->scene, view.width, view.height,
-                               plan::reversed_clip_from_view(view, near, glm::dvec2(0)));
+                               math::reversed_clip_from_view(plan::projection_of(view), near));
     });
 }
 

@@ -84,23 +84,14 @@ glm::dmat4 view_from_world(const Camera& camera) {
     return matrix;
 }
 
-glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& range) {
-    const double cotangent = 1 / std::tan(camera.fov * kRadiansPerDegree / 2);
-    const double depth = range.far - range.near;
-    glm::dmat4 matrix(0);
-    matrix[0][0] = cotangent / aspect;
-    matrix[1][1] = cotangent;
-    matrix[2][2] = -(range.far + range.near) / depth;
-    matrix[2][3] = -1;
-    matrix[3][2] = -2 * range.far * range.near / depth;
-    return matrix;
+math::Projection projection_of(const Camera& camera, double aspect) {
+    return math::symmetric_projection(camera.fov * kRadiansPerDegree, aspect);
 }
 
 glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dvec2& point) {
-    const double half = std::tan(camera.fov * kRadiansPerDegree / 2);
+    const glm::dvec2 at = projection_of(camera, aspect).at({point.x, -point.y});
     const glm::dvec3 view = view_direction(camera), right = right_direction(camera);
-    return glm::normalize(view + right * (point.x * half * aspect) -
-                          glm::cross(right, view) * (point.y * half));
+    return glm::normalize(view + right * at.x + glm::cross(right, view) * at.y);
 }
 
 std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node) {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "math/bounds.hpp"
+#include "math/projection.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::scene {
@@ -47,10 +48,11 @@ ClipRange fit_clip_range(const Camera& camera, const math::Bounds& bounds);
 
 /// Right-handed, view along −z.
 glm::dmat4 view_from_world(const Camera& camera);
-/// OpenGL's: clip z from −w to w. `aspect` is width / height.
-glm::dmat4 clip_from_view(const Camera& camera, double aspect, const ClipRange& range);
+/// What the camera sees in a picture of `aspect`, its width / height.
+math::Projection projection_of(const Camera& camera, double aspect);
 
-/// Unit direction from the eye through a point of the view: x and y from −1 (left, top) to 1 (right, bottom).
+/// Unit direction from the eye, in world space, through a point of a view of `aspect`: x and y from −1 (left,
+/// top) to 1 (right, bottom).
 glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dvec2& point);
 
 /// Where a camera node stands and looks now; none where its pose is no valid one.

@@ -314,8 +314,8 @@ protocol::FrameHeader header_of(const protocol::State& state, const plan::View& 
     header.camera.pose = state.camera;
     header.camera.pose.name.reset();  // of any length; the node's id says it
     header.camera.view_matrix = scene::view_from_world(view.camera);
-    header.camera.projection_matrix = scene::clip_from_view(
-        view.camera, static_cast<double>(view.width) / view.height, {state.camera.near, state.camera.far});
+    header.camera.projection_matrix =
+        math::clip_from_view(plan::projection_of(view), state.camera.near, state.camera.far);
     header.width = view.width;
     header.height = view.height;
     header.view = view_size;

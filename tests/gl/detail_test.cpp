@@ -8,7 +8,6 @@
 #include "io/read_scene.hpp"
 #include "mesh/detail_levels.hpp"
 #include "plan/detail_plan.hpp"
-#include "plan/projection.hpp"
 #include "renderer/renderer.hpp"
 #include "shapes.hpp"
 
@@ -232,7 +231,7 @@ TEST_CASE("no step in a part is seen longer than is said of it") {
     const math::Bounds box{{2, -1, -1}, {4, 1, 1}};
     const glm::dmat4 matrix = moved_by({0, 0, -6}) * turned_by(20, {0, 1, 0}) * scaled_by({1, 2, 0.5});
     const double most = plan::max_screen_space_scale(matrix, box, view);
-    const glm::dmat4 clip = plan::reversed_clip_from_view(view, 0.1);
+    const glm::dmat4 clip = math::reversed_clip_from_view(plan::projection_of(view), 0.1);
     const auto pixel = [&](const glm::dvec3& at) {
         const glm::dvec4 p = clip * matrix * glm::dvec4(at, 1);
         return glm::dvec2(p) / p.w * glm::dvec2(view.width, view.height) / 2.0;

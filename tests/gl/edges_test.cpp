@@ -30,7 +30,7 @@ Pixels pixels_of(const scene::Image& image, const glm::ivec3& color) {
 /// In pixels from the picture's top left.
 glm::dvec2 seen(const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+    const glm::dvec4 clip = math::clip_from_view(scene::projection_of(view.camera, aspect), 0.1, 100) *
                             scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     return {(clip.x / clip.w + 1) / 2 * view.width, (1 - clip.y / clip.w) / 2 * view.height};
 }

@@ -34,7 +34,7 @@ std::shared_ptr<const scene::PlacedScene> plate(double half = 3) {
 /// At the pixel nearest to where a point of the scene is seen.
 glm::ivec3 seen_at(const scene::Image& image, const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+    const glm::dvec4 clip = math::clip_from_view(scene::projection_of(view.camera, aspect), 0.1, 100) *
                             scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     return pixel_of(image, static_cast<int>((clip.x / clip.w + 1) / 2 * view.width),
                     static_cast<int>((1 - clip.y / clip.w) / 2 * view.height));

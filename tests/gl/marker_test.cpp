@@ -58,7 +58,7 @@ glm::dvec3 direction(std::mt19937& random) {
 /// The sign's colour at a point that is drawn somewhere in the picture.
 glm::ivec3 color_at(const scene::Image& image, const plan::View& view, const glm::dvec3& point) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dvec4 clip = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
+    const glm::dvec4 clip = math::clip_from_view(scene::projection_of(view.camera, aspect), 0.1, 100) *
                             scene::view_from_world(view.camera) * glm::dvec4(point, 1);
     const glm::dvec2 pixel{(clip.x / clip.w + 1) / 2 * view.width, (1 - clip.y / clip.w) / 2 * view.height};
     const int x = std::clamp(static_cast<int>(pixel.x), 0, view.width - 1);

@@ -518,8 +518,9 @@ TEST_CASE("the car, against the reference") {
 TEST_CASE("a picked point lies under its pixel") {
     const scene::Camera camera = navigation::home_camera(car().bounds, 1.5);
     const glm::ivec2 size(60, 40);
+    const scene::ClipRange range = scene::fit_clip_range(camera, car().bounds);
     const glm::dmat4 clip_from_world =
-        scene::clip_from_view(camera, 1.5, scene::fit_clip_range(camera, car().bounds)) *
+        math::clip_from_view(scene::projection_of(camera, 1.5), range.near, range.far) *
         scene::view_from_world(camera);
     int hits = 0;
     for (int y = 0; y < size.y; ++y) {

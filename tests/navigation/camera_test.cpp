@@ -173,7 +173,7 @@ TEST_CASE("the view matrix") {
 TEST_CASE("the projection matrix") {
     scene::Camera camera;
     camera.fov = 90;
-    const glm::dmat4 clip = scene::clip_from_view(camera, 2, {1, 3});
+    const glm::dmat4 clip = math::clip_from_view(scene::projection_of(camera, 2), 1, 3);
     const auto check = [&](const glm::dvec4& point, const glm::dvec4& expected) {
         CHECK(glm::distance(clip * point, expected) < 1e-14);
     };
@@ -184,7 +184,8 @@ TEST_CASE("the projection matrix") {
     check({2, -1, -1, 1}, {1, -1, -1, 1});  // a corner of the near plane
     check({6, 3, -3, 1}, {3, 3, 3, 3});     // and of the far one
     camera.fov = 60;
-    CHECK(scene::clip_from_view(camera, 1, {1, 3})[1][1] == doctest::Approx(std::sqrt(3.0)).epsilon(1e-15));
+    CHECK(math::clip_from_view(scene::projection_of(camera, 1), 1, 3)[1][1] ==
+          doctest::Approx(std::sqrt(3.0)).epsilon(1e-15));
 }
 
 TEST_CASE("a drag to the right turns the scene to the right, down tips its top towards the viewer") {

@@ -86,8 +86,9 @@ public:
 
     /// Where `point` is in the view, in CSS pixels from its top left.
     glm::dvec2 pixel_of(const glm::dvec3& point) const {
-        const glm::dvec4 clip = scene::clip_from_view(camera, context.width / context.height, {0.01, 100}) *
-                                (scene::view_from_world(camera) * glm::dvec4(point, 1));
+        const glm::dvec4 clip =
+            math::clip_from_view(scene::projection_of(camera, context.width / context.height), 0.01, 100) *
+            (scene::view_from_world(camera) * glm::dvec4(point, 1));
         return {(clip.x / clip.w + 1) / 2 * context.width, (1 - clip.y / clip.w) / 2 * context.height};
     }
     /// The point at the focus' depth that is seen there.

@@ -27,7 +27,7 @@ void set_cull_mode(const plan::DrawItem& item, bool front_only) {
     glFrontFace(item.mirrored ? GL_CW : GL_CCW);
 }
 
-void scissor(const plan::PixelBox& box) {
+void scissor(const math::PixelBox& box) {
     glScissor(box.low.x, box.low.y, std::max(box.size().x, 0), std::max(box.size().y, 0));
 }
 

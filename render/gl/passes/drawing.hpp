@@ -20,7 +20,7 @@ void set_up_drawing();
 void set_cull_mode(const plan::DrawItem& item, bool front_only = false);
 
 /// Nothing outside the box is drawn or cleared, while GL_SCISSOR_TEST is enabled.
-void scissor(const plan::PixelBox& box);
+void scissor(const math::PixelBox& box);
 
 /// With the current program; adds to the draws and triangles of `stats`.
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats);

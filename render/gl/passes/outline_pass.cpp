@@ -64,17 +64,17 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
-void use(const GlProgram& program, int width, const plan::PixelBox& box, const GlTexture& texture) {
+void use(const GlProgram& program, int width, const math::PixelBox& box, const GlTexture& texture) {
     glUseProgram(program.get());
     glUniform1i(width_at, width);
     glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
     glBindTextureUnit(0, texture.get());
 }
 
-plan::PixelBox box_of(const plan::DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
+math::PixelBox box_of(const plan::DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
                       const glm::ivec2& picture) {
     const math::Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-    return plan::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+    return math::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& s
     const int width = outline_width(target.height());
     box_ = {picture, {0, 0}};
     for (const plan::DrawItem& item : items) {
-        const plan::PixelBox box = box_of(item, scene, clip_from_view, picture);
+        const math::PixelBox box = box_of(item, scene, clip_from_view, picture);
         box_ = {glm::min(box_.low, box.low - width), glm::max(box_.high, box.high + width)};
     }
     box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
@@ -134,7 +134,7 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
         set_transform(item, geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
-        const plan::PixelBox box = box_of(item, scene, clip_from_view, picture);
+        const math::PixelBox box = box_of(item, scene, clip_from_view, picture);
         if (box.size().x > 2 || box.size().y > 2) continue;
         scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);

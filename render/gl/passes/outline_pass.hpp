@@ -34,7 +34,7 @@ private:
         GlFramebuffer covered_target, across_target;
     };
     std::optional<Mask> mask_;
-    plan::PixelBox box_;  ///< the outline, and all that it surrounds
+    math::PixelBox box_;  ///< the outline, and all that it surrounds
     SolidColorProgram solid_color_;
     GlProgram distance_program_, outline_program_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes

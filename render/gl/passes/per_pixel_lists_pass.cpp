@@ -58,11 +58,11 @@ void main() {
 
 /// Into so many parts of about the same size, one above the other, or beside it if the box is wider than
 /// high; fewer where there are not so many pixels.
-void split(const plan::PixelBox& box, std::uint64_t parts, std::vector<plan::PixelBox>& into) {
+void split(const math::PixelBox& box, std::uint64_t parts, std::vector<math::PixelBox>& into) {
     const int along = box.size().x > box.size().y ? 0 : 1, length = box.size()[along];
     const int count = static_cast<int>(std::min(parts, static_cast<std::uint64_t>(length)));
     for (int i = 0; i < count; ++i) {
-        plan::PixelBox& part = into.emplace_back(box);
+        math::PixelBox& part = into.emplace_back(box);
         part.low[along] = box.low[along] + length * i / count;
         part.high[along] = box.low[along] + length * (i + 1) / count;
     }
@@ -92,15 +92,15 @@ void PerPixelListsPass::release() {
 
 void PerPixelListsPass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
                               const glm::dmat4& clip_from_view, const glm::ivec2& picture,
-                              const plan::PixelBox& within) {
-    plan::PixelBox all{picture, {0, 0}};
+                              const math::PixelBox& within) {
+    math::PixelBox all{picture, {0, 0}};
     for (const plan::DrawItem& item : items) {
         const math::Bounds& bounds =
             scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-        const plan::PixelBox box = plan::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+        const math::PixelBox box = math::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
-    all = plan::intersection(all, within);
+    all = math::intersection(all, within);
     if (all.empty()) return;
     prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
     pending_boxes_.push_back(all);
@@ -147,7 +147,7 @@ void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size
 std::uint64_t PerPixelListsPass::composite(plan::FrameStats& stats) {
     GLuint fragment_count = 0;
     glGetNamedBufferSubData(fragments_.get(), 0, sizeof fragment_count, &fragment_count);
-    const plan::PixelBox box = pending_boxes_.back();
+    const math::PixelBox box = pending_boxes_.back();
     pending_boxes_.pop_back();
     if (const std::size_t most = max_fragments(pixels_);
         fragment_count <= most || box.size() == glm::ivec2(1))

@@ -21,10 +21,10 @@ public:
     /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
     /// composited, again and again while it is drawing.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
-               const glm::ivec2& picture, const plan::PixelBox& within);
+               const glm::ivec2& picture, const math::PixelBox& within);
     bool is_drawing() const { return !pending_boxes_.empty(); }
     /// The part of the picture for which items are collected.
-    const plan::PixelBox& box() const { return pending_boxes_.back(); }
+    const math::PixelBox& box() const { return pending_boxes_.back(); }
     /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
     /// `stats`.
     void collect(std::span<const plan::DrawItem> items, std::size_t first, GpuScene& scene,
@@ -49,7 +49,7 @@ private:
     void clear_lists() const;
     void blend(plan::FrameStats& stats);
 
-    std::vector<plan::PixelBox> pending_boxes_;  // the last one first
+    std::vector<math::PixelBox> pending_boxes_;  // the last one first
     std::size_t pixels_ = 0;
     GlBuffer fragments_, heads_;
     GlProgram composite_;

@@ -1,4 +1,4 @@
-#include "plan/frustum.hpp"
+#include "math/frustum.hpp"
 
 #include <doctest/doctest.h>
 
@@ -40,8 +40,9 @@ bool shows(std::vector<glm::dvec4> polygon) {
 
 bool shows(const scene::PlacedScene& placed, std::size_t node, const plan::View& view) {
     const double aspect = static_cast<double>(view.width) / view.height;
-    const glm::dmat4 clip_from_node = scene::clip_from_view(view.camera, aspect, {0.1, 100}) *
-                                      scene::view_from_world(view.camera) * placed.world[node];
+    const glm::dmat4 clip_from_node =
+        math::clip_from_view(scene::projection_of(view.camera, aspect), 0.1, 100) *
+        scene::view_from_world(view.camera) * placed.world[node];
     const auto& data = std::get<scene::GeometryData>(placed.scene->nodes()[node].data);
     const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data.geometry)];
     for (const glm::uvec3& triangle : geometry.triangles) {
@@ -83,16 +84,16 @@ TEST_CASE("what lies more than a pixel beside the picture, or behind the eye, is
 TEST_CASE("an area of the picture sees what shows there and no more") {
     const plan::View view = pixel_view(80, 60);
     const glm::dmat4 from_world = scene::view_from_world(view.camera);
-    const auto sees = [&](const plan::NdcRect& area, double left, double right) {
-        return !plan::is_outside(plan::frustum_of(view.camera, 80.0 / 60, area), from_world,
+    const auto sees = [&](const math::NdcRect& area, double left, double right) {
+        return !math::is_outside(math::frustum_of(math::cropped(plan::projection_of(view), area)), from_world,
                                  rectangle(left, 20, right, 30, view).bounds);
     };
-    const plan::NdcRect quarter{{0.5, -1}, {1, 1}};  // from pixel 60
+    const math::NdcRect quarter{{0.5, -1}, {1, 1}};  // from pixel 60
     CHECK(sees(quarter, 50, 61));
     CHECK_FALSE(sees(quarter, 50, 59.9));
     CHECK(sees(quarter, 79, 90));
     CHECK_FALSE(sees(quarter, 80.1, 90));
-    const plan::NdcRect strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
+    const math::NdcRect strip{{-0.25, -1}, {-0.2, 1}};  // pixels 30 to 32
     CHECK(sees(strip, 31.9, 40));
     CHECK_FALSE(sees(strip, 32.1, 40));
     CHECK_FALSE(sees(strip, 20, 29.9));

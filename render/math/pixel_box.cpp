@@ -1,24 +1,14 @@
-#include "plan/projection.hpp"
+#include "math/pixel_box.hpp"
 
-#include "scene/camera.hpp"
+#include <array>
 
-namespace vrut::plan {
-
-glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset) {
-    glm::dmat4 matrix =
-        scene::clip_from_view(view.camera, static_cast<double>(view.width) / view.height, {near, 2 * near});
-    matrix[2][0] = 2 * offset.x / view.width;
-    matrix[2][1] = -2 * offset.y / view.height;
-    matrix[2][2] = 0;
-    matrix[3][2] = near;
-    return matrix;
-}
+namespace vrut::math {
 
 PixelBox intersection(const PixelBox& a, const PixelBox& b) {
     return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
 }
 
-PixelBox pixel_box(const math::Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport) {
+PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport) {
     const glm::dvec2 size(viewport);
     glm::dvec2 low = size, high(0);
     const auto add = [&](const glm::dvec4& clip) {
@@ -28,7 +18,7 @@ PixelBox pixel_box(const math::Bounds& bounds, const glm::dmat4& clip_from_node,
         high = glm::max(high, pixel);
     };
     std::array<glm::dvec4, 8> clip{};
-    for (std::size_t i = 0; const glm::dvec3& corner : math::corners(bounds))
+    for (std::size_t i = 0; const glm::dvec3& corner : corners(bounds))
         clip[i++] = clip_from_node * glm::dvec4(corner, 1);
     // The edges of the box, cut where they come through the near plane: bits of their numbers tell corners.
     const auto behind_near = [](const glm::dvec4& p) { return p.w - p.z; };
@@ -43,4 +33,4 @@ PixelBox pixel_box(const math::Bounds& bounds, const glm::dmat4& clip_from_node,
     return {glm::ivec2(glm::floor(low)), glm::ivec2(glm::ceil(high))};
 }
 
-}  // namespace vrut::plan
+}  // namespace vrut::math

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+
+#include "math/bounds.hpp"
+#include "math/projection.hpp"
+
+namespace vrut::math {
+
+/// What a projection sees, in view space: the points before the eye with which no normal has a negative
+/// product. Without near and far.
+struct Frustum {
+    std::array<glm::dvec3, 5> normals;  ///< unit, pointing inwards: left, right, bottom, top, before the eye
+};
+Frustum frustum_of(const Projection& projection);
+
+/// True where the box, seen through an affine matrix, lies wholly beyond one of the frustum's planes, by more
+/// than float can be wrong about a position. Boxes before a corner of the picture may be missed.
+bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box);
+
+}  // namespace vrut::math
