@@ -12,15 +12,25 @@ namespace vrut::plan {
 class FramePlanner;
 
 /// An image of a view that is drawn in steps (Renderer::step). Between two steps it may wait while others are
-/// drawn, and it may outlive its renderer.
+/// drawn, it may outlive its renderer, and once it is whole it may go on to more samples.
 struct RenderJob {
-    /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again.
-    explicit RenderJob(View what, scene::Image buffer = {});
+    enum class Keep { image, samples };
+
+    /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again. With Keep::samples
+    /// it can go on once it is whole, even after one sample.
+    explicit RenderJob(View what, scene::Image buffer = {}, Keep what_to_keep = Keep::image);
+
+    /// Goes on to that many samples from those that are drawn: more than those, or as many. The image becomes
+    /// `buffer`, and is whole after a further step. The samples were kept.
+    void refine(int more_samples, scene::Image buffer);
 
     View view;
-    scene::Image image;               ///< of the view's size; its pixels once all samples are drawn
-    FrameStats stats;                 ///< of all steps so far
-    std::vector<std::uint32_t> sums;  ///< for each byte of the image, over the samples; empty for one sample
+    scene::Image image;  ///< of the view's size; its pixels once all samples are drawn
+    FrameStats stats;    ///< of all steps since it was begun or went on
+    Keep keep = Keep::image;
+    std::vector<std::uint8_t>
+        first;  ///< bytes of the first sample, while it is the only one and there may be others
+    std::vector<std::uint32_t> sums;  ///< for each byte of the image, over two samples or more; else empty
     int samples = 0;                  ///< drawn, of view.samples
     std::shared_ptr<FramePlanner> planner = nullptr;  ///< the renderer's, by which it knows this image
     // Copies would share one unfinished sample.
@@ -31,8 +41,11 @@ struct RenderJob {
     ~RenderJob() = default;
 };
 
-/// Adds a sample, given by the bytes of its pixels; where there is only one, they become the image, and
-/// `pixels` takes the image's memory. True if all samples are drawn: then the image holds their averages.
+/// Adds a sample, given by the bytes of its pixels, whose memory it may take in exchange for other. True if
+/// all samples are drawn.
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
+
+/// Makes the image the average of the samples: once all are drawn.
+void resolve_samples(RenderJob& job);
 
 }  // namespace vrut::plan

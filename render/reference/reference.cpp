@@ -21,7 +21,7 @@ void trace_row(const reference::Tracer& tracer, const plan::View& view, int row,
         const glm::dvec2 center(x + 0.5, y + 0.5);
         glm::dvec3 sum(0);
         for (int i = 0; i < view.samples; ++i)
-            sum += tracer.color_at(center + math::sample_offset(i, view.samples));
+            sum += tracer.color_at(center + math::sample_offset(static_cast<std::uint32_t>(i)));
         image.color[at] = sum / static_cast<double>(view.samples);
         image.node[at] = tracer.node_at(center);
     }

@@ -148,6 +148,10 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
 }
 
 bool Renderer::Impl::step(plan::RenderJob& job) {
+    if (job.samples > 0 && job.samples >= job.view.samples) {  // what is asked for was drawn before
+        resolve_samples(job);
+        return true;
+    }
     bool drawn = false;
     try {
         drawn = draw_or_fail([&] { return draw(job); });
@@ -159,6 +163,7 @@ bool Renderer::Impl::step(plan::RenderJob& job) {
     forget_sample_of(job);
     const Clock::time_point start = Clock::now();
     const bool whole = plan::add_sample(job, pixels);
+    if (whole) resolve_samples(job);
     job.stats.readback_ms += milliseconds_since(start);
     return whole;
 }

@@ -75,7 +75,7 @@ public:
         plan::View view = room.visible();
         view.width = size.width;
         view.height = size.height;
-        view.samples = engine::kRefinedSamples.front();
+        view.samples = samples_of(engine::Refinement::better);
         scene::Image image;
         plan::FrameStats stats;
         renderer_.render(view, image, stats);

@@ -197,14 +197,15 @@ ScheduleInput Engine::situation(base::Clock::time_point now) const {
     input.last_change = last_change_;
     if (renewal_) return input;  // there is nothing to draw with
     input.changed = !shows_present();
-    input.newest_samples = newest_.refined_samples;
+    input.newest = newest_.refinement;
+    input.slow_link = has_slow_link();
     input.encoder_free = encoder_.is_free();
     input.frame_under_way = frame_.has_value();
     input.snapshot_waits = !snapshots_.empty() && snapshot_encoder_.is_free();
     for (const auto& [name, client] : clients_) {
         if (!wants_newer(client) || has_failed()) continue;
         const base::Clock::time_point from = last_change_ + refined_delivery(client.wanted.link);
-        input.last_refinement_from = input.frame_wanted ? std::min(input.last_refinement_from, from) : from;
+        input.sharp_from = input.frame_wanted ? std::min(input.sharp_from, from) : from;
         input.frame_wanted = true;
     }
     return input;
@@ -218,7 +219,7 @@ std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& st
     }
     if (step.action == Action::wait) return step.until;
     const base::Clock::time_point begin = base::Clock::now();
-    if (step.action == Action::begin_frame) begin_frame(step.refined_samples);
+    if (step.action == Action::begin_frame) begin_frame(step.refinement);
     if (step.action != Action::draw_snapshot) {
         if (frame_) draw_frame();
     } else {
@@ -314,6 +315,7 @@ void Engine::use(const protocol::LevelTable& table) {
     for (const protocol::Level& level : table.levels)
         if (level.quality.level == protocol::Quality::Level::still) refined_levels_.push_back(level);
     if (frame_) give_up_frame();  // its level is of the table before
+    refining_.reset();
     in_flight_.clear();
     detail_.reset();
     scene_since_ = next_frame_;

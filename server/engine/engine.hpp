@@ -119,14 +119,14 @@ private:
         Picture picture;
         plan::View visible;
         protocol::Resize view_size;
-        int refined_samples = 0;  ///< 0: an interactive one
+        Refinement refinement = Refinement::none;  ///< none: an interactive one
         std::size_t level = 0;
-        plan::RenderJob rendering;
+        plan::RenderJob job;
     };
     struct Snapshot {
         room::PictureOrder order;
-        std::optional<plan::RenderJob> rendering = {};  ///< none: not begun
-        int losses = 0;                                 ///< of the context, while it was drawn
+        std::optional<plan::RenderJob> job = {};  ///< none: not begun
+        int losses = 0;                           ///< of the context, while it was drawn
     };
     /// The graphics driver is lost, and started again at a time.
     struct Renewal {
@@ -181,7 +181,8 @@ private:
     PictureSize present_size() const;
     void broadcast(const protocol::Loading& loading);
     std::map<std::string, Applied> applied() const;
-    void begin_frame(int refined_samples);
+    void begin_frame(Refinement refinement);
+    plan::RenderJob begin_job(plan::View view, Refinement refinement);
     void draw_frame();
     void finish_frame();
     void give_up_frame();
@@ -191,7 +192,7 @@ private:
 
     // --- what draws, and what fails in it
     enum class Drawn { part, whole, lost };
-    Drawn draw(plan::RenderJob& rendering);
+    Drawn draw(plan::RenderJob& job);
     void lose_renderer(const std::string& why);
     void renew_renderer();
     void show_arrived();
@@ -208,8 +209,8 @@ private:
     void notice(const std::string& sentence);
     void use(const protocol::LevelTable& table);
     void make_detail_levels();
-    bool is_small_refinement(int samples) const;
-    protocol::Quality refined_quality(int samples) const;
+    bool has_slow_link() const;
+    protocol::Quality refined_quality(Refinement refinement) const;
     std::size_t choose_level();
 
     void begin(const scenes::LoadedScene& scene);
@@ -245,7 +246,8 @@ private:
     std::map<std::string, Client> clients_;
     Scheduler scheduler_;
     std::optional<FrameUnderWay> frame_;
-    std::deque<Snapshot> snapshots_;  ///< in the order of their turns
+    std::optional<plan::RenderJob> refining_;  ///< of the newest frame, where the next can go on from it
+    std::deque<Snapshot> snapshots_;           ///< in the order of their turns
     EngineOutput output_;
     std::shared_ptr<const protocol::StateDocument> reported_;  ///< the newest document that output named
     PictureSize reported_size_;
@@ -258,7 +260,7 @@ private:
         std::int64_t frame = 0;
         plan::View visible;
         protocol::Resize view_size;
-        int refined_samples = 0;  ///< 0: an interactive one
+        Refinement refinement = Refinement::none;  ///< none: an interactive one
     } newest_, before_newest_;
     std::deque<std::int64_t> drawn_;  ///< numbers of the last frames
     std::int64_t next_frame_ = 1;

@@ -86,31 +86,32 @@ bool Engine::thin_lines() const {
            (state.renderer.show_selection && state.selection.node);
 }
 
-/// Over a slow link the first refinement is as small as the interactive frames.
-bool Engine::is_small_refinement(int samples) const {
-    return samples < kRefinedSamples.back() && refined_delivery(holders_link()) > base::Clock::duration{};
-}
+/// Whether a sharp frame is long on its way to who steers.
+bool Engine::has_slow_link() const { return refined_delivery(holders_link()) > base::Clock::duration{}; }
 
 /// With the error that the table has for such a picture.
-protocol::Quality Engine::refined_quality(int samples) const {
-    const protocol::Resize view_size = room_->view_size();
-    if (is_small_refinement(samples)) {
-        protocol::Quality quality =
-            quality_of(choice_->levels()[0].quality, view_size, pixel_budget_, thin_lines());
-        quality.level = protocol::Quality::Level::still;
-        quality.samples = samples;
-        quality.detail = 0;
-        quality.error.reset();
-        return quality;
+protocol::Quality Engine::refined_quality(Refinement refinement) const {
+    protocol::Quality quality = kRefined;
+    if (refinement == Refinement::small) quality = choice_->levels().front().quality;
+    // Over a slow link the first of full size is as coarsely encoded as the best interactive ones: it comes
+    // sooner.
+    if (refinement == Refinement::first && has_slow_link()) {
+        quality.jpeg_quality = choice_->levels().back().quality.jpeg_quality;
+        quality.subsampling = choice_->levels().back().quality.subsampling;
     }
-    protocol::Quality quality = quality_of(kRefined, view_size, pixel_budget_, thin_lines());
-    quality.samples = samples;
-    if (thin_lines()) return quality;
-    for (const protocol::Level& level : refined_levels_) {
-        quality.error = level.quality.error;
-        if (level.quality == quality) return quality;
-    }
+    quality = quality_of(quality, room_->view_size(), pixel_budget_, thin_lines());
+    quality.level = protocol::Quality::Level::still;
+    quality.samples = samples_of(refinement);
+    quality.detail = 0;
     quality.error.reset();
+    if (thin_lines()) return quality;
+    const auto same = [&](const protocol::Level& level) {
+        protocol::Quality known = level.quality;
+        known.error.reset();
+        return known == quality;
+    };
+    const auto level = std::find_if(refined_levels_.begin(), refined_levels_.end(), same);
+    if (level != refined_levels_.end()) quality.error = level->quality.error;
     return quality;
 }
 
@@ -129,12 +130,13 @@ std::size_t Engine::choose_level() {
 bool Engine::is_outdated(const FrameUnderWay& frame) const {
     const plan::View& now = room_->visible();
     if (scene_of(now) != scene_of(frame.visible)) return true;
-    return frame.refined_samples > 0 && (now != frame.visible || room_->view_size() != frame.view_size);
+    return frame.refinement != Refinement::none &&
+           (now != frame.visible || room_->view_size() != frame.view_size);
 }
 
 void Engine::give_up_frame() {
     ++metrics_.frames_interrupted;
-    encoder_.give_spare(std::move(frame_->rendering.image));
+    encoder_.give_spare(std::move(frame_->job.image));
     frame_.reset();
 }
 
@@ -144,13 +146,36 @@ std::map<std::string, Applied> Engine::applied() const {
     return applied;
 }
 
+/// Goes on from the newest frame where that shows the same. A frame of full size and full detail keeps its
+/// samples, an interactive one, too: its only sample is the first of the refined ones.
+plan::RenderJob Engine::begin_job(plan::View view, Refinement refinement) {
+    if (refining_) {
+        plan::RenderJob job = *std::move(refining_);
+        refining_.reset();
+        plan::View same =
+            view;  // but for the samples; levels of detail change nothing where all triangles are drawn
+        same.samples = job.view.samples;
+        same.levels = job.view.levels;
+        if (same == job.view && view.samples >= job.samples) {
+            job.refine(view.samples, encoder_.take_spare());
+            return job;
+        }
+    }
+    const bool goes_on = refinement == Refinement::first || refinement == Refinement::better ||
+                         (refinement == Refinement::none && view.detail == 0 &&
+                          PictureSize{view.width, view.height} ==
+                              picture_size(room_->view_size(), refined_quality(Refinement::first).scale));
+    return plan::RenderJob(std::move(view), encoder_.take_spare(),
+                           goes_on ? plan::RenderJob::Keep::samples : plan::RenderJob::Keep::image);
+}
+
 /// What is drawn is what stands here now, whatever comes in between two steps.
-void Engine::begin_frame(int refined_samples) {
+void Engine::begin_frame(Refinement refinement) {
     const protocol::Resize view_size = room_->view_size();
-    const bool still = refined_samples > 0;
+    const bool still = refinement != Refinement::none;
     const std::size_t level = still ? 0 : choose_level();
     const protocol::Quality quality =
-        still ? refined_quality(refined_samples)
+        still ? refined_quality(refinement)
               : quality_of(choice_->levels()[level].quality, view_size, pixel_budget_, thin_lines());
     const PictureSize size = picture_size(view_size, quality.scale);
     const plan::View visible = room_->visible();
@@ -167,16 +192,15 @@ void Engine::begin_frame(int refined_samples) {
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
     // A small one that shows something new delays nobody longer than an interactive frame.
-    if (still && (shows_present() || !is_small_refinement(refined_samples)))
-        picture.idle_since = last_change_;
+    if (still && (shows_present() || refinement != Refinement::small)) picture.idle_since = last_change_;
     picture.applied = applied();
     if (!still) {
         picture.header.frame = next_frame_;
         room_->remember(next_frame_++);  // with the camera as it is now
     }
     try {
-        frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refined_samples, level,
-                                     plan::RenderJob(std::move(view), encoder_.take_spare())});
+        frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refinement, level,
+                                     begin_job(std::move(view), refinement)});
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }
@@ -184,15 +208,14 @@ void Engine::begin_frame(int refined_samples) {
 
 void Engine::draw_frame() {
     try {
-        if (draw(frame_->rendering) == Drawn::whole) finish_frame();
+        if (draw(frame_->job) == Drawn::whole) finish_frame();
     } catch (const vrut::base::OutOfMemory& error) {
         const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
-        draw_smaller({frame.visible, frame.view_size},
-                     {frame.rendering.view.width, frame.rendering.view.height}, error.what());
+        draw_smaller({frame.visible, frame.view_size}, {frame.job.view.width, frame.job.view.height},
+                     error.what());
     } catch (const std::bad_alloc&) {
         const FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
-        draw_smaller({frame.visible, frame.view_size},
-                     {frame.rendering.view.width, frame.rendering.view.height},
+        draw_smaller({frame.visible, frame.view_size}, {frame.job.view.width, frame.job.view.height},
                      "there is no memory to draw it");
     } catch (const std::exception& error) {
         failed_ = Failed{frame_->visible, frame_->view_size};
@@ -204,26 +227,29 @@ void Engine::draw_frame() {
 void Engine::finish_frame() {
     FrameUnderWay frame = *std::exchange(frame_, std::nullopt);
     protocol::FrameHeader& header = frame.picture.header;
-    if (frame.refined_samples > 0) {
+    if (frame.refinement != Refinement::none) {
         header.frame = next_frame_;
         room_->remember(next_frame_++);
         // It shows what came meanwhile, too: that changed nothing.
         frame.picture.applied = applied();
     }
     before_newest_ = newest_;
-    newest_ = {header.frame, frame.visible, frame.view_size, frame.refined_samples};
+    newest_ = {header.frame, frame.visible, frame.view_size, frame.refinement};
     drawn_.push_back(header.frame);
     if (drawn_.size() > kFramesRemembered) drawn_.pop_front();
-    const plan::FrameStats& stats = frame.rendering.stats;
+    const plan::FrameStats& stats = frame.job.stats;
     header.timing.render_ms = stats.render_ms;
     header.timing.readback_ms = stats.readback_ms;
     count_frame(header, metrics_, stats_);
-    if (frame.refined_samples == 0) {
+    if (frame.refinement == Refinement::none) {
         in_flight_.push_back({header.frame, frame.level, pixels_of({header.width, header.height}),
                               stats.render_ms + stats.readback_ms});
         if (in_flight_.size() > kFramesRemembered) in_flight_.pop_front();
     }
-    encoder_.offer(std::move(frame.picture), std::move(frame.rendering.image));
+    encoder_.offer(std::move(frame.picture), std::move(frame.job.image));
+    refining_.reset();
+    if (frame.job.keep == plan::RenderJob::Keep::samples && frame.refinement != Refinement::sharp)
+        refining_ = std::move(frame.job);
 }
 
 /// The clients in turn. A snapshot is begun where those under way, the largest left out, take few pixels: a
@@ -234,12 +260,12 @@ std::deque<Engine::Snapshot>::iterator Engine::next_snapshot() {
     };
     double begun = 0, largest = 0;
     for (const Snapshot& snapshot : snapshots_) {
-        if (!snapshot.rendering) continue;
+        if (!snapshot.job) continue;
         begun += pixels(snapshot);
         largest = std::max(largest, pixels(snapshot));
     }
     return std::find_if(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& snapshot) {
-        return snapshot.rendering ||
+        return snapshot.job ||
                begun + pixels(snapshot) - std::max(largest, pixels(snapshot)) <= kPixelsUnderWay;
     });
 }
@@ -251,12 +277,12 @@ void Engine::draw_snapshot() {
     snapshots_.erase(next);
     Drawn drawn = Drawn::part;
     try {
-        if (!snapshot.rendering) {
+        if (!snapshot.job) {
             plan::View view = snapshot.order.view;
             view.samples = kRefined.samples;
-            snapshot.rendering.emplace(std::move(view), snapshot_encoder_.take_spare());
+            snapshot.job.emplace(std::move(view), snapshot_encoder_.take_spare());
         }
-        drawn = draw(*snapshot.rendering);
+        drawn = draw(*snapshot.job);
     } catch (const vrut::base::OutOfMemory& error) {
         return reject(snapshot, error.what());
     } catch (const std::bad_alloc&) {
@@ -280,12 +306,12 @@ void Engine::finish_snapshot(Snapshot snapshot) {
     picture.header = std::move(snapshot.order.header);
     picture.header.quality = kRefined;
     picture.header.quality.jpeg_quality = snapshot.order.jpeg_quality;
-    picture.header.timing.render_ms = snapshot.rendering->stats.render_ms;
-    picture.header.timing.readback_ms = snapshot.rendering->stats.readback_ms;
+    picture.header.timing.render_ms = snapshot.job->stats.render_ms;
+    picture.header.timing.readback_ms = snapshot.job->stats.readback_ms;
     picture.header.frame = next_frame_++;
     picture.format = snapshot.order.format;
     picture.client = snapshot.order.client;
-    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.rendering->image));
+    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.job->image));
 }
 
 }  // namespace vrut::server::engine

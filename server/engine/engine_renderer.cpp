@@ -21,13 +21,13 @@ constexpr std::int64_t kFewestPixels = 4096;  // of a live picture
 }  // namespace
 
 /// One step.
-Engine::Drawn Engine::draw(plan::RenderJob& rendering) {
-    const int samples = rendering.stats.samples;
-    const int readbacks = rendering.stats.readbacks;
+Engine::Drawn Engine::draw(plan::RenderJob& job) {
+    const int samples = job.stats.samples;
+    const int readbacks = job.stats.readbacks;
     try {
-        const bool whole = renderer_.step(rendering);
-        metrics_.samples_drawn += static_cast<std::uint64_t>(rendering.stats.samples - samples);
-        metrics_.readbacks += static_cast<std::uint64_t>(rendering.stats.readbacks - readbacks);
+        const bool whole = renderer_.step(job);
+        metrics_.samples_drawn += static_cast<std::uint64_t>(job.stats.samples - samples);
+        metrics_.readbacks += static_cast<std::uint64_t>(job.stats.readbacks - readbacks);
         if (renderer_.gl_objects) metrics_.gl_objects = static_cast<std::uint64_t>(renderer_.gl_objects());
         if (!whole) return Drawn::part;
         draws_ = true;

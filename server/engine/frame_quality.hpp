@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -28,8 +27,41 @@ inline bool fits(std::int64_t width, std::int64_t height, const PictureLimits& l
 /// Of an idle view. While it moves, its frames are of levels: see level_choice.hpp.
 inline constexpr protocol::Quality kRefined{protocol::Quality::Level::still,        1, 16, 0, 90,
                                             protocol::Quality::Subsampling::yuv444, {}};
-/// Samples of the frames that refine an idle view, in their order.
-inline constexpr std::array kRefinedSamples{4, kRefined.samples};
+/// How far an idle view is refined: by frames in this order, none while it moves.
+enum class Refinement {
+    none,
+    small,   ///< over a slow link only: of the size of the smallest interactive frames
+    first,   ///< full size, one sample
+    better,  ///< full size, some samples; not over a slow link, where it takes as long as the last one
+    sharp,   ///< kRefined
+};
+/// Samples of each pixel. Those of full size go on from each other: none is drawn twice.
+constexpr int samples_of(Refinement refinement) {
+    switch (refinement) {
+        case Refinement::none:
+        case Refinement::first:
+            return 1;
+        case Refinement::small:
+        case Refinement::better:
+            return 4;
+        case Refinement::sharp:
+            return kRefined.samples;
+    }
+    return 1;
+}
+/// The one behind `drawn`, which is not the last.
+constexpr Refinement next_refinement(Refinement drawn, bool slow_link) {
+    switch (drawn) {
+        case Refinement::none:
+            return slow_link ? Refinement::small : Refinement::first;
+        case Refinement::small:
+            return Refinement::first;
+        case Refinement::first:
+            return slow_link ? Refinement::sharp : Refinement::better;
+        default:
+            return Refinement::sharp;
+    }
+}
 
 /// What a picture of `level` is drawn and encoded with: as large as the view and the limits allow.
 /// `thin_lines`: never subsampled, since thin red lines would vanish. Of those, and of pictures that the

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/frame_quality.hpp"
-
 namespace vrut::server::engine {
 
 using Action = ScheduledStep::Action;
@@ -16,20 +14,18 @@ constexpr int kSnapshotPause = 4;  // times as long as a step of one
 
 ScheduledStep Scheduler::frame_step(const ScheduleInput& input) const {
     if (input.frame_under_way) return {Action::draw_frame};
-    const bool final_one = input.newest_samples == kRefinedSamples.back();
-    if (!input.frame_wanted || (!input.changed && final_one)) return {};
+    const Refinement drawn = input.changed ? Refinement::none : input.newest;
+    if (!input.frame_wanted || drawn == Refinement::sharp) return {};
     if (!input.encoder_free) return {};  // taking its next picture, the encoder wakes us
     const base::Clock::time_point quiet_at = input.last_change + kQuiet;
     if (input.now < quiet_at) {
         if (input.changed) return {Action::begin_frame};
-        return {Action::wait, 0, quiet_at};
+        return {Action::wait, Refinement::none, quiet_at};
     }
-    const int drawn = input.changed ? 0 : input.newest_samples;
-    const int samples =
-        *std::find_if(kRefinedSamples.begin(), kRefinedSamples.end(), [&](int step) { return step > drawn; });
-    if (samples == kRefinedSamples.back() && input.now < input.last_refinement_from)
-        return {Action::wait, 0, input.last_refinement_from};
-    return {Action::begin_frame, samples};
+    const Refinement next = next_refinement(drawn, input.slow_link);
+    if (next == Refinement::sharp && input.now < input.sharp_from)
+        return {Action::wait, Refinement::none, input.sharp_from};
+    return {Action::begin_frame, next};
 }
 
 ScheduledStep Scheduler::next(const ScheduleInput& input) const {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "base/clock.hpp"
+#include "engine/frame_quality.hpp"
 
 namespace vrut::server::engine {
 
@@ -14,11 +15,12 @@ struct ScheduleInput {
     base::Clock::time_point now;
     base::Clock::time_point last_change;  ///< of what is to be seen
     bool frame_wanted = false;            ///< a client may be sent a frame newer than the newest drawn
-    /// Before this time the last refinement is not drawn: on a slow link it would delay the next move.
-    base::Clock::time_point last_refinement_from{};
-    bool changed = false;      ///< the newest frame does not show what is to be seen now
-    int newest_samples = 0;    ///< of the newest frame if it is a refined one; else 0
-    bool encoder_free = true;  ///< a frame drawn now would not wait behind another
+    bool slow_link = false;               ///< a sharp frame is long on its way to the holder
+    /// Before this time no sharp frame is drawn: on a slow link it would delay the next move.
+    base::Clock::time_point sharp_from{};
+    bool changed = false;                  ///< the newest frame does not show what is to be seen now
+    Refinement newest = Refinement::none;  ///< of the newest frame
+    bool encoder_free = true;              ///< a frame drawn now would not wait behind another
     bool frame_under_way = false;
     bool snapshot_waits = false;  ///< and its encoder is free
 };
@@ -26,7 +28,7 @@ struct ScheduleInput {
 struct ScheduledStep {
     enum class Action { wait, begin_frame, draw_frame, draw_snapshot };
     Action action = Action::wait;
-    int refined_samples = 0;  ///< of the frame to begin; 0: an interactive one
+    Refinement refinement = Refinement::none;  ///< of the frame to begin; none: an interactive one
     /// When waiting: ask again then even if nothing happens; none: only when something does.
     std::optional<base::Clock::time_point> until = {};
 };

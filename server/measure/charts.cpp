@@ -231,13 +231,13 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
                                 [&](const Setting& setting) { return setting.detail == row.setting.detail; });
          }},
         {"antialiasing", "samples a pixel",
-         "Ringed: one sample while things move; " + std::to_string(engine::kRefinedSamples.front()) +
-             " and then " + std::to_string(engine::kRefinedSamples.back()) + " once they rest.",
+         "Ringed: one sample while things move; " + std::to_string(samples_of(engine::Refinement::better)) +
+             " and then " + std::to_string(samples_of(engine::Refinement::sharp)) + " once they rest.",
          kTime, [](const Row& row) { return std::to_string(row.setting.samples); },
          [](const Row& row) {
-             return row.setting.samples == 1 ||
-                    std::find(engine::kRefinedSamples.begin(), engine::kRefinedSamples.end(),
-                              row.setting.samples) != engine::kRefinedSamples.end();
+             return row.setting.samples == samples_of(engine::Refinement::first) ||
+                    row.setting.samples == samples_of(engine::Refinement::better) ||
+                    row.setting.samples == samples_of(engine::Refinement::sharp);
          }},
         {"jpeg", "JPEG",
          "Ringed: " + moving + ", and JPEG " + encoding_text(setting_of(engine::kRefined)) +

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <random>
 #include <set>
+#include <tuple>
 
 #include "engine/frame_quality.hpp"
 #include "engine/scheduler.hpp"
@@ -32,11 +33,13 @@ FrameRendererFactory renderer_that_waits(const std::atomic<double>& whole_ms) {
         FrameRenderer renderer{kRenderer, false, 16384, {}};
         renderer.step = [&whole_ms](plan::RenderJob& rendering) {
             const plan::View& view = rendering.view;
-            rendering.stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
-            std::this_thread::sleep_for(
-                std::chrono::duration<double, std::milli>(rendering.stats.render_ms / view.samples));
-            ++rendering.stats.samples;
-            if (++rendering.samples < view.samples) return false;
+            if (rendering.samples == 0 || rendering.samples < view.samples) {
+                rendering.stats.render_ms = whole_ms * view.width * view.height / (kSide * kSide);
+                std::this_thread::sleep_for(
+                    std::chrono::duration<double, std::milli>(rendering.stats.render_ms / view.samples));
+                ++rendering.stats.samples;
+                if (++rendering.samples < view.samples) return false;
+            }
             rendering.stats.readbacks = 1;
             rendering.image.resize(view.width, view.height);
             std::minstd_rand random;
@@ -211,14 +214,19 @@ TEST_CASE("who steers over a slow link sees where it ended at once, though other
 TEST_CASE("a whole picture that is held back on a slow link makes way for the view that moves again") {
     Drag drag{ends_of_table()};
     drag.move(1);
-    for (const bool still : {false, true}) {  // both are small, and tell of the link
-        std::this_thread::sleep_for(200ms);
-        CHECK((drag.client.wait_for("frame")["quality"]["level"] == "still") == still);
+    // Two are small, and tell of the link; the third has the whole size, and one sample.
+    for (const auto& [level, scale, takes] :
+         {std::tuple("moving", 0.25, 200ms), {"still", 0.25, 200ms}, {"still", 1.0, 3000ms}}) {
+        std::this_thread::sleep_for(takes);
+        const Json quality = drag.client.wait_for("frame")["quality"];
+        CHECK(quality["level"] == level);
+        CHECK(quality["scale"] == scale);
+        if (scale == 1) CHECK(quality["samples"] == 1);
         drag.client.grant();
     }
     const Metrics& metrics = drag.server.metrics();
-    CHECK(eventually([&] { return metrics.frames_encoded == 3; }, 60s));
-    CHECK(metrics.frames_sent == 2);  // the third takes longer than was thought
+    CHECK(eventually([&] { return metrics.frames_encoded == 4; }, 60s));
+    CHECK(metrics.frames_sent == 3);  // the fourth takes longer than was thought
     drag.move(0);
     CHECK(drag.client.wait_for("frame", 60s)["quality"]["level"] == "moving");
 }
@@ -326,6 +334,15 @@ TEST_CASE("the error that was measured is told with each picture") {
     CHECK_FALSE(drag.client.wait_for_still()["quality"].contains("error"));
 }
 
+TEST_CASE("an interactive frame at full accuracy is the first sample of the refined ones") {
+    Drag drag;
+    drag.change({{"quality", {{"preference", 1}}}});
+    CHECK(drag.moves(2)["scale"] == 1.0);
+    const std::uint64_t drawn = drag.server.metrics().samples_drawn;
+    CHECK(drag.client.wait_for_still()["quality"]["samples"] == 16);
+    CHECK(drag.server.metrics().samples_drawn == drawn + 15);
+}
+
 TEST_CASE("at rest nothing is drawn, read back or encoded, with and without grants") {
     Drag drag;
     const auto counted = [&] {
@@ -345,10 +362,10 @@ TEST_CASE("at rest nothing is drawn, read back or encoded, with and without gran
     const Json still = drag.client.wait_for_still();
     CHECK(still["quality"]["samples"] == 16);
     const auto drawn = counted();
-    CHECK(drawn[0] == before[0] + 2);
-    CHECK(drawn[3] == before[3] + 4 + 16);
-    CHECK(drawn[4] == before[4] + 2);
-    CHECK(drawn[5] == before[5] + 2);
+    CHECK(drawn[0] == before[0] + 3);
+    CHECK(drawn[3] == before[3] + 16);  // each goes on from the one before
+    CHECK(drawn[4] == before[4] + 3);
+    CHECK(drawn[5] == before[5] + 3);
     CHECK(drawn[6] > before[6]);
     // ...and then nothing more is, whoever waits.
     for (int i = 0; i < 2; ++i) drag.client.send({{"type", "frame"}});

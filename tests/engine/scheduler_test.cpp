@@ -31,7 +31,7 @@ TEST_CASE("nothing is drawn that nobody wants, or that has been drawn") {
     CHECK_FALSE(next(input).until.has_value());
 
     input = at(1000ms);
-    input.newest_samples = 16;
+    input.newest = Refinement::sharp;
     CHECK(next(input).action == Action::wait);
     CHECK_FALSE(next(input).until.has_value());
 }
@@ -40,7 +40,7 @@ TEST_CASE("a change is drawn at once, at rest again in full, in steps") {
     ScheduleInput input = at(0ms);
     input.changed = true;
     CHECK(next(input).action == Action::begin_frame);
-    CHECK(next(input).refined_samples == 0);
+    CHECK(next(input).refinement == Refinement::none);
 
     input.changed = false;  // the moving frame is drawn
     CHECK(next(input).action == Action::wait);
@@ -49,23 +49,25 @@ TEST_CASE("a change is drawn at once, at rest again in full, in steps") {
     CHECK(next(input).action == Action::wait);
     input.now = kStart + 150ms;
     CHECK(next(input).action == Action::begin_frame);
-    CHECK(next(input).refined_samples == 4);
-    input.newest_samples = 4;
-    CHECK(next(input).refined_samples == 16);
-    input.newest_samples = 16;
+    CHECK(next(input).refinement == Refinement::first);
+    input.newest = Refinement::first;
+    CHECK(next(input).refinement == Refinement::better);
+    input.newest = Refinement::better;
+    CHECK(next(input).refinement == Refinement::sharp);
+    input.newest = Refinement::sharp;
     CHECK(next(input).action == Action::wait);
 
     // What was still is no more.
     input.changed = true;
     input.last_change = input.now;
-    CHECK(next(input).refined_samples == 0);
+    CHECK(next(input).refinement == Refinement::none);
 }
 
 TEST_CASE("a change that nobody wanted to see is drawn in full when somebody comes later") {
     ScheduleInput input = at(151ms);
     input.changed = true;
-    input.newest_samples = 16;
-    CHECK(next(input).refined_samples == 4);
+    input.newest = Refinement::sharp;
+    CHECK(next(input).refinement == Refinement::first);
 }
 
 TEST_CASE("while a frame waits for the encoder none is drawn behind it") {
@@ -86,25 +88,39 @@ TEST_CASE("a frame that was begun is drawn on, whatever else there is") {
     CHECK(next(input).action == Action::draw_frame);
 }
 
-TEST_CASE("the last refinement waits until it may be sent, the first does not") {
+TEST_CASE(
+    "over a slow link a small frame comes first, then one of full size and one sample, and the sharp one "
+    "waits") {
     ScheduleInput input = at(1000ms);
-    input.last_refinement_from = kStart + 5s;
+    input.slow_link = true;
+    input.sharp_from = kStart + 5s;
     input.changed = true;
-    CHECK(next(input).refined_samples == 4);
+    CHECK(next(input).refinement == Refinement::small);
     input.changed = false;
-    input.newest_samples = 4;
+    input.newest = Refinement::small;
+    CHECK(next(input).refinement == Refinement::first);
+    input.newest = Refinement::first;
     CHECK(next(input).action == Action::wait);
     CHECK(next(input).until == kStart + 5s);
     input.now = kStart + 5s;
-    CHECK(next(input).refined_samples == 16);
+    CHECK(next(input).refinement == Refinement::sharp);
+}
+
+TEST_CASE("samples never become fewer from one frame of full size to the next") {
+    for (const bool slow : {false, true})
+        for (Refinement drawn = Refinement::first; drawn != Refinement::sharp;) {
+            const Refinement next = next_refinement(drawn, slow);
+            CHECK(samples_of(next) > samples_of(drawn));
+            drawn = next;
+        }
 }
 
 TEST_CASE("at rest snapshots are drawn while no frame is") {
     ScheduleInput input = at(1000ms);
     input.snapshot_waits = true;
-    input.newest_samples = 4;
+    input.newest = Refinement::better;
     CHECK(next(input).action == Action::begin_frame);
-    input.newest_samples = 16;
+    input.newest = Refinement::sharp;
     CHECK(next(input).action == Action::draw_snapshot);
     input.frame_wanted = false;
     input.changed = true;

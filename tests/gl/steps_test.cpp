@@ -56,6 +56,24 @@ TEST_CASE("an ordinary image takes a step for each sample") {
     CHECK(rendering.image.rgba == expected.rgba);
 }
 
+TEST_CASE(
+    "an image goes on to more samples from those that are drawn, and is the one that is drawn at once") {
+    RendererFixture studio;
+    plan::View view = view_of(much_glass(0.1), {1, 2, 5});
+    view.samples = 1;
+    plan::RenderJob job(view, {}, plan::RenderJob::Keep::samples);
+    for (const int samples : {1, 1, 4, 16}) {
+        CAPTURE(samples);
+        const int before = job.samples;
+        if (before > 0) job.refine(samples, {});
+        while (!studio.renderer().step(job)) CHECK(job.samples < samples);
+        CHECK(job.stats.samples == samples - before);
+        view.samples = samples;
+        CHECK(job.image.rgba == studio.draw(view.scene, view).rgba);
+        job.image = {};  // handed on
+    }
+}
+
 TEST_CASE("images that are drawn in turns are those that are drawn alone, and no sample is drawn twice") {
     RendererFixture studio;
     const auto scene = much_glass(0.1), other = much_glass(0.8);
