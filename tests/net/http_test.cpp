@@ -35,7 +35,7 @@ TEST_CASE("health and counters") {
     client.wait_for_still();
     const std::string metrics = http(server.port(), "GET", "/metrics").body;
     CHECK(metrics.find("\nvrut_preview_clients{role=\"control\"} 1\n") != std::string::npos);
-    CHECK(metrics.find("\nvrut_preview_frames_rendered_total{level=\"still\"} 2\n") != std::string::npos);
+    CHECK(metrics.find("\nvrut_preview_frames_rendered_total{level=\"still\"} 3\n") != std::string::npos);
 }
 
 TEST_CASE("where tokens are set, counters ask for one and the page does not") {
