@@ -12,6 +12,7 @@
 
 #include "gl/framebuffer.hpp"
 #include "gl/shader_program.hpp"
+#include "gl/shader_sources.hpp"
 
 namespace vrut::gl {
 
@@ -119,15 +120,9 @@ EGLContext create_context(EGLDisplay display, bool debug) {
 /// Draws a triangle over the left half of a small picture and looks at both halves.
 void check_drawing() {
     constexpr int kSize = 16;
-    constexpr std::string_view kVertex =
-        "#version 450 core\n"
-        "void main() { gl_Position = vec4(gl_VertexID == 1 ? -4 : 0, gl_VertexID == 0 ? -8 : gl_VertexID == "
-        "1 ? 0 : 8,"
-        " 0, 1); }";
-    constexpr std::string_view kFragment =
-        "#version 450 core\nout vec4 color; void main() { color = vec4(0.2, 0.4, 0.6, 1); }";
     Framebuffer framebuffer(kSize, kSize);
-    const GlProgram program = make_program(kVertex, kFragment);
+    const GlProgram program =
+        make_program(shader_source("check_drawing.vert"), shader_source("check_drawing.frag"));
     const GlVertexArray vertex_array = make_vertex_array();
     framebuffer.bind();
     glDisable(GL_CULL_FACE);

@@ -1,56 +1,15 @@
 #include "gl/passes/background_pass.hpp"
 
 #include <glm/gtc/type_ptr.hpp>
-#include <string>
 
 #include "gl/passes/drawing.hpp"
-#include "gl/passes/texture_filter.hpp"
+#include "gl/shader_sources.hpp"
 
 namespace vrut::gl {
 
 namespace {
 
 enum BackgroundUniform : GLint { pixel_at = 0, shift_at = 1, ray_scale_at = 2, world_from_view_at = 3 };
-
-constexpr std::string_view kVersion = "#version 450 core\n";
-
-// The sample's place goes from -1 to 1 over the view, and so does `shift`.
-constexpr std::string_view kSamplePosition = R"(
-layout(location = 0) uniform vec2 pixel;
-layout(location = 1) uniform vec2 shift;
-out vec4 color;
-
-vec2 sample_position() { return gl_FragCoord.xy * pixel - 1 + shift; }
-)";
-
-constexpr std::string_view kImageShader = R"(
-layout(binding = 0) uniform sampler2D image;
-
-void main() {
-    vec2 size = vec2(textureSize(image, 0)) / 2;
-    float level = mip_level(vec2(pixel.x * size.x, 0), vec2(0, pixel.y * size.y));
-    color = vec4(sample_level(image, sample_position() / 2 + 0.5, level).rgb, 1);
-}
-)";
-
-// A pixel's ray in view space is (x, y, -1).
-constexpr std::string_view kEnvironmentShader = R"(
-layout(location = 2) uniform vec2 ray_scale;
-layout(location = 3) uniform mat3 world_from_view;
-layout(binding = 0) uniform samplerCube environment_map;
-
-void main() {
-    vec2 step = pixel * ray_scale;
-    vec3 direction = world_from_view * vec3(sample_position() * ray_scale, -1);
-    color = vec4(sample_environment(environment_map, direction, world_from_view[0] * step.x, world_from_view[1] * step.y), 1);
-}
-)";
-
-GlProgram make(std::string_view shader) {
-    std::string fragment(kVersion);
-    for (const std::string_view part : {kTextureFilter, kSamplePosition, shader}) fragment += part;
-    return make_program(kScreenShader, fragment);
-}
 
 }  // namespace
 
@@ -62,7 +21,10 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
     }
     const bool has_environment = view.background.cube_map.has_value();
     GlProgram& program = has_environment ? environment_program_ : image_program_;
-    if (!program) program = make(has_environment ? kEnvironmentShader : kImageShader);
+    if (!program)
+        program = make_program(
+            shader_source("screen.vert"),
+            shader_source(has_environment ? "background_environment.frag" : "background_image.frag"));
     glUseProgram(program.get());
     // A sample that lies beside its pixel's centre has moved the projection.
     const glm::dmat4& clip = camera.clip_from_view;

@@ -1,17 +1,10 @@
 #pragma once
 
-#include <string_view>
-
 #include "gl/gpu_scene.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
 namespace vrut::gl {
-
-/// One triangle that holds the whole picture; its corners need no attributes.
-inline constexpr std::string_view kScreenShader = R"(#version 450 core
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3 : -1, gl_VertexID == 2 ? 3 : -1, 0, 1); }
-)";
 
 /// All that drawing changes, as each pass expects it: what was drawn before may have failed in its midst.
 void set_up_drawing();

@@ -4,6 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
+#include "gl/shader_sources.hpp"
 #include "scene/colors.hpp"
 
 namespace vrut::gl {
@@ -11,50 +12,6 @@ namespace vrut::gl {
 namespace {
 
 enum OutlineUniform : GLint { width_at = 0, color_at = 1, box_at = 2 };
-
-// What lies outside the box is of an earlier picture, or of none.
-constexpr std::string_view kRowDistanceShader = R"(#version 450 core
-layout(location = 0) uniform int width;
-layout(location = 2) uniform ivec4 box;
-layout(binding = 0) uniform sampler2D covered;
-out float across;
-
-bool is_covered(ivec2 at) {
-    return at.x >= box.x && at.x < box.z && texelFetch(covered, at, 0).r > 0.5;
-}
-
-void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    int found = 255;
-    for (int step = width; step >= 0; --step)
-        if (is_covered(here - ivec2(step, 0)) || is_covered(here + ivec2(step, 0))) found = step;
-    across = found / 255.0;
-}
-)";
-
-constexpr std::string_view kOutlineShader = R"(#version 450 core
-layout(location = 0) uniform int width;
-layout(location = 1) uniform vec3 outline_color;
-layout(location = 2) uniform ivec4 box;
-layout(binding = 0) uniform sampler2D measured;
-out vec4 color;
-
-int across(ivec2 at) {
-    return at.y >= box.y && at.y < box.w ? int(round(texelFetch(measured, at, 0).r * 255)) : 255;
-}
-
-void main() {
-    ivec2 here = ivec2(gl_FragCoord.xy);
-    if (across(here) == 0) discard;  // covered
-    int nearest = width * width + 1;
-    for (int step = -width; step <= width; ++step) {
-        int along = across(here + ivec2(0, step));
-        nearest = min(nearest, along * along + step * step);
-    }
-    if (nearest > width * width) discard;
-    color = vec4(outline_color, 1);
-}
-)";
 
 GlFramebuffer make_target(const GlTexture& texture) {
     GlFramebuffer framebuffer = make_framebuffer();
@@ -95,8 +52,8 @@ void OutlinePass::prepare(const Framebuffer& target) {
         mask_.emplace(target.width(), target.height());
     }
     if (empty_vertex_array_) return;
-    distance_program_ = make_program(kScreenShader, kRowDistanceShader);
-    outline_program_ = make_program(kScreenShader, kOutlineShader);
+    distance_program_ = make_program(shader_source("screen.vert"), shader_source("row_distance.frag"));
+    outline_program_ = make_program(shader_source("screen.vert"), shader_source("outline.frag"));
     empty_vertex_array_ = make_vertex_array();
 }
 

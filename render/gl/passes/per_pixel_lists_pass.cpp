@@ -5,56 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "gl/shader_sources.hpp"
+
 namespace vrut::gl {
 
 namespace {
-
-// After the lists' block. Takes the nearest few of the list, then those behind them, and so on, so that a
-// list of any length needs no more room than these.
-constexpr std::string_view kCompositeShader = R"(
-const int kAtOnce = 16;
-out vec4 color;
-
-bool is_nearer(uint a, uint b) {
-    float depth_a = fragments[a - 1].depth, depth_b = fragments[b - 1].depth;
-    if (depth_a != depth_b) return depth_a > depth_b;
-    uint order_a = fragments[a - 1].order, order_b = fragments[b - 1].order;
-    return order_a != order_b ? order_a > order_b : a > b;
-}
-
-void main() {
-    uint first = heads[head_index(ivec2(gl_FragCoord.xy))];
-    if (first == 0) discard;
-    vec3 sum = vec3(0);
-    float transmittance = 1;
-    uint done = 0;
-    uint nearest[kAtOnce];
-    for (int i = 0; i < kAtOnce; ++i) nearest[i] = 0;
-    int found;
-    do {
-        found = 0;
-        for (uint at = first; at != 0; at = fragments[at - 1].next) {
-            if (done != 0 && !is_nearer(done, at)) continue;
-            uint further = at;  // moves the others on, and the last one out
-            for (int i = 0; i < found; ++i) {
-                uint here = nearest[i];
-                bool passes = is_nearer(further, here);
-                nearest[i] = passes ? further : here;
-                further = passes ? here : further;
-            }
-            if (found < kAtOnce) nearest[found++] = further;
-        }
-        for (int i = 0; i < found; ++i) {
-            done = nearest[i];
-            vec4 own = vec4(unpackUnorm2x16(fragments[done - 1].red_green),
-                            unpackUnorm2x16(fragments[done - 1].blue_alpha));
-            sum += transmittance * own.rgb;
-            transmittance *= 1 - own.a;
-        }
-    } while (found == kAtOnce && transmittance > 1e-5);
-    color = vec4(sum, 1 - transmittance);
-}
-)";
 
 /// Into so many parts of about the same size, one above the other, or beside it if the box is wider than
 /// high; fewer where there are not so many pixels.
@@ -72,8 +27,7 @@ void split(const math::PixelBox& box, std::uint64_t parts, std::vector<math::Pix
 
 void PerPixelListsPass::prepare(std::size_t pixels) {
     if (!composite_) {
-        composite_ = make_program(kScreenShader, "#version 450 core\n" + std::string(kPerPixelLists) +
-                                                     std::string(kCompositeShader));
+        composite_ = make_program(shader_source("screen.vert"), shader_source("composite_lists.frag"));
         empty_vertex_array_ = make_vertex_array();
     }
     if (pixels == pixels_) return;

@@ -2,16 +2,17 @@
 
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <string>
+#include <string_view>
+#include <vector>
 
-#include "gl/passes/texture_filter.hpp"
+#include "gl/shader_sources.hpp"
 
 namespace vrut::gl {
 
 namespace {
 
 enum SurfaceUniform : GLint {
-    clip_from_view_at = 0,  // of SolidColorProgram; others find it in the sight's block
+    clip_from_view_at = 0,  // of SolidColorProgram; others find it in the view's block
     view_from_local_at = 1,
     normal_matrix_at = 2,
     solid_color_at = 3,
@@ -30,231 +31,13 @@ enum SurfaceUniform : GLint {
 constexpr GLuint kViewUniformsBinding = 0;
 constexpr GLuint kTextureUnit = 0, kEnvironmentUnit = 1;
 
-/// What holds for all surfaces of a sight, in view space; laid out as std140 has it.
+/// What holds for all surfaces of a view, in view space; laid out as std140 has it.
 struct ViewUniforms {
     glm::mat4 clip_from_view;
     glm::mat3x4 world_from_view;  // of directions
     glm::vec4 light_color, attenuation, light_position, light_direction;
     glm::vec4 cone;  // x, y: 1 - cos where the light is full, and where it ends
 };
-
-constexpr std::string_view kViewUniformsBlock = R"(
-layout(std140, binding = 0) uniform ViewUniforms {
-    mat4 clip_from_view;
-    mat3 world_from_view;
-    vec4 light_color, attenuation, light_position, light_direction;
-    vec4 cone;
-};
-)";
-
-// For the stage that evaluates it. The eye is the origin. After the sight's block, and what the light's kind
-// defines.
-constexpr std::string_view kPhong = R"(
-layout(location = 8) uniform float shininess;
-
-float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
-
-// smoothstep of the cosine. What it is short of 1 is half the square of a difference, which keeps its digits in
-// the narrowest cone.
-float in_cone(vec3 from_light) {
-    vec3 off = from_light - light_direction.xyz;
-    float t = clamp((cone.y - dot(off, off) / 2) / max(cone.y - cone.x, 1e-12), 0, 1);
-    return t * t * (3 - 2 * t);
-}
-
-// How much light the matte and the shiny part of a surface send to the eye, which is at a distance d.
-vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d) {
-#if defined(HEADLIGHT)
-    vec3 to_light = to_eye;
-    float intensity = attenuated(d);
-#elif defined(DIRECTIONAL)
-    vec3 to_light = -light_direction.xyz;
-    float intensity = 1;
-#else
-    vec3 light_offset = light_position.xyz - at;
-    float light_distance = length(light_offset);
-    vec3 to_light = light_offset / max(light_distance, 1e-30);
-    float intensity = attenuated(light_distance);
-#ifdef SPOT
-    intensity *= in_cone(-to_light);
-#endif
-#endif
-    float lambert = max(dot(to_light, n), 0);
-    float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
-    return lambert * intensity * vec2(1, pow(highlight, shininess));
-}
-)";
-
-// After the sight's block.
-constexpr std::string_view kVertexShader = R"(
-layout(location = 1) uniform mat4 view_from_local;
-layout(location = 2) uniform mat3 normal_matrix;
-#ifdef CLIPPED
-layout(location = 13) uniform vec4 clip_plane;
-out float gl_ClipDistance[1];
-#endif
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-#ifdef LIT_AT_VERTEX
-layout(location = 9) uniform bool two_sided;
-out vec2 light;
-#endif
-#ifdef NEEDS_NORMAL
-out vec3 view_position;
-out vec3 view_normal;
-#endif
-invariant gl_Position;  // one depth in all programs
-#ifdef TEXTURED
-layout(location = 2) in vec2 texcoord;
-out vec2 uv;
-#endif
-
-void main() {
-#ifdef CLIPPED
-    gl_ClipDistance[0] = dot(clip_plane, vec4(position, 1));
-#endif
-#ifdef TEXTURED
-    uv = texcoord;
-#endif
-    vec4 p = view_from_local * vec4(position, 1);
-    vec3 n = normal_matrix * normal;
-    float size = length(n);
-    n = size > 0 ? n / size : vec3(0);
-#ifdef NEEDS_NORMAL
-    view_position = p.xyz;
-    view_normal = n;
-#endif
-#ifdef LIT_AT_VERTEX
-    float d = max(length(p.xyz), 1e-30);
-    vec3 to_eye = -p.xyz / d;
-    if (size == 0) n = to_eye;  // a vertex knows no face
-    light = phong(p.xyz, two_sided && dot(n, to_eye) < 0 ? -n : n, to_eye, d);
-#endif
-    gl_Position = clip_from_view * p;
-}
-)";
-
-// After the sight's block, and what the shape and its light define.
-constexpr std::string_view kFragmentShader = R"(
-layout(location = 5) uniform vec3 base;
-layout(location = 6) uniform vec3 diffuse;
-layout(location = 7) uniform vec3 specular;
-#ifdef MIRROR
-layout(location = 10) uniform float reflectivity;
-layout(binding = 2) uniform sampler2D reflection;
-#endif
-#ifdef GLASS
-layout(location = 11) uniform float alpha;
-#endif
-#ifdef LAYERED
-layout(location = 12) uniform uint order;
-layout(early_fragment_tests) in;
-#else
-out vec4 color;
-#endif
-#ifdef LIT_AT_VERTEX
-in vec2 light;
-#endif
-#ifdef NEEDS_NORMAL
-layout(location = 9) uniform bool two_sided;
-in vec3 view_position;
-in vec3 view_normal;
-#endif
-#ifdef TEXTURED
-layout(binding = 0) uniform sampler2D image;
-in vec2 uv;
-#endif
-#ifdef ENVIRONMENT
-layout(location = 10) uniform float reflectivity;
-layout(binding = 1) uniform samplerCube environment_map;
-#endif
-
-#ifdef NEEDS_NORMAL
-vec3 normal_to(vec3 to_eye) {
-    vec3 n = view_normal;
-#ifdef EDGES
-    if (dot(n, n) < 1e-12) n = to_eye;
-#else
-    // A normal that vanishes (flattened parts, opposite neighbours) takes the face's, which faces the viewer.
-    vec3 across = dFdx(view_position), upwards = dFdy(view_position);
-    if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
-#endif
-    n = normalize(n);
-    return two_sided && dot(n, to_eye) < 0 ? -n : n;
-}
-#endif
-
-void main() {
-#ifdef NEEDS_NORMAL
-    float d = length(view_position);
-    vec3 to_eye = -view_position / d;
-    vec3 n = normal_to(to_eye);
-#endif
-#ifndef LIT_AT_VERTEX
-    vec2 light = phong(view_position, n, to_eye, d);
-#endif
-#ifdef TEXTURED
-    vec4 texel = sample_filtered(image, uv);
-    vec3 matte = texel.rgb;
-#else
-    vec3 matte = diffuse;
-#endif
-    vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
-#ifdef ENVIRONMENT
-    vec3 seen = world_from_view * reflect(-to_eye, n);
-    own = mix(own, sample_environment(environment_map, seen, dFdx(seen), dFdy(seen)), reflectivity);
-#endif
-#ifdef MIRROR
-    own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);
-#endif
-#if defined(GLASS) && defined(TEXTURED)
-    vec4 layer = vec4(own, 1) * (alpha * texel.a);
-#elif defined(GLASS)
-    vec4 layer = vec4(own, 1) * alpha;
-#endif
-#if defined(LAYERED)
-    append_fragment(layer, order);
-#elif defined(GLASS)
-    color = layer;
-#else
-    color = vec4(own, 1);
-#endif
-}
-)";
-
-// After kPerPixelLists. A layer without room is counted all the same.
-constexpr std::string_view kAppendFragment = R"(
-void append_fragment(vec4 own, uint order) {
-    uint number = atomicAdd(count, 1) + 1;
-    if (number > most) return;
-    uint next = atomicExchange(heads[head_index(ivec2(gl_FragCoord.xy))], number);
-    fragments[number - 1] =
-        Fragment(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
-}
-)";
-
-constexpr std::string_view kSolidColorVertexShader = R"(#version 450 core
-layout(location = 0) uniform mat4 clip_from_view;
-layout(location = 1) uniform mat4 view_from_local;
-layout(location = 0) in vec3 position;
-invariant gl_Position;
-
-void main() { gl_Position = clip_from_view * (view_from_local * vec4(position, 1)); }
-)";
-
-constexpr std::string_view kSolidColorFragmentShader = R"(#version 450 core
-layout(location = 3) uniform vec3 solid_color;
-out vec4 color;
-
-void main() { color = vec4(solid_color, 1); }
-)";
-
-constexpr std::string_view kNodeIdShader = R"(#version 450 core
-layout(location = 4) uniform int number;
-out int node;
-
-void main() { node = number; }
-)";
 
 void set(GLint location, const glm::vec3& value) { glUniform3fv(location, 1, glm::value_ptr(value)); }
 
@@ -313,24 +96,6 @@ void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
 
 }  // namespace
 
-const std::string_view kPerPixelLists = R"(
-struct Fragment {
-    uint next;  // in the same pixel; 0 for none
-    uint order;
-    float depth;  // reversed
-    uint red_green, blue_alpha;  // multiplied by alpha
-};
-layout(std430, binding = 0) buffer Fragments {
-    uint count, most, unused_0, unused_1;
-    Fragment fragments[];
-};
-layout(std430, binding = 1) buffer Lists {
-    ivec4 box;  // low corner and size
-    uint heads[];
-};
-int head_index(ivec2 pixel) { return (pixel.y - box.y) * box.z + pixel.x - box.x; }
-)";
-
 SurfacePrograms::LightKind SurfacePrograms::kind_of(const scene::Light& light, const CameraMatrices& camera) {
     // It stays at the true eye, which in a mirror is not the one that sees.
     const bool reflected = glm::determinant(glm::dmat3(camera.view_from_world)) < 0;
@@ -347,10 +112,10 @@ SurfacePrograms::LightKind SurfacePrograms::kind_of(const scene::Light& light, c
 }
 
 GlProgram SurfacePrograms::make(const ProgramKey& key) {
-    constexpr std::array<const char*, 4> kLights{"HEADLIGHT", "POINT", "DIRECTIONAL", "SPOT"};
-    std::string head = "#version 450 core\n";
-    const auto define = [&](bool wanted, const char* name) {
-        if (wanted) head += std::string("#define ") + name + "\n";
+    constexpr std::array<std::string_view, 4> kLights{"HEADLIGHT", "POINT", "DIRECTIONAL", "SPOT"};
+    std::vector<std::string_view> defines;
+    const auto define = [&](bool wanted, std::string_view name) {
+        if (wanted) defines.push_back(name);
     };
     define(true, kLights[static_cast<std::size_t>(key.light)]);
     define(key.kind == SurfaceKind::edges, "EDGES");
@@ -364,12 +129,7 @@ GlProgram SurfacePrograms::make(const ProgramKey& key) {
     const bool at_vertex = key.lit_at == plan::Methods::Lighting::vertex;
     define(at_vertex, "LIT_AT_VERTEX");
     define(!at_vertex || key.environment, "NEEDS_NORMAL");
-    head += kViewUniformsBlock;
-    std::string needed(key.textured || key.environment ? kTextureFilter : std::string_view());
-    if (layered) needed += std::string(kPerPixelLists) + std::string(kAppendFragment);
-    const std::string phong(kPhong), none;
-    return make_program(head + (at_vertex ? phong : none) + std::string(kVertexShader),
-                        head + (at_vertex ? none : phong) + needed + std::string(kFragmentShader));
+    return make_program(shader_source("surface.vert", defines), shader_source("surface.frag", defines));
 }
 
 void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene) {
@@ -410,14 +170,15 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
 }
 
 void SolidColorProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
-    if (!program_) program_ = make_program(kSolidColorVertexShader, kSolidColorFragmentShader);
+    if (!program_)
+        program_ = make_program(shader_source("solid_color.vert"), shader_source("solid_color.frag"));
     glUseProgram(program_.get());
     set_clip(clip_from_view);
     set(solid_color_at, glm::vec3(color));
 }
 
 void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
-    if (!program_) program_ = make_program(kSolidColorVertexShader, kNodeIdShader);
+    if (!program_) program_ = make_program(shader_source("solid_color.vert"), shader_source("node_id.frag"));
     glUseProgram(program_.get());
     set_clip(clip_from_view);
 }

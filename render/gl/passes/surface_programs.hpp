@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <string_view>
 #include <tuple>
 
 #include "gl/gpu_scene.hpp"
@@ -26,7 +25,7 @@ public:
         faces,
         edges,            ///< without sides: their normals are turned to the viewer
         glass,            ///< faces, their colour multiplied by alpha
-        per_pixel_glass,  ///< the same, into the lists of kPerPixelLists
+        per_pixel_glass,  ///< the same, into the lists of per_pixel_lists.glsl
         mirror,           ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
     };
     static constexpr GLuint kReflectionUnit = 2;
@@ -85,9 +84,7 @@ private:
     GlProgram program_;
 };
 
-/// Lists of the transparent layers at each pixel of a box: GLSL of a per_pixel_glass program and of one that
-/// reads them. Layers are numbered from 1.
-extern const std::string_view kPerPixelLists;
+/// The buffers of shaders/per_pixel_lists.glsl.
 inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
 
 /// With a per_pixel_glass program: at equal depth the higher order is in front.

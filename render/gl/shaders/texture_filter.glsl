@@ -1,13 +1,7 @@
-#pragma once
+// Textures of upload_texture() and upload_cube_map(), for fragment shaders. Bilinear where a pixel is smaller than a
+// texel, else trilinear at the level log2 of the pixel's longer side in texels. Drivers approximate that level, and the
+// mixing of two; so both are computed here.
 
-#include <string_view>
-
-namespace vrut::gl {
-
-/// For fragment shaders: textures of upload_texture() and upload_cube_map(). Bilinear where a pixel is
-/// smaller than a texel, else trilinear at the level log2 of the pixel's longer side in texels. Drivers
-/// approximate that level, and the mixing of two; so both are computed here.
-inline constexpr std::string_view kTextureFilter = R"(
 // Of a pixel whose sides, in texels, are these.
 float mip_level(vec3 across, vec3 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }
 float mip_level(vec2 across, vec2 up) { return mip_level(vec3(across, 0), vec3(up, 0)); }
@@ -37,6 +31,3 @@ vec3 sample_environment(samplerCube environment_map, vec3 direction, vec3 across
     vec3 at_finer = textureLod(environment_map, direction, finer).rgb;
     return mix(at_finer, textureLod(environment_map, direction, finer + 1).rgb, level - finer);
 }
-)";
-
-}  // namespace vrut::gl

@@ -1,0 +1,16 @@
+# Writes shader_sources() in C++: every stage of STAGES (shaders in FOLDER), with the files that it #includes in their place.
+# cmake -DFOLDER=... -DSTAGES=a.vert,b.frag -DOUTPUT=... -P embed_shaders.cmake
+set(cpp "#include \"gl/shader_sources.hpp\"\n\nnamespace vrut::gl {\n\n")
+string(APPEND cpp "std::span<const ShaderSource> shader_sources() {\n    static constexpr ShaderSource kSources[] = {\n")
+string(REPLACE "," ";" STAGES "${STAGES}")
+foreach(stage IN LISTS STAGES)
+    file(READ ${FOLDER}/${stage} source)
+    while(source MATCHES "#include \"([^\"]+)\"\n")
+        set(line "${CMAKE_MATCH_0}")
+        file(READ ${FOLDER}/${CMAKE_MATCH_1} included)
+        string(REPLACE "${line}" "${included}" source "${source}")
+    endwhile()
+    string(APPEND cpp "        {\"${stage}\", R\"glsl(${source})glsl\"},\n")
+endforeach()
+string(APPEND cpp "    };\n    return kSources;\n}\n\n}  // namespace vrut::gl\n")
+file(WRITE ${OUTPUT} "${cpp}")

@@ -1,0 +1,104 @@
+#version 450 core
+#include "view_uniforms.glsl"
+#ifndef LIT_AT_VERTEX
+#include "phong.glsl"
+#endif
+#if defined(TEXTURED) || defined(ENVIRONMENT)
+#include "texture_filter.glsl"
+#endif
+#ifdef LAYERED
+#include "per_pixel_lists.glsl"
+
+// A layer without room is counted all the same.
+void append_fragment(vec4 own, uint order) {
+    uint number = atomicAdd(count, 1) + 1;
+    if (number > most) return;
+    uint next = atomicExchange(heads[head_index(ivec2(gl_FragCoord.xy))], number);
+    fragments[number - 1] =
+        Fragment(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
+}
+#endif
+layout(location = 5) uniform vec3 base;
+layout(location = 6) uniform vec3 diffuse;
+layout(location = 7) uniform vec3 specular;
+#ifdef MIRROR
+layout(location = 10) uniform float reflectivity;
+layout(binding = 2) uniform sampler2D reflection;
+#endif
+#ifdef GLASS
+layout(location = 11) uniform float alpha;
+#endif
+#ifdef LAYERED
+layout(location = 12) uniform uint order;
+layout(early_fragment_tests) in;
+#else
+out vec4 color;
+#endif
+#ifdef LIT_AT_VERTEX
+in vec2 light;
+#endif
+#ifdef NEEDS_NORMAL
+layout(location = 9) uniform bool two_sided;
+in vec3 view_position;
+in vec3 view_normal;
+#endif
+#ifdef TEXTURED
+layout(binding = 0) uniform sampler2D image;
+in vec2 uv;
+#endif
+#ifdef ENVIRONMENT
+layout(location = 10) uniform float reflectivity;
+layout(binding = 1) uniform samplerCube environment_map;
+#endif
+
+#ifdef NEEDS_NORMAL
+vec3 normal_to(vec3 to_eye) {
+    vec3 n = view_normal;
+#ifdef EDGES
+    if (dot(n, n) < 1e-12) n = to_eye;
+#else
+    // A normal that vanishes (flattened parts, opposite neighbours) takes the face's, which faces the viewer.
+    vec3 across = dFdx(view_position), upwards = dFdy(view_position);
+    if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
+#endif
+    n = normalize(n);
+    return two_sided && dot(n, to_eye) < 0 ? -n : n;
+}
+#endif
+
+void main() {
+#ifdef NEEDS_NORMAL
+    float d = length(view_position);
+    vec3 to_eye = -view_position / d;
+    vec3 n = normal_to(to_eye);
+#endif
+#ifndef LIT_AT_VERTEX
+    vec2 light = phong(view_position, n, to_eye, d);
+#endif
+#ifdef TEXTURED
+    vec4 texel = sample_filtered(image, uv);
+    vec3 matte = texel.rgb;
+#else
+    vec3 matte = diffuse;
+#endif
+    vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
+#ifdef ENVIRONMENT
+    vec3 seen = world_from_view * reflect(-to_eye, n);
+    own = mix(own, sample_environment(environment_map, seen, dFdx(seen), dFdy(seen)), reflectivity);
+#endif
+#ifdef MIRROR
+    own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);
+#endif
+#if defined(GLASS) && defined(TEXTURED)
+    vec4 layer = vec4(own, 1) * (alpha * texel.a);
+#elif defined(GLASS)
+    vec4 layer = vec4(own, 1) * alpha;
+#endif
+#if defined(LAYERED)
+    append_fragment(layer, order);
+#elif defined(GLASS)
+    color = layer;
+#else
+    color = vec4(own, 1);
+#endif
+}
