@@ -22,7 +22,8 @@ struct CheckedGltf {
 /// tree, accessors lie in their buffers and hold what their use asks for, addresses are such as it parses,
 /// and what it copies is at most 64 times the files' size, or 256 MiB. Hides from it what is not shown anyway
 /// and costs memory, or crashes it: skins, animations, other vertex attributes, and extensions but for
-/// KHR_lights_punctual, KHR_materials_pbrSpecularGlossiness and KHR_draco_mesh_compression.
+/// KHR_lights_punctual, KHR_materials_pbrSpecularGlossiness and KHR_draco_mesh_compression. Hides the aspect
+/// ratio of cameras, with which versions of assimp compute different fields of view.
 /// Else why the file is none, without its name.
 tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& path);
 
