@@ -7,9 +7,8 @@
 
 namespace vrut::plan {
 
-/// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
-/// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
-/// down.
+/// Projection with reversed depth: near / distance, 1 at the near plane, 0 at infinity. Float depth then has
+/// the same relative precision at every distance. `offset` shifts the sample position, in pixels, y down.
 glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset = glm::dvec2(0));
 
 /// Pixels from `low` to before `high`, y up.

@@ -31,8 +31,8 @@ struct RenderJob {
     ~RenderJob() = default;
 };
 
-/// Adds a sample, given by the bytes of its pixels; where there is only one, they become the image, and
-/// `pixels` takes the image's memory. True if all samples are drawn: then the image holds their averages.
+/// Accumulates one sample. With a single sample per pixel the buffers are swapped instead. Returns true when
+/// all samples are in; `image` then holds their average.
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
 
 }  // namespace vrut::plan
