@@ -4,7 +4,8 @@
 
 namespace vrut::base {
 
-/// What was drawn is lost, with all that the GPU held: a new renderer must be made, in a moment perhaps.
+/// The GL context was lost, and all GPU resources with it. Create a new Renderer; it may succeed only after a
+/// moment.
 class ContextLost : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

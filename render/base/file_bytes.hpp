@@ -21,8 +21,8 @@ tl::expected<std::filesystem::path, std::string> find_below(const std::filesyste
 /// Of a file that ends before its size, as when someone cuts it short meanwhile.
 inline constexpr std::string_view kCutShort = "it cannot be read to its end";
 
-/// A file read from its start, block by block. It is not mapped: were it cut short meanwhile, that would end
-/// the process (SIGBUS), and its bytes would count among the process's memory.
+/// A file that is read sequentially. It is not mapped: truncation by another process would raise SIGBUS, and
+/// mapped pages would count as the process's memory.
 class FileReader {
 public:
     /// Or why it cannot be read, without its name.

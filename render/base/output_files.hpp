@@ -14,8 +14,8 @@ struct WriteError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Files that come into being together: each is written beside its place under another name, and commit()
-/// puts all of them there. Without it nothing that was there before is touched.
+/// A group of files written as a transaction: each is written under a temporary name, and commit() renames
+/// all of them. Without commit() existing files stay untouched.
 class OutputFiles {
 public:
     /// None of `kept` is written over.

@@ -7,8 +7,8 @@
 
 namespace vrut::base {
 
-/// Hashes numbers that a file chooses, otherwise in each run of the program: of a hash that is known a file
-/// could have all its numbers in one bucket, and a table of them would take the square of their count.
+/// Salted hash for keys that come from untrusted files: with a known hash function a file could put all keys
+/// into one bucket and make lookups quadratic.
 struct SaltedHash {
     std::size_t operator()(std::uint64_t number) const { return mixed(salt() ^ number); }
     template <std::size_t count>

@@ -67,9 +67,8 @@ std::vector<EGLDeviceEXT> all_devices() {
     return devices;
 }
 
-/// What Mesa's llvmpipe notes of a picture's triangles it takes from the heap: tens of megabytes where there
-/// are millions. By default glibc gives them back after each picture, and the kernel clears them for the
-/// next.
+/// llvmpipe allocates tens of megabytes of triangle data per image. By default glibc returns them to the
+/// kernel each time, and the kernel must zero them again.
 void keep_freed_memory() {
 #ifdef __GLIBC__
     constexpr int kKept = 256 << 20;

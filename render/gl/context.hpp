@@ -31,8 +31,8 @@ public:
     bool software() const { return software_; }
     /// Largest width and height of a framebuffer.
     int max_size() const { return max_size_; }
-    /// Whether the driver has reset itself, as far as it tells: nothing more is drawn then, and what was
-    /// drawn since the last call that said no is worth nothing.
+    /// Returns true if the driver reports a reset. Nothing can be drawn any more, and results since the last
+    /// call that returned false are invalid.
     bool lost() const;
     /// The driver's messages since the last call (GlOptions::debug).
     std::vector<std::string> take_messages();

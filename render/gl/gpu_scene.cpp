@@ -38,9 +38,8 @@ GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices)
     return result;
 }
 
-/// Corners without a normal of their own (none given, or zero) become vertices of one triangle each and take
-/// its face's, so that the shader need not know the difference. Most geometries have none, and keep their
-/// triangles.
+/// Corners whose normal is missing or zero get the face normal and a vertex of their own, so that the shader
+/// needs no special case. Most geometries have none of them and keep their index buffer.
 VertexArrays make_arrays(const scene::Geometry& geometry, const glm::dvec3& origin) {
     const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
     // Unit, so that float can square them.
@@ -84,8 +83,8 @@ const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const sc
     return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
 }
 
-/// Textures repeat, so that whole numbers may be taken off; what is left keeps more digits in float between
-/// the vertices.
+/// Subtracts an integer offset, which repeating textures do not show, so that float keeps more digits of the
+/// interpolated coordinates.
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry) {
     glm::dvec2 low(geometry.texcoords.front()), high = low;
     for (const glm::dvec2 texcoord : geometry.texcoords) {

@@ -48,7 +48,8 @@ SampleDrawing::SampleDrawing(const plan::RenderJob& job, std::unique_ptr<SampleT
     use_target(job.view, plan::has_transparent(plan.scene) || plan::has_transparent(plan.overlay));
     if (plan.scene.mirrors.empty() && plan.overlay.mirrors.empty()) targets_->mirrors.release();
     if (job.samples > 0) return;
-    // What turns has panes now that only pixels order, now not: room for them is kept for a while.
+    // While the camera moves, per-pixel lists are needed in some images and not in others: keep their memory
+    // for a while.
     int& without = targets_->images_without_lists;
     without = plan::has_exact_group(plan.scene) || plan::has_exact_group(plan.overlay) ? 0 : without + 1;
     if (without > kKeepListsFor) targets_->per_pixel_lists.release();

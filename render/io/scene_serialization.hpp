@@ -18,9 +18,9 @@ using ByteSource = std::function<void(void* to, std::size_t size)>;
 /// with their count first.
 void serialize_parts(PartsResult parts, const ByteSink& sink);
 
-/// The same back. The bytes may be anything: where they are no parts that a reader of `file` could hand over,
-/// or announce more than `most` bytes, a sentence says so. Takes as much memory as was announced, and less
-/// than 5 times what came. Throws what `source` throws.
+/// Deserializes. The bytes are untrusted: returns an error if they are not valid parts of a reader of `file`
+/// or announce more than `most` bytes. Uses at most the announced memory, and less than 5 times the received
+/// bytes. Propagates what `source` throws.
 PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, const std::string& file);
 
 }  // namespace vrut::io

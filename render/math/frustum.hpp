@@ -15,8 +15,8 @@ struct Frustum {
 };
 Frustum frustum_of(const Projection& projection);
 
-/// True where the box, seen through an affine matrix, lies wholly beyond one of the frustum's planes, by more
-/// than float can be wrong about a position. Boxes before a corner of the picture may be missed.
+/// Returns true if the transformed box lies entirely outside of one frustum plane, by more than the rounding
+/// error of float positions. Conservative: a box beyond a corner of the image may be reported as inside.
 bool is_outside(const Frustum& frustum, const glm::dmat4& view_from_node, const Bounds& box);
 
 }  // namespace vrut::math

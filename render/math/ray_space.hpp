@@ -6,10 +6,9 @@
 
 namespace vrut::math {
 
-/// Space in which a ray runs along z: x and y across it, sheared from the given axes; z is the distance along
-/// the ray where x and y are 0. What it is given is relative to the ray's origin. A triangle that turns
-/// counter-clockwise as the ray's origin sees it turns clockwise in x and y. From Woop, Benthin, Wald,
-/// "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.
+/// Sheared coordinates in which the ray is the z axis and z is the distance along it. Input is relative to
+/// the ray's origin. A triangle that is counter-clockwise seen from the ray's origin is clockwise in x and y.
+/// (Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013.)
 class RaySpace {
 public:
     /// `direction` is unit.
@@ -33,9 +32,8 @@ private:
     double length_ = 1;
 };
 
-/// The cross product of a and b across the ray, rounded, with the sign of the exact value: where the rounded
-/// products are equal, what was rounded off decides. Exchanging a and b changes the sign and nothing else,
-/// so that two triangles agree on which side of their common edge the ray passes.
+/// Edge function of a and b: rounded, but with the sign of the exact value. Swapping a and b only flips the
+/// sign, so two triangles agree on which side of their common edge the ray passes.
 inline double edge_function(const glm::dvec3& a, const glm::dvec3& b) {
     const double p = a.x * b.y, q = a.y * b.x;
     if (p != q) return p - q;

@@ -35,14 +35,16 @@ struct DetailLevels::LevelGenerator {
         std::atomic<bool> watertight{false};
     };
 
-    explicit LevelGenerator(std::shared_ptr<const scene::Scene> of)
-        : scene(std::move(of)), chains(scene->geometries().size()) {}
+    LevelGenerator(std::shared_ptr<const scene::Scene> of, OnFailure call_on_failure)
+        : scene(std::move(of)), chains(scene->geometries().size()), on_failure(std::move(call_on_failure)) {}
     void find_watertight(const std::vector<std::size_t>& order);
     void make_all();
+    void report(const std::exception& error) const;
     void run();
 
     const std::shared_ptr<const scene::Scene> scene;
     std::vector<LevelChain> chains;  // one for each geometry
+    const OnFailure on_failure;
     std::atomic<bool> stop{false}, done{false};
 };
 
@@ -70,19 +72,27 @@ void DetailLevels::LevelGenerator::make_all() {
     }
 }
 
+/// Without memory the report may fail, too; the levels are missing all the same.
+void DetailLevels::LevelGenerator::report(const std::exception& error) const {
+    try {
+        if (on_failure) on_failure(error.what());
+    } catch (const std::exception&) {
+    }
+}
+
 void DetailLevels::LevelGenerator::run() {
     lower_thread_priority();
     try {
         make_all();
-    } catch (const std::exception&) {
-        // Most likely there is no memory; the scene is drawn without what is missing.
+    } catch (const std::exception& error) {
+        report(error);
     }
     done = true;
     done.notify_all();
 }
 
-DetailLevels::DetailLevels(std::shared_ptr<const scene::Scene> scene)
-    : generator_(std::make_shared<LevelGenerator>(std::move(scene))) {
+DetailLevels::DetailLevels(std::shared_ptr<const scene::Scene> scene, OnFailure on_failure)
+    : generator_(std::make_shared<LevelGenerator>(std::move(scene), std::move(on_failure))) {
     std::thread([generator = generator_] { generator->run(); }).detach();
 }
 

@@ -11,18 +11,17 @@
 
 namespace vrut::mesh {
 
-/// Measures how far a surface moves while its edges are collapsed, step by step: the distance of all its
-/// vertices and, as far as those lie apart, of edges' and triangles' middles from the new surface, and of the
-/// new edges' middles from it; of very many edges only some are asked.
+/// Measures the distance between the original and the simplified surface after each round of edge collapses,
+/// at all vertices and, where those are sparse, at edge midpoints and triangle centroids of the original, and
+/// at edge midpoints of the new surface. Large meshes are subsampled.
 class SurfaceDeviation {
 public:
     /// All must outlive it. No two positions are equal. `least` is what does not matter.
     SurfaceDeviation(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles, float least,
                      const std::atomic<bool>& stop);
 
-    /// Of a surface made from that of the call before: `before` and `after` are the triangles of both. No
-    /// less than the last result; none where a piece has vanished or `stop` is set.
-    /// `after` must live until the next call.
+    /// Measures the surface with triangles `after`, made from that of the previous call with triangles
+    /// `before`. Returns the largest distance so far; none if a component has vanished or `stop` is set.
     std::optional<float> measure(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after);
 
     /// Of the newest surface, a triangle that lies as near to a point of one of the first surface's triangles

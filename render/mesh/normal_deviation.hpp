@@ -8,9 +8,9 @@
 
 namespace vrut::mesh {
 
-/// Measures how far off a simplified surface's normals make it look: a normal that is off by an angle, over
-/// half a triangle's longest edge, pretends a step of their product. It shrinks in the picture as a distance
-/// does, and where it is a fraction of a pixel, the shade is either nearly right or seen on few pixels.
+/// Measures the error of a simplified surface's normals as an equivalent distance: the angle of the deviation
+/// times half the triangle's longest edge. Like a distance it shrinks in the image; below a fraction of a
+/// pixel, shading is nearly right or affects few pixels.
 class NormalDeviation {
 public:
     /// `corners`: for each corner of the triangles its normal, not of unit length; none where each triangle

@@ -16,11 +16,11 @@ struct DetailLevel {
     std::vector<glm::uvec3> triangles;  ///< of the geometry's positions
 };
 
-/// Ever coarser, each with about half the triangles of the one before; none where nothing is to be gained.
-/// Gives up, and returns what it has, soon after `stop` is set. Edges are collapsed by quadric error (Garland
-/// and Heckbert 1997, as in meshoptimizer); how far that moves the surface and turns its normals is measured
-/// (Deviation, Slant). Corners of the same position stay together, whatever normals and texture coordinates
-/// they have.
+/// Returns levels of detail, each with about half the triangles of the one before; none where simplification
+/// gains nothing. Edges are collapsed by quadric error (Garland and Heckbert 1997, meshoptimizer); the error
+/// of positions and normals is then measured (SurfaceDeviation, NormalDeviation). Vertices of equal position
+/// stay together, whatever their normals and texture coordinates. Returns what it has soon after `stop` is
+/// set.
 std::vector<DetailLevel> simplify(const scene::Geometry& geometry, const std::atomic<bool>& stop);
 
 /// The level as a geometry of its own, with the same bounds, without the vertices that it does not use.

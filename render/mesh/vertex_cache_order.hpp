@@ -6,10 +6,9 @@
 
 namespace vrut::mesh {
 
-/// The geometry's own triangles as level 0, in an order in which neighbours follow each other, so that few
-/// vertices are transformed twice (meshoptimizer's, after Forsyth 2006). None where that cannot be, since
-/// triangles without normals share no vertices; nor where the file's own order needs less than twice as many,
-/// which costs nothing that can be measured.
+/// Returns the geometry's triangles as level 0, reordered for the vertex cache (meshoptimizer, after Forsyth
+/// 2006). None if triangles without normals share no vertices, or the file's order transforms less than twice
+/// as many vertices.
 std::optional<DetailLevel> optimize_vertex_cache(const scene::Geometry& geometry);
 
 }  // namespace vrut::mesh

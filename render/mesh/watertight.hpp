@@ -6,11 +6,10 @@
 
 namespace vrut::mesh {
 
-/// Whether the surface bounds solids: at each edge two triangles meet that agree on the outside, and each
-/// piece that hangs together by its edges has a positive volume. From outside, the nearest of its triangles
-/// on any line of sight then shows its front. Corners of equal position are one; triangles that use one twice
-/// do not count. It does not see where a piece crosses itself so that a part of it is inside out. Gives up,
-/// with false, soon after `stop` is set.
+/// Returns true if the surface is watertight: every edge joins two triangles of consistent winding, and every
+/// connected component has a positive volume. Seen from outside, the nearest triangle then is front-facing.
+/// Vertices of equal position are merged, degenerate triangles ignored. Self-intersections that turn a part
+/// inside out are not detected. Returns false soon after `stop` is set.
 bool is_watertight(const scene::Geometry& geometry, const std::atomic<bool>& stop);
 
 }  // namespace vrut::mesh

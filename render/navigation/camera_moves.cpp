@@ -28,9 +28,8 @@ scene::Camera if_valid(const scene::Camera& moved, const scene::Camera& camera) 
     return scene::is_valid_pose(moved, 0) ? moved : camera;
 }
 
-/// The part of `radians` (a turn about the right axis) that keeps up · vertical from changing its
-/// sign. As a function of the angle that product is a cosine, so what is allowed is half a turn around its
-/// peak.
+/// Clamps a pitch rotation about the right axis so that up · vertical keeps its sign. As a function of the
+/// angle that product is a cosine: the allowed range is half a turn around its peak.
 double clamp_pitch(const scene::Camera& camera, double radians) {
     const double up = camera.up.y, back = -scene::view_direction(camera).y;
     if (std::hypot(up, back) < 1e-12) return radians;  // the right axis is vertical: nothing can tip over

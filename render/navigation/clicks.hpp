@@ -16,10 +16,9 @@ struct EventTime {
     std::chrono::microseconds arrival{0};  ///< by the server's clock, from any start
 };
 
-/// One client's time, from its events' own time stamps where they can be trusted: a link that delays events
-/// must not turn two clicks into a double one, or a double one into two. Where a stamp is absent, falls, or
-/// departs from the arrival by more than a second, the arrival counts. In whole microseconds, so that sums
-/// are exact: only differences matter, not where the clocks start.
+/// Clock of one client. Uses the events' own time stamps, so that link delay neither makes nor breaks a
+/// double click; falls back to arrival times where a stamp is missing, decreases, or differs from the arrival
+/// by more than a second. Whole microseconds, so that sums are exact.
 class EventClock {
 public:
     /// Time of an event since the first; never falls as long as the arrivals do not.

@@ -44,10 +44,10 @@ struct NavigationContext {
     NavigationStyle style = NavigationStyle::vrut;
 };
 
-/// Drags by mouse, pen and touch. Pure: no clock, no input but its arguments. A drag is computed from the
-/// camera at its start and the pointers' places since, so that dropped or merged moves give the same camera
-/// to the last bit. A move (of which `button` is -1) may be dropped for the next one of the same pointer with
-/// the same buttons, where nothing else came between.
+/// Drags by mouse, pen and touch as a pure function of the input. The camera is computed from the camera at
+/// the start of the drag and the pointers' positions since, so that dropped or coalesced moves give a
+/// bit-identical camera. A move (`button` is -1) may be replaced by a later one of the same pointer with the
+/// same buttons if nothing else came between.
 class Gestures {
 public:
     struct HeldKey {
@@ -72,9 +72,9 @@ public:
     bool any_pressed() const { return !pressed_.empty(); }
     bool is_pressed(const std::string& client, std::int64_t pointer) const;
 
-    /// The keys held, and the pointers as if they were just pressed, each where it is now. After these, in
-    /// this order and at the present camera, this and a fresh Gestures go on alike. (Drags begin anew, so
-    /// that keys released since they began no longer count, nor does a button released since.)
+    /// Returns the keys held and the pointers as if pressed at their present positions. Feeding these, in
+    /// this order and with the present camera, into a new Gestures continues identically. (Drags restart, so
+    /// that keys and buttons released since they began no longer count.)
     std::vector<HeldKey> held_keys() const { return keys_; }
     std::vector<PointerInput> pressed() const;
 

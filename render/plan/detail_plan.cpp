@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kNearMargin = 1e-4;  ///< beyond float's rounding
 
-/// No vector grows by more under the matrix: the root of Gershgorin's bound on the eigenvalues of MᵀM, which
-/// is exact where the axes stay at right angles.
+/// Returns an upper bound of the matrix's largest singular value: the square root of Gershgorin's bound on
+/// the eigenvalues of MᵀM. It is exact where the axes stay orthogonal.
 double max_scale(const glm::dmat3& m) {
     const glm::dmat3 squares = glm::transpose(m) * m;
     double most = 0;
@@ -56,8 +56,8 @@ private:
         return !levels_[static_cast<std::size_t>(item.geometry)].empty();
     }
 
-    /// What keeps every triangle: textured parts, since the bound is of places and not of what is painted on
-    /// them, and glass whose triangles have an order. What stands in the same place has to as well, so that
+    /// Collects the items that keep full detail: textured ones, since the error bound covers positions and
+    /// not texture coordinates, and glass with ordered triangles. Coincident items must keep it too, so that
     /// their depths are equal.
     FullDetailItems full_detail_items(const DrawLists& lists) const {
         FullDetailItems full_detail;

@@ -8,8 +8,8 @@
 
 namespace vrut::plan {
 
-/// How much one step of drawing may still do. The unit is what a processor takes for the colour of a pixel,
-/// about 20 ns. An item is never divided: a step does kMost, and what its last item takes.
+/// The work that one step of drawing may still do, in units of about 20 ns: the time in which a CPU
+/// rasterizer shades one pixel. Items are never split, so a step may exceed kMost by one item.
 class DrawBudget {
 public:
     static constexpr std::int64_t kMost = 4'000'000;

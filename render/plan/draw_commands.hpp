@@ -8,8 +8,7 @@
 
 namespace vrut::plan {
 
-/// One thing that is done to draw a sample, over some items or none. Those over items may be done for some
-/// of them, and later for the others.
+/// One step of drawing a sample, over a list of items or none. A step over items can be executed in batches.
 struct DrawCommand {
     enum class Kind {
         clear,            ///< the picture, and draws its background

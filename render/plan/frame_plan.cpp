@@ -125,8 +125,8 @@ std::vector<DrawItem> extract(std::vector<DrawItem>& items, const std::vector<bo
     return extracted;
 }
 
-/// Samples lie up to half a pixel beside a pixel's centre, and edges are a pixel wide. An outline starts from
-/// pixels of the picture.
+/// The margin is needed because samples lie up to half a pixel off the pixel's centre, edges are one pixel
+/// wide, and outlines grow from pixels inside the image.
 math::Frustum frustum_of(const View& view, double margin) {
     return math::frustum_of(
         math::cropped(projection_of(view), math::ndc_with_margin(view.width, view.height, margin)));

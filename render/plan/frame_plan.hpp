@@ -15,7 +15,8 @@ struct DetailLevel;
 
 namespace vrut::plan {
 
-/// Closed: both, but the backs are not drawn, for fronts of the same part hide them.
+/// Which faces are culled. `hidden_back`: a two-sided, watertight item whose back faces are hidden by its own
+/// front faces; it is still lit as two-sided.
 enum class CullMode { back, none, hidden_back };
 
 /// One geometry node to be drawn.
@@ -36,8 +37,8 @@ struct DrawItem {
     const mesh::DetailLevel* level = nullptr;
 };
 
-/// Transparent items that are drawn together: those of a sorted one from far to near; those of an exact one,
-/// whose order changes from pixel to pixel, by rising id.
+/// Transparent items that are drawn together. Items of a sorted group are ordered back to front; items of an
+/// exact group, whose order differs from pixel to pixel, by rising id.
 struct TransparentGroup {
     std::vector<DrawItem> items;
     bool exact = false;
@@ -67,8 +68,8 @@ struct MirrorItem {
 bool has_transparent(const DrawLists& lists);
 bool has_exact_group(const DrawLists& lists);
 
-/// What a frame needs, and no more: a pass without items does not run, and what lies wholly beside the
-/// picture is no item. Edges and what is selected by rising id.
+/// Everything that one frame draws. A pass without items does not run; items outside of the frustum are
+/// culled. Edges and selected items are ordered by rising id.
 struct FramePlan {
     DrawLists scene;
     std::vector<DrawItem> edges;      ///< with edges
@@ -86,8 +87,8 @@ class DrawBudget;
 /// Finds the plan of a view in steps. It is empty where the view has no scene.
 class FramePlanner {
 public:
-    /// Goes on until `work` is spent; true once the plan is whole. The view is always the same; `shapes` are
-    /// of its scene, and keep what is found out about its geometries for the next frame.
+    /// Continues until `work` is spent. Returns true when the plan is complete. All calls must pass the same
+    /// view; `shapes` must belong to its scene and caches what is computed for later frames.
     bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget);
     /// Once it is whole. It stays where it is.
     const FramePlan& plan() const { return plan_; }

@@ -11,8 +11,8 @@ namespace vrut::plan {
 
 namespace {
 
-/// In pixels. A mirror that covers less is seen along its plane, or from afar; whether it meets the centre of
-/// a pixel is left to chance, and what it shows there to the next hair's breadth.
+/// In pixels. A smaller mirror is seen edge-on or from far away; whether it covers a pixel centre depends on
+/// rounding.
 constexpr double kSmallestArea = 1.0 / 256;
 
 /// Part of a part's radius. Float positions are wrong by less; where a part stands on a mirror, so much of it

@@ -41,8 +41,7 @@ struct RenderJob {
     ~RenderJob() = default;
 };
 
-/// Adds a sample, given by the bytes of its pixels, whose memory it may take in exchange for other. True if
-/// all samples are drawn.
+/// Accumulates one sample. May exchange the memory of `pixels` for other. Returns true when all samples are in.
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
 
 /// Makes the image the average of the samples: once all are drawn.

@@ -16,14 +16,14 @@ struct OrientedBox {
     std::array<glm::dvec3, 3> axes{};
 };
 
-/// Around a geometry, in its own space, with one axis along the normal of its largest triangle's side: thin
-/// around a sheet of glass, however that lies in its space.
+/// Returns an oriented bounding box in node space. One axis is the area-weighted mean normal, so that the box
+/// is thin around a flat sheet of any orientation.
 OrientedBox oriented_box(const scene::Geometry& geometry);
 
 /// The box seen through an affine `matrix`.
 OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
 
-/// What decides in which order glass of a scene's geometries is drawn, found when it is first asked for.
+/// Caches, per geometry, the oriented box and the triangle orders that sorting transparent items needs.
 class TransparencyCache {
 public:
     /// The scene must outlive it.

@@ -14,9 +14,9 @@ namespace vrut::plan {
 /// Of a part's radius: what lies closer together counts as touching.
 inline constexpr double kNegligible = 1e-6;
 
-/// An order of a geometry's triangles in which they can be drawn from far to near whatever the eye, as
-/// triangles that face away from it are not drawn (Chen et al. 2012, "Depth-Presorted Triangle Lists"). Of n
-/// triangles, number k is triangle k, and n + k the same from its back, if that is drawn too.
+/// An order in which the triangles can be drawn back to front from any eye, provided that back faces are
+/// culled (Chen et al. 2012, "Depth-Presorted Triangle Lists"). With n triangles, number k is triangle k and
+/// n + k its back face, if back faces are drawn too.
 struct TriangleOrder {
     std::shared_ptr<const std::vector<unsigned>> back_to_front;  ///< null: as in the file
     /// Those among which no such order exists: which is in front depends on the eye.
@@ -45,8 +45,8 @@ std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, co
 /// Which of two lies before the other, seen from the origin.
 enum class DepthRelation { apart, first_in_front, second_in_front, unknown };
 
-/// Of two sets of triangles that do not have to be convex: `unknown` where some are before and some behind,
-/// where some cross, and for more than kMaxComparedPairs pairs. `tolerance` is a distance.
+/// Returns which of two triangle sets is in front, seen from the origin. `unknown` if the sets interpenetrate
+/// or are interleaved, or above kMaxComparedPairs pairs. `tolerance` is a distance.
 DepthRelation depth_relation(std::span<const FrontFacingTriangle> first,
                              std::span<const FrontFacingTriangle> second, double tolerance);
 inline constexpr std::size_t kMaxComparedPairs = std::size_t{1} << 18;

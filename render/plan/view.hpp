@@ -42,8 +42,7 @@ struct PlacedMarker {
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
 enum class DrawMode { realistic, stylized };
 
-/// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
-/// default is the most accurate.
+/// Trade-offs between cost and accuracy. The defaults are the most accurate methods.
 struct Methods {
     enum class Lighting { pixel, vertex };      ///< where Phong's equation is evaluated
     enum class Transparency { exact, sorted };  ///< right at each pixel, or part by part from far to near

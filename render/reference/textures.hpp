@@ -22,10 +22,9 @@ public:
     int height(int level) const { return levels_[static_cast<std::size_t>(level)].height; }
     const glm::dvec4& texel(int level, int x, int y) const;
 
-    /// RGBA 0 to 1 at a place of the picture, (0, 0) its bottom left and (1, 1) its top right. `change` is
-    /// how the place changes from a pixel to the next, to the right and upwards: a pixel whose longer side
-    /// spans more than a texel takes the levels between which its length lies (trilinear), another four
-    /// texels of the first (bilinear).
+    /// Returns RGBA, 0 to 1, at `uv` ((0, 0) is the bottom left). `change` holds the derivatives of uv
+    /// with respect to the pixel's x (right) and y (up). If the longer side of the pixel's footprint exceeds
+    /// one texel, filtering is trilinear between the two nearest levels, else bilinear in level 0.
     glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change, Wrap wrap) const;
 
 private:

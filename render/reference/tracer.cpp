@@ -115,8 +115,8 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
     return surface;
 }
 
-/// As if the eye looked from behind the mirror's plane. The new ray starts on the plane, which the triangle
-/// may miss by a hair; all before it is on the viewer's side.
+/// The new ray starts on the mirror's plane, which the triangle may miss by a rounding error; everything in
+/// front of it is on the viewer's side.
 Tracer::PathRay Tracer::reflected(const PathRay& path, const TriangleHit& hit) const {
     const math::Plane& plane = *scene_.parts()[hit.part].mirror;
     const RayDifferential& ray = path.ray;

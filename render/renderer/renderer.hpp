@@ -33,14 +33,14 @@ public:
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
-    /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
-    /// drawn last stays there, too, until then; for good where this throws.
+    /// Uploads the geometry and textures that the view needs, so that the next step() does not have to. The
+    /// scene drawn last stays on the GPU until then, or for good if this throws.
     void upload(const plan::View& view);
 
-    /// Draws the next sample, or a part of it where that is too much for one step (DrawBudget); first of all
-    /// it may only plan. True once the image is whole. Renderings may take turns, of other scenes too. Where
-    /// this throws, the samples drawn before hold, and what was drawn of the next is drawn again: after
-    /// ContextLost a new renderer goes on, or the view is begun anew. The scene drawn last stays on the GPU.
+    /// Draws the next sample, or the part of it that fits the budget of one step (DrawBudget); the first
+    /// steps may only plan. Returns true when the image is complete. Steps of several RenderJobs may be
+    /// interleaved. If this throws, completed samples are kept and the current one starts again; after
+    /// ContextLost continue with a new Renderer. The scene drawn last stays on the GPU.
     bool step(plan::RenderJob& job);
 
     /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has

@@ -124,7 +124,10 @@ void trace_picture(const RenderArguments& arguments, const plan::View& view) {
 
 void draw_picture(const RenderArguments& arguments, plan::View view) {
     if (view.detail > 0) {
-        const auto levels = std::make_shared<const mesh::DetailLevels>(view.scene->scene);
+        const auto levels =
+            std::make_shared<const mesh::DetailLevels>(view.scene->scene, [](const std::string& reason) {
+                observe::log_warning("no_levels_of_detail", {{"reason", reason}});
+            });
         levels->wait();
         view.levels = levels;
     }

@@ -300,10 +300,13 @@ void Engine::make_detail_levels() {
     const auto& placed = room_->visible().scene;
     const auto simplifies = [](const protocol::Level& level) { return level.quality.detail > 0; };
     if (!placed || std::none_of(choice_->levels().begin(), choice_->levels().end(), simplifies)) return;
+    const auto log_failure = [](const std::string& reason) {
+        observe::log_warning("no_levels_of_detail", {{"reason", reason}});
+    };
     try {
-        detail_ = std::make_shared<const mesh::DetailLevels>(placed->scene);
+        detail_ = std::make_shared<const mesh::DetailLevels>(placed->scene, log_failure);
     } catch (const std::exception& error) {  // no memory, or no thread
-        observe::log_warning("no_coarser_surfaces", {{"reason", error.what()}});
+        log_failure(error.what());
         scene_since_ = std::numeric_limits<std::int64_t>::max();  // it is not tried again for this scene
     }
 }

@@ -10,6 +10,7 @@
 #include "compare/difference.hpp"
 #include "compare/flip.hpp"
 #include "io/image_file.hpp"
+#include "needs_folder.hpp"
 
 using namespace vrut;
 
@@ -173,12 +174,8 @@ TEST_CASE("what FLIP's values come to") {
 }
 
 // VRUT_TEST_FLIP is set by .ci/run where its pictures lie beside the checkout.
-TEST_CASE("FLIP agrees with the published implementation") {
-    const char* const folder = std::getenv("VRUT_TEST_FLIP");
-    if (!folder) {
-        MESSAGE("skipped: VRUT_TEST_FLIP names no folder of pictures");
-        return;
-    }
+TEST_CASE("FLIP agrees with the published implementation" * NeedsFolder{"VRUT_TEST_FLIP"}) {
+    const std::filesystem::path folder = folder_of("VRUT_TEST_FLIP");
     struct Known {
         const char* name;
         double mean, median, first_quartile, third_quartile, max;
@@ -187,11 +184,11 @@ TEST_CASE("FLIP agrees with the published implementation") {
                                 {"half.png", 0.046839, 0.128349, 0.052044, 0.225426, 0.749618},
                                 {"shifted.png", 0.045424, 0.130251, 0.071056, 0.231551, 0.890076},
                                 {"reference.png", 0, 0, 0, 0, 0}};
-    const auto reference = io::read_image_file(std::filesystem::path(folder) / "reference.png");
+    const auto reference = io::read_image_file(folder / "reference.png");
     REQUIRE(reference);
     for (const Known& known : kKnown) {
         CAPTURE(known.name);
-        const auto test = io::read_image_file(std::filesystem::path(folder) / known.name);
+        const auto test = io::read_image_file(folder / known.name);
         REQUIRE(test);
         const std::vector<float> errors = compare::flip(*reference, *test);
         const compare::FlipSummary found = compare::summary_of(errors);

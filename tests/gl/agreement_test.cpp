@@ -8,6 +8,7 @@
 
 #include "io/read_scene.hpp"
 #include "navigation/camera_moves.hpp"
+#include "needs_folder.hpp"
 #include "renderer_fixture.hpp"
 #include "scene_variants.hpp"
 
@@ -142,18 +143,14 @@ TEST_CASE("the car is drawn as the reference has it") {
     check_agreement(studio, "car", view_of_file(VRUT_CARS "/car.vrut", 640, 400));
 }
 
-TEST_CASE("models of other programs are drawn as the reference has them") {
-    const char* const models = std::getenv("VRUT_TEST_MODELS");
-    if (models == nullptr) {
-        MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
-        return;
-    }
+TEST_CASE("models of other programs are drawn as the reference has them" * NeedsFolder{"VRUT_TEST_MODELS"}) {
+    const fs::path models = folder_of("VRUT_TEST_MODELS");
     RendererFixture studio;
     for (const char* file :
          {"bmw_m6/bmw_m6.glb", "hatchback/hatchback/meshes/hatchback.obj", "jeep/2013_ASCII/jeep1.fbx",
           "jeep/2013_BINARY/jeep1.fbx", "racing/vehicle-motorcycle.glb", "racing/vehicle-truck-green.glb",
           "racing/vehicle-truck-red.glb"}) {
-        const plan::View view = view_of_file(fs::path(models) / file, 640, 400);
+        const plan::View view = view_of_file(models / file, 640, 400);
         const JudgedReference judge = judge_of(view);
         check_drawing(studio, file, {"as it is", view}, judge, ids_of(view, judge.picture.node, 1));
     }

@@ -4,6 +4,7 @@
 
 #include "../assimp_leaks.hpp"
 #include "image_bytes.hpp"
+#include "needs_folder.hpp"
 #include "scene_queries.hpp"
 
 using namespace vrut;
@@ -447,12 +448,8 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
     for (const auto& [file, text, why] : kFiles) check_refused_file(file, text, why);
 }
 
-TEST_CASE("models of other programs are read whole") {
-    const char* const models = std::getenv("VRUT_TEST_MODELS");
-    if (models == nullptr) {
-        MESSAGE("skipped: VRUT_TEST_MODELS does not say where they are");
-        return;
-    }
+TEST_CASE("models of other programs are read whole" * NeedsFolder{"VRUT_TEST_MODELS"}) {
+    const fs::path models = folder_of("VRUT_TEST_MODELS");
     const struct {
         const char* file;
         std::uint64_t triangles;
@@ -464,7 +461,7 @@ TEST_CASE("models of other programs are read whole") {
         {"jeep/2013_BINARY/jeep1.fbx", 2'032, 7, 2, 1},
     };
     for (const auto& model : kModels) {
-        const scene::Scene scene = read_well(fs::path(models) / model.file);
+        const scene::Scene scene = read_well(models / model.file);
         CHECK_MESSAGE(scene.triangle_count() == model.triangles, model.file);
         CHECK_MESSAGE(scene.geometries().size() == model.geometries, model.file);
         CHECK_MESSAGE(scene.materials().size() == model.materials, model.file);

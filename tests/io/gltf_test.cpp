@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "image_bytes.hpp"
+#include "io/gltf/check.hpp"
 #include "scene_queries.hpp"
 
 using namespace vrut;
@@ -155,6 +156,19 @@ TEST_CASE("glTF cameras and lights are nodes") {
     CHECK(spot.angle == doctest::Approx(60));
     CHECK(is_near(spot.color, {1, 0.7353569830524495, 0, 1}));
     CHECK(std::get<scene::LightData>(node_of(scene, "Sun").data).type == scene::LightData::Type::directional);
+}
+
+TEST_CASE(
+    "a glTF camera's field of view is the file's vertical one, whatever assimp makes of the aspect ratio") {
+    const TemporaryFolder folder;
+    for (const char* aspect : {"\"aspectRatio\": 1.5", "\"aspectRatio\": 0.1", "\"aspectRatio\": 1e39"}) {
+        const fs::path file = folder.write("car.gltf", car_with("\"aspectRatio\": 1.5", aspect));
+        const auto checked = io::check_gltf(file);
+        REQUIRE(checked);
+        CHECK(checked->head.find("aspectRatio") == std::string::npos);
+        const scene::Scene scene = read_well(file);
+        CHECK(std::get<scene::CameraData>(node_of(scene, "Presenter").data).fov == doctest::Approx(30));
+    }
 }
 
 TEST_CASE("what a glTF scene loses is told, once for each kind") {
@@ -343,7 +357,7 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
 TEST_CASE("a glTF camera whose field of view is no number is lost, and told") {
     const TemporaryFolder folder;
     const scene::Scene scene =
-        read_well(folder.write("car.gltf", car_with("\"aspectRatio\": 1.5", "\"aspectRatio\": 1e39")));
+        read_well(folder.write("car.gltf", car_with("\"yfov\": 0.5235988", "\"yfov\": 1e39")));
     CHECK(node_of(scene, "Presenter").type == scene::NodeType::assembly);
     CHECK(has_notice(scene, "a camera whose field of view is no number is not read"));
 }

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "io/osb/scene.hpp"
+#include "needs_folder.hpp"
 #include "osb_builder.hpp"
 #include "scene_queries.hpp"
 #include "temporary_folder.hpp"
@@ -399,9 +400,8 @@ TEST_CASE("OSB: a chain of many nodes needs no stack") {
     CHECK(read_well(file.node(kNodes, 0)).nodes().size() == kNodes + 1);
 }
 
-TEST_CASE("OSB: the sample of OpenSG" * doctest::skip(std::getenv("VRUT_TEST_MODELS") == nullptr)) {
-    const auto scene =
-        io::read_scene(std::filesystem::path(std::getenv("VRUT_TEST_MODELS")) / "osb" / "few_cubes.osb");
+TEST_CASE("OSB: the sample of OpenSG" * NeedsFolder{"VRUT_TEST_MODELS"}) {
+    const auto scene = io::read_scene(folder_of("VRUT_TEST_MODELS") / "osb" / "few_cubes.osb");
     REQUIRE_MESSAGE(scene, scene.error());
     CHECK(scene->nodes().size() == 10);
     CHECK(scene->geometries().size() == 8);

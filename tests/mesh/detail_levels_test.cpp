@@ -20,10 +20,11 @@ using namespace vrut;
 /// what a mesh of thousands of triangles needs.
 namespace large_allocations {
 
-enum Kind { allow, halt, fail };
+enum Kind { allow, halt, fail, fail_one };
 constexpr std::size_t kLarge = 50'000;
 std::atomic<Kind> rule{allow};
 std::atomic<int> halted{0};
+std::atomic<int> before_failure{0};  ///< of fail_one: allocations of any size that succeed before the one
 std::atomic<std::thread::id> maker;
 
 struct Rule {
@@ -38,7 +39,12 @@ struct Rule {
 };
 
 void meet(std::size_t size) {
-    if (rule == allow || size < kLarge || std::this_thread::get_id() == maker.load()) return;
+    if (rule == allow || std::this_thread::get_id() == maker.load()) return;
+    if (rule == fail_one) {
+        if (before_failure-- == 0) throw std::bad_alloc();
+        return;
+    }
+    if (size < kLarge) return;
     if (rule == fail) throw std::bad_alloc();
     ++halted;
     while (rule == halt) std::this_thread::yield();
@@ -143,8 +149,10 @@ void check_bounds(const scene::Geometry& geometry, std::size_t least_levels) {
     }
 }
 
-std::shared_ptr<const scene::Scene> scene_with(std::vector<scene::Geometry> geometries) {
+std::shared_ptr<const scene::Scene> scene_with(std::vector<scene::Geometry> geometries,
+                                               bool two_sided = false) {
     scene::SceneParts parts;
+    if (two_sided) parts.materials.emplace_back().two_sided = true;
     for (std::size_t i = 0; i < geometries.size(); ++i) geometries[i].id = static_cast<scene::Id>(i + 1);
     parts.geometries = std::move(geometries);
     return std::make_shared<const scene::Scene>(*scene::Scene::build(std::move(parts)));
@@ -325,12 +333,33 @@ TEST_CASE(
     while (!held.expired()) std::this_thread::yield();
 }
 
-TEST_CASE("levels for which there is no memory are not made, and that is all") {
+TEST_CASE("levels for which there is no memory are not made, and the reason is reported once") {
     const auto scene = scene_with({torus(120, 60), ball(16, 8)});
     const large_allocations::Rule rule(large_allocations::fail);
-    const mesh::DetailLevels levels(scene);
+    std::vector<std::string> reasons;
+    const mesh::DetailLevels levels(scene, [&](const std::string& reason) { reasons.push_back(reason); });
     levels.wait();
+    CHECK(reasons == std::vector<std::string>{"std::bad_alloc"});
     CHECK(levels.done());
     CHECK(levels.of(0).empty());
     CHECK(levels.of(1).empty());
+}
+
+TEST_CASE("whichever allocation fails on the thread that makes levels, the program goes on") {
+    scene::Geometry shuffled = with_normals(torus(16, 8));
+    std::shuffle(shuffled.triangles.begin(), shuffled.triangles.end(), std::mt19937(1));
+    const auto scene = scene_with({shuffled, ball(16, 8)}, true);
+    for (int allocations = 0, left = -1; left < 0; ++allocations) {
+        large_allocations::before_failure = allocations;
+        const large_allocations::Rule rule(large_allocations::fail_one);
+        int reports = 0;
+        const mesh::DetailLevels levels(scene, [&](const std::string& /*reason*/) {
+            ++reports;
+            throw std::bad_alloc();
+        });
+        levels.wait();
+        left = large_allocations::before_failure;
+        CAPTURE(allocations);
+        CHECK(reports == (left < 0));
+    }
 }

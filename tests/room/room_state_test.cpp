@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "io/read_scene.hpp"
+#include "needs_folder.hpp"
 #include "room/room.hpp"
 #include "stage.hpp"
 
@@ -555,23 +556,14 @@ json sayable(const json& value, const json& schema) {
     return kept;
 }
 
-std::vector<std::filesystem::path> scene_files() {
-    std::vector<std::filesystem::path> files;
-    const std::initializer_list<const char*> folders{VRUT_SCENES, VRUT_CARS, std::getenv("VRUT_TEST_MODELS")};
-    for (const char* folder : folders) {
-        if (!folder) continue;
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-            if (entry.is_regular_file() && io::has_reader(entry.path())) files.push_back(entry.path());
-    }
-    return files;
-}
-
-}  // namespace
-
-TEST_CASE("every section of every scene's state can be patched back as it came, and changes nothing") {
+/// That every section of the state of each scene in the folder can be patched back as it came, and changes
+/// nothing. Returns the number of scenes.
+std::size_t check_states_of(const std::filesystem::path& folder) {
     const json schema = json::parse(protocol::json_schema())["$defs"]["statePatch"];
     std::size_t scenes = 0;
-    for (const auto& file : scene_files()) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+        const std::filesystem::path& file = entry.path();
+        if (!entry.is_regular_file() || !io::has_reader(file)) continue;
         auto read = io::read_scene(file);
         if (!read) continue;  // models hold some that are broken
         ++scenes;
@@ -588,5 +580,15 @@ TEST_CASE("every section of every scene's state can be patched back as it came, 
         }
         CHECK(stage.revision() == revision);
     }
-    CHECK(scenes > 20);
+    return scenes;
+}
+
+}  // namespace
+
+TEST_CASE("every section of every scene's state can be patched back as it came, and changes nothing") {
+    CHECK(check_states_of(VRUT_SCENES) + check_states_of(VRUT_CARS) > 20);
+}
+
+TEST_CASE("the states of other programs' models can be patched back, too" * NeedsFolder{"VRUT_TEST_MODELS"}) {
+    CHECK(check_states_of(folder_of("VRUT_TEST_MODELS")) > 0);
 }

@@ -97,9 +97,9 @@ server::measure::Section section_of(const Study& study) {
     range.add(study.bound);
     range.add(study.method);
     range.add(study.baseline);
-    // What is exact has no place of its own on a logarithmic axis.
-    const double lowest =
-        range.has_zero ? std::pow(10, std::floor(std::log10(range.least)) - 1) : range.least;
+    // A logarithmic axis has no 0: exact values are drawn at its lower end. Any decade does if all are exact.
+    const double least = std::isfinite(range.least) ? range.least : 1;
+    const double lowest = range.has_zero ? std::pow(10, std::floor(std::log10(least)) - 1) : least;
     Plot plot{"stability-" + study.file, study.title, study.parameter, study.measure, {}, {}};
     if (range.has_zero) plot.floor = lowest;
     plot.floor_name = "0";

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gl/handles.hpp"
+#include "stability_page.hpp"
 #include "study.hpp"
 
 using namespace vrut;
@@ -76,4 +77,13 @@ TEST_CASE("a method that does better than its limit does not fail, and is told o
     CHECK(improvement(study).value_or("") == "'m' is 0.75 at 10 and holds: the limit can be told as better");
     study.method.points[1].y = 2;
     CHECK(!improvement(study));
+}
+
+TEST_CASE("a method that got exact is drawn, though no measure is above 0") {
+    const Study study{"x", "", "", "", 0, {}, {"m", {{1, 0}, {10, 0}}}, {"b", {{1, 0}, {10, 0}}}, "", ""};
+    CHECK(!failure(study));
+    const auto section = section_of(study);
+    REQUIRE(section.plots.size() == 1);
+    CHECK(section.plots[0].floor.value_or(0) > 0);
+    CHECK(std::isfinite(section.plots[0].floor.value_or(0)));
 }

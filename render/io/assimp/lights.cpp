@@ -11,12 +11,11 @@ namespace {
 
 glm::dvec3 vector_of(const aiVector3D& from) { return {from.x, from.y, from.z}; }
 
-/// Vertical, in degrees; no number where the file's is none.
-double field_of_view(const aiCamera& from, AssimpFormat format) {
-    const double angle = from.mHorizontalFOV, aspect = from.mAspect > 0 ? from.mAspect : 1;
-    // Of glTF assimp 5.2 gives the vertical angle times the aspect.
-    return glm::degrees(format == AssimpFormat::gltf ? angle / aspect
-                                                     : 2 * std::atan(std::tan(angle / 2) / aspect));
+/// The vertical field of view in degrees; not finite if the file's is not. check_gltf() hides the aspect
+/// ratio of glTF from assimp, whose horizontal field of view then is the file's vertical one.
+double field_of_view(const aiCamera& from) {
+    const double aspect = from.mAspect > 0 ? from.mAspect : 1;
+    return glm::degrees(2 * std::atan(std::tan(double{from.mHorizontalFOV} / 2) / aspect));
 }
 
 /// Of Collada, assimp 5.2 reads only cameras with names, and angles only with enough beside them; of the
@@ -71,7 +70,7 @@ std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat for
         warnings.add("a camera without perspective is not read");
         return std::nullopt;
     }
-    const double fov = field_of_view(from, format);
+    const double fov = field_of_view(from);
     if (!std::isfinite(fov)) {
         warnings.add("a camera whose field of view is no number is not read");
         return std::nullopt;

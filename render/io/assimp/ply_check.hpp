@@ -6,9 +6,9 @@
 
 namespace vrut::io {
 
-/// Why assimp must not read a PLY file, which takes the counts in the header on trust and looks for ever for
-/// the end of one that has none: that, a kind of element that comes twice, or more elements than the rest of
-/// the file can hold. Nothing where the header is fine, or the file is no PLY at all.
+/// Returns why assimp must not read this PLY file, since it trusts the header's counts and loops for ever
+/// without `end_header`: a missing end, a duplicate element, or more elements than the file can hold. None if
+/// the header is valid or the file is not PLY.
 std::optional<std::string> ply_error(const std::filesystem::path& path);
 
 }  // namespace vrut::io

@@ -18,12 +18,12 @@ struct CheckedGltf {
     ConversionWarnings warnings;
 };
 
-/// Checks what assimp 5.2 takes on trust: that JSON and nodes are not nested without bound, nodes form a
-/// tree, accessors lie in their buffers and hold what their use asks for, addresses are such as it parses,
-/// and what it copies is at most 64 times the files' size, or 256 MiB. Hides from it what is not shown anyway
-/// and costs memory, or crashes it: skins, animations, other vertex attributes, and extensions but for
-/// KHR_lights_punctual, KHR_materials_pbrSpecularGlossiness and KHR_draco_mesh_compression.
-/// Else why the file is none, without its name.
+/// Validates what assimp 5.2 does not: nesting depth, that nodes form a tree, that accessors fit their
+/// buffers and suit their use, URIs, and memory (at most 64 times the file sizes, or 256 MiB). Renames
+/// members that are not shown and cost memory or crash assimp: skins, animations, other vertex attributes,
+/// and extensions except KHR_lights_punctual, KHR_materials_pbrSpecularGlossiness and
+/// KHR_draco_mesh_compression. Hides the aspect ratio of cameras, from which versions of assimp compute
+/// different fields of view. Returns an error without the file's name.
 tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& path);
 
 }  // namespace vrut::io

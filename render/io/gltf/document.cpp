@@ -40,6 +40,7 @@ public:
             {"buffers", &GltfReader::read_buffers},     {"images", &GltfReader::read_images},
             {"meshes", &GltfReader::read_meshes},       {"nodes", &GltfReader::read_nodes},
             {"scenes", &GltfReader::read_scenes},       {"extensionsUsed", &GltfReader::read_extensions},
+            {"cameras", &GltfReader::read_cameras},
         };
         scan_.each_member([&](std::string_view name) {
             if (name == "scene") {
@@ -264,6 +265,21 @@ private:
                 else
                     scan_.skip();
             });
+    }
+
+    /// assimp derives the horizontal field of view from the vertical one, by another formula in 5.2 than
+    /// since 5.3 (its pull request 4886). Without an aspect ratio both leave the file's vertical one as it
+    /// is.
+    void read_cameras() {
+        scan_.each_element([&](std::size_t) {
+            scan_.each_member([&](std::string_view kind) {
+                if (kind != "perspective") return scan_.skip();
+                scan_.each_member([&](std::string_view name) {
+                    if (name == "aspectRatio") hide_member(result_, name);
+                    scan_.skip();
+                });
+            });
+        });
     }
 
     void read_extensions() {

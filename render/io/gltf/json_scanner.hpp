@@ -12,8 +12,8 @@ struct JsonError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// Walks through JSON from its beginning to its end without keeping it: a few members are looked at, the rest
-/// is skipped. Lenient about what is skipped, for a parser comes after. Nesting is bounded. Throws JsonError.
+/// A streaming JSON scanner: visits the members that the caller asks for and skips the rest. Lenient about
+/// skipped values, since a full parser follows. The nesting depth is bounded. Throws JsonError.
 class JsonScan {
 public:
     explicit JsonScan(std::string_view text) : text_(text) {}

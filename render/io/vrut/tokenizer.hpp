@@ -28,9 +28,9 @@ struct TextSource {
 /// So much of a text is read at a time: a thread for each costs little, and they stay in the cache.
 inline constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
-/// Scene text as one row of tokens. It is read in chunks, which so many threads split ahead of what is taken;
-/// their number changes nothing but the time. Memory: some megabytes for each of them, whatever the text.
-/// Throws ParseError at the first fault of the text, when it is reached; and what the source throws.
+/// The tokens of scene text. Chunks are lexed ahead by `threads` threads; the result does not depend on their
+/// number. Memory: some megabytes per thread, whatever the text's size. Throws ParseError at the first fault,
+/// when it is reached, and whatever the source throws.
 class Tokenizer {
 public:
     Tokenizer(TextSource source, unsigned threads);
