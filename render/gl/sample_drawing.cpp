@@ -20,9 +20,8 @@ constexpr std::int64_t kScreenPixelCost = 1, kFragmentCost = 8;
 
 glm::dmat4 clip_of(const plan::RenderJob& job) {
     const plan::View& view = job.view;
-    const double near =
-        scene::fit_clip_range(view.camera, view.scene ? view.scene->bounds : math::Bounds()).near;
-    return plan::reversed_clip_from_view(view, near, math::sample_offset(job.samples, view.samples));
+    return plan::reversed_clip_from_view(view, plan::near_distance(view),
+                                         math::sample_offset(job.samples, view.samples));
 }
 
 }  // namespace

@@ -4,6 +4,13 @@
 
 namespace vrut::plan {
 
+double near_distance(const View& view) {
+    // Reversed float depth is as precise with a nearer plane. A power of two scales it without rounding.
+    constexpr double kOfClipRange = 1.0 / 128;
+    const math::Bounds bounds = view.scene ? view.scene->bounds : math::Bounds();
+    return scene::fit_clip_range(view.camera, bounds).near * kOfClipRange;
+}
+
 glm::dmat4 reversed_clip_from_view(const View& view, double near, const glm::dvec2& offset) {
     glm::dmat4 matrix =
         scene::clip_from_view(view.camera, static_cast<double>(view.width) / view.height, {near, 2 * near});

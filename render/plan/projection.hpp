@@ -7,6 +7,10 @@
 
 namespace vrut::plan {
 
+/// Distance of the plane before which nothing is drawn, in the scene's unit: a 128th of the near plane that
+/// hosts are told (scene::fit_clip_range()), that is at most 10⁻⁸ of far where the eye is within the scene.
+double near_distance(const View& view);
+
 /// What the GPU clips and tests against: depth is near / distance, 1 at the near plane and 0 at infinity,
 /// which gives float depth the same relative precision everywhere. `offset` moves the sample, in pixels, y
 /// down.
