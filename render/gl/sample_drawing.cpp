@@ -19,10 +19,8 @@ constexpr std::int64_t kScreenPixelCost = 1, kFragmentCost = 8;
 
 glm::dmat4 clip_of(const plan::RenderJob& job) {
     const plan::View& view = job.view;
-    const double near =
-        scene::fit_clip_range(view.camera, view.scene ? view.scene->bounds : math::Bounds()).near;
     const glm::dvec2 offset = math::sample_offset(static_cast<std::uint32_t>(job.samples));  // pixels, y down
-    return math::reversed_clip_from_view(plan::projection_of(view), near,
+    return math::reversed_clip_from_view(plan::projection_of(view), plan::near_distance(view),
                                          glm::dvec2(-2, 2) * offset / glm::dvec2(view.width, view.height));
 }
 

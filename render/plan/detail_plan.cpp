@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/detail_levels.hpp"
+#include "plan/projection.hpp"
 
 namespace vrut::plan {
 
@@ -92,7 +93,7 @@ private:
 
 /// Whether nothing in the box is cut by the near plane or reaches around the eye.
 bool is_beyond_near_plane(const math::Bounds& in_view, const View& view) {
-    const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near * (1 + kNearMargin);
+    const double near = near_distance(view) * (1 + kNearMargin);
     if (-in_view.max.z > near) return true;
     const math::Projection sides = projection_of(view);
     const double corner = near * glm::length(glm::dvec3(sides.right, sides.top, 1));

@@ -173,8 +173,7 @@ std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span
                                         const View& view) {
     const scene::Scene& scene = *view.scene->scene;
     const glm::ivec2 viewport(view.width, view.height);
-    const glm::dmat4 clip_from_view = math::reversed_clip_from_view(
-        projection_of(view), scene::fit_clip_range(view.camera, view.scene->bounds).near);
+    const glm::dmat4 clip_from_view = math::reversed_clip_from_view(projection_of(view), near_distance(view));
     std::vector<MirrorCandidate> chosen = candidates(opaque, scene, clip_from_view, viewport);
     if (chosen.empty()) return {};
     keep_largest(chosen);

@@ -41,7 +41,8 @@ struct RenderJob {
     ~RenderJob() = default;
 };
 
-/// Accumulates one sample. May exchange the memory of `pixels` for other. Returns true when all samples are in.
+/// Accumulates one sample. May exchange the memory of `pixels` for other. Returns true when all samples are
+/// in.
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
 
 /// Makes the image the average of the samples: once all are drawn.

@@ -80,6 +80,10 @@ inline math::Projection projection_of(const View& view) {
     return scene::projection_of(view.camera, static_cast<double>(view.width) / view.height);
 }
 
+/// Distance of the near plane: a 128th of the near distance that hosts are told (scene::fit_clip_range).
+/// Reversed float depth is as precise with a nearer plane.
+double near_distance(const View& view);
+
 /// What a picture took.
 struct FrameStats {
     int passes = 0;

@@ -17,8 +17,8 @@ struct ReferenceImage {
 };
 
 /// The picture as the rules of the scene format have it, ray by ray in double: slow, simple, and the judge of
-/// what the GPU draws. Edges, outlines and marks are left out; a wireframe has its background alone. Uses all
-/// of the processor's cores.
+/// what the GPU draws. It leaves out edges, outlines and markers: of a wireframe it draws the background
+/// alone. Uses all of the processor's cores.
 ReferenceImage trace(const plan::View& view);
 
 /// Rounded to bytes: floor(255 x + 0.5).

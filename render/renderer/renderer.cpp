@@ -209,9 +209,9 @@ std::vector<scene::Index> Renderer::node_ids(const plan::View& view) {
             static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height), scene::kNone);
     return impl_->draw_or_fail([&] {
         impl_->use_scene(view.scene->scene);
-        const double near = scene::fit_clip_range(view.camera, view.scene->bounds).near;
-        return impl_->ids.draw(plan::visible_faces(view), *impl_->scene, view.width, view.height,
-                               math::reversed_clip_from_view(plan::projection_of(view), near));
+        return impl_->ids.draw(
+            plan::visible_faces(view), *impl_->scene, view.width, view.height,
+            math::reversed_clip_from_view(plan::projection_of(view), plan::near_distance(view)));
     });
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/fitted_plane.hpp"
+#include "scene/texture_coordinates.hpp"
 
 namespace vrut::scene {
 
@@ -149,6 +150,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     scene.materials_ = std::move(parts.materials);
     scene.geometries_ = std::move(parts.geometries);
     scene.notices_ = std::move(parts.notices);
+    for (Geometry& geometry : scene.geometries_) move_near_zero(geometry.texcoords);
     scene.planes_.reserve(scene.geometries_.size());
     for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(fitted_plane(geometry));
     std::vector<Index> new_index(in.size());

@@ -52,7 +52,7 @@ struct Geometry {
     Id id = 0;
     std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals;     ///< one for each position, or none: then triangles are flat
-    std::vector<glm::vec2> texcoords;   ///< one for each position, or none
+    std::vector<glm::vec2> texcoords;   ///< one for each position, or none; a Scene's: move_near_zero()
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise from the front
     math::Bounds bounds;
 };

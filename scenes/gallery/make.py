@@ -27,8 +27,7 @@ MARKERS = {"markers": {"Front": {"point": [0, 0.62, 2.10], "text": "Front"},
 
 MODES = [  # name, what to see, options of render (a node by its path in braces), whether the reference draws it
     ("realistic", "In the materials of the scene, lit from the eye", [], True),
-    ("stylized", "Dark blue faces and light blue edges bring out shapes. The reference has the faces only, so that "
-                 "the difference is the edges", ["--mode", "stylized"], True),
+    ("stylized", "Dark blue faces and light blue edges bring out shapes", ["--mode", "stylized"], False),
     ("wireframe", "The edges of all triangles, each once", ["--wireframe"], False),
     ("stylized-wireframe", "Wireframe in the stylized drawing's light blue",
      ["--wireframe", "--mode", "stylized"], False),

@@ -113,7 +113,20 @@ void write_ids(const RenderArguments& arguments, const plan::View& view,
     base::write_file(arguments.ids, io::encode_png(picture_of_ids(view, nodes)));
 }
 
+/// Throws std::invalid_argument where the view shows what the reference leaves out (reference::trace()).
+void require_surfaces_only(const plan::View& view) {
+    const bool edges = view.wireframe || view.mode == plan::DrawMode::stylized;
+    const bool marks = view.selected != scene::kNone || (view.markers && !view.markers->empty());
+    if (edges || marks)
+        throw std::invalid_argument(
+            "--reference draws surfaces alone, without edges, outlines and markers: leave it out, or what "
+            "asks "
+            "for these (" +
+            std::string(edges ? "--wireframe, --mode stylized" : "--select, markers") + ")");
+}
+
 void trace_picture(const RenderArguments& arguments, const plan::View& view) {
+    require_surfaces_only(view);
     const reference::ReferenceImage picture = reference::trace(view);
     if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
     write_picture(arguments, reference::image_of(picture));

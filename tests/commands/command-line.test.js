@@ -169,6 +169,8 @@ test('the reference, its unrounded values, and the nodes', () => {
 
   fails(2, /--float/, 'render', CAR, '-o', file('x.png'), '--float', file('x.pfm'));
   fails(2, /--stats/, 'render', CAR, '-o', file('x.png'), '--reference', '--stats');
+  for (const shown of [['--wireframe'], ['--mode', 'stylized'], ['--select', '66051'], ['--set', '{"renderer":{"wireframe":true}}']])
+    fails(2, /--reference draws surfaces alone/, 'render', file('square.vrut'), '-o', file('x.png'), '--reference', ...shown);
   fs.writeFileSync(file('high.vrut'), SQUARE(16777215));
   fails(1, /--ids: node 16777215/, 'render', file('high.vrut'), '-o', file('x.png'), ...view, '--reference', '--ids', file('i.png'));
 });

@@ -97,6 +97,23 @@ TEST_CASE("near and far cut nothing off") {
     CHECK(studio.check(floor, view_from({0, 1, 0}, {0, 0.7, -1})).surfaces > 2000);
 }
 
+TEST_CASE("what is as near as a hundred millionth of far is drawn") {
+    RendererFixture studio;
+    const double far = 20e3;
+    for (const double near : {0.1, 4e-3, 1e-8 * far}) {
+        CAPTURE(near);
+        // The ground goes on behind the eye.
+        const auto scene =
+            scene_of({{1, quad(far), kGreen, moved_by({0, -1.7, 0}) * turned_by(-90, {1, 0, 0})},
+                      {2, quad(near / 10), kRed, moved_by({0, 0, -near})},
+                      {3, sphere(1, 8), kBlue, moved_by({-2, 0, -6})},
+                      {4, quad(far / 3), kBlue, moved_by({0, 0, -far})}});
+        const plan::View view = view_from({0, 0, 0}, {0, 0, -5});
+        CHECK(studio.check(scene, view).surfaces > 2000);
+        CHECK(is_red(pixel_of(studio.draw(scene, view), view.width / 2, view.height / 2)));
+    }
+}
+
 TEST_CASE("something very far away hides nothing") {
     RendererFixture studio;
     for (const double far : {1e5, 1e9, 1e15}) {

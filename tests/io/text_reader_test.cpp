@@ -105,6 +105,27 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(geometry.bounds.max == glm::dvec3(1, 1, 0));
 }
 
+TEST_CASE("whole numbers are taken off texture coordinates before they become float") {
+    const auto texcoords = [](const std::string& given) {
+        const scene::Scene scene =
+            read_well("vrut-text 1 geometry 1 vertices 3 0 0 0 1 0 0 0 1 0 texcoords 3 " + given +
+                      " triangles 1 0 1 2 end");
+        return scene.geometries()[0].texcoords;
+    };
+    const std::vector<glm::vec2> wanted{{0.3F, 0.1F}, {1.3F, 0.1F}, {0.3F, 0.7F}};
+    for (const double whole : {3.0, 100'000.0, 1e9}) {
+        CAPTURE(whole);
+        const auto number = [&](double part, double sign) { return std::to_string(sign * whole + part); };
+        const std::vector<glm::vec2> found =
+            texcoords(number(0.3, 1) + " " + number(0.1, -1) + " " + number(1.3, 1) + " " + number(0.1, -1) +
+                      " " + number(0.3, 1) + " " + number(0.7, -1));
+        for (std::size_t i = 0; i < 3; ++i) CHECK(glm::distance(found[i], wanted[i]) < 2e-7);
+    }
+    // What is near 0 stays, and so does what reaches around it.
+    CHECK(texcoords("0 0 1 0.25 1 1.5") == std::vector<glm::vec2>{{0, 0}, {1, 0.25F}, {1, 1.5F}});
+    CHECK(texcoords("0 0 4 0 4 100000") == std::vector<glm::vec2>{{0, 0}, {4, 0}, {4, 100'000}});
+}
+
 TEST_CASE("nodes of every type") {
     const scene::Scene scene = read_well(std::string(kFull));
     REQUIRE(scene.nodes().size() == 10);

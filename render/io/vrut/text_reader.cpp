@@ -11,6 +11,7 @@
 #include "io/notices.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
+#include "scene/texture_coordinates.hpp"
 
 namespace vrut::io {
 
@@ -188,11 +189,12 @@ private:
             {"texcoords",
              [&] {
                  texcoords_line = tokens_.line();
-                 geometry.texcoords.resize(tokens_.take_count("a count of texture coordinates", 4));
-                 for (glm::vec2& texcoord : geometry.texcoords)
+                 std::vector<glm::dvec2> texcoords(tokens_.take_count("a count of texture coordinates", 4));
+                 for (glm::dvec2& texcoord : texcoords)
                      for (int i = 0; i < 2; ++i)
-                         texcoord[i] = static_cast<float>(
-                             tokens_.take_number("a texture coordinate", -kMaxCoordinate, kMaxCoordinate));
+                         texcoord[i] =
+                             tokens_.take_number("a texture coordinate", -kMaxCoordinate, kMaxCoordinate);
+                 geometry.texcoords = scene::texcoords_near_zero(texcoords);
              }},
             {"triangles",
              [&] {
