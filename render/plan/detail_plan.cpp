@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "mesh/detail_levels.hpp"
-#include "plan/projection.hpp"
 
 namespace vrut::plan {
 
