@@ -90,7 +90,7 @@ test('models convert, and draw the same picture', { skip: MODELS ? false : 'VRUT
 
 test('what is lost is told, a line each', () => {
   const lost = convert(path.join(TEACHING, 'cube-map.vrut'), file('x.glb'));
-  assert.ok(lost.includes(`${file('x.glb')}: a background is not kept`), lost.join('\n'));
+  assert.ok(lost.includes(`${file('x.glb')}: a background is lost`), lost.join('\n'));
 });
 
 test('wrong usage ends with status 2, and what cannot be done with 1', () => {
@@ -104,7 +104,7 @@ test('wrong usage ends with status 2, and what cannot be done with 1', () => {
   fails(1, /none\.vrut: there is no such file/, 'convert', file('none.vrut'), file('x.glb'));
   fails(1, /y\.glb: it cannot be written/, 'convert', scene, file('a/b/y.glb'));
   fs.writeFileSync(file('car.csb'), 'anything');
-  fails(1, /CSB format has no public specification/, 'convert', file('car.csb'), file('x.glb'));
+  fails(1, /CSB format is not supported/, 'convert', file('car.csb'), file('x.glb'));
 });
 
 test('what a scene is read from is not written over', () => {
