@@ -114,9 +114,9 @@ test('what a scene is read from is not written over', () => {
   fs.writeFileSync(file('in/car.mtl'), 'newmtl A\nmap_Kd x.png\nnewmtl B\nmap_Kd car.textures/0-x.png\n');
   fs.writeFileSync(file('in/my.obj'), 'mtllib car.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl A\nf 1/1 2/1 3/1\nusemtl B\nf 3/1 2/1 1/1\n');
   const before = fs.readFileSync(file('in/car.mtl'), 'utf8');
-  fails(1, /car\.textures\/0-x\.png: the scene is read from this file/, 'convert', file('in/my.obj'), file('in/car.vrut'));
+  fails(1, /car\.textures\/0-x\.png: the scene was read from this file/, 'convert', file('in/my.obj'), file('in/car.vrut'));
   fs.writeFileSync(file('in/car.mtl'), 'newmtl A\n');
-  fails(1, /car\.mtl: the scene is read from this file/, 'convert', file('in/my.obj'), file('in/car.obj'));
+  fails(1, /car\.mtl: the scene was read from this file/, 'convert', file('in/my.obj'), file('in/car.obj'));
   assert.deepEqual(fs.readdirSync(file('in')).sort(), ['car.mtl', 'car.textures', 'my.obj', 'x.png']);
   fs.writeFileSync(file('in/car.mtl'), before);
   succeeds('convert', file('in/my.obj'), file('in/other.obj'));
