@@ -26,7 +26,7 @@ struct DrawItem {
     CullMode cull_mode = CullMode::back;
     bool mirrored = false;                ///< the matrix turns counter-clockwise triangles clockwise
     scene::Index texture = scene::kNone;  ///< whose colour stands in the place of the material's diffuse one
-    bool environment = false;             ///< mixed with the panorama that it reflects
+    bool environment = false;             ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
     /// Only points of the node's space whose product with this is not negative are drawn.
@@ -46,7 +46,7 @@ struct TransparentGroup {
 
 struct MirrorItem;
 
-/// Faces that are drawn from one sight, in this order.
+/// Faces that are drawn with one set of camera matrices, in this order.
 struct DrawLists {
     std::vector<DrawItem> opaque;               ///< by rising id
     std::vector<MirrorItem> mirrors;            ///< by rising id
@@ -78,7 +78,7 @@ struct FramePlan {
     std::vector<glm::dvec3> markers;  ///< in view space, from far to near
 };
 
-/// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
+/// Whether a geometry in that material is a planar mirror; other reflective ones reflect the environment map.
 bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material);
 
 class TransparencyCache;
