@@ -7,19 +7,19 @@
 
 namespace vrut::plan {
 
-/// Part of a picture: x and y from −1 (left, bottom) to 1 (right, top).
+/// An area of the image in normalized device coordinates: x and y from −1 (left, bottom) to 1 (right, top).
 struct NdcRect {
     glm::dvec2 low{-1}, high{1};
 };
-/// The whole of a picture and some pixels more on all sides.
+/// Returns the area of the whole image, enlarged by some pixels on all sides.
 NdcRect ndc_with_margin(int width, int height, double pixels);
 
-/// What can be seen in an area of a picture, in view space: the points before the eye with which no normal
-/// has a negative product. Without near and far.
+/// The frustum of an area of the image, in view space: the points whose dot product with no normal is
+/// negative. Without near and far planes.
 struct Frustum {
     std::array<glm::dvec3, 5> normals;  ///< unit, pointing inwards: left, right, bottom, top, before the eye
 };
-/// `aspect` is width / height of the whole picture.
+/// `aspect` is width / height of the whole image.
 Frustum frustum_of(const scene::Camera& camera, double aspect, const NdcRect& area = {});
 
 /// Returns true if the transformed box lies entirely outside of one frustum plane, by more than the rounding

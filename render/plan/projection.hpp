@@ -19,8 +19,8 @@ struct PixelBox {
 };
 PixelBox intersection(const PixelBox& a, const PixelBox& b);
 
-/// All that something within `bounds` can cover of a picture, whose clip space is a reversed one; what lies
-/// before the near plane counts for nothing.
+/// Returns the pixels that geometry within `bounds` can cover, with a projection of reversed depth; parts in
+/// front of the near plane are ignored.
 PixelBox pixel_box(const math::Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport);
 
 }  // namespace vrut::plan

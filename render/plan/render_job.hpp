@@ -11,10 +11,10 @@ namespace vrut::plan {
 
 class FramePlanner;
 
-/// An image of a view that is drawn in steps (Renderer::step). Between two steps it may wait while others are
-/// drawn, and it may outlive its renderer.
+/// An image of a view that is drawn in steps (Renderer::step). Steps of other jobs may come between, and it
+/// may outlive its renderer.
 struct RenderJob {
-    /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again.
+    /// Draws nothing yet. The memory of `buffer` is reused.
     explicit RenderJob(View what, scene::Image buffer = {});
 
     View view;
