@@ -11,8 +11,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// There is no memory for what was to be drawn; one sentence names how much for what. What was on the GPU
-/// before can be drawn still.
+/// An allocation for drawing failed. The message is one sentence and names what it was for and its size. GPU
+/// resources that existed before stay valid.
 class OutOfMemory : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -10,7 +10,7 @@ std::optional<std::string> file_error(const std::filesystem::path& path) {
     std::error_code error;
     const auto status = std::filesystem::status(path, error);
     if (!std::filesystem::exists(status)) return "there is no such file";
-    if (!std::filesystem::is_regular_file(status)) return "it is not a file";
+    if (!std::filesystem::is_regular_file(status)) return "it is not a regular file";
     return std::nullopt;
 }
 
@@ -18,9 +18,9 @@ tl::expected<std::filesystem::path, std::string> find_below(const std::filesyste
                                                             const std::string& name) {
     namespace fs = std::filesystem;
     const fs::path relative(name);
-    const std::string outside = "the files of a scene lie in the folder of the scene's file or below it";
+    const std::string outside = "it lies outside of the scene's folder: move it into that folder or below";
     if (name.empty() || name.find('\0') != std::string::npos)
-        return tl::unexpected(std::string("its name is none"));
+        return tl::unexpected(std::string("its name is empty or contains a NUL byte"));
     if (relative.is_absolute() || std::find(relative.begin(), relative.end(), "..") != relative.end())
         return tl::unexpected(outside);
     std::error_code error;

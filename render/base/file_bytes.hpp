@@ -10,26 +10,26 @@
 
 namespace vrut::base {
 
-/// Why a path names no file that could be read, without its name; nothing where it names one.
+/// Returns why the path is not a readable file, without its name; none if it is one.
 std::optional<std::string> file_error(const std::filesystem::path& path);
 
-/// The file that `name`, relative to a scene's folder, means there or below, links followed; or why it is
-/// none that may be read: what lies outside of the folder is not.
+/// Resolves `name` relative to a scene's folder, symbolic links included. Returns an error if the file lies
+/// outside of the folder.
 tl::expected<std::filesystem::path, std::string> find_below(const std::filesystem::path& folder,
                                                             const std::string& name);
 
-/// Of a file that ends before its size, as when someone cuts it short meanwhile.
+/// The error for a file that ends before its size, for example since another process truncates it.
 inline constexpr std::string_view kCutShort = "it cannot be read to its end";
 
 /// A file that is read sequentially. It is not mapped: truncation by another process would raise SIGBUS, and
 /// mapped pages would count as the process's memory.
 class FileReader {
 public:
-    /// Or why it cannot be read, without its name.
+    /// Returns an error, without the file's name, if it cannot be read.
     static tl::expected<FileReader, std::string> open(const std::filesystem::path& path);
 
     std::uintmax_t size() const { return size_; }
-    /// Whether there were so many bytes more.
+    /// Reads `count` bytes. Returns false if fewer are left.
     bool read(char* to, std::size_t count);
 
 private:
@@ -39,7 +39,7 @@ private:
     std::uintmax_t size_;
 };
 
-/// A whole file, or why it cannot be read, without its name. Files of more than `most` bytes are refused.
+/// Returns the bytes of a file, or an error without its name. Rejects files of more than `most` bytes.
 tl::expected<std::string, std::string> read_bytes(const std::filesystem::path& path,
                                                   std::uintmax_t most = UINTMAX_MAX);
 

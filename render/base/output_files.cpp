@@ -23,8 +23,7 @@ void OutputFiles::write(const fs::path& target, const std::function<void(std::os
     if (fs::is_directory(target, error)) throw WriteError(target.string() + ": it is a folder");
     for (const fs::path& file : protected_files_)
         if (fs::equivalent(file, target, error))
-            throw WriteError(target.string() +
-                             ": the scene is read from this file, which is not written over");
+            throw WriteError(target.string() + ": the scene was read from this file: choose another name");
     const std::string hidden = "." + target.filename().string() + "." + std::to_string(getpid()) + ".part";
     staged_.push_back({target.parent_path() / hidden, target});
     errno = 0;

@@ -9,7 +9,7 @@
 
 namespace vrut::base {
 
-/// Why a file cannot be written, in one sentence that names it; caught by write_scene().
+/// A file cannot be written. The message names it and is one sentence. write_scene() catches it.
 struct WriteError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -18,16 +18,17 @@ struct WriteError : std::runtime_error {
 /// all of them. Without commit() existing files stay untouched.
 class OutputFiles {
 public:
-    /// None of `kept` is written over.
+    /// write() throws for a target that is one of `protected_files`.
     explicit OutputFiles(std::vector<std::filesystem::path> protected_files = {})
         : protected_files_(std::move(protected_files)) {}
     ~OutputFiles();
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
 
-    /// Makes the folder, where it is missing, in a folder that is there. Throws WriteError.
+    /// Writes the target's temporary file. Creates the target's folder if only that folder is missing. Throws
+    /// WriteError.
     void write(const std::filesystem::path& target, const std::function<void(std::ostream&)>& content);
-    /// Puts the files in their places in the order in which they were written. Throws WriteError.
+    /// Renames the temporary files to their targets, in the order of the writes. Throws WriteError.
     void commit();
 
 private:

@@ -36,7 +36,7 @@ double Difference::share_above(int steps) const {
 Difference difference(const scene::Image& a, const scene::Image& b, const std::vector<bool>& counts) {
     const std::size_t pixels = a.rgba.size() / 4;
     if (a.width != b.width || a.height != b.height || (!counts.empty() && counts.size() != pixels))
-        throw std::invalid_argument("pictures of different sizes cannot be compared");
+        throw std::invalid_argument("images of different sizes cannot be compared");
     Difference result;
     for (std::size_t i = 0; i < pixels; ++i) {
         if (!counts.empty() && !counts[i]) continue;

@@ -9,7 +9,7 @@
 
 namespace vrut::compare {
 
-/// How far two pictures are apart in red, green and blue, in steps of 1/255; alpha is not compared.
+/// The difference of two images in red, green and blue, in steps of 1/255; alpha is not compared.
 struct Difference {
     /// pixels[k]: those whose channel furthest off is off by k.
     std::array<std::uint64_t, 256> pixels{};
@@ -26,11 +26,11 @@ struct Difference {
     double share_above(int steps) const;
 };
 
-/// Of the pixels for which `counts`, one for each as rows of the pictures go, is true; of all where it is
-/// empty. Throws std::invalid_argument where sizes differ.
+/// Compares the pixels for which `counts` (one value for each pixel, in the images' row order) is true, or
+/// all if it is empty. Throws std::invalid_argument if sizes differ.
 Difference difference(const scene::Image& a, const scene::Image& b, const std::vector<bool>& counts = {});
 
-/// For each pixel whether it and its eight neighbours, all in the picture, show one node.
+/// Returns for each pixel whether it and its eight neighbours, all inside the image, show the same node.
 std::vector<bool> interior_pixels(const std::vector<scene::Index>& nodes, int width, int height);
 
 }  // namespace vrut::compare

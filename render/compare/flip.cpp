@@ -266,7 +266,7 @@ double flip_error(const PerceivedRows& a, const PerceivedRows& b, std::size_t i)
 
 std::vector<float> flip(const scene::Image& a, const scene::Image& b) {
     if (a.width != b.width || a.height != b.height)
-        throw std::invalid_argument("pictures of different sizes cannot be compared");
+        throw std::invalid_argument("images of different sizes cannot be compared");
     const Viewer viewer;
     const auto height = static_cast<std::size_t>(a.height);
     std::vector<float> errors;

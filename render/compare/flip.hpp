@@ -24,7 +24,7 @@ struct FlipSummary {
 };
 FlipSummary summary_of(std::vector<float> errors);
 
-/// Values as greys, 0 black and 1 white.
+/// Renders errors as grey levels, 0 black and 1 white.
 scene::Image grey_map(const std::vector<float>& errors, int width, int height);
 
 }  // namespace vrut::compare

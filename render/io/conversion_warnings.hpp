@@ -6,7 +6,7 @@
 
 namespace vrut::io {
 
-/// What of a file does not come into the scene: one notice for each kind, with how often it occurred.
+/// What a conversion loses: one notice for each kind of loss, with the number of times.
 class ConversionWarnings {
 public:
     void add(const std::string& what, std::size_t times = 1) {

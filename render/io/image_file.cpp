@@ -25,9 +25,9 @@ std::optional<std::string> size_fault(std::uint32_t width, std::uint32_t height,
     const std::string size =
         "its size is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, ";
     if (width > kMaxImageSide || height > kMaxImageSide)
-        return size + "and a side has at most " + std::to_string(kMaxImageSide);
+        return size + "but a side may have at most " + std::to_string(kMaxImageSide);
     if (std::uint64_t{width} * height > max_pixels)
-        return size + "and at most " + std::to_string(max_pixels) + " in all can be read";
+        return size + "but at most " + std::to_string(max_pixels) + " in all can be read";
     return std::nullopt;
 }
 
@@ -85,7 +85,7 @@ private:
     }
 
     std::string_view rest_;
-    char message_[128] = "libpng does not start";
+    char message_[128] = "libpng cannot be initialized";
     png_structp png_;
     png_infop info_ = nullptr;
 };
@@ -115,8 +115,7 @@ Result decode_jpeg(std::string_view bytes, std::uint64_t max_pixels) {
     if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &sampling, &colors) != 0)
         return fault();
     if (colors == TJCS_CMYK || colors == TJCS_YCCK)
-        return tl::unexpected(
-            std::string("it is a JPEG of printing colours (CMYK), not of red, green and blue"));
+        return tl::unexpected(std::string("it is a CMYK JPEG: save it as RGB"));
     if (auto why =
             size_fault(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), max_pixels))
         return tl::unexpected(*std::move(why));

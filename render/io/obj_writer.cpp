@@ -134,16 +134,17 @@ std::vector<std::string> name_materials(const scene::Scene& scene, const std::ve
 /// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
 void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
                          ConversionWarnings& warnings) {
-    warnings.add("whether a material is drawn from both sides is not kept");
-    if (material.reflectivity > 0) warnings.add("that a material reflects is not kept");
+    warnings.add("a material's two-sided flag is lost");
+    if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     const bool has_holes = material.texture != scene::kNone &&
                            scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
     if (has_holes && material.diffuse.a < 1)
-        warnings.add("a material's opacity beside that of its picture is written, but not read here");
+        warnings.add("a textured material's own opacity is written, but not read back");
     if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
-        warnings.add("a material's ambient colour is written, but read here as a tenth of its diffuse one");
+        warnings.add(
+            "a material's ambient colour is written, but read back as a tenth of its diffuse colour");
     if (material.shininess < 1 && glm::dvec3(material.specular) != glm::dvec3(0))
-        warnings.add("a highlight with a shininess below 1 is written, but read here as another or none");
+        warnings.add("a shininess below 1 is written, but read back as another or none");
 }
 
 void report_lost_materials(const scene::Scene& scene, const std::vector<std::string>& names,
@@ -151,10 +152,11 @@ void report_lost_materials(const scene::Scene& scene, const std::vector<std::str
     for (std::size_t i = 0; i + 1 < names.size(); ++i) {
         const scene::Material& material = scene.materials()[i];
         if (names[i].empty()) {
-            warnings.add("a material that nothing shows is left out");
+            warnings.add("an unused material is omitted");
             continue;
         }
-        if (names[i] != material.name) warnings.add("a material's name is changed to one word of its own");
+        if (names[i] != material.name)
+            warnings.add("a material is renamed: OBJ names are unique single words");
         report_lost_shading(scene, material, warnings);
     }
 }
@@ -163,7 +165,7 @@ void report_lost_geometry(const std::vector<ShownShape>& shapes, ConversionWarni
     std::set<const scene::Geometry*> written;
     for (const ShownShape& shape : shapes) {
         if (!written.insert(shape.geometry).second)
-            warnings.add("a geometry that several nodes show is written for each of them");
+            warnings.add("a geometry that several nodes share is written once for each node");
         const auto& positions = shape.geometry->positions;
         const auto is_single = [&](const glm::dvec3& position) {
             const glm::dvec4 world = shape.world * glm::dvec4(position, 1);
@@ -204,7 +206,7 @@ void write_obj(const scene::Scene& scene, const std::filesystem::path& path, bas
         for (std::size_t i = 0; i < shapes.size(); ++i) {
             const scene::Node& node = scene.nodes()[static_cast<std::size_t>(shapes[i].node)];
             const std::string name = names.unique_name(node.name, node.id, "node");
-            if (name != node.name) warnings.add("a node's name is changed to one word of its own");
+            if (name != node.name) warnings.add("a node is renamed: OBJ names are unique single words");
             const scene::Index material = shapes[i].material;
             writer.write_shape(shapes[i], name,
                                materials[material == scene::kNone ? materials.size() - 1

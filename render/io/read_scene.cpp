@@ -78,10 +78,11 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
     if (const auto fault = base::file_error(path)) return tl::unexpected(file + ": " + *fault);
     if (lower_extension(path) == ".csb")
         return tl::unexpected(file +
-                              ": the CSB format has no public specification, so that nothing reads it here; "
-                              "OpenSG's own format, .osb, is read");
+                              ": the CSB format is not supported, for it has no public specification; "
+                              "convert it to .osb with OpenSG");
     if (format == nullptr)
-        return tl::unexpected(file + ": no reader for this ending; known are " + known_extensions());
+        return tl::unexpected(file + ": this file extension cannot be read; supported are " +
+                              known_extensions());
     return format->read(path, progress);
 }
 

@@ -12,7 +12,7 @@ namespace vrut::io {
 /// A scene, or one sentence that names the file, where it can the line, and what was expected.
 using ReadResult = tl::expected<scene::Scene, std::string>;
 
-/// Is told now and then which part, 0 to 1, has been read.
+/// Called now and then with the fraction that has been read, 0 to 1.
 using ReadProgress = std::function<void(double)>;
 
 /// What the reader of a format hands over, or the same kind of sentence.

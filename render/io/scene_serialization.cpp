@@ -410,7 +410,7 @@ PartsResult deserialize_parts(const ByteSource& source, std::uint64_t most, cons
     serialize(stream, parts);
     return parts;
 } catch (const MalformedStream& fault) {
-    return tl::unexpected(file + ": its reader handed over what is no scene: " + fault.what());
+    return tl::unexpected(file + ": the import process returned an invalid scene: " + fault.what());
 }
 
 }  // namespace vrut::io

@@ -9,13 +9,13 @@
 
 namespace vrut::io {
 
-/// Takes the bytes of a stream, piece after piece.
+/// Receives the bytes of a stream, block by block.
 using ByteSink = std::function<void(std::string_view)>;
-/// Gives so many bytes of a stream, or throws.
+/// Reads `size` bytes of a stream into `to`, or throws.
 using ByteSource = std::function<void(void* to, std::size_t size)>;
 
-/// What a reader hands over, for another process of the same program: 64-bit words as this machine has them,
-/// with their count first.
+/// Serializes a reader's result for another process of the same program: 64-bit words in native byte order,
+/// preceded by their count.
 void serialize_parts(PartsResult parts, const ByteSink& sink);
 
 /// Deserializes. The bytes are untrusted: returns an error if they are not valid parts of a reader of `file`

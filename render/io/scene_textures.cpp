@@ -68,7 +68,7 @@ CubeResult read_cube(TextureReader& reader, const std::vector<scene::Texture>& t
     for (std::size_t i = 0; i < faces.size(); ++i)
         if (const scene::Image& image = textures[static_cast<std::size_t>(faces[i])].image;
             image.width != side || image.height != side)
-            return tl::unexpected("its pictures are squares of one size, and '" + excerpt(names[i]) +
+            return tl::unexpected("its six images must be squares of one size, but '" + excerpt(names[i]) +
                                   "' is " + std::to_string(image.width) + " x " +
                                   std::to_string(image.height) + " pixels");
     return faces;
@@ -92,7 +92,7 @@ void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const R
         if (const TextureResult texture = reader.read(material.image))
             material.texture = *texture;
         else
-            say("material " + std::to_string(material.id) + " is drawn without its picture '" +
+            say("material " + std::to_string(material.id) + " is drawn without its texture '" +
                 excerpt(material.image) + "': " + texture.error());
     }
     for (auto& [node, parent_id, line] : parts.nodes) {

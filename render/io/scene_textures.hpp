@@ -7,15 +7,15 @@
 
 namespace vrut::io {
 
-/// Pixels of all pictures of a scene together: 1 GiB.
+/// The largest number of pixels of all textures of a scene: 1 GiB.
 inline constexpr std::uint64_t kMaxTexturePixels = std::uint64_t{1} << 28;
 
-/// Whether some alpha is below 255.
+/// Returns true if a pixel's alpha is below 255.
 bool has_transparent_pixel(const scene::Image& image);
 
-/// Reads the pictures that the parts' materials and cube maps name, each file once, into their textures.
-/// Names are relative to the folder of `scene_file`; what lies outside of it, after links are followed, is
-/// not read. What cannot be read, or is no cube map of six squares of one size, is left out with a notice.
+/// Reads the image files that the parts' materials and cube maps name into textures, each file once. Names
+/// are relative to the folder of `scene_file`. A file outside of that folder (symbolic links resolved), an
+/// unreadable one, and a cube map without six squares of one size are omitted with a notice.
 void read_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
                    const ReadProgress& progress = {}, std::uint64_t max_pixels = kMaxTexturePixels);
 

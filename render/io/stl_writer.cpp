@@ -41,9 +41,10 @@ void write_shape(const ShownShape& shape, std::ostream& out) {
 }
 
 void report_lost_materials(const std::vector<ShownShape>& shapes, ConversionWarnings& warnings) {
-    warnings.add("names and materials are not kept");
+    warnings.add("names and materials are lost");
     for (const ShownShape& shape : shapes)
-        if (!shape.geometry->normals.empty()) warnings.add("a geometry's normals are not kept: it is flat");
+        if (!shape.geometry->normals.empty())
+            warnings.add("vertex normals are lost: STL stores face normals only");
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ std::vector<std::uint8_t> encode_png(const scene::Image& image, bool with_alpha)
     std::vector<std::uint8_t> png(size);
     if (!png_image_write_to_memory(&header, png.data(), &size, 0, with_alpha ? image.rgba.data() : rgb.data(),
                                    bottom_up, nullptr))
-        throw std::runtime_error(std::string("a picture cannot be encoded as PNG: ") + header.message);
+        throw std::runtime_error(std::string("an image cannot be encoded as PNG: ") + header.message);
     png.resize(size);
     return png;
 }

@@ -31,9 +31,9 @@ std::vector<ShownShape> shown_shapes(const scene::Scene& scene, ConversionWarnin
         const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(data->geometry)];
         if (geometry.triangles.empty()) continue;
         if (!shown[i])
-            warnings.add("a geometry that is hidden at the start is left out");
+            warnings.add("an initially hidden geometry is omitted");
         else if (!scene::is_finite(world[i]))
-            warnings.add("a geometry beyond the range of numbers is left out");
+            warnings.add("a geometry whose world matrix is not finite is omitted");
         else
             shapes.push_back({static_cast<scene::Index>(i), &geometry, data->material, world[i]});
     }
@@ -42,22 +42,21 @@ std::vector<ShownShape> shown_shapes(const scene::Scene& scene, ConversionWarnin
 
 void report_lost_nodes(const scene::Scene& scene, ConversionWarnings& warnings) {
     for (const scene::Node& node : scene.nodes()) {
-        if (node.hinge) warnings.add("how a part turns about its hinge is not kept");
-        if (node.type == scene::NodeType::background) warnings.add("a background is not kept");
-        if (node.type == scene::NodeType::switch_)
-            warnings.add("a switch is kept as the child that it chooses");
-        if (node.type == scene::NodeType::lod) warnings.add("a level of detail is kept as its first child");
-        if (node.type == scene::NodeType::sound) warnings.add("a sound is not kept");
+        if (node.hinge) warnings.add("a hinge is lost");
+        if (node.type == scene::NodeType::background) warnings.add("a background is lost");
+        if (node.type == scene::NodeType::switch_) warnings.add("a switch is replaced by its active child");
+        if (node.type == scene::NodeType::lod) warnings.add("a LOD node is replaced by its first child");
+        if (node.type == scene::NodeType::sound) warnings.add("a sound is lost");
     }
-    if (scene.unit() != 1) warnings.add("how many metres a unit has is not kept");
+    if (scene.unit() != 1) warnings.add("the scene's unit is lost");
 }
 
 void report_lost_tree(const scene::Scene& scene, ConversionWarnings& warnings) {
     for (const scene::Node& node : scene.nodes()) {
-        if (node.type == scene::NodeType::camera) warnings.add("a camera is not kept");
-        if (node.type == scene::NodeType::light) warnings.add("a light is not kept");
+        if (node.type == scene::NodeType::camera) warnings.add("a camera is lost");
+        if (node.type == scene::NodeType::light) warnings.add("a light is lost");
         if (node.type == scene::NodeType::assembly)
-            warnings.add("an assembly is not kept: its matrix goes into the vertices");
+            warnings.add("an assembly is lost: its matrix is applied to the vertices");
     }
 }
 

@@ -7,8 +7,8 @@
 
 namespace vrut::io {
 
-/// A geometry node that is drawn at the start: by its file it is active, and its switches choose it; of a
-/// level of detail, the first child.
+/// A geometry node that is initially visible: active in the file and chosen by its switches; of a LOD node
+/// only the first child counts.
 struct ShownShape {
     scene::Index node = scene::kNone;
     const scene::Geometry* geometry = nullptr;  ///< with a triangle at least
@@ -16,13 +16,13 @@ struct ShownShape {
     glm::dmat4 world{1};  ///< world from node
 };
 
-/// What a format without activity, switches and levels of detail shows of a scene, in the order of the nodes;
-/// what it leaves out is told.
+/// Returns the initially visible geometry nodes in the order of the nodes, for formats without activity,
+/// switches and LOD nodes. Adds a warning for each kind of node that it omits.
 std::vector<ShownShape> shown_shapes(const scene::Scene& scene, ConversionWarnings& warnings);
 
-/// Tells of what neither of the formats but VRUT's own holds.
+/// Warns of nodes that only VRUT's own format can store.
 void report_lost_nodes(const scene::Scene& scene, ConversionWarnings& warnings);
-/// Tells of cameras, lights and the tree, which a format of triangles alone does not hold.
+/// Warns of cameras, lights and the scene graph, which a format of triangles alone cannot store.
 void report_lost_tree(const scene::Scene& scene, ConversionWarnings& warnings);
 
 }  // namespace vrut::io

@@ -57,7 +57,7 @@ WriteResult write_scene(const scene::Scene& scene, const std::filesystem::path& 
                         const WriteProgress& progress, std::vector<std::filesystem::path> protected_files) {
     const WriterEntry* const format = writer_of(path);
     if (format == nullptr)
-        return tl::unexpected(path.string() + ": no writer for this ending; known are " +
+        return tl::unexpected(path.string() + ": this file extension cannot be written; supported are " +
                               written_extensions());
     try {
         base::OutputFiles files(std::move(protected_files));

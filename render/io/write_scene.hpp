@@ -10,7 +10,7 @@
 
 namespace vrut::io {
 
-/// Is told now and then which part, 0 to 1, has been written.
+/// Called now and then with the fraction that has been written, 0 to 1.
 using WriteProgress = std::function<void(double)>;
 
 /// What of the scene the file does not hold, each in one sentence with the file's name; or one sentence why

@@ -24,7 +24,7 @@ struct Bounds {
     void add(const Bounds& other);
 };
 
-/// The smallest box around `box` seen through an affine `matrix`: centre and |M| · half extent.
+/// Returns the bounds of `box` transformed by an affine `matrix`: centre and |M| · half extent.
 Bounds transformed(const glm::dmat4& matrix, const Bounds& box);
 
 /// The eight corners of a box that is not empty.

@@ -14,7 +14,7 @@ struct Plane {
     double distance(const glm::dvec3& p) const { return glm::dot(normal, p - point); }
 };
 
-/// The plane seen through an affine `matrix`; none where that leaves no plane.
+/// Returns the plane transformed by an affine `matrix`; none if the matrix collapses it.
 std::optional<Plane> transformed(const glm::dmat4& matrix, const Plane& plane);
 
 /// The reflection about a plane, for column vectors (Macků 2016, eq. 6.12).

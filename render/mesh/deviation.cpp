@@ -20,7 +20,7 @@ constexpr std::size_t kEdges = 20000;
 
 constexpr unsigned kNowhere = std::numeric_limits<unsigned>::max();
 
-float squared(const glm::vec3& v) { return glm::dot(v, v); }
+float squared_length(const glm::vec3& v) { return glm::dot(v, v); }
 
 }  // namespace
 
@@ -72,8 +72,8 @@ bool SurfaceDeviation::move_anchors(std::span<const glm::uvec3> before, std::spa
                         reassignments.push_back({triangle[k], next[triangle[other]]});
         if (reassignments.empty()) return false;
         for (const auto& [vertex, anchor] : reassignments)
-            if (next[vertex] == kNowhere || squared(positions_[anchor] - positions_[vertex]) <
-                                                squared(positions_[next[vertex]] - positions_[vertex]))
+            if (next[vertex] == kNowhere || squared_length(positions_[anchor] - positions_[vertex]) <
+                                                squared_length(positions_[next[vertex]] - positions_[vertex]))
                 next[vertex] = anchor;
         std::erase_if(missing, [&](const glm::uvec3& t) { return !is_missing(t); });
     }
@@ -99,7 +99,8 @@ void SurfaceDeviation::include(const glm::vec3& point, unsigned& anchor, Measure
     const glm::uvec3& t = surface.triangles[found.number];
     anchor = t.x;
     for (const unsigned corner : {t.y, t.z})
-        if (squared(positions_[corner] - point) < squared(positions_[anchor] - point)) anchor = corner;
+        if (squared_length(positions_[corner] - point) < squared_length(positions_[anchor] - point))
+            anchor = corner;
 }
 
 unsigned SurfaceDeviation::closest_triangle(const glm::vec3& point, const glm::uvec3& triangle) const {

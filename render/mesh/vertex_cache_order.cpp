@@ -6,8 +6,8 @@ namespace vrut::mesh {
 
 namespace {
 
-constexpr std::size_t kFewest = 1000;  ///< triangles; the vertices of fewer stay in any cache
-constexpr unsigned kCached = 32;       ///< vertices, on the graphics cards that there are
+constexpr std::size_t kMinTriangles = 1000;  ///< triangles; the vertices of fewer stay in any cache
+constexpr unsigned kCached = 32;             ///< vertices, on the graphics cards that there are
 
 unsigned transformed_vertices(const std::vector<glm::uvec3>& triangles, std::size_t vertices) {
     return meshopt_analyzeVertexCache(&triangles[0].x, triangles.size() * 3, vertices, kCached, 0, 0)
@@ -17,7 +17,7 @@ unsigned transformed_vertices(const std::vector<glm::uvec3>& triangles, std::siz
 }  // namespace
 
 std::optional<DetailLevel> optimize_vertex_cache(const scene::Geometry& geometry) {
-    if (geometry.triangles.size() < kFewest || geometry.normals.empty()) return std::nullopt;
+    if (geometry.triangles.size() < kMinTriangles || geometry.normals.empty()) return std::nullopt;
     const std::size_t vertices = geometry.positions.size();
     DetailLevel level{0, 0, std::vector<glm::uvec3>(geometry.triangles.size())};
     meshopt_optimizeVertexCache(&level.triangles[0].x, &geometry.triangles[0].x,

@@ -11,8 +11,7 @@ scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, do
 /// The view of a scene without a camera node: three quarters from the front and above, fitted.
 scene::Camera home_camera(const math::Bounds& bounds, double aspect);
 
-// Moves. Each leaves the camera as it is, to the bit, where it is asked for nothing, or for more than double
-// holds.
+// Camera moves. Each returns the camera bit-identical if the move is zero or its result is not finite.
 
 /// The scene turns by `right` and `down` degrees, as if dragged there, around `camera.center`. With
 /// `keep_upright` about the scene's vertical, and `down` stops at the poles, so that the scene never stands

@@ -9,23 +9,22 @@ namespace {
 
 using Action = PointerInput::Action;
 using Device = PointerInput::Device;
-using Operation = Click::Operation;
 
-constexpr std::size_t kMostPressed = 16;
+constexpr std::size_t kMaxPresses = 16;
 constexpr std::chrono::milliseconds kTrusted{1000};
 
 std::chrono::microseconds whole(double milliseconds) {
     return std::chrono::microseconds(std::llround(milliseconds * 1000));
 }
 
-std::optional<Operation> operation_of(int button) {
+std::optional<Click::Operation> operation_of(int button) {
     switch (button) {
         case 0:
-            return Operation::select;
+            return Click::Operation::select;
         case 1:
-            return Operation::look_at;
+            return Click::Operation::look_at;
         case 2:
-            return Operation::set_center;
+            return Click::Operation::set_center;
         default:
             return std::nullopt;
     }
@@ -53,7 +52,7 @@ std::optional<Click> Clicks::pointer(const PointerInput& input, const EventTime&
     });
     if (input.action == Action::down) {
         if (pressed != pressed_.end()) pressed_.erase(pressed);
-        if (pressed_.size() < kMostPressed) press(input, when, style);
+        if (pressed_.size() < kMaxPresses) press(input, when, style);
         return std::nullopt;
     }
     if (pressed == pressed_.end()) return std::nullopt;
@@ -88,7 +87,7 @@ std::optional<Click> Clicks::released(const Press& press, std::chrono::microseco
                            first.client == press.client && first.stays() &&
                            press.time - first.time > kLongest;
         if (!rests) return std::nullopt;
-        return Click{Operation::look_at, press.place.x, press.place.y};
+        return Click{Click::Operation::look_at, press.place.x, press.place.y};
     }
     const bool second = before && before->client == press.client && before->device == press.device &&
                         before->button == press.button && press.time - before->time <= kNextWithin &&
@@ -97,7 +96,8 @@ std::optional<Click> Clicks::released(const Press& press, std::chrono::microseco
         last_ = press;
         return std::nullopt;
     }
-    const std::optional<Operation> operation = touch ? Operation::select : operation_of(press.button);
+    const std::optional<Click::Operation> operation =
+        touch ? Click::Operation::select : operation_of(press.button);
     return operation ? std::optional(Click{*operation, press.place.x, press.place.y}) : std::nullopt;
 }
 

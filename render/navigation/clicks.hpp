@@ -29,7 +29,7 @@ private:
     std::chrono::microseconds time_{0};
 };
 
-/// What a click asks for, to be done with what is hit at the point.
+/// The operation that a click requests on the object hit at its position.
 struct Click {
     enum class Operation { select, set_center, look_at };
     Operation operation = Operation::select;
@@ -45,7 +45,7 @@ public:
     static constexpr std::chrono::milliseconds kNextWithin{400};  ///< from the first press to the second
     static constexpr double kNextNear = 24;                       ///< CSS pixels between them
 
-    /// What `input` completes.
+    /// Returns the click that `input` completes, if any.
     std::optional<Click> pointer(const PointerInput& input, const EventTime& when,
                                  NavigationStyle style = NavigationStyle::vrut);
     void lift(const std::string& client);

@@ -23,17 +23,17 @@ enum class Easing {
 /// stand level and upright, so that the horizon stays level, else by the shortest turn of the whole frame.
 class CameraPath {
 public:
-    /// `from` is where it starts; the keyframes' times are 0 or more and rise, their poses are valid. One at
-    /// 0 takes the place of `from`.
+    /// The path starts at `from`. The keyframes' times rise from 0 or above; their poses are valid. A
+    /// keyframe at 0 replaces `from`.
     CameraPath(const scene::Camera& from, const std::vector<CameraKeyframe>& keyframes, Easing easing);
 
-    /// Each keyframe's own camera, to the bit, at its time; the first before the start, the last after the
+    /// Returns a keyframe's camera bit-identical at its time; the first before the start, the last after the
     /// end.
     scene::Camera at(double ms) const;
     double duration() const { return path_.back().at; }
 
 private:
-    /// How far from `path_[index]` to the next, 0 to 1.
+    /// Returns the progress from `path_[index]` to the next keyframe, 0 to 1.
     double progress(std::size_t index, double ms) const;
     double slope(std::size_t index) const;
 

@@ -35,7 +35,7 @@ struct KeyInput {
     std::string code{};  ///< `KeyboardEvent.code`: where the key lies
 };
 
-/// What turns an input into a move, besides the input.
+/// What a move depends on besides the input.
 struct NavigationContext {
     double width = 1280, height = 720;  ///< of the view, CSS pixels
     math::Bounds bounds;                ///< of the scene
@@ -58,14 +58,14 @@ public:
         bool operator==(const HeldKey&) const = default;
     };
 
-    /// The camera after `input`, from `camera` before it.
+    /// Returns the camera after `input`, given the `camera` before it.
     scene::Camera pointer(const PointerInput& input, const scene::Camera& camera,
                           const NavigationContext& context);
-    /// Number keys, which some navigation styles have for drags that begin while they are held; others are
+    /// Number keys, which some navigation styles use for drags that begin while they are held; other keys are
     /// ignored.
     void key_down(const std::string& client, const KeyInput& input);
     void key_up(const std::string& client, const KeyInput& input);
-    /// To be called after the camera changed by anything but pointer(): drags begin anew there.
+    /// Call this after the camera changed by anything but pointer(): drags restart there.
     void restart(const scene::Camera& camera);
     /// Lifts the pointers and keys of `client`; the camera stays where it is.
     void lift(const std::string& client, const scene::Camera& camera);
@@ -98,8 +98,8 @@ private:
     scene::Camera start_;
 };
 
-/// The camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides the
-/// distance by 1.1.
+/// Returns the camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides
+/// the distance by 1.1.
 scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context);
 
 }  // namespace vrut::navigation

@@ -8,7 +8,7 @@
 
 namespace vrut::navigation {
 
-/// What a key asks for when it goes down.
+/// The operation of a key press.
 struct KeyOperation {
     enum class Kind { rotate, pan, zoom, fit, home, toggle_wireframe, toggle_stylized, escape };
     Kind kind = Kind::fit;
@@ -17,12 +17,12 @@ struct KeyOperation {
     glm::dvec2 by{0};
 };
 
-/// None for keys that mean nothing. Here stand all their names, but for the number keys of the navigation
+/// Returns none for keys without a binding. All key names are here, except the number keys of the navigation
 /// styles.
 std::optional<KeyOperation> key_operation(const KeyInput& input);
 
-/// The camera after an operation; the same camera for those that do not move it. Speeds do not apply. `home`
-/// is where Home goes; `context.bounds` is what fit fits, and what limits the zoom.
+/// Returns the camera after an operation; unchanged for those that do not move it. Speeds do not apply.
+/// `home` is the target of Home; `context.bounds` is fitted by fit, and limits the zoom.
 scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Camera& camera,
                                   const scene::Camera& home, const NavigationContext& context);
 

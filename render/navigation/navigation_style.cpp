@@ -8,7 +8,6 @@ namespace vrut::navigation {
 namespace {
 
 using Style = NavigationStyle;
-using Operation = DragOperation;
 
 /// Which of the held buttons count.
 enum class Chord {
@@ -24,7 +23,7 @@ struct DragRow {
     bool alt;    ///< only while Alt is held
     int number;  ///< only while this number key is held; 0 always
     Chord chord;
-    Operation operation;
+    DragOperation operation;
 };
 
 // The first row that applies says what a drag does; none: nothing. Buttons and keys are those of the
@@ -33,24 +32,24 @@ struct DragRow {
 // far a drag goes is the same in all styles; Maya and Cinema 4D also count the horizontal part when zooming,
 // which is left out.
 constexpr DragRow kDragRows[] = {
-    {Style::vrut, left_button, false, 0, Chord::last, Operation::rotate},
-    {Style::vrut, right_button, false, 0, Chord::last, Operation::pan},
-    {Style::vrut, middle_button, false, 0, Chord::last, Operation::zoom},
+    {Style::vrut, left_button, false, 0, Chord::last, DragOperation::rotate},
+    {Style::vrut, right_button, false, 0, Chord::last, DragOperation::pan},
+    {Style::vrut, middle_button, false, 0, Chord::last, DragOperation::zoom},
 
-    {Style::maya, left_button, true, 0, Chord::last, Operation::rotate},
-    {Style::maya, middle_button, true, 0, Chord::last, Operation::pan},
-    {Style::maya, right_button, true, 0, Chord::last, Operation::zoom},
+    {Style::maya, left_button, true, 0, Chord::last, DragOperation::rotate},
+    {Style::maya, middle_button, true, 0, Chord::last, DragOperation::pan},
+    {Style::maya, right_button, true, 0, Chord::last, DragOperation::zoom},
 
-    {Style::catia, middle_button, false, 0, Chord::alone, Operation::pan},
-    {Style::catia, middle_button, false, 0, Chord::with_other, Operation::rotate},
-    {Style::catia, middle_button, false, 0, Chord::after_other, Operation::zoom},
+    {Style::catia, middle_button, false, 0, Chord::alone, DragOperation::pan},
+    {Style::catia, middle_button, false, 0, Chord::with_other, DragOperation::rotate},
+    {Style::catia, middle_button, false, 0, Chord::after_other, DragOperation::zoom},
 
-    {Style::cinema4d, left_button, true, 0, Chord::last, Operation::rotate},
-    {Style::cinema4d, middle_button, true, 0, Chord::last, Operation::pan},
-    {Style::cinema4d, right_button, true, 0, Chord::last, Operation::zoom},
-    {Style::cinema4d, left_button, false, 1, Chord::last, Operation::pan},
-    {Style::cinema4d, left_button, false, 2, Chord::last, Operation::zoom},
-    {Style::cinema4d, left_button, false, 3, Chord::last, Operation::rotate},
+    {Style::cinema4d, left_button, true, 0, Chord::last, DragOperation::rotate},
+    {Style::cinema4d, middle_button, true, 0, Chord::last, DragOperation::pan},
+    {Style::cinema4d, right_button, true, 0, Chord::last, DragOperation::zoom},
+    {Style::cinema4d, left_button, false, 1, Chord::last, DragOperation::pan},
+    {Style::cinema4d, left_button, false, 2, Chord::last, DragOperation::zoom},
+    {Style::cinema4d, left_button, false, 3, Chord::last, DragOperation::rotate},
 };
 
 bool is_held(Chord chord, int button, const Grip& grip) {
@@ -83,7 +82,7 @@ DragOperation drag_operation(NavigationStyle style, const Grip& grip) {
                (candidate.number == 0 || candidate.number == grip.number) &&
                is_held(candidate.chord, candidate.button, grip);
     });
-    return row == std::end(kDragRows) ? Operation::none : row->operation;
+    return row == std::end(kDragRows) ? DragOperation::none : row->operation;
 }
 
 bool suppresses_clicks(NavigationStyle style, const ModifierKeys& modifiers) {

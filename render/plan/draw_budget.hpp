@@ -19,8 +19,8 @@ public:
     bool is_spent() const { return left_ <= 0; }
     void spend(std::int64_t work) { left_ -= work; }
     void spend_pixels(std::int64_t pixels) { left_ -= pixels * pixel_weight_ / 64; }
-    /// The first of `items`, as many as may be drawn within `box`: one at least if it is not spent.
-    /// `is_uploaded` says whether an item's geometry is on the GPU already.
+    /// Returns the first `items` that the budget allows to draw within `box`, at least one if the budget is
+    /// not spent. `is_uploaded` returns true if an item's geometry is on the GPU already.
     std::span<const DrawItem> next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
                                          const glm::dmat4& clip_from_view, const math::PixelBox& box,
                                          const glm::ivec2& viewport,

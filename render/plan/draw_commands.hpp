@@ -11,31 +11,32 @@ namespace vrut::plan {
 /// One step of drawing a sample, over a list of items or none. A step over items can be executed in batches.
 struct DrawCommand {
     enum class Kind {
-        clear,            ///< the picture, and draws its background
+        clear,            ///< clears the image, and draws its background
         opaque,           ///< faces
-        find_mirrors,     ///< which of `mirrors` can be seen; commands of the others are left out
+        find_mirrors,     ///< occlusion queries of `mirrors`; commands of hidden ones are skipped
         open_mirror,      ///< clears the target of `mirror`, and draws its background
         close_mirror,     ///< draws its surface
         sorted_glass,     ///< faces, in the order of the items
         per_pixel_glass,  ///< faces, in the order that each pixel needs
         edges,            ///< lines
-        edges_overlay,    ///< lines that nothing hides
-        reset_depth,      ///< makes room in the depth for what is drawn over everything
+        edges_overlay,    ///< lines without depth test
+        reset_depth,      ///< clears depth where the items cover the image
         outline_mask,     ///< into a mask
         outline,          ///< around that
         markers,          ///< the plan's
     };
     Kind kind = Kind::clear;
-    /// The one that all this is seen in, that is opened, or that is closed; null: the picture itself.
+    /// The mirror whose reflection is drawn, opened or closed; null: the image itself.
     const MirrorItem* mirror = nullptr;
     std::span<const DrawItem> items = {};
     std::span<const MirrorItem> mirrors = {};
 };
 
-/// Whether it draws into a mirror's target, not into the picture.
+/// Returns true if it draws into a mirror's target instead of the image.
 bool is_reflected(const DrawCommand& command);
 
-/// What draws a sample of a view, in this order. The plan must outlive it, and stay where it is.
+/// Returns the commands that draw one sample of a view, in order. They point into the plan, which must
+/// outlive them and must not move.
 std::vector<DrawCommand> draw_commands(const FramePlan& plan, const View& view);
 
 }  // namespace vrut::plan

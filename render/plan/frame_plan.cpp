@@ -285,11 +285,12 @@ std::vector<std::string> unsupported_features(const scene::Scene& scene) {
     std::vector<std::string> notices;
     const std::size_t mirrors = count_reflective(scene, true), others = count_reflective(scene, false);
     if (mirrors > kMaxMirrors)
-        notices.push_back(std::to_string(mirrors) + " mirrors: the scene is seen in the " +
-                          std::to_string(kMaxMirrors) + " that are largest in a picture");
+        notices.push_back(std::to_string(mirrors) + " planar mirrors: only the " +
+                          std::to_string(kMaxMirrors) + " largest in the image show reflections");
     if (others > 0 && !has_cube_map(scene))
-        notices.push_back(std::to_string(others) +
-                          " curved or transparent reflective parts have no cube map to reflect");
+        notices.push_back(
+            std::to_string(others) +
+            " curved or transparent reflective parts reflect nothing: the scene has no cube map");
     return notices;
 }
 

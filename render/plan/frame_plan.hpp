@@ -25,15 +25,15 @@ struct DrawItem {
     glm::dmat4 view_from_node{1};
     CullMode cull_mode = CullMode::back;
     bool mirrored = false;                ///< the matrix turns counter-clockwise triangles clockwise
-    scene::Index texture = scene::kNone;  ///< whose colour stands in the place of the material's diffuse one
-    bool environment = false;             ///< mixed with the panorama that it reflects
+    scene::Index texture = scene::kNone;  ///< replaces the material's diffuse colour
+    bool environment = false;             ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
-    /// Only points of the node's space whose product with this is not negative are drawn.
+    /// Clip plane in node space: only points with a non-negative dot product are drawn.
     std::optional<glm::dvec4> clip_plane;
-    /// Its triangles from far to near, numbered as TriangleOrder does; null: as in the file.
+    /// The triangles back to front, numbered as in TriangleOrder; null: in file order.
     std::shared_ptr<const std::vector<unsigned>> order;
-    /// What is drawn of the geometry, of the view's; null: every triangle.
+    /// The view's level of detail to draw; null: every triangle.
     const mesh::DetailLevel* level = nullptr;
 };
 
@@ -46,25 +46,25 @@ struct TransparentGroup {
 
 struct MirrorItem;
 
-/// Faces that are drawn from one sight, in this order.
+/// Faces that are drawn with one set of camera matrices, in this order.
 struct DrawLists {
     std::vector<DrawItem> opaque;               ///< by rising id
     std::vector<MirrorItem> mirrors;            ///< by rising id
-    std::vector<TransparentGroup> transparent;  ///< from far to near
+    std::vector<TransparentGroup> transparent;  ///< back to front
 };
 
-/// Whether a matrix leaves no volume: such parts are drawn from both sides.
+/// Returns true if the matrix is singular or nearly so; such items are drawn from both sides.
 bool is_flattened(const glm::dmat4& view_from_node);
 
-/// A surface and what is seen in it.
+/// A planar mirror and the items that it reflects.
 struct MirrorItem {
     DrawItem surface;
     glm::dmat4 reflection{1};  ///< about its plane, in view space
-    math::PixelBox box;        ///< all that it can cover
+    math::PixelBox box;        ///< bounds of the surface in the image
     DrawLists reflected;
 };
 
-/// Whether something is blended, and something of it pixel by pixel; in mirrors too.
+/// Returns true if the lists or their mirrors have a transparent group, or an exact one.
 bool has_transparent(const DrawLists& lists);
 bool has_exact_group(const DrawLists& lists);
 
@@ -72,25 +72,26 @@ bool has_exact_group(const DrawLists& lists);
 /// culled. Edges and selected items are ordered by rising id.
 struct FramePlan {
     DrawLists scene;
-    std::vector<DrawItem> edges;      ///< with edges
-    DrawLists overlay;                ///< over everything before: the faces of what is selected
-    std::vector<DrawItem> selected;   ///< that itself, in no other list
-    std::vector<glm::dvec3> markers;  ///< in view space, from far to near
+    std::vector<DrawItem> edges;      ///< items whose edges are drawn
+    DrawLists overlay;                ///< drawn over everything before: the selected faces
+    std::vector<DrawItem> selected;   ///< the selected items; they are in no other list
+    std::vector<glm::dvec3> markers;  ///< in view space, back to front
 };
 
-/// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
+/// Returns true if a geometry with that material is a planar mirror; other reflective ones reflect the
+/// environment map.
 bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material);
 
 class TransparencyCache;
 class DrawBudget;
 
-/// Finds the plan of a view in steps. It is empty where the view has no scene.
+/// Computes the plan of a view in steps. The plan is empty if the view has no scene.
 class FramePlanner {
 public:
     /// Continues until `work` is spent. Returns true when the plan is complete. All calls must pass the same
     /// view; `shapes` must belong to its scene and caches what is computed for later frames.
     bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget);
-    /// Once it is whole. It stays where it is.
+    /// The complete plan. Its address does not change.
     const FramePlan& plan() const { return plan_; }
 
 private:
@@ -101,24 +102,24 @@ private:
 
     PlanStage stage_ = PlanStage::items;
     std::vector<DrawItem> items_,
-        unculled_items_;            // in the picture, not selected; with what may be seen in mirrors
-    std::size_t shapes_found_ = 0;  // of so many items
+        unculled_items_;            // in the frustum, not selected; and those that mirrors may show
+    std::size_t shapes_found_ = 0;  // the number of items whose shapes are computed
     FramePlan plan_;
 };
 
-/// In one go.
+/// Computes the whole plan at once.
 FramePlan plan_frame(const View& view);
 
-/// The items of all faces that a view of a scene shows or has beside it, opaque or not, by rising id.
+/// Returns the items of all visible faces, opaque or not, inside of the frustum or outside, by rising id.
 std::vector<DrawItem> visible_items(const View& view);
 
-/// The items of all faces that a view shows, opaque or not, by rising id.
+/// Returns the items of all faces inside of the frustum, opaque or not, by rising id.
 std::vector<DrawItem> visible_faces(const View& view);
 
-/// Radius of a marker in a picture of that height, in pixels.
+/// Returns the radius in pixels of a marker in an image of that height.
 double marker_radius(int picture_height);
 
-/// Geometry nodes of a scene by what their material is.
+/// Counts of a scene's geometry nodes by kind of material.
 struct ClassCounts {
     std::uint64_t solid = 0;
     std::uint64_t transparent = 0;  ///< as Scene::is_transparent()
@@ -128,7 +129,7 @@ struct ClassCounts {
 };
 ClassCounts count_classes(const scene::PlacedScene& placed);
 
-/// A sentence for each thing that the scene holds and the renderer does not draw, or not always.
+/// Returns a sentence for each feature of the scene that the renderer does not draw, or not always.
 std::vector<std::string> unsupported_features(const scene::Scene& scene);
 
 }  // namespace vrut::plan

@@ -8,15 +8,15 @@
 
 namespace vrut::plan {
 
-/// So many mirrors of a picture show a reflection: those that are largest in it.
+/// The number of mirrors in an image that show a reflection: the largest ones.
 inline constexpr std::size_t kMaxMirrors = 16;
 
-/// The plane about which a part mirrors, in view space: that of an opaque, reflective and flat one. None for
-/// others, and where the matrix leaves no plane.
+/// Returns the mirror plane of an opaque, reflective and flat item, in view space. None for other items, and
+/// if the matrix collapses the plane.
 std::optional<math::Plane> mirror_plane(const scene::Scene& scene, const DrawItem& item);
 
-/// Takes out of `opaque` the mirrors that show a reflection in this view. All that is seen in one, of
-/// whatever is `shown`, stands among its opaque items, glass too. Everything is by rising id.
+/// Moves the mirrors that show a reflection in this view out of `opaque`. The `shown` items that a mirror
+/// reflects become its opaque items, transparent ones too. All lists are ordered by rising id.
 std::vector<MirrorItem> extract_mirrors(std::vector<DrawItem>& opaque, std::span<const DrawItem> shown,
                                         const View& view);
 

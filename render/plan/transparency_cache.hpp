@@ -10,7 +10,7 @@
 
 namespace vrut::plan {
 
-/// A box of any orientation: the points center + Σ t_k · axes[k] with t_k from -1 to 1.
+/// An oriented box: the points center + Σ t_k · axes[k] with t_k from -1 to 1.
 struct OrientedBox {
     glm::dvec3 center{0};
     std::array<glm::dvec3, 3> axes{};
@@ -20,7 +20,7 @@ struct OrientedBox {
 /// is thin around a flat sheet of any orientation.
 OrientedBox oriented_box(const scene::Geometry& geometry);
 
-/// The box seen through an affine `matrix`.
+/// Returns the box transformed by an affine `matrix`.
 OrientedBox transformed(const glm::dmat4& matrix, const OrientedBox& box);
 
 /// Caches, per geometry, the oriented box and the triangle orders that sorting transparent items needs.
@@ -29,7 +29,7 @@ public:
     /// The scene must outlive it.
     explicit TransparencyCache(const scene::Scene& scene)
         : scene_(scene), entries_(scene.geometries().size()) {}
-    /// Finds what is asked below for an item; what that took, in units of DrawBudget.
+    /// Computes the cached values for an item. Returns the cost in units of DrawBudget.
     std::int64_t find(const DrawItem& item);
     const OrientedBox& box(scene::Index geometry);
     const TriangleOrder& order(scene::Index geometry, CullMode cull_mode);

@@ -21,8 +21,8 @@ namespace vrut::plan {
 /// The plain background: 230/255, 235/255, 242/255.
 inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
 
-/// What stands behind everything: a cube map, else a picture stretched over the view, else a colour. Textures
-/// are the scene's.
+/// The background: a cube map, else a texture stretched over the view, else a colour. Indices refer to the
+/// scene's textures.
 struct Background {
     glm::dvec3 color = kDefaultBackground;
     scene::Index texture = scene::kNone;
@@ -31,7 +31,7 @@ struct Background {
     bool operator==(const Background&) const = default;
 };
 
-/// A sign on a surface, in world space, and the name by which clients know it.
+/// A marker on a surface, in world space, and its name in the protocol.
 struct PlacedMarker {
     glm::dvec3 point{0};
     std::string name = {};
@@ -39,35 +39,35 @@ struct PlacedMarker {
     bool operator==(const PlacedMarker&) const = default;
 };
 
-/// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
+/// Realistic: with the materials. Stylized: dark blue faces and light blue edges, which emphasize shapes.
 enum class DrawMode { realistic, stylized };
 
 /// Trade-offs between cost and accuracy. The defaults are the most accurate methods.
 struct Methods {
     enum class Lighting { pixel, vertex };      ///< where Phong's equation is evaluated
-    enum class Transparency { exact, sorted };  ///< right at each pixel, or part by part from far to near
+    enum class Transparency { exact, sorted };  ///< sorted at each pixel, or item by item back to front
     Lighting light = Lighting::pixel;
     Transparency transparency = Transparency::exact;
 
     bool operator==(const Methods&) const = default;
 };
 
-/// What a picture shows, in pixels of the picture.
+/// Everything that an image depends on; sizes are in pixels of the image.
 struct View {
     std::shared_ptr<const scene::PlacedScene>
         scene;  ///< null: the background only; views are equal by its address
     scene::Camera camera;
     int width = 1280, height = 720;
-    int samples = 1;  ///< positions in a pixel whose colours are averaged; 1 is its centre
-    double detail =
-        0;  ///< how far, in pixels, the surfaces drawn may lie from the scene's; 0: every triangle
-    /// Of the scene, for `detail`, and to leave out triangles that are hidden; null: none are made.
+    int samples = 1;    ///< per pixel, averaged; a single one is at its centre
+    double detail = 0;  ///< largest error of levels of detail in pixels; 0: every triangle
+    /// Levels of detail of the scene, for `detail`, and its watertight geometries, for backface culling;
+    /// null: not available.
     std::shared_ptr<const mesh::DetailLevels> levels;
     Methods methods;
     scene::Light light;
     DrawMode mode = DrawMode::realistic;
     bool wireframe = false;  ///< the edges of all triangles, and no faces
-    /// A node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
+    /// The node whose subtree is drawn over everything, with an outline; in a wireframe by its edges.
     scene::Index selected = scene::kNone;
     Background background;
     std::shared_ptr<const std::vector<PlacedMarker>> markers;  ///< null: none; views are equal by its address
@@ -84,7 +84,7 @@ inline math::Projection projection_of(const View& view) {
 /// Reversed float depth is as precise with a nearer plane.
 double near_distance(const View& view);
 
-/// What a picture took.
+/// Costs of an image.
 struct FrameStats {
     int passes = 0;
     int draws = 0;
@@ -92,7 +92,7 @@ struct FrameStats {
     int readbacks = 0;  ///< of pixels, from the GPU into memory
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;
-    int uploads = 0;         ///< geometries, edges, textures and cube maps brought to the GPU
+    int uploads = 0;         ///< geometries, edges, textures and cube maps uploaded to the GPU
     double render_ms = 0;    ///< from the first command to the fence behind the last
     double readback_ms = 0;  ///< from the GPU into memory
 };

@@ -13,12 +13,12 @@
 
 namespace vrut::renderer {
 
-/// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread. Whatever draws
-/// throws ContextLost when the driver has reset itself: from then on it draws nothing any more. It throws
-/// OutOfMemory where there is too little: what was drawn before can be drawn still.
+/// Renders a view of a scene. Owns all of EGL and GL: created, used and destroyed on one thread. Drawing
+/// functions throw ContextLost after a driver reset, and the renderer is unusable from then on; they throw
+/// OutOfMemory if an allocation fails, and the renderer stays usable.
 class Renderer {
 public:
-    /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's
+    /// Throws std::runtime_error if no device of this machine can draw. `device` is an index in EGL's
     /// enumeration; with `debug` the driver's messages are collected.
     explicit Renderer(std::optional<int> device = std::nullopt, bool debug = false);
     ~Renderer();
@@ -27,9 +27,9 @@ public:
     const std::string& description() const;
     const std::vector<std::string>& rejected() const;
     bool software() const;
-    /// Largest width and height of a picture.
+    /// The largest width and height of an image.
     int max_size() const;
-    /// That live now, in the whole process.
+    /// The number of live GL objects in the whole process.
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
@@ -43,12 +43,12 @@ public:
     /// ContextLost continue with a new Renderer. The scene drawn last stays on the GPU.
     bool step(plan::RenderJob& job);
 
-    /// Draws all of `view` into `image`, resized to fit, and says in `stats` what it took: for who has
-    /// nothing else to do meanwhile.
+    /// Draws the whole view into `image`, resized to fit, and fills `stats`. Blocks until the image is
+    /// complete.
     void render(const plan::View& view, scene::Image& image, plan::FrameStats& stats);
 
-    /// The node that is in front at each pixel's centre, as an index into the scene's; kNone for none. Glass
-    /// is in front of what is seen through it. Rows from the bottom up.
+    /// Returns the index of the frontmost node at each pixel's centre; kNone for none. Glass counts as in
+    /// front of what is seen through it. Rows from the bottom up.
     std::vector<scene::Index> node_ids(const plan::View& view);
 
 private:

@@ -33,8 +33,8 @@ bool is_valid_pose(const Camera& camera, double scene_radius);
 /// The same camera with `up` at right angles to the view and unit; the pose must be valid.
 Camera with_orthogonal_up(Camera camera);
 
-/// `pose`, for which no up was given, with the roll of `before`: one that stood upright (or on its head) goes
-/// on to.
+/// Returns `pose`, for which no up was given, with the roll of `before`: an upright (or upside-down) camera
+/// stays so.
 Camera with_roll_of(const Camera& before, Camera pose);
 
 struct ClipRange {
@@ -55,10 +55,10 @@ math::Projection projection_of(const Camera& camera, double aspect);
 /// top) to 1 (right, bottom).
 glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dvec2& point);
 
-/// Where a camera node stands and looks now; none where its pose is no valid one.
+/// Returns the present pose of a camera node in world space; none if it is not valid (is_valid_pose).
 std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
-/// What the scene starts with: its first camera node by id, if there is one and its pose is valid; else
-/// kNone.
+/// Returns the scene's initial camera: the camera node with the lowest id if there is one and its pose is
+/// valid; else kNone.
 Index first_camera_node(const PlacedScene& placed);
 
 }  // namespace vrut::scene

@@ -8,8 +8,8 @@ namespace vrut::scene {
 
 struct Geometry;
 
-/// The plane in which a geometry lies: fitted to its triangles by their areas, and none of their corners is
-/// further from it than 1e-4 of the geometry's radius. None where there is no such plane.
+/// Returns the plane of a flat geometry: the fit to its triangles, weighted by area. None if a vertex is
+/// further from the plane than 1e-4 of the geometry's radius.
 std::optional<math::Plane> fitted_plane(const Geometry& geometry);
 
 }  // namespace vrut::scene

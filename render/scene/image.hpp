@@ -5,7 +5,7 @@
 
 namespace vrut::scene {
 
-/// 8-bit RGBA as the GPU hands it over: rows from the bottom up.
+/// 8-bit RGBA in OpenGL's order: rows from the bottom up.
 struct Image {
     int width = 0, height = 0;
     std::vector<std::uint8_t> rgba;

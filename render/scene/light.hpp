@@ -6,9 +6,9 @@
 
 namespace vrut::scene {
 
-/// The light that shines in a picture, in world space. `position` is a point's and a spot's, `direction`
-/// (unit, the way in which it shines) a spot's and a directional light's. Attenuation is constant, linear,
-/// quadratic; all zero means none, and a directional light has none.
+/// The light of a view, in world space. `position` is used by point and spot lights; `direction` (unit, away
+/// from the light) by spot and directional lights. `attenuation` holds the constant, linear and quadratic
+/// factors; all zero means none, and a directional light has none.
 struct Light {
     LightData::Type type = LightData::Type::point;
     bool headlight = true;  ///< a point light at the eye, wherever `position` is
@@ -20,8 +20,8 @@ struct Light {
     bool operator==(const Light&) const = default;
 };
 
-/// The light of a light node as the file says, where the node stands now. Shining along the node's local -z;
-/// where its matrix leaves no direction, along the world's.
+/// Returns the light of a light node with the file's properties and the node's present pose. It shines along
+/// the node's local -z, or along the world's if the node's matrix leaves no direction.
 Light light_of(const PlacedScene& placed, Index node);
 
 }  // namespace vrut::scene

@@ -122,7 +122,7 @@ struct Node {
     std::optional<Hinge> hinge = {};  ///< of assemblies and geometry nodes
 };
 
-/// What a reader hands over: nodes still name their parents by id.
+/// A reader's result: nodes still refer to their parents by id.
 struct SceneParts {
     struct PartNode {
         Node node;
@@ -142,7 +142,7 @@ struct SceneParts {
 /// is a loop, and a chain of a million nodes needs no stack.
 class Scene {
 public:
-    /// The sentence and the place in SceneParts::nodes of the node at fault.
+    /// The error message, and the index in SceneParts::nodes of the node at fault.
     struct BuildError {
         std::string message;
         std::size_t node = 0;
@@ -189,7 +189,7 @@ private:
     IdToIndex index_by_id_;
 };
 
-/// What of a node can change while its scene is shown; it starts as the file says.
+/// The mutable state of a node; initially as in the file.
 struct NodeState {
     bool active = true;
     int active_child = 0;    ///< of a switch, as SwitchData's
@@ -218,8 +218,8 @@ PlacedScene place(std::shared_ptr<const Scene> scene, std::vector<NodeState> nod
 /// World from node for each node.
 std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<NodeState>& states);
 
-/// For each node, whether it shows: it and all above it are active, and switches and LODs choose it. LODs
-/// choose by the distance of `eye` (world space); without one all their children count.
+/// Returns for each node whether it is shown: it and its ancestors are active, and switches and LODs select
+/// it. LODs select by the distance of `eye` (world space); without an eye all their children count.
 std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye);
 /// The same for one node, with all children of LODs; false for kNone.
 bool is_shown(const PlacedScene& placed, Index node);
@@ -231,7 +231,7 @@ std::vector<bool> subtree(const Scene& scene, Index top);
 /// switches. Nodes that lie beyond the range of double are left out.
 math::Bounds subtree_bounds(const PlacedScene& placed, Index node);
 
-/// What lies further from the eye is neither drawn nor picked: positions are float on the GPU, and squared
+/// Objects further from the eye are neither drawn nor picked: positions are float on the GPU, and squared
 /// there.
 inline constexpr double kMaxDrawDistance = 1e18;
 

@@ -65,7 +65,7 @@ void compare_command(const CompareArguments& arguments) {
         throw std::runtime_error(arguments.map.string() + ": the map's name ends in .png");
     const scene::Image a = read(arguments.a), b = read(arguments.b);
     if (a.width != b.width || a.height != b.height)
-        throw std::runtime_error("pictures of different sizes cannot be compared: " + arguments.a.string() +
+        throw std::runtime_error("images of different sizes cannot be compared: " + arguments.a.string() +
                                  " is " + size_of(a) + " pixels, " + arguments.b.string() + " is " +
                                  size_of(b));
     const std::vector<float> errors = compare::flip(a, b);

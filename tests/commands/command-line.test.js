@@ -64,7 +64,7 @@ test('wrong usage is told in a sentence, with status 2', () => {
 
 test('what cannot be done is told in a sentence, with status 1', () => {
   fails(1, /missing\.vrut: there is no such file/, 'info', file('missing.vrut'));
-  fails(1, /no reader/, 'info', __filename);
+  fails(1, /this file extension cannot be read/, 'info', __filename);
   fs.writeFileSync(file('bad.vrut'), 'vrut-text 1\nnode 1 "A" assembly\n  parent 7 end\n');
   fails(1, /bad\.vrut:2: expected parent 7 of node 1/, 'info', file('bad.vrut'));
   fs.writeFileSync(file('bad.glb'), 'glTF, but not really');

@@ -120,8 +120,8 @@ TEST_CASE("materials that are Phong's follow one rule") {
     const scene::Material& glass = material_of(scene, "Glass");
     CHECK(is_near(glass.diffuse, {0.1, 0.2, 0.3, 0.4}));
     CHECK(glass.specular == glm::dvec4(0, 0, 0, 1));  // without an exponent
-    CHECK(has_notice(scene, "a bump map is not shown"));
-    CHECK(has_notice(scene, "not multiplied by the base colour"));
+    CHECK(has_notice(scene, "a bump map is ignored"));
+    CHECK(has_notice(scene, "not multiplied by the base or diffuse colour"));
     CHECK(scene.notices().size() == 2);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("a picture's alpha counts in OBJ where it is the picture of the opacit
         folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\nmap_d " + std::string(opacity) + "\n");
         const scene::Scene scene = read_well(path);
         check_picture(scene, material_of(scene, "Paint"), static_cast<std::uint8_t>(alpha));
-        CHECK(has_notice(scene, "a picture of transparency on its own") == (alpha == 255));
+        CHECK(has_notice(scene, "an opacity map that is not the diffuse texture") == (alpha == 255));
     }
 }
 
@@ -181,7 +181,7 @@ TEST_CASE("a PLY scene is one part by its file's name") {
     check_panel(geometry_of(scene, panel), false);  // and the vertex that no face has is gone
     CHECK(geometry_of(scene, panel).normals == std::vector(4, glm::vec3(0, 0.6F, 0.8F)));
     CHECK(material_of(scene, panel).diffuse == scene::Material().diffuse);
-    CHECK(has_notice(scene, "colours at its vertices are not shown"));
+    CHECK(has_notice(scene, "vertex colours are ignored"));
     CHECK(scene.notices().size() == 1);
 }
 
@@ -237,8 +237,8 @@ TEST_CASE("a Collada scene keeps its cameras and lights") {
     CHECK(lamp.attenuation == glm::dvec3(1, 0.5, 0.25));
     CHECK(lamp.angle == doctest::Approx(60));
     CHECK(node_of(scene, "Amb").type == scene::NodeType::assembly);
-    CHECK(has_notice(scene, "a camera's field of view is not read"));
-    CHECK(has_notice(scene, "from an area or from everywhere"));
+    CHECK(has_notice(scene, "a camera's field of view is unknown"));
+    CHECK(has_notice(scene, "an area or ambient light"));
     CHECK(scene.notices().size() == 2);
 }
 
@@ -281,7 +281,7 @@ TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
     CHECK(is_near(light.matrix[2], {0, 1, 0, 0}));  // so that -z, where it shines, is -y
     CHECK(std::get<scene::LightData>(light.data).color == glm::dvec4(0.5, 0.25, 0, 1));
     CHECK(std::get<scene::LightData>(light.data).angle == doctest::Approx(60));
-    CHECK(has_notice(scene, "strength and range are not read"));
+    CHECK(has_notice(scene, "it does not attenuate with distance"));
     CHECK(scene.notices().size() == 2);
 }
 
@@ -289,7 +289,7 @@ TEST_CASE("FBX axes that are none are left as they are") {
     const scene::Scene scene = read_panel("panel.fbx", "\"FrontAxis\", \"int\", \"Integer\", \"\",1",
                                           "\"FrontAxis\", \"int\", \"Integer\", \"\",7");
     CHECK(parent_of(scene, node_of(scene, "Car")).type == scene::NodeType::root);
-    CHECK(has_notice(scene, "axes are left as they are"));
+    CHECK(has_notice(scene, "its axes are not converted"));
 }
 
 TEST_CASE("the material library and pictures of an OBJ scene lie in its folder") {
@@ -306,7 +306,7 @@ TEST_CASE("the material library and pictures of an OBJ scene lie in its folder")
         return read_well(outer.write("scenes/panel.obj", text));
     };
     CHECK(notices_with("paint.mtl", "tex\\paint.png").notices().empty());
-    const std::string outside = "the files of a scene lie in the folder of the scene's file";
+    const std::string outside = "it lies outside of the scene's folder";
     for (const std::string& image :
          {std::string("../secret.png"), std::string("link.png"), (outer.path() / "secret.png").string(),
           std::string("tex/../../secret.png")}) {
@@ -315,7 +315,7 @@ TEST_CASE("the material library and pictures of an OBJ scene lie in its folder")
         CHECK_MESSAGE(scene.textures().empty(), image);
     }
     CHECK(has_notice(notices_with("paint.mtl", "none.png"),
-                     "without its picture 'none.png': there is no such file"));
+                     "without its texture 'none.png': there is no such file"));
     CHECK(has_notice(notices_with("none.mtl", "x"), "'none.mtl': there is no such file"));
     fs::create_symlink(outer.path() / "secret.mtl", outer.path() / "scenes/link.mtl");
     for (const std::string& library :
@@ -347,7 +347,7 @@ TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
         for (const std::string& image : {std::string("../secret.png"), std::string("link.png"),
                                          (outer.path() / "secret.png").string()}) {
             const scene::Scene scene = with_picture(image);
-            CHECK_MESSAGE(has_notice(scene, "in the folder of the scene's file"), image);
+            CHECK_MESSAGE(has_notice(scene, "it lies outside of the scene's folder"), image);
             CHECK_MESSAGE(scene.textures().empty(), image);
         }
     }
@@ -360,7 +360,7 @@ TEST_CASE("a picture that says that it is huge is not read") {
     png[17] = png[21] = 1;  // 65,538 pixels on each side, and a checksum that is no longer right
     folder.write("paint.png", png);
     CHECK(has_notice(read_well(folder.write("panel.obj", text_of("panel.obj"))),
-                     "without its picture 'paint.png'"));
+                     "without its texture 'paint.png'"));
 }
 
 TEST_CASE("files of other programs that are none are refused in a sentence") {
@@ -390,14 +390,14 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
         {"a.obj", "v inf 0 0\n" + triangle + "f 1 2 3\n", "is not a number from -1e15 to 1e15"},
         {"a.stl", "", "empty"},
         {"a.stl", std::string(80, 'x') + std::string(4, '\1') + std::string(50, '\0'),
-         "as long as its number of triangles"},
+         "of the size that its triangle count requires"},
         {"a.stl", std::string(80, 'x') + std::string(4, '\xff') + std::string(50, '\0'),
-         "as long as its number of triangles"},
+         "of the size that its triangle count requires"},
         {"a.stl",
          std::string(80, 'x') + std::string("\x20\x85\xeb\x51") + std::string(64, '\0'),  // 2^36 bytes
          "too small to hold all facets"},
         {"a.stl", std::string(80, 'x') + std::string("\2\0\0\0", 4) + std::string(50, '\0'),
-         "as long as its number of triangles"},
+         "of the size that its triangle count requires"},
         {"a.stl",
          "solid a\nfacet normal 0 0 1\nouter loop\nvertex 1e999 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
          "endloop\nendfacet\nendsolid a\n",
@@ -405,11 +405,11 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
         {"a.stl", "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", "Invalid number of vertices"},
         {"a.ply", "", "empty"},
         {"a.ply", "not a model", "magic number"},
-        {"a.ply", with(ply, "4 0 1 2 3", "0"), "a face without corners"},
-        {"a.ply", with(ply, "4 0 1 2 3", "4 0 1 2 9"), "the mesh has an index out of range"},
-        {"a.ply", with(ply, "4 0 1 2 3", "3 0 1 -2"), "the mesh has an index out of range"},
+        {"a.ply", with(ply, "4 0 1 2 3", "0"), "a face without vertices"},
+        {"a.ply", with(ply, "4 0 1 2 3", "4 0 1 2 9"), "the mesh has a vertex index out of range"},
+        {"a.ply", with(ply, "4 0 1 2 3", "3 0 1 -2"), "the mesh has a vertex index out of range"},
         {"a.ply", with(ply, "1 1 0 0 0.6", "1 1e30 0 0 0.6"), "a vertex of the mesh is not a number"},
-        {"a.ply", ply.substr(0, ply.size() - 20), "an index out of range"},
+        {"a.ply", ply.substr(0, ply.size() - 20), "a vertex index out of range"},
         {"a.ply", ply.substr(0, 60), "its header has no 'end_header'"},
         {"a.ply", ply.substr(0, ply.size() - 100),
          "line 3: expected a count of 'vertex' that fits into the file"},

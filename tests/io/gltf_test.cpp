@@ -174,8 +174,8 @@ TEST_CASE(
 TEST_CASE("what a glTF scene loses is told, once for each kind") {
     const scene::Scene scene = read_well(kCar);
     for (const char* part :
-         {"a skin is not read", "an animation is not shown", "colours at its vertices", "points or lines",
-          "a normal map", "extension KHR_materials_clearcoat", "strength and range are not read (2 times)"})
+         {"a skin is ignored", "an animation is ignored", "vertex colours", "points or lines", "a normal map",
+          "extension KHR_materials_clearcoat", "it does not attenuate with distance (2 times)"})
         CHECK_MESSAGE(has_notice(scene, part), part);
     CHECK(scene.notices().size() == 7);
 }
@@ -209,7 +209,7 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
           std::string("my parts/../../secret.bin")}) {
         const auto scene = read_with(uri);
         REQUIRE_MESSAGE(!scene, uri);
-        CHECK_MESSAGE(scene.error().find("in the folder of the scene's file") != std::string::npos,
+        CHECK_MESSAGE(scene.error().find("it lies outside of the scene's folder") != std::string::npos,
                       scene.error());
     }
     REQUIRE_FALSE(read_with("none.bin"));
@@ -224,22 +224,22 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
     for (const std::string& uri :
          {std::string("../secret.bin"), std::string("link.bin"), (outer.path() / "secret.bin").string()})
         CHECK_MESSAGE(has_notice(read_well(outer.write("scenes/car.gltf", car_with(image, uri))),
-                                 "without its picture '" + uri + "': the files of a scene lie in the folder"),
+                                 "without its texture '" + uri + "': it lies outside of the scene's folder"),
                       uri);
 }
 
 TEST_CASE("a glTF file that is none is refused in a sentence") {
-    check_refused("", "ends too early");
+    check_refused("", "unexpected end");
     check_refused("nothing", "no scene to show");
-    check_refused(car_text().substr(0, 900), "its JSON is damaged at byte");
-    check_refused("vrut-text 1", "no binary glTF", "car.glb");
-    check_refused(car_glb().substr(0, 900), "it ends before its JSON does", "car.glb");
+    check_refused(car_text().substr(0, 900), "its JSON is invalid at byte");
+    check_refused("vrut-text 1", "not a binary glTF", "car.glb");
+    check_refused(car_glb().substr(0, 900), "its JSON chunk exceeds the file", "car.glb");
     check_refused(car_glb().substr(0, car_glb().size() - 8), "cannot be read", "car.glb");
     check_refused(car_with("\"2.0\"", "\"1.0\""), "version");
     check_refused(car_with("Left door", "Left \xff door"), "UTF-8");
     check_refused(std::string(100'000, '['), "nested too deeply");
     check_refused(car_with("\"scene\": 0", "\"scene\": 3"), "no scene");
-    check_refused(car_with("\"mode\": 3", "\"mode\": 9"), "such as triangles");
+    check_refused(car_with("\"mode\": 3", "\"mode\": 9"), "mode is invalid");
     check_refused(R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{}]})",
                   "no triangles");
     check_refused(car_with("[0, 6, 7]", "[5]"), "no triangles");
@@ -252,19 +252,19 @@ TEST_CASE("numbers of a glTF file that lead nowhere are refused in a sentence") 
     check_refused(car_with("\"children\": [3]", "\"children\": [1]"), "node 1 has several parents");
     check_refused(car_with("\"indices\": 3", "\"indices\": 8"), "no accessor 8");
     check_refused(car_with("\"material\": 1", "\"material\": 5"), "cannot be read");
-    check_refused(car_with("\"byteOffset\": 128", "\"byteOffset\": 129"), "beyond its buffer");
-    check_refused(car_with("5123, \"count\": 6", "5123, \"count\": 7"), "beyond its buffer view");
+    check_refused(car_with("\"byteOffset\": 128", "\"byteOffset\": 129"), "exceeds its buffer");
+    check_refused(car_with("5123, \"count\": 6", "5123, \"count\": 7"), "exceeds its bufferView");
     check_refused(car_with("5123, \"count\": 6", "5123, \"count\": 1"), "too few vertices");
     // Of the normals' bytes a vertex index is made that there is not: 1 as a float ends with 0x3f80.
-    check_refused(car_with("\"bufferView\": 3", "\"bufferView\": 1"), "index out of range");
+    check_refused(car_with("\"bufferView\": 3", "\"bufferView\": 1"), "vertex index out of range");
     check_refused(car_with("[1, 2, 3]", "[1e300, 2, 3]"), "matrix of node 'Car'");
     check_refused(car_with("0.25, 1]", "0.25, 2]"), "0 0 0 1");
 }
 
 TEST_CASE("a second glTF document does not hide behind the name of an extension") {
-    check_refused(car_with("\"KHR_materials_clearcoat\"", R"("\"], ")"), "the name of an extension");
+    check_refused(car_with("\"KHR_materials_clearcoat\"", R"("\"], ")"), "an extension's name");
     check_refused(car_with("\"KHR_materials_clearcoat\"", R"("KHR\u005fmaterials_sheen")"),
-                  "the name of an extension");
+                  "an extension's name");
 }
 
 TEST_CASE("the indices of glTF lines and points, which are not shown, may be any") {
@@ -290,15 +290,15 @@ TEST_CASE("addresses in a glTF file are checked as assimp decodes them") {
     CHECK(read_with("data:image/png", R"(d\u0061ta:image\/p\u006Eg)").textures().size() == 2);
     CHECK(read_with("data:application/octet-stream", R"(data:\u010D\ud83d\ude97)").triangle_count() == 8);
     for (const char* address : {R"(d\u0061ta:x)", "data:x", "data:image"})
-        check_refused(car_with("data:image/png", address), "a picture is of no kind");
+        check_refused(car_with("data:image/png", address), "an image's mimeType is invalid");
     for (const char* address : {R"(data:x\u0000/y)", R"(\u0010data:image/png)", R"(\n)"})
-        check_refused(car_with("data:image/png", address), "an address has a control character");
+        check_refused(car_with("data:image/png", address), "a URI contains a control character");
     check_refused(car_with("data:application", R"(\u0010data:application)"),
-                  "an address has a control character");
+                  "a URI contains a control character");
     for (const char* kind : {R"(image\u0000/x)", "image", ""})
         check_refused(
             car_with("\"images\": [{", "\"images\": [{\"mimeType\": \"" + std::string(kind) + "\", "),
-            "a picture is of no kind");
+            "an image's mimeType is invalid");
 }
 
 TEST_CASE("the data in an address of a glTF file begins soon enough for assimp") {
@@ -320,7 +320,7 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
         "{\"componentType\": 5126, \"count\": 16777216, \"type\": \"VEC3\", \"sparse\": "
         "{\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, "
         "\"values\": {\"bufferView\": 0}}}";
-    const std::string why = "it would take more than 256 MiB of memory";
+    const std::string why = "loading it would need more than 256 MiB of memory";
     // Sparse ones, whether they are used or not.
     check_refused(car_with("\"accessors\": [", "\"accessors\": [" + large + ", " + large + ", "), why);
     // One that is used often.
@@ -359,7 +359,7 @@ TEST_CASE("a glTF camera whose field of view is no number is lost, and told") {
     const scene::Scene scene =
         read_well(folder.write("car.gltf", car_with("\"yfov\": 0.5235988", "\"yfov\": 1e39")));
     CHECK(node_of(scene, "Presenter").type == scene::NodeType::assembly);
-    CHECK(has_notice(scene, "a camera whose field of view is no number is not read"));
+    CHECK(has_notice(scene, "a camera is ignored: its field of view is not finite"));
 }
 
 TEST_CASE("a black glTF light is black") {

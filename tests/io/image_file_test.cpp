@@ -344,5 +344,5 @@ TEST_CASE("a picture is read from a file whatever its ending") {
     REQUIRE(image);
     CHECK(image->rgba == std::vector<std::uint8_t>{1, 2, 3, 4, 1, 2, 3, 4});
     CHECK(io::read_image_file(folder.path() / "none.png").error() == "there is no such file");
-    CHECK(io::read_image_file(folder.path()).error() == "it is not a file");
+    CHECK(io::read_image_file(folder.path()).error() == "it is not a regular file");
 }

@@ -77,8 +77,9 @@ std::string text_of(scene::SceneParts parts) {
 std::string refusal(std::string_view bytes, std::uint64_t most = 1 << 20) {
     const auto parts = read(bytes, "car.glb", most);
     REQUIRE_FALSE(parts);
-    CHECK_MESSAGE(parts.error().starts_with("car.glb: its reader handed over what is no scene: before byte "),
-                  parts.error());
+    CHECK_MESSAGE(
+        parts.error().starts_with("car.glb: the import process returned an invalid scene: before byte "),
+        parts.error());
     return parts.error();
 }
 

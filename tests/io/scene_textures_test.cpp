@@ -97,11 +97,12 @@ TEST_CASE("pictures outside of the scene's folder are never read") {
          {std::string("../outside.png"), outside.string(), std::string("leads-out.png"),
           std::string("up/outside.png"), std::string("../cars/inside.png"),
           (folder.path() / "cars/inside.png").string()})
-        check_notice(notice_of(folder, name), {"car.vrut: material 3 ", "the folder of the scene"});
+        check_notice(notice_of(folder, name),
+                     {"car.vrut: material 3 ", "it lies outside of the scene's folder"});
     // A folder whose name only begins like the scene's is another.
     folder.write("cars2/other.png", flat_png(2, 2, kSolid));
     fs::create_symlink("../cars2/other.png", folder.path() / "cars/other.png");
-    check_notice(notice_of(folder, "other.png"), {"the folder of the scene"});
+    check_notice(notice_of(folder, "other.png"), {"it lies outside of the scene's folder"});
 }
 
 TEST_CASE("a picture that cannot be read is left out with a notice") {
@@ -114,7 +115,7 @@ TEST_CASE("a picture that cannot be read is left out with a notice") {
                  {"car.vrut: material 3 ", "'none.png'", "there is no such file"});
     check_notice(notice_of(folder, "text.png"), {"material 3 ", "'text.png'", "neither PNG nor JPEG"});
     check_notice(notice_of(folder, "short.png"), {"material 3 ", "'short.png'", "damaged"});
-    check_notice(notice_of(folder, "folder.png"), {"material 3 ", "'folder.png'", "not a file"});
+    check_notice(notice_of(folder, "folder.png"), {"material 3 ", "'folder.png'", "not a regular file"});
     check_notice(notice_of(folder, "loop.png"), {"material 3 ", "'loop.png'", "cannot be found"});
     check_notice(notice_of(folder, "text.png/a.png"), {"material 3 ", "'text.png/a.png'"});
     check_notice(notice_of(folder, std::string("a\0b.png", 7)), {"material 3 "});

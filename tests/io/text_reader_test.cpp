@@ -525,9 +525,9 @@ TEST_CASE("files") {
     };
     CHECK(contains(error_of(folder / "none.vrut"), "there is no such file"));
     CHECK(contains(error_of(folder / "none" / "none.vrut"), "there is no such file"));
-    CHECK(contains(error_of(folder / "folder.vrut"), "is not a file"));
-    CHECK(contains(error_of(write("scene.xyz", kFull)), "known are .vrut"));
-    CHECK(contains(error_of(write("scene", kFull)), "known are .vrut"));
+    CHECK(contains(error_of(folder / "folder.vrut"), "is not a regular file"));
+    CHECK(contains(error_of(write("scene.xyz", kFull)), "supported are .vrut"));
+    CHECK(contains(error_of(write("scene", kFull)), "supported are .vrut"));
     CHECK(contains(error_of(write("empty.vrut", "")), ":1: expected 'vrut-text 1'"));
     CHECK(contains(error_of(write("bad.vrut", "vrut-text 1\nunit")), ":2: expected metres per unit"));
 

@@ -118,8 +118,8 @@ TEST_CASE("textures and the panorama are planned for surfaces that show them") {
 
 TEST_CASE("what is not drawn is told, and lights are drawn") {
     const auto notices = plan::unsupported_features(*showroom().scene);
-    CHECK(notices == std::vector<std::string>{"1 curved or transparent reflective parts have no cube map to "
-                                              "reflect"});
+    CHECK(notices == std::vector<std::string>{"1 curved or transparent reflective parts reflect nothing: "
+                                              "the scene has no cube map"});
     scene::SceneParts parts;
     parts.geometries = {sphere(1, 4)};
     parts.materials.resize(1);
@@ -163,5 +163,5 @@ TEST_CASE("what is not drawn is told, and lights are drawn") {
     };
     CHECK(hang(16).empty());
     CHECK(hang(17) ==
-          std::vector<std::string>{"17 mirrors: the scene is seen in the 16 that are largest in a picture"});
+          std::vector<std::string>{"17 planar mirrors: only the 16 largest in the image show reflections"});
 }

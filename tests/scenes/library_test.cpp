@@ -183,5 +183,5 @@ TEST_CASE("a scene is loaded with its name, its digest and what is to be said of
             "get, and at most 58720256 are possible: give them shorter names");
     const fs::path pipe = folder.path() / "pipe.vrut";
     REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-    CHECK(load_scene(pipe, "pipe").error() == pipe.string() + ": it is not a file");
+    CHECK(load_scene(pipe, "pipe").error() == pipe.string() + ": it is not a regular file");
 }

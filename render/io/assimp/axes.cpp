@@ -25,7 +25,7 @@ glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, Conversi
     const glm::dvec3 front = axis_of(*scene.mMetaData, "FrontAxis", "FrontAxisSign");
     const glm::dmat3 upright = glm::transpose(glm::dmat3(right, up, front));
     if (glm::determinant(upright) == 1) return glm::dmat4(upright);
-    warnings.add("its axes are left as they are: those that it names are not right-handed");
+    warnings.add("its axes are not converted: the coordinate system that it declares is not right-handed");
     return glm::dmat4(1);
 }
 

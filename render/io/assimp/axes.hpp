@@ -9,11 +9,11 @@
 
 namespace vrut::io {
 
-/// Turns the file's axes so that y is up, where it says that another is and assimp 5.2 leaves them as they
-/// are.
+/// Returns the rotation that makes y the up axis, if the file declares another one and assimp 5.2 does not
+/// convert it; else identity.
 glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, ConversionWarnings& warnings);
 
-/// Metres per unit, where the file tells and assimp 5.2 has not scaled by it; else 1.
+/// Returns metres per unit, if the file declares them and assimp 5.2 has not scaled by them; else 1.
 double metres_per_unit(const aiScene& scene, AssimpFormat format);
 
 }  // namespace vrut::io

@@ -8,24 +8,24 @@
 
 namespace vrut::io {
 
-/// What a file in the folder or below it is called that an address names: as the address writes it, or else,
-/// where there is none by that name, without codes such as `%20` for a space.
+/// Returns the name of the file that a URI refers to, in the folder or below: the URI as written if there is
+/// such a file, else with percent-encoding decoded (`%20` is a space).
 std::string file_name_of_uri(const std::filesystem::path& folder, const std::string& address);
 
-/// The same of formats that keep the paths of the machine where the file was made, with `\` between folders:
-/// where there is no such file, the one of that name beside the scene's.
+/// The same for formats that store paths of the machine that wrote the file, with `\` between folders: if
+/// there is no such file, the one of that name beside the scene's.
 std::string file_name_of_foreign_path(const std::filesystem::path& folder, const std::string& address);
 
-/// What assimp may open of the disk: one scene's file, by the name main_name(), and what lies in its folder
-/// or below it, links followed.
+/// The files that assimp may open: the scene's file, by the name main_name(), and files in its folder or
+/// below, symbolic links resolved.
 class SceneFiles : public Assimp::IOSystem {
 public:
-    /// assimp reads `head` in place of as many bytes at the file's beginning.
+    /// assimp reads `head` instead of the file's first bytes, as many as it has.
     SceneFiles(std::filesystem::path scene_file, std::string head);
 
-    /// What the scene's file is called towards assimp: its ending chooses the importer.
+    /// The name of the scene's file for assimp, which chooses the importer by its extension.
     const std::string& main_name() const { return main_name_; }
-    /// Of the first file that was asked for and not given out, why; empty where there was none.
+    /// Why the first file that assimp could not open was rejected; empty if there was none.
     const std::string& rejection() const { return rejection_; }
 
     bool Exists(const char* name) const override;

@@ -47,7 +47,7 @@ glm::dvec3 attenuation_of(const aiLight& from, AssimpFormat format, ConversionWa
     const auto is_usable = [](double part) { return part >= 0 && part <= 1e15; };
     if (format == AssimpFormat::collada && is_usable(file.x) && is_usable(file.y) && is_usable(file.z))
         return file;
-    warnings.add("a light shines with full colour at any distance: its strength and range are not read");
+    warnings.add("a light's intensity and range are ignored: it does not attenuate with distance");
     return {1, 0, 0};
 }
 
@@ -67,12 +67,12 @@ glm::dmat4 turn_to(const glm::dvec3& direction) {
 std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat format,
                                           ConversionWarnings& warnings) {
     if (from.mHorizontalFOV <= 0) {
-        warnings.add("a camera without perspective is not read");
+        warnings.add("an orthographic camera is ignored: only perspective cameras are supported");
         return std::nullopt;
     }
     const double fov = field_of_view(from);
     if (!std::isfinite(fov)) {
-        warnings.add("a camera whose field of view is no number is not read");
+        warnings.add("a camera is ignored: its field of view is not finite");
         return std::nullopt;
     }
     scene::Node node;
@@ -80,7 +80,7 @@ std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat for
     node.type = scene::NodeType::camera;
     scene::CameraData& camera = node.data.emplace<scene::CameraData>();
     if (is_unread(from, format))
-        warnings.add("a camera's field of view is not read: it is 40 degrees");
+        warnings.add("a camera's field of view is unknown: 40 degrees are used");
     else
         camera.fov = std::clamp(fov, 1.0, 170.0);
     // At the node's origin: into its position assimp 5.2 puts the node's own a second time.
@@ -105,7 +105,8 @@ std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat forma
         case aiLightSource_POINT:
             break;
         default:
-            warnings.add("a light that shines from an area or from everywhere is not read");
+            warnings.add(
+                "an area or ambient light is ignored: only point, directional and spot lights are supported");
             return std::nullopt;
     }
     light.color = glm::dvec4(color_of(from, format), 1);

@@ -10,13 +10,12 @@
 
 namespace vrut::io {
 
-/// The scene's picture of an assimp material, by the rules that assimp_scene.hpp tells. The image is named,
-/// not read: set_texture_name().
+/// Converts an assimp material by the rules in assimp/scene.hpp. Only names the texture: set_texture_name().
 scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
                                  const std::filesystem::path& folder, AssimpFormat format,
                                  ConversionWarnings& warnings);
 
-/// From light to what a display is sent for it (IEC 61966-2-1), each from 0 to 1.
+/// Linear light to sRGB (IEC 61966-2-1), each channel from 0 to 1.
 glm::dvec3 srgb_from_linear(const aiColor3D& color);
 
 }  // namespace vrut::io

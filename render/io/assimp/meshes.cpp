@@ -69,7 +69,7 @@ void move_triangles(aiMesh& mesh, scene::Geometry& geometry) {
         geometry.triangles.emplace_back(i[0], i[1], i[2]);
         last = std::max({last, i[0], i[1], i[2]});
     }
-    if (last >= mesh.mNumVertices) throw ImportError(called(mesh) + " has an index out of range");
+    if (last >= mesh.mNumVertices) throw ImportError(called(mesh) + " has a vertex index out of range");
     release(mesh.mFaces);
     mesh.mNumFaces = 0;
 }
@@ -112,10 +112,10 @@ void weld(scene::Geometry& geometry) {
 void check_faces(const aiMesh& mesh) {
     if (!mesh.HasPositions()) throw ImportError(called(mesh) + " has no vertices");
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
-        if (face->mNumIndices == 0) throw ImportError(called(mesh) + " has a face without corners");
+        if (face->mNumIndices == 0) throw ImportError(called(mesh) + " has a face without vertices");
         for (unsigned i = 0; i < face->mNumIndices; ++i)
             if (face->mIndices[i] >= mesh.mNumVertices)
-                throw ImportError(called(mesh) + " has an index out of range");
+                throw ImportError(called(mesh) + " has a vertex index out of range");
     }
 }
 
@@ -130,12 +130,12 @@ scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format) {
 }
 
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings) {
-    if (mesh.HasBones()) warnings.add("a skin is not shown: the mesh stands as it was modelled");
-    if (mesh.mNumAnimMeshes > 0) warnings.add("the shapes that a mesh can take on are not shown");
-    if (mesh.HasVertexColors(0)) warnings.add("a mesh's colours at its vertices are not shown");
+    if (mesh.HasBones()) warnings.add("a skin is ignored: its mesh is shown undeformed");
+    if (mesh.mNumAnimMeshes > 0) warnings.add("morph targets are ignored");
+    if (mesh.HasVertexColors(0)) warnings.add("vertex colours are ignored");
     if (mesh.HasTextureCoords(1)) warnings.add("a mesh's further texture coordinates are not read");
     if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
-        warnings.add("a mesh of points or lines is not shown");
+        warnings.add("a primitive of points or lines is ignored: only triangles are supported");
 }
 
 }  // namespace vrut::io

@@ -12,21 +12,20 @@
 
 namespace vrut::io {
 
-/// Why the file's scene is none, without the file's name.
+/// The file's scene cannot be read. The message does not name the file.
 struct ImportError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// As for scene text: beyond this, coordinates would leave the range of float when squared on the GPU. No
-/// NaN.
+/// True for a finite coordinate whose square stays in the range of float on the GPU, as in scene text.
 inline bool is_coordinate(float value) { return std::abs(value) <= 1e15F; }
 
-/// Throws Refused where a face has no corners or names a vertex that there is not: assimp would crash on
+/// Throws ImportError for a face without vertices or with a vertex index out of range: assimp would crash on
 /// them.
 void check_faces(const aiMesh& mesh);
 
-/// The mesh's triangles, by the rules that assimp_scene.hpp tells; frees what it has taken over. The mesh is
-/// checked. Throws Refused.
+/// Converts the triangles of a mesh that passed check_faces(), by the rules in assimp/scene.hpp. Frees the
+/// arrays that it has copied. Throws ImportError.
 scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format);
 
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings);

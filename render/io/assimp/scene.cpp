@@ -45,9 +45,9 @@ public:
         convert_materials();
         convert_meshes();
         convert_nodes();
-        warnings_.add("a camera or light that no node of its own has is not read",
+        warnings_.add("a camera or light that no node references is ignored",
                       cameras_.size() + lights_.size());
-        warnings_.add("an animation is not shown", scene_.mNumAnimations);
+        warnings_.add("an animation is ignored", scene_.mNumAnimations);
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_);
         make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
@@ -62,7 +62,8 @@ private:
     void convert_materials() {
         std::vector<bool> used(scene_.mNumMaterials);
         for (unsigned i = 0; i < scene_.mNumMeshes; ++i) {
-            if (scene_.mMeshes[i]->mMaterialIndex >= used.size()) throw ImportError("a mesh has no material");
+            if (scene_.mMeshes[i]->mMaterialIndex >= used.size())
+                throw ImportError("a mesh references a material that does not exist");
             used[scene_.mMeshes[i]->mMaterialIndex] = true;
         }
         materials_.assign(scene_.mNumMaterials, scene::kNone);
@@ -82,7 +83,7 @@ private:
             if (progress_) progress_(0.5 + 0.5 * i / scene_.mNumMeshes);
             geometries_.push_back(add_geometry(*scene_.mMeshes[i]));
         }
-        if (parts_.geometries.empty()) throw ImportError("it has no triangles to show");
+        if (parts_.geometries.empty()) throw ImportError("it has no triangles");
     }
 
     /// kNone: there is nothing in it that could be drawn.
@@ -188,7 +189,7 @@ private:
     }
 
     void add_mesh(unsigned mesh, std::vector<scene::Node>& contents) const {
-        if (mesh >= geometries_.size()) throw ImportError("a node has a mesh that there is not");
+        if (mesh >= geometries_.size()) throw ImportError("a node references a mesh that does not exist");
         if (geometries_[mesh] == scene::kNone) return;
         scene::Node& node = contents.emplace_back();
         node.name = text_of(scene_.mMeshes[mesh]->mName);
@@ -221,7 +222,7 @@ private:
             }
         if (from.d1 != 0 || from.d2 != 0 || from.d3 != 0 || from.d4 != 1)
             throw ImportError("the matrix of node '" + excerpt(text_of(node.mName)) +
-                              "' does not end with the row 0 0 0 1");
+                              "' is not affine: its last row is not 0 0 0 1");
         return matrix;
     }
 
@@ -260,17 +261,19 @@ void check_and_triangulate(Assimp::Importer& importer) {
     const aiScene& scene = *importer.GetScene();
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_faces(*scene.mMeshes[i]);
     if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
-        throw ImportError("its polygons cannot be cut into triangles");
+        throw ImportError("its polygons cannot be triangulated");
 }
 
 std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) {
     if (!files.rejection().empty()) return files.rejection();
     const std::string error = importer.GetErrorString();
     constexpr std::pair<const char*, const char*> kKnown[] = {
-        {"No suitable reader", "it does not begin as a file with this ending does"},
-        {"STL storage representation", "it is neither text nor as long as its number of triangles asks for"},
+        {"No suitable reader", "its contents do not match its file extension"},
+        {"STL storage representation",
+         "it is neither ASCII STL nor binary STL of the size that its triangle count requires"},
         {"block offset is out of range",
-         "it is cut off, or it is binary FBX written by assimp 5.2, which does not read that itself"},
+         "it is truncated, or it is binary FBX written by assimp 5.2, which assimp cannot read: export it "
+         "with another program"},
     };
     for (const auto& [part, meaning] : kKnown)
         if (error.find(part) != std::string::npos) return meaning;
@@ -295,7 +298,8 @@ std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, Conversi
     if (!checked) throw ImportError(checked.error());
     warnings = std::move(checked->warnings);
     auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), warnings);
-    if (count_triangles(*scene) != checked->triangles) throw ImportError("a mesh has an index out of range");
+    if (count_triangles(*scene) != checked->triangles)
+        throw ImportError("a primitive has a vertex index out of range");
     return scene;
 }
 

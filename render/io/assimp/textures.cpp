@@ -48,7 +48,7 @@ void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, Con
         (shift.mTranslation != aiVector2D(0, 0) || shift.mScaling != aiVector2D(1, 1) ||
          shift.mRotation != 0))
         warnings.add("a picture is neither shifted nor scaled nor turned as the file says");
-    if (from.GetTextureCount(type) > 1) warnings.add("of several pictures on top of each other one is shown");
+    if (from.GetTextureCount(type) > 1) warnings.add("only the first of several layered textures is shown");
 }
 
 using TextureResult = tl::expected<scene::Index, std::string>;
@@ -58,7 +58,7 @@ TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint
     unsigned index = 0;
     const auto [end, error] = std::from_chars(name.data() + 1, name.data() + name.size(), index);
     if (error != std::errc() || end != name.data() + name.size() || index >= scene.mNumTextures)
-        return tl::unexpected(std::string("there is no such picture in the file"));
+        return tl::unexpected(std::string("the file has no such embedded texture"));
     aiTexture& from = *scene.mTextures[index];
     if (from.mHeight != 0 || from.pcData == nullptr)
         return tl::unexpected(std::string("it is neither PNG nor JPEG"));
@@ -84,25 +84,25 @@ void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::f
     material.image = name_of(texture_name(from, type), scene, folder, format);
     report_unsupported_sampling(from, type, warnings);
     if (glm::dvec3(material.diffuse) != glm::dvec3(1))
-        warnings.add("a picture's colours are shown as they are, and not multiplied by the base colour");
+        warnings.add("a texture is not multiplied by the base or diffuse colour");
 }
 
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings) {
     constexpr std::pair<aiTextureType, const char*> kLost[] = {
-        {aiTextureType_NORMALS, "a normal map is not shown"},
-        {aiTextureType_HEIGHT, "a bump map is not shown"},
-        {aiTextureType_DISPLACEMENT, "a picture of displacement is not shown"},
-        {aiTextureType_METALNESS, "a picture of metal and roughness is not shown"},
-        {aiTextureType_SPECULAR, "a picture of highlights is not shown"},
-        {aiTextureType_SHININESS, "a picture of shininess is not shown"},
-        {aiTextureType_REFLECTION, "a picture of reflections is not shown"},
-        {aiTextureType_LIGHTMAP, "a picture of occlusion is not shown"},
-        {aiTextureType_EMISSIVE, "a picture that glows is not shown"},
+        {aiTextureType_NORMALS, "a normal map is ignored"},
+        {aiTextureType_HEIGHT, "a bump map is ignored"},
+        {aiTextureType_DISPLACEMENT, "a displacement map is ignored"},
+        {aiTextureType_METALNESS, "a metallic-roughness texture is ignored"},
+        {aiTextureType_SPECULAR, "a specular texture is ignored"},
+        {aiTextureType_SHININESS, "a shininess texture is ignored"},
+        {aiTextureType_REFLECTION, "a reflection map is ignored"},
+        {aiTextureType_LIGHTMAP, "an occlusion texture is ignored"},
+        {aiTextureType_EMISSIVE, "an emissive texture is ignored"},
     };
     for (const auto& [type, what] : kLost)
         if (has_texture(from, type)) warnings.add(what);
     if (has_texture(from, aiTextureType_OPACITY) && ignores_alpha(from, AssimpFormat::obj))
-        warnings.add("a picture of transparency on its own is not shown");
+        warnings.add("an opacity map that is not the diffuse texture is ignored");
 }
 
 std::string alpha_mode(const aiMaterial& material) {
@@ -137,7 +137,7 @@ void decode_embedded_textures(aiScene& scene, std::vector<scene::Material>& mate
             material.texture = *found->second;
         else
             faults.add(file + ": material " + std::to_string(material.id) +
-                       " is drawn without its picture '" + excerpt(material.image) +
+                       " is drawn without its texture '" + excerpt(material.image) +
                        "': " + found->second.error());
         material.image.clear();  // no file that could be read
     }

@@ -36,7 +36,7 @@ std::uint64_t component_size(std::uint32_t type) {
         case kFloat:
             return 4;
         default:
-            reject("an accessor has no component type of glTF");
+            reject("an accessor's componentType is invalid");
     }
 }
 
@@ -56,7 +56,7 @@ public:
 
 private:
     const GltfBufferView& view(std::uint32_t index) const {
-        if (index >= document_.buffer_views.size()) reject("it has no buffer view " + std::to_string(index));
+        if (index >= document_.buffer_views.size()) reject("there is no bufferView " + std::to_string(index));
         return document_.buffer_views[index];
     }
 
@@ -64,8 +64,8 @@ private:
         for (const GltfBufferView& view : document_.buffer_views) {
             if (view.buffer >= document_.buffers.size() ||
                 view.offset + view.length > document_.buffers[view.buffer].length)
-                reject("a buffer view goes beyond its buffer");
-            if (view.stride > 255) reject("a buffer view has a stride of more than 252 bytes");
+                reject("a bufferView exceeds its buffer");
+            if (view.stride > 255) reject("a bufferView's byteStride exceeds 252");
         }
     }
 
@@ -75,25 +75,25 @@ private:
         const GltfBufferView& in = view(index);
         const std::uint64_t stride = in.stride > 0 ? in.stride : size;
         if (stride < size || (count > 0 && offset + (count - 1) * stride + size > in.length))
-            reject("an accessor goes beyond its buffer view");
+            reject("an accessor exceeds its bufferView");
     }
 
     void check_accessor(const GltfAccessor& accessor) const {
         const std::uint64_t size = component_size(accessor.component_type) * accessor.components;
-        if (size == 0) reject("an accessor has no type of glTF");
+        if (size == 0) reject("an accessor's type is invalid");
         if (accessor.view) check_range(*accessor.view, accessor.offset, accessor.count, size);
         if (!accessor.sparse) return;
         if (!accessor.sparse_indices || !accessor.sparse_values)
-            reject("a sparse accessor has no indices or no values");
+            reject("a sparse accessor lacks its indices or values");
         if (accessor.view && view(*accessor.view).stride > size)
-            reject("a sparse accessor is of a kind that is not read");
+            reject("a sparse accessor over an interleaved bufferView is not supported");
         check_range(*accessor.sparse_indices, accessor.sparse_indices_offset, accessor.sparse_count,
                     component_size(accessor.sparse_component_type));
         check_range(*accessor.sparse_values, accessor.sparse_values_offset, accessor.sparse_count, size);
     }
 
     const GltfAccessor& accessor(std::uint32_t index) const {
-        if (index >= document_.accessors.size()) reject("it has no accessor " + std::to_string(index));
+        if (index >= document_.accessors.size()) reject("there is no accessor " + std::to_string(index));
         return document_.accessors[index];
     }
 
@@ -138,34 +138,35 @@ private:
     void charge_memory(std::uint64_t bytes) {
         memory_ += bytes;  // of which each is far below 2^64
         if (memory_ > most_memory_)
-            reject("it would take more than " + std::to_string(most_memory_ >> 20) + " MiB of memory");
+            reject("loading it would need more than " + std::to_string(most_memory_ >> 20) +
+                   " MiB of memory");
     }
 
     void check_primitive(GltfPrimitive& primitive) {
         constexpr std::uint32_t kFewest[] = {1, 2, 2, 2, 3, 3, 3};  // by mode
-        if (primitive.mode >= std::size(kFewest)) reject("a mesh is of no kind of glTF, such as triangles");
+        if (primitive.mode >= std::size(kFewest)) reject("a primitive's mode is invalid");
         if (primitive.mode < 4 && primitive.indices) {  // out of range, those of a loop of lines crash assimp
             hide_member(result_, primitive.indices_name);
             primitive.indices.reset();
         }
-        if (!primitive.positions) reject("a mesh has no positions");
+        if (!primitive.positions) reject("a primitive has no POSITION attribute");
         const auto has = [&](std::uint32_t index, std::uint64_t components, std::uint32_t component_type) {
             return accessor(index).components == components &&
                    accessor(index).component_type == component_type;
         };
         if (!has(*primitive.positions, 3, kFloat) ||
             (primitive.normals && !has(*primitive.normals, 3, kFloat)))
-            reject("the positions and normals of a mesh are not three floats each");
+            reject("a primitive's POSITION or NORMAL accessor is not a VEC3 of floats");
         if (primitive.texcoords && !has(*primitive.texcoords, 2, kFloat)) {
             hide_member(result_, primitive.texcoords_name);  // assimp takes integers for floats
             result_.warnings.add("texture coordinates that are not floats are not read");
         }
         if (primitive.indices && (accessor(*primitive.indices).components != 1 ||
                                   accessor(*primitive.indices).component_type == kFloat))
-            reject("the indices of a mesh are not whole numbers");
+            reject("a primitive's indices accessor is not a SCALAR of unsigned integers");
         if (accessor(*primitive.positions).count < kFewest[primitive.mode] ||
             drawn_vertices(primitive) < kFewest[primitive.mode])
-            reject("a mesh has too few vertices");
+            reject("a primitive has too few vertices for its mode");
     }
 
     std::uint64_t drawn_vertices(const GltfPrimitive& primitive) const {
@@ -176,7 +177,7 @@ private:
         if (document_.scene >= document_.scenes.size()) reject("it has no scene to show");
         std::vector<bool> reached(document_.nodes.size()), shown(document_.meshes.size());
         const auto reach = [&](std::uint32_t node) {
-            if (node >= document_.nodes.size()) reject("it has no node " + std::to_string(node));
+            if (node >= document_.nodes.size()) reject("there is no node " + std::to_string(node));
             if (reached[node]) reject("node " + std::to_string(node) + " has several parents");
             reached[node] = true;
         };
@@ -197,7 +198,7 @@ private:
     }
 
     void show(std::uint32_t mesh, std::vector<bool>& shown) {
-        if (mesh >= document_.meshes.size()) reject("it has no mesh " + std::to_string(mesh));
+        if (mesh >= document_.meshes.size()) reject("there is no mesh " + std::to_string(mesh));
         if (shown[mesh]) return;
         shown[mesh] = true;
         for (const GltfPrimitive& primitive : document_.meshes[mesh]) {
@@ -219,12 +220,13 @@ constexpr std::size_t kGlbHeader = 20;  // of the file and its first chunk, whic
 std::string read_glb_head(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string head(kGlbHeader, '\0');
-    if (!stream.read(head.data(), kGlbHeader) || !head.starts_with("glTF")) reject("it is no binary glTF");
+    if (!stream.read(head.data(), kGlbHeader) || !head.starts_with("glTF"))
+        reject("it is not a binary glTF (GLB) file");
     std::uint32_t length = 0;
     std::memcpy(&length, head.data() + 12, sizeof length);
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
-    if (error || length > size - kGlbHeader) reject("it ends before its JSON does");
+    if (error || length > size - kGlbHeader) reject("its JSON chunk exceeds the file");
     head.resize(kGlbHeader + length);
     if (!stream.read(head.data() + kGlbHeader, length)) reject("it cannot be read to its end");
     return head;

@@ -25,7 +25,7 @@ std::uint64_t components_of(std::string_view type) {
         {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
     for (const auto& [name, count] : kTypes)
         if (type == name) return count;
-    fail("an accessor has no type of glTF");
+    fail("an accessor's type is invalid");
 }
 
 class GltfReader {
@@ -48,8 +48,8 @@ public:
                 return;
             }
             if (name == "skins")
-                return skip_with_warning(name, "a skin is not read: its mesh stands as it was modelled");
-            if (name == "animations") return skip_with_warning(name, "an animation is not shown");
+                return skip_with_warning(name, "a skin is ignored: its mesh is shown undeformed");
+            if (name == "animations") return skip_with_warning(name, "an animation is ignored");
             for (const auto& [part, read] : parts)
                 if (name == part) return (this->*read)();
             scan_.skip();
@@ -94,14 +94,14 @@ private:
         if (!data) uri = decoded_string(written);
         require_no_controls(uri);
         if (data && uri.find(',') > kLongestDataHead)
-            fail("an address has more than " + std::to_string(kLongestDataHead) + " bytes before its data");
+            fail("a data URI has more than " + std::to_string(kLongestDataHead) + " bytes before its data");
         return uri;
     }
 
     /// assimp marks with them what it has parsed, and ends at a zero.
     static void require_no_controls(std::string_view text) {
         if (std::any_of(text.begin(), text.end(), [](unsigned char c) { return c < ' '; }))
-            fail("an address has a control character");
+            fail("a URI contains a control character");
     }
 
     void read_views() {
@@ -181,7 +181,7 @@ private:
     /// assimp looks for what comes after the `/` of a picture's kind.
     static void require_mime_type(std::string_view kind) {
         if (kind.substr(0, kind.find('\0')).find('/') == std::string_view::npos)
-            fail("a picture is of no kind, such as image/png");
+            fail("an image's mimeType is invalid");
     }
 
     void read_meshes() {
@@ -221,7 +221,7 @@ private:
         else if (name == "targets") {
             hide_member(result_, name);
             scan_.skip();
-            result_.warnings.add("the shapes that a mesh can take on are not shown");
+            result_.warnings.add("morph targets are ignored");
         } else
             scan_.skip();
     }
@@ -232,7 +232,7 @@ private:
             const std::uint32_t accessor = scan_.take_index();
             if (name != "POSITION" && name != "NORMAL" && name != "TEXCOORD_0") {
                 if (primitive != nullptr && name.starts_with("COLOR"))
-                    result_.warnings.add("a mesh's colours at its vertices are not shown");
+                    result_.warnings.add("vertex colours are ignored");
                 if (primitive != nullptr && name.starts_with("TEXCOORD"))
                     result_.warnings.add("a mesh's further texture coordinates are not read");
                 return hide_member(result_, name);
@@ -286,11 +286,11 @@ private:
         scan_.each_element([&](std::size_t) {
             const std::string_view name = scan_.take_string();
             if (name.find('\\') != std::string_view::npos)
-                fail("the name of an extension is written with \\");
+                fail("an extension's name contains the escape character \\");
             if (name == "KHR_lights_punctual" || name == "KHR_materials_pbrSpecularGlossiness" ||
                 name == "KHR_draco_mesh_compression")
                 return;
-            result_.warnings.add("the extension " + excerpt(name) + " is not read");
+            result_.warnings.add("the glTF extension " + excerpt(name) + " is not supported");
             hide_member(result_, name);
         });
     }

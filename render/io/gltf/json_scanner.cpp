@@ -12,7 +12,7 @@ namespace {
 constexpr int kMostNested = 200;
 
 [[noreturn]] void fail(std::size_t position, const std::string& what) {
-    throw JsonError("its JSON is damaged at byte " + std::to_string(position) + ": " + what);
+    throw JsonError("its JSON is invalid at byte " + std::to_string(position) + ": " + what);
 }
 
 /// The number of `\uXXXX` at `at`, or nothing.
@@ -71,7 +71,7 @@ std::string decoded_string(std::string_view written, std::size_t most) {
 
 char JsonScan::peek() {
     position_ = std::min(text_.find_first_not_of(" \t\r\n", position_), text_.size());
-    if (position_ == text_.size()) fail(position_, "it ends too early");
+    if (position_ == text_.size()) fail(position_, "unexpected end");
     return text_[position_];
 }
 
@@ -103,7 +103,7 @@ void JsonScan::each_member(const std::function<void(std::string_view)>& take) {
         const std::string_view name = take_quoted();
         // What is looked for could hide behind either.
         if (name.find('\\') != std::string_view::npos || !names.insert(name).second)
-            fail(position_, "a member's name is written with \\ or comes twice");
+            fail(position_, "a member's name contains an escape character or occurs twice");
         expect(':');
         take(name);
     }
@@ -128,7 +128,7 @@ std::uint32_t JsonScan::take_index() {
     const char* const last = text_.data() + text_.size();
     const auto [end, error] = std::from_chars(text_.data() + position_, last, value);
     if (error != std::errc() || (end != last && (*end == '.' || *end == 'e' || *end == 'E')))
-        fail(position_, "expected a whole number");
+        fail(position_, "expected an integer from 0 to 2^32 - 1");
     position_ = static_cast<std::size_t>(end - text_.data());
     return value;
 }

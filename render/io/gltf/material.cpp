@@ -52,8 +52,7 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
                        ConversionWarnings& warnings) {
     const glm::dvec3 wanted(from.specular);
     const auto [least_k, most_k] = range_of_k(from.shininess);
-    if (from.shininess < 1 && largest(wanted) > 0)
-        warnings.add("a highlight is as narrow as with shininess 1");
+    if (from.shininess < 1 && largest(wanted) > 0) warnings.add("a shininess below 1 is written as 1");
     const Highlight best = fit(wanted, c, least_k, most_k);
     if (largest(best.color - wanted) <= kVisible) {
         material.roughness = 1 - best.k;
@@ -64,7 +63,8 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
     material.roughness = 1 - most_k;
     material.specular = linear_from_srgb(wanted / most_k);
     if (largest(wanted) > most_k + kVisible)
-        warnings.add("a highlight is weaker, as glTF's are the wider they are");
+        warnings.add(
+            "a wide specular highlight becomes weaker: the metallic-roughness model cannot express it");
 }
 
 }  // namespace
@@ -84,12 +84,12 @@ GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& fro
     material.emission = linear_from_srgb(glm::dvec3(from.emission));
     convert_highlight(from, c, material, warnings);
     if (has_texture && largest(diffuse - c) > kVisible)
-        warnings.add("the diffuse colour under a picture becomes white");
+        warnings.add("the diffuse colour of a textured material becomes white");
     if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
-        warnings.add("a material's ambient colour becomes a tenth of its diffuse one");
+        warnings.add("a material's ambient colour becomes a tenth of its diffuse colour");
     if (largest(diffuse) > 1 || largest(glm::dvec3(from.emission)) > 1)
-        warnings.add("a colour above 1 is cut to 1");
-    if (from.reflectivity > 0) warnings.add("that a material reflects is not kept");
+        warnings.add("a colour above 1 is clamped to 1");
+    if (from.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     return material;
 }
 

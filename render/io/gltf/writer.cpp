@@ -144,7 +144,7 @@ private:
             json_.numbers(&matrix[0][0], 16, "matrix");
         if (!keeps_right_angles(node.matrix))
             warnings_.add(
-                "a matrix that shears or flattens is kept, though glTF knows none: other programs may refuse "
+                "a node's matrix shears or flattens, which glTF forbids: other programs may reject "
                 "it");
         if (!node.children.empty() || extra_child != scene::kNone) {
             json_.open_array("children");
@@ -183,7 +183,7 @@ private:
             json_.open_object().string("perspective", "type").open_object("perspective");
             json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
             if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
-                warnings_.add("a camera's focus is kept as a direction");
+                warnings_.add("a camera's focus distance is lost");
         }
         if (!cameras_.empty()) json_.close();
         if (lights_.empty()) return;
@@ -206,7 +206,7 @@ private:
         }
         json_.close();
         if (light.attenuation != glm::dvec3(1, 0, 0) && light.attenuation != glm::dvec3(0))
-            warnings_.add("how a light weakens with distance is not kept");
+            warnings_.add("a light's attenuation is lost");
     }
 
     void write_meshes() {
@@ -301,7 +301,7 @@ void write_glb(const scene::Scene& scene, const std::filesystem::path& path, bas
     report_lost_nodes(scene, warnings);
     const std::string json = writer.describe();
     const std::uint64_t binary = writer.size(), all = 12 + 8 + json.size() + (binary > 0 ? 8 + binary : 0);
-    if (all > UINT32_MAX) throw base::WriteError(path.string() + ": a GLB file holds at most 4 GiB");
+    if (all > UINT32_MAX) throw base::WriteError(path.string() + ": a GLB file cannot exceed 4 GiB");
     constexpr std::uint32_t kGltf = 0x46546C67, kJson = 0x4E4F534A, kBinary = 0x004E4942;
     files.write(path, [&](std::ostream& out) {
         write_words(out, {kGltf, 2, all, json.size(), kJson});

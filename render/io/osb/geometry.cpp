@@ -90,7 +90,7 @@ public:
         arrays_ = {find("positions", kPositions), find("normals", kNormals), find("texCoords", kTexcoords)};
         report_unsupported_fields();
         if (!types_ || !arrays_[0]) {
-            warnings_.add("a geometry without positions and types of primitives that are known is not shown");
+            warnings_.add("a geometry without known positions and primitive types is ignored");
             return {};
         }
         mapping_ = mapping_of(container_);
@@ -108,8 +108,7 @@ private:
     }
 
     void report_unsupported_fields() {
-        if (file_.find(container_.pointer("colors")) != nullptr)
-            warnings_.add("a geometry's colours at its vertices are not shown");
+        if (file_.find(container_.pointer("colors")) != nullptr) warnings_.add("vertex colours are ignored");
         if (file_.find(container_.pointer("texCoords1")) != nullptr)
             warnings_.add("a geometry's further texture coordinates are not read");
         for (const char* packed : {"qpositions", "qnormals", "qtexCoords", "pindices"})
@@ -120,7 +119,7 @@ private:
     void drop_unmapped() {
         for (std::size_t i = 1; i < 3; ++i)
             if (indices_ && !mapping_.slots[i] && arrays_[i]) {
-                warnings_.add("an array that a geometry does not index is not read");
+                warnings_.add("a vertex attribute that the index mapping does not name is ignored");
                 arrays_[i].reset();
             }
     }
@@ -151,7 +150,8 @@ private:
     }
 
     void add_primitive(std::uint32_t type, std::size_t first, std::size_t length) {
-        if (type < kTriangles) return warnings_.add("points or lines are not shown");
+        if (type < kTriangles)
+            return warnings_.add("a primitive of points or lines is ignored: only triangles are supported");
         if (type > kPolygon)
             throw OsbError(types_->at, "types of primitives from 0 to 9", std::to_string(type));
         if (length < 3) return;

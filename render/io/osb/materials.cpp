@@ -112,7 +112,7 @@ void OsbMaterials::read_image(std::uint32_t id, scene::Material& material) {
         if (is_new) found->second = decode(*image, *pixels);
         material.texture = found->second;
     } else if (image->find("cpixel")) {
-        warnings_.add("a picture that is compressed inside the file is not shown");
+        warnings_.add("a compressed embedded texture is ignored");
     } else if (name) {
         const std::string_view file = name->take_string("a name");
         if (file.size() < 1000) material.image = file.substr(0, base::find_invalid_utf8(file));
@@ -125,16 +125,17 @@ scene::Index OsbMaterials::decode(const OsbContainer& image, OsbCursor pixels) {
     const std::size_t channels = channels_of(image.integer("pixelFormat", 0));
     const std::size_t at = pixels.at(), size = pixels.take_count(1, "a count of bytes");
     if (channels == 0 || image.integer("dataType", kBytes) != kBytes || image.integer("depth", 1) > 1) {
-        warnings_.add("a picture that is no plain one of bytes is not shown");
+        warnings_.add(
+            "an embedded texture is ignored: only two-dimensional ones of 8-bit channels are supported");
         return scene::kNone;
     }
     const std::uint64_t pixel_count = std::uint64_t(std::max(width, 0)) * std::uint64_t(std::max(height, 0));
     if (pixel_count == 0 || pixel_count > size / channels)
         throw OsbError(at,
-                       "the bytes of a picture of " + std::to_string(width) + " x " + std::to_string(height),
+                       "the pixels of an image of " + std::to_string(width) + " x " + std::to_string(height),
                        std::to_string(size));
     if (pixel_count > kMaxImagePixels || std::max(width, height) > static_cast<std::int32_t>(kMaxImageSide)) {
-        warnings_.add("a picture that is too large is not shown");
+        warnings_.add("an embedded texture is ignored: it exceeds the size limit");
         return scene::kNone;
     }
     const std::string_view bytes = pixels.take(static_cast<std::size_t>(pixel_count) * channels, "pixels");

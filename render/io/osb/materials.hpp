@@ -6,13 +6,13 @@
 
 namespace vrut::io {
 
-/// Turns OpenSG's materials into ours, by the rule that osb_scene.hpp tells.
+/// Converts OpenSG's materials by the rules in osb/scene.hpp.
 class OsbMaterials {
 public:
     OsbMaterials(const OsbFile& file, ConversionWarnings& warnings) : file_(file), warnings_(warnings) {}
 
-    /// The place in `all` of the material with this id, made when it is first asked for; kNone for an id that
-    /// is none of a material that is known. Throws OsbError.
+    /// Returns the index in `all` of the material with this id, converted on first use; kNone if the id is
+    /// not one of a supported material. Throws OsbError.
     scene::Index take(std::uint32_t id);
 
     std::vector<scene::Material> all;

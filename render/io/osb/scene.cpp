@@ -173,12 +173,11 @@ private:
             const std::uint32_t id = ids->take_unsigned(4, "an id");
             const OsbContainer* const child = file_.find(id);
             if (child == nullptr || child->type != "Node") {
-                warnings_.add("a child that is no node of the file is left out");
+                warnings_.add("a child that is not a Node of the file is ignored");
                 continue;
             }
             if (!ids_.emplace(id, 0).second)
-                throw OsbError(at, "a child that hangs nowhere else",
-                               "node " + std::to_string(id) + " again");
+                throw OsbError(at, "a child with one parent", "node " + std::to_string(id) + " again");
             children.push_back({child, 0, pending.material});
         }
     }
@@ -225,8 +224,7 @@ private:
     std::vector<double> ranges_of(const OsbContainer& core, std::size_t children) {
         std::vector<double> ranges;
         if (core.vec3("center", {}) != glm::dvec3(0))
-            warnings_.add(
-                "a level of detail is chosen by the distance of its node, and not of the centre given");
+            warnings_.add("a DistanceLOD's center is ignored: the distance to its node counts");
         auto data = core.find("range");
         const std::size_t count = data ? data->take_count(4, "a count") : 0;
         while (ranges.size() < count && ranges.size() + 1 < children)
@@ -242,7 +240,8 @@ private:
             const auto beacon = ids_.find(core->pointer("beacon"));
             parts_.nodes.push_back({std::move(node), beacon != ids_.end() ? beacon->second : own});
             warnings_.add(
-                "a light shines on the whole scene, with the colour that it has for diffuse surfaces");
+                "a light illuminates the whole scene with its diffuse colour: its scope and specular colour "
+                "are ignored");
         }
     }
 
@@ -254,7 +253,7 @@ private:
                 ++count[container.type];
         Notices notices;
         for (const auto& [type, times] : count)
-            notices.add(file_name_ + ": what the file holds of type '" + excerpt(type) + "' is not read (" +
+            notices.add(file_name_ + ": containers of type '" + excerpt(type) + "' are ignored (" +
                         std::to_string(times) + (times > 1 ? " times)" : " time)"));
         notices.append_to(parts_.notices);
     }

@@ -12,7 +12,7 @@
 
 namespace vrut::io {
 
-/// What is wrong with a text and where; caught by the reader, which knows the file's name.
+/// A syntax error and its line. The reader, which knows the file's name, catches it.
 struct ParseError : std::runtime_error {
     ParseError(std::size_t line_number, const std::string& what_is_wrong)
         : std::runtime_error(what_is_wrong), line(line_number) {}
@@ -40,13 +40,14 @@ public:
     std::size_t line() { return 1 + peek().line + lines_; }
     Token take();
 
-    // Each takes one token of its kind; `what` names it in the error ("the material's name").
+    // Each consumes one token of its kind; `what` names it in the error ("the material's name").
     std::string_view take_word(std::string_view what);
     std::string take_string(std::string_view what);
     double take_number(std::string_view what, double min, double max);
     std::int64_t take_integer(std::string_view what, std::int64_t min, std::int64_t max);
     bool take_flag(std::string_view what);
-    /// A number of things that each need at least `bytes_each` of the text that is left.
+    /// Consumes the count of a list whose elements need at least `bytes_each` bytes of the remaining text
+    /// each.
     std::size_t take_count(std::string_view what, std::size_t bytes_each);
 
     [[noreturn]] void fail_expected(std::string_view what);
