@@ -15,7 +15,8 @@ namespace vrut::renderer {
 
 /// Scene and view to picture. Owns all of EGL and GL: made, used and destroyed on one thread. Whatever draws
 /// throws ContextLost when the driver has reset itself: from then on it draws nothing any more. It throws
-/// OutOfMemory where there is too little: what was drawn before can be drawn still.
+/// OutOfMemory where there is too little: what was drawn before can be drawn still. It throws
+/// GlError where OpenGL reports another error.
 class Renderer {
 public:
     /// Throws std::runtime_error where nothing on this machine can draw. `device` is an index in EGL's

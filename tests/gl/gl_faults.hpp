@@ -15,6 +15,10 @@ void refuse_contexts(int count);
 std::size_t memory_used();
 /// They hold no more than so much from now on.
 void limit_memory(std::size_t bytes);
+/// Buffers and textures are given no memory from now on, and OpenGL reports that error.
+void fail_allocations(unsigned error);
+/// The next draw does nothing, and OpenGL reports that error.
+void fail_draw(unsigned error);
 /// So many threads cannot be begun.
 void refuse_threads(int count);
 /// The end of all that.
