@@ -23,7 +23,7 @@ enum SurfaceUniform : GLint {
     two_sided_at = 9,
     reflectivity_at = 10,
     alpha_at = 11,
-    order_at = 12,
+    first_triangle_at = 12,
     clip_plane_at = 13,
 };
 
@@ -147,7 +147,7 @@ layout(binding = 2) uniform sampler2D reflection;
 layout(location = 11) uniform float alpha;
 #endif
 #ifdef LAYERED
-layout(location = 12) uniform uint order;
+layout(location = 12) uniform uint first_triangle;
 layout(early_fragment_tests) in;
 #else
 out vec4 color;
@@ -213,7 +213,7 @@ void main() {
     vec4 layer = vec4(own, 1) * alpha;
 #endif
 #if defined(LAYERED)
-    append_fragment(layer, order);
+    append_fragment(layer, first_triangle + uint(gl_PrimitiveID));
 #elif defined(GLASS)
     color = layer;
 #else
@@ -316,7 +316,7 @@ void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
 const std::string_view kPerPixelLists = R"(
 struct Fragment {
     uint next;  // in the same pixel; 0 for none
-    uint order;
+    uint order;  // of triangles; at equal depth the higher one is in front
     float depth;  // reversed
     uint red_green, blue_alpha;  // multiplied by alpha
 };
@@ -424,7 +424,7 @@ void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
 
 void NodeIdProgram::set_node(scene::Index number) { glUniform1i(node_at, number); }
 
-void set_draw_order(GLuint order) { glUniform1ui(order_at, order); }
+void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }
 
 void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
     glm::dmat4 view_from_local = item.view_from_node;
