@@ -137,3 +137,60 @@ TEST_CASE("of coincident triangles of one pane the later one of the file is in f
     }
     CHECK(pictures[0].rgba != pictures[1].rgba);
 }
+
+TEST_CASE("items with orders of their own draw their own triangles, which stay on the GPU") {
+    const gl::GlContext context;
+    plan::View view = view_from({0, 0, 5});
+    view.scene = scene_of({{1, sphere(1, 8), lit_glass()}});
+    gl::GpuScene scene(view.scene->scene);
+    std::vector<plan::DrawItem> items(2, plan::visible_items(view).at(0));
+    const auto& triangles = view.scene->scene->geometries()[0].triangles;
+    std::vector<unsigned> order(triangles.size());
+    std::iota(order.begin(), order.end(), 0U);
+    items[0].order = std::make_shared<const std::vector<unsigned>>(order.rbegin(), order.rend());
+    std::rotate(order.begin(), order.begin() + 5, order.end());
+    items[1].order = std::make_shared<const std::vector<unsigned>>(order);
+
+    std::vector<GLuint> buffers;
+    for (const plan::DrawItem& item : items) buffers.push_back(scene.sorted_triangles(item).indices.get());
+    for (std::size_t i = 0; i < 2; ++i) {
+        const std::vector<GLuint> indices = contents_of(buffers[i]);
+        REQUIRE(indices.size() == triangles.size() * 3);
+        for (std::size_t k = 0; k < triangles.size(); ++k)
+            for (int corner = 0; corner < 3; ++corner)
+                CHECK(indices[3 * k + static_cast<std::size_t>(corner)] ==
+                      triangles[(*items[i].order)[k]][corner]);
+    }
+    const int uploads = scene.uploads();
+    for (plan::DrawItem& item : items) {
+        // The next frame finds the same order anew.
+        item.order = std::make_shared<const std::vector<unsigned>>(*item.order);
+        scene.sorted_triangles(item);
+    }
+    CHECK(scene.uploads() == uploads);
+}
+
+TEST_CASE("orders take no more than so much of the GPU's memory") {
+    const gl::GlContext context;
+    plan::View view = view_from({0, 0, 5});
+    view.scene =
+        scene_of({{1, surface(32, 32, [](double u, double v) { return glm::dvec3(u, v, 0); }), lit_glass()}});
+    gl::GpuScene scene(view.scene->scene);
+    plan::DrawItem item = plan::visible_items(view).at(0), in_use = item;
+    std::vector<unsigned> order(2 * 32 * 32);
+    std::iota(order.begin(), order.end(), 0U);
+    in_use.order = std::make_shared<const std::vector<unsigned>>(order);
+    const std::size_t bytes = order.size() * sizeof(glm::uvec3);
+    int uploads = 0;
+    for (std::size_t i = 1; i < 2000; ++i) {
+        std::swap(order[0], order[i]);
+        item.order = std::make_shared<const std::vector<unsigned>>(order);
+        scene.sorted_triangles(item);
+        scene.sorted_triangles(in_use);
+        uploads = scene.uploads();
+    }
+    CHECK(uploads == 2000 + 1);  // the geometry, and each order once
+    CHECK(2000 * bytes > gl::GpuScene::kMaxSortedBytes);
+    const auto most = static_cast<long>(gl::GpuScene::kMaxSortedBytes / bytes);
+    CHECK(gl::live_gl_objects() <= 2 * most + 4);
+}
