@@ -14,7 +14,7 @@ struct DrawCommand {
     enum class Kind {
         clear,            ///< the picture, and draws its background
         opaque,           ///< faces
-        find_mirrors,     ///< which of `mirrors` can be seen; commands of the others are left out
+        find_mirrors,     ///< asks which of `mirrors` can be seen; commands of the others are left out
         open_mirror,      ///< clears the target of `mirror`, and draws its background
         close_mirror,     ///< draws its surface
         sorted_glass,     ///< faces, in the order of the items

@@ -19,7 +19,8 @@ namespace {
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0}, refused_threads{0};
-std::atomic<bool> lost{false}, told{false};
+std::atomic<bool> lost{false}, told{false}, queries_withheld{false};
+std::atomic<int> stalls{0};
 
 std::mutex mutex;  // of what follows
 std::map<GLuint, std::size_t> buffers, textures;
@@ -71,6 +72,8 @@ void fail_draw(unsigned with) {
     const std::lock_guard lock(mutex);
     draw_error = with;
 }
+void withhold_queries() { queries_withheld = true; }
+int query_stalls() { return stalls; }
 void refuse_threads(int count) { refused_threads = count; }
 void heal() {
     refuse_threads(0);
@@ -79,6 +82,8 @@ void heal() {
     limit_memory(kAll);
     fail_allocations(GL_NO_ERROR);
     fail_draw(GL_NO_ERROR);
+    queries_withheld = false;
+    stalls = 0;
 }
 
 }  // namespace vrut::gl_faults
@@ -122,6 +127,15 @@ void APIENTRY glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLen
                            void* pixels) {
     static auto* const read = real<decltype(glReadPixels)>("glReadPixels");
     if (!lost) read(x, y, width, height, format, type, pixels);
+}
+
+void APIENTRY glGetQueryObjectuiv(GLuint query, GLenum name, GLuint* value) {
+    static auto* const get = real<decltype(glGetQueryObjectuiv)>("glGetQueryObjectuiv");
+    GLuint available = 0;
+    get(query, GL_QUERY_RESULT_AVAILABLE, &available);
+    if (name == GL_QUERY_RESULT && (!available || queries_withheld)) ++stalls;
+    get(query, name, value);
+    if (name == GL_QUERY_RESULT_AVAILABLE && queries_withheld) *value = 0;
 }
 
 GLenum APIENTRY glGetError() {
