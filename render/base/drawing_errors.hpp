@@ -18,4 +18,10 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// OpenGL reports an error that is no lack of memory, by its name: a bug of this program or of the driver.
+class GlError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
 }  // namespace vrut::base

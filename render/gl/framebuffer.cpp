@@ -26,9 +26,13 @@ Framebuffer::Framebuffer(int width, int height, bool rgba16)
       framebuffer_(make_framebuffer()) {
     glNamedFramebufferTexture(framebuffer_.get(), GL_COLOR_ATTACHMENT0, color_.get(), 0);
     glNamedFramebufferTexture(framebuffer_.get(), GL_DEPTH_ATTACHMENT, depth_.get(), 0);
-    if (glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw base::OutOfMemory("no picture of " + std::to_string(width) + "x" + std::to_string(height) +
-                                " pixels can be drawn: the driver refuses the framebuffer");
+    const GLenum status = glCheckNamedFramebufferStatus(framebuffer_.get(), GL_FRAMEBUFFER);
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    throw_on_gl_error("for a framebuffer of " + size + " pixels");
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw base::GlError(
+            "a framebuffer of " + size + " pixels has the status " +
+            (status == GL_FRAMEBUFFER_UNSUPPORTED ? "GL_FRAMEBUFFER_UNSUPPORTED" : std::to_string(status)));
 }
 
 void Framebuffer::bind() const {

@@ -12,7 +12,7 @@ namespace vrut::gl {
 /// depth (32-bit float).
 class Framebuffer {
 public:
-    /// Throws OutOfMemory, also where the driver refuses it for reasons of its own.
+    /// Throws as throw_on_gl_error(), and GlError if the framebuffer is not complete.
     Framebuffer(int width, int height, bool rgba16 = false);
 
     int width() const { return width_; }

@@ -262,30 +262,60 @@ const GlTexture& GpuScene::cube_map(const std::array<scene::Index, 6>& textures)
     return cube_map;
 }
 
-const GpuTriangles& GpuScene::sorted_triangles(const plan::DrawItem& item) {
-    const std::vector<unsigned>& order = *item.order;
-    GpuTriangles& result = sorted_triangles_[{item.geometry, order.size()}];
-    if (result.order && (result.order == item.order || *result.order == order)) return result;
-    if (!result.vertex_array) {
-        const GpuGeometry& uploaded = geometry(item.geometry);
-        const scene::Geometry& read = scene_->geometries()[static_cast<std::size_t>(item.geometry)];
-        result.in_file = triangles_of(make_arrays(read, uploaded.origin), read);
-        result.indices = make_dynamic_buffer("ordered triangles", order.size() * sizeof(glm::uvec3));
-        result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
-        if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
-        result.index_count = static_cast<GLsizei>(order.size() * 3);
-        ++uploads_;
+bool GpuScene::ByOrder::operator()(const GpuTriangles* a, const GpuTriangles* b) const {
+    if (a->geometry != b->geometry) return a->geometry < b->geometry;
+    return a->order != b->order && *a->order < *b->order;
+}
+
+/// The geometry's triangles by the vertices that they have in its buffers.
+const std::vector<glm::uvec3>& GpuScene::uploaded_triangles(scene::Index index) {
+    const auto [found, is_new] = uploaded_triangles_.try_emplace(index);
+    if (is_new) {
+        const scene::Geometry& read = scene_->geometries()[static_cast<std::size_t>(index)];
+        found->second = triangles_of(make_arrays(read, read.bounds.center()), read);
     }
+    return found->second;
+}
+
+GpuTriangles GpuScene::upload_sorted(const plan::DrawItem& item) {
+    const std::vector<glm::uvec3>& in_file = uploaded_triangles(item.geometry);
     std::vector<glm::uvec3> triangles;
-    triangles.reserve(order.size());
-    for (const unsigned number : order) {
-        glm::uvec3& triangle = triangles.emplace_back(result.in_file[number % result.in_file.size()]);
-        if (number >= result.in_file.size()) std::swap(triangle.y, triangle.z);
+    triangles.reserve(item.order->size());
+    for (const unsigned number : *item.order) {
+        glm::uvec3& triangle = triangles.emplace_back(in_file[number % in_file.size()]);
+        if (number >= in_file.size()) std::swap(triangle.y, triangle.z);
     }
-    glNamedBufferSubData(result.indices.get(), 0,
-                         static_cast<GLsizeiptr>(triangles.size() * sizeof(glm::uvec3)), triangles.data());
-    result.order = item.order;
+    const GpuGeometry& uploaded = geometry(item.geometry);
+    GpuTriangles result{item.geometry, item.order, {}, {}, static_cast<GLsizei>(triangles.size() * 3)};
+    result.indices =
+        make_buffer("ordered triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
+    result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
+    if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
+    ++uploads_;
     return result;
+}
+
+const GpuTriangles& GpuScene::sorted_triangles(const plan::DrawItem& item) {
+    GpuTriangles wanted;
+    wanted.geometry = item.geometry;
+    wanted.order = item.order;
+    if (const auto found = sorted_by_order_.find(&wanted); found != sorted_by_order_.end()) {
+        sorted_triangles_.splice(sorted_triangles_.begin(), sorted_triangles_, found->second);
+        return sorted_triangles_.front();
+    }
+    constexpr std::size_t kObjectBytes = 1024;  // about what the driver takes for a buffer and a vertex array
+    const auto bytes = [](const GpuTriangles& triangles) {
+        return kObjectBytes + triangles.order->size() * sizeof(glm::uvec3);
+    };
+    while (!sorted_triangles_.empty() && sorted_bytes_ + bytes(wanted) > kMaxSortedBytes) {
+        sorted_bytes_ -= bytes(sorted_triangles_.back());
+        sorted_by_order_.erase(&sorted_triangles_.back());
+        sorted_triangles_.pop_back();
+    }
+    sorted_triangles_.push_front(upload_sorted(item));
+    sorted_by_order_.emplace(&sorted_triangles_.front(), sorted_triangles_.begin());
+    sorted_bytes_ += bytes(wanted);
+    return sorted_triangles_.front();
 }
 
 }  // namespace vrut::gl

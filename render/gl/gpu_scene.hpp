@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,13 +32,14 @@ struct GpuEdges {
     GLsizei index_count = 0;
 };
 
-/// A geometry's triangles in another order, which can change from frame to frame.
+/// A geometry's triangles in another order (plan::TriangleOrder). It never changes: a draw that the GPU has
+/// not done yet keeps its triangles.
 struct GpuTriangles {
+    scene::Index geometry = scene::kNone;
+    std::shared_ptr<const std::vector<unsigned>> order;
     GlBuffer indices;
     GlVertexArray vertex_array;  ///< with the geometry's vertices
     GLsizei index_count = 0;
-    std::vector<glm::uvec3> in_file;
-    std::shared_ptr<const std::vector<unsigned>> order;
 };
 
 /// The geometries and textures of a scene, each uploaded when it is first drawn.
@@ -53,12 +55,15 @@ public:
     /// Whether that is there already.
     bool is_resident(const plan::DrawItem& item) const;
     const GpuEdges& edges(scene::Index index);
-    /// Its triangles in an item's order, which is not null.
+    /// Its triangles in an item's order, which is not null. Items of the same geometry and order share them.
+    /// Beyond kMaxSortedBytes those that have not been asked for the longest are given back; a result is
+    /// valid until the next call.
     const GpuTriangles& sorted_triangles(const plan::DrawItem& item);
+    static constexpr std::size_t kMaxSortedBytes = std::size_t{32} << 20;
     const GlTexture& texture(scene::Index index);
     /// Of the six textures (upload_cube_map()).
     const GlTexture& cube_map(const std::array<scene::Index, 6>& textures);
-    /// Geometries, their levels and edges, textures and cube maps uploaded so far.
+    /// Geometries, their levels, orders and edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
@@ -66,8 +71,16 @@ private:
     std::vector<GpuGeometry> geometries_;
     std::map<std::pair<scene::Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
     std::vector<std::optional<GpuEdges>> edges_;  // after the geometries, whose vertices they use
-    std::map<std::pair<scene::Index, std::size_t>, GpuTriangles>
-        sorted_triangles_;  // by the number of triangles, too
+    struct ByOrder {
+        bool operator()(const GpuTriangles* a, const GpuTriangles* b) const;
+    };
+    const std::vector<glm::uvec3>& uploaded_triangles(scene::Index geometry);
+    GpuTriangles upload_sorted(const plan::DrawItem& item);
+
+    std::list<GpuTriangles> sorted_triangles_;  // the latest used first
+    std::map<const GpuTriangles*, std::list<GpuTriangles>::iterator, ByOrder> sorted_by_order_;
+    std::size_t sorted_bytes_ = 0;
+    std::map<scene::Index, std::vector<glm::uvec3>> uploaded_triangles_;  // of those with sorted triangles
     std::vector<GlTexture> textures_;
     std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;

@@ -2,7 +2,6 @@
 
 #include <atomic>
 #include <cstdio>
-#include <string>
 
 #include "base/drawing_errors.hpp"
 
@@ -12,14 +11,29 @@ namespace {
 
 std::atomic<long> live_objects{0};
 
-/// Lets the driver take memory; `what()` tells what for.
-template <class Allocate, class What>
-void allocate_or_throw(Allocate allocate, What what) {
-    constexpr int kMostErrors = 100;  // of a lost context there may be no end
-    for (int i = 0; i < kMostErrors && glGetError() != GL_NO_ERROR; ++i) continue;
+std::string name_of_error(GLenum error) {
+    switch (error) {
+        case GL_INVALID_ENUM:
+            return "GL_INVALID_ENUM";
+        case GL_INVALID_VALUE:
+            return "GL_INVALID_VALUE";
+        case GL_INVALID_OPERATION:
+            return "GL_INVALID_OPERATION";
+        case GL_INVALID_FRAMEBUFFER_OPERATION:
+            return "GL_INVALID_FRAMEBUFFER_OPERATION";
+        case GL_CONTEXT_LOST:
+            return "GL_CONTEXT_LOST";
+        default:
+            return "GL error " + std::to_string(error);
+    }
+}
+
+/// Errors of earlier commands are thrown before anything is allocated.
+template <class Allocate>
+void allocate_or_throw(Allocate allocate, const std::string& what) {
+    throw_on_gl_error("to draw");
     allocate();
-    if (glGetError() != GL_NO_ERROR)
-        throw base::OutOfMemory("the graphics driver has no memory for " + what());
+    throw_on_gl_error("for " + what);
 }
 
 std::string mebibytes_of(const char* what, std::size_t bytes) {
@@ -37,13 +51,31 @@ GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes, GLbi
     glCreateBuffers(1, &name);
     GlBuffer buffer(name);
     allocate_or_throw([&] { glNamedBufferStorage(name, static_cast<GLsizeiptr>(bytes), data, flags); },
-                      [&] { return mebibytes_of(what, bytes); });
+                      mebibytes_of(what, bytes));
     return buffer;
 }
 
 }  // namespace
 
 long live_gl_objects() { return live_objects; }
+
+GLenum take_gl_error() {
+    constexpr int kMaxErrors = 100;  // a lost context may return errors forever
+    GLenum result = GL_NO_ERROR;
+    for (int i = 0; i < kMaxErrors; ++i) {
+        const GLenum error = glGetError();
+        if (error == GL_NO_ERROR) break;
+        if (result == GL_NO_ERROR || error == GL_OUT_OF_MEMORY) result = error;
+    }
+    return result;
+}
+
+void throw_on_gl_error(const std::string& purpose) {
+    const GLenum error = take_gl_error();
+    if (error == GL_NO_ERROR) return;
+    if (error == GL_OUT_OF_MEMORY) throw base::OutOfMemory("the graphics driver has no memory " + purpose);
+    throw base::GlError("OpenGL reports " + name_of_error(error) + " where it was asked " + purpose);
+}
 
 namespace detail {
 void count_gl_object(long change) { live_objects += change; }
@@ -77,7 +109,7 @@ GlRenderbuffer make_renderbuffer(GLenum format, int width, int height) {
     glCreateRenderbuffers(1, &name);
     GlRenderbuffer renderbuffer(name);
     allocate_or_throw([&] { glNamedRenderbufferStorage(name, format, width, height); },
-                      [&] { return of_size("a picture", width, height) + " pixels"; });
+                      of_size("a picture", width, height) + " pixels");
     return renderbuffer;
 }
 
@@ -86,7 +118,7 @@ GlTexture make_texture(GLenum format, int width, int height) {
     glCreateTextures(GL_TEXTURE_2D, 1, &name);
     GlTexture texture(name);
     allocate_or_throw([&] { glTextureStorage2D(name, 1, format, width, height); },
-                      [&] { return of_size("a picture", width, height) + " pixels"; });
+                      of_size("a picture", width, height) + " pixels");
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
@@ -97,7 +129,7 @@ GlTexture make_mipmapped_texture(GLenum target, int width, int height, int level
     glCreateTextures(target, 1, &name);
     GlTexture texture(name);
     allocate_or_throw([&] { glTextureStorage2D(name, levels, GL_RGBA8, width, height); },
-                      [&] { return of_size("a texture", width, height) + " texels"; });
+                      of_size("a texture", width, height) + " texels");
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     return texture;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <utility>
 
 #include "gl/gl.hpp"
@@ -8,6 +9,14 @@ namespace vrut::gl {
 
 /// GL objects that live now, of all kinds: 0 when everything is given back.
 long live_gl_objects();
+
+/// Clears all of OpenGL's error flags. GL_OUT_OF_MEMORY if it was among them, as the others may follow from
+/// it; else the first; GL_NO_ERROR if none was set.
+GLenum take_gl_error();
+
+/// Clears the error flags. Throws OutOfMemory for GL_OUT_OF_MEMORY, and for any other error GlError with its
+/// name. `purpose` ends the sentence, as in "for 2.0 MiB of vertices".
+void throw_on_gl_error(const std::string& purpose);
 
 namespace detail {
 void count_gl_object(long change);
@@ -59,7 +68,7 @@ using GlQuery = GlHandle<detail::destroy_query>;
 using GlShader = GlHandle<detail::destroy_shader>;
 using GlProgram = GlHandle<detail::destroy_program>;
 
-// Whatever holds much throws OutOfMemory where the driver has no room for it.
+// Whatever holds much throws as throw_on_gl_error().
 /// `what`: of which things it holds so many bytes, as in "vertices".
 GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes);
 /// Without contents, to be written again and again.

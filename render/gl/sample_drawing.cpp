@@ -66,15 +66,37 @@ bool SampleDrawing::draw(plan::RenderJob& job, GpuScene* scene, Passes& passes, 
     StepContext step{job.view, job.planner->plan(), scene, passes, budget, job.stats};
     while (command_ < commands_.size() && !budget.is_spent()) {
         const plan::DrawCommand& command = commands_[command_];
-        if (!is_hidden(command.mirror) && !execute(command, step)) continue;
+        if (!execute_if_seen(command, step)) continue;
         ++command_;
         item_ = 0;
     }
     return command_ == commands_.size();
 }
 
-bool SampleDrawing::is_hidden(const plan::MirrorItem* mirror) const {
-    return mirror && std::find(hidden_.begin(), hidden_.end(), mirror) != hidden_.end();
+bool SampleDrawing::execute_if_seen(const plan::DrawCommand& command, StepContext& step) {
+    if (!command.mirror) return execute(command, step);
+    if (command.kind == Kind::open_mirror) stats_before_mirror_ = step.stats;
+    if (is_hidden(*command.mirror, step)) return true;
+    const std::size_t index = index_of(*command.mirror);
+    if (seen_[index]) return execute(command, step);
+    // The GPU is behind. It gets on meanwhile, and discards this if the mirror is not seen.
+    const ConditionalRendering condition = targets_->mirrors.while_seen(index);
+    return execute(command, step);
+}
+
+std::size_t SampleDrawing::index_of(const plan::MirrorItem& mirror) const {
+    return static_cast<std::size_t>(&mirror - queried_.data());
+}
+
+bool SampleDrawing::is_hidden(const plan::MirrorItem& mirror, StepContext& step) {
+    std::optional<bool>& seen = seen_[index_of(mirror)];
+    if (!seen) seen = targets_->mirrors.seen(index_of(mirror));
+    if (seen.value_or(true)) return false;
+    step.stats.passes = stats_before_mirror_.passes;
+    step.stats.draws = stats_before_mirror_.draws;
+    step.stats.triangles = stats_before_mirror_.triangles;
+    targets_->per_pixel_lists.abandon();
+    return true;
 }
 
 CameraMatrices SampleDrawing::camera_in(const plan::MirrorItem* mirror) const {
@@ -183,10 +205,9 @@ void SampleDrawing::clear(StepContext& step) {
 }
 
 void SampleDrawing::find_mirrors(const plan::DrawCommand& command, StepContext& step) {
-    const std::vector<bool> seen =
-        targets_->mirrors.seen(command.mirrors, *step.scene, camera_.clip_from_view, step.stats);
-    for (std::size_t i = 0; i < seen.size(); ++i)
-        if (!seen[i]) hidden_.push_back(&command.mirrors[i]);
+    targets_->mirrors.query(command.mirrors, *step.scene, camera_.clip_from_view, step.stats);
+    queried_ = command.mirrors;
+    seen_.assign(queried_.size(), std::nullopt);
 }
 
 void SampleDrawing::open(const plan::MirrorItem& mirror, StepContext& step) {

@@ -64,6 +64,7 @@ private:
     void use_target(const plan::View& view, bool rgba16);
     void bind_target(const plan::MirrorItem* mirror, StepContext& step);
     /// True if the command is done.
+    bool execute_if_seen(const plan::DrawCommand& command, StepContext& step);
     bool execute(const plan::DrawCommand& command, StepContext& step);
     void draw_once(const plan::DrawCommand& command, StepContext& step);
     void draw_items(const plan::DrawCommand& command, std::span<const plan::DrawItem> items,
@@ -72,7 +73,10 @@ private:
     void clear(StepContext& step);
     void find_mirrors(const plan::DrawCommand& command, StepContext& step);
     void open(const plan::MirrorItem& mirror, StepContext& step);
-    bool is_hidden(const plan::MirrorItem* mirror) const;
+    std::size_t index_of(const plan::MirrorItem& mirror) const;
+    /// True if the mirror is known not to be seen. What was drawn of it before that was known, which the GPU
+    /// has discarded, is taken out of the counts.
+    bool is_hidden(const plan::MirrorItem& mirror, StepContext& step);
     std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const math::PixelBox& box,
                                                StepContext& step) const;
     math::PixelBox full_viewport() const;
@@ -82,8 +86,10 @@ private:
     std::unique_ptr<SampleTargets> targets_;
     CameraMatrices camera_;
     std::vector<plan::DrawCommand> commands_;
-    std::size_t command_ = 0, item_ = 0;  // the next
-    std::vector<const plan::MirrorItem*> hidden_;
+    std::size_t command_ = 0, item_ = 0;         // the next
+    std::span<const plan::MirrorItem> queried_;  // the mirrors of the last find_mirrors
+    std::vector<std::optional<bool>> seen_;      // of each; none while the GPU has not answered
+    plan::FrameStats stats_before_mirror_;       // the last that was opened
 };
 
 }  // namespace vrut::gl

@@ -13,7 +13,7 @@ struct DrawCommand {
     enum class Kind {
         clear,            ///< clears the image, and draws its background
         opaque,           ///< faces
-        find_mirrors,     ///< occlusion queries of `mirrors`; commands of hidden ones are skipped
+        find_mirrors,     ///< begins occlusion queries of `mirrors`; commands of hidden ones are skipped
         open_mirror,      ///< clears the target of `mirror`, and draws its background
         close_mirror,     ///< draws its surface
         sorted_glass,     ///< faces, in the order of the items

@@ -97,7 +97,7 @@ DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, Tr
     std::vector<DrawItem> transparent;
     for (const DrawItem& item : items) (is_opaque(item) ? lists.opaque : transparent).push_back(item);
     mark_occluded_by_coincident(transparent, lists.opaque, scene);
-    lists.transparent = order_transparent(transparent, scene, view.light, view.methods.transparency, shapes);
+    lists.transparent = order_transparent(transparent, view, shapes);
     return lists;
 }
 

@@ -124,14 +124,13 @@ DepthRelation depth_relation(const OrientedBox& a, const OrientedBox& b, double 
 /// Which panes lie before which others, as the eye sees them.
 class DepthOrderGraph {
 public:
-    DepthOrderGraph(std::span<const DrawItem> items, const scene::Scene& scene, const scene::Light& light,
-                    TransparencyCache& shapes);
+    DepthOrderGraph(std::span<const DrawItem> items, const View& view, TransparencyCache& shapes);
 
     /// False where too many overlap.
     bool compare_all();
     /// Panes by number, in groups that no order parts, from far to near.
     std::vector<std::vector<unsigned>> groups() const { return strong_components(behind_); }
-    /// How many lie over each other on average, in the box around all.
+    /// How many lie over each other on average, in the box around all that the picture shows of them.
     double depth() const;
     /// What drawing a group in some order could change.
     double risk(const std::vector<unsigned>& group) const;
@@ -143,6 +142,9 @@ public:
 private:
     bool are_comparable(std::span<const unsigned> from_left) const;
     DepthRelation compare(unsigned a, unsigned b);
+    DepthRelation compare_triangles(unsigned a, unsigned b);
+    /// Whether an item lies in one plane, so that no ray meets it twice.
+    bool is_flat(unsigned index) const;
     const std::vector<FrontFacingTriangle>& facing(unsigned index);
     /// Of its facing triangles those that may lie before or behind something of the other.
     std::vector<FrontFacingTriangle> covering(unsigned index, const TransparentItem& other);
@@ -153,19 +155,25 @@ private:
     std::span<const DrawItem> items_;
     const scene::Scene& scene_;
     TransparencyCache& shapes_;
+    glm::dvec2 image_corner_;  ///< the upper right one of the picture, on the plane z = -1
     std::vector<TransparentItem> transparent_items_;
     std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
     std::vector<std::optional<std::vector<FrontFacingTriangle>>> facing_;
     std::size_t compared_ = 0;  // pairs of triangles
 };
 
-DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const scene::Scene& scene,
-                                 const scene::Light& light, TransparencyCache& shapes)
-    : items_(items), scene_(scene), shapes_(shapes), behind_(items.size()), facing_(items.size()) {
+DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const View& view, TransparencyCache& shapes)
+    : items_(items),
+      scene_(*view.scene->scene),
+      shapes_(shapes),
+      image_corner_(std::tan(view.camera.fov * scene::kRadiansPerDegree / 2) *
+                    glm::dvec2(static_cast<double>(view.width) / view.height, 1)),
+      behind_(items.size()),
+      facing_(items.size()) {
     for (const DrawItem& item : items)
         transparent_items_.push_back(
             transparent_item_of(transformed(item.view_from_node, shapes.box(item.geometry)),
-                                color_range(scene.material(item.material), light)));
+                                color_range(scene_.material(item.material), view.light)));
 }
 
 const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) {
@@ -176,21 +184,35 @@ const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) 
 /// `a` has the lower id.
 DepthRelation DepthOrderGraph::compare(unsigned a, unsigned b) {
     const TransparentItem &first = transparent_items_[a], &second = transparent_items_[b];
-    if (items_[a].geometry == items_[b].geometry && items_[a].view_from_node == items_[b].view_from_node)
-        return DepthRelation::second_in_front;
+    if (items_[a].geometry == items_[b].geometry && items_[a].view_from_node == items_[b].view_from_node) {
+        // Only where no triangle lies before another are all their depths equal, and the higher id in front.
+        const bool tied = is_flat(a) || compare_triangles(a, b) == DepthRelation::apart;
+        return tied ? DepthRelation::second_in_front : DepthRelation::unknown;
+    }
     if (first.nearest < second.farthest) return DepthRelation::second_in_front;
     if (second.nearest < first.farthest) return DepthRelation::first_in_front;
-    const double size = first.radius + second.radius;
-    const DepthRelation order = depth_relation(first.box, second.box, size);
-    if (order != DepthRelation::unknown) return order;
+    const DepthRelation order = depth_relation(first.box, second.box, first.radius + second.radius);
+    return order == DepthRelation::unknown ? compare_triangles(a, b) : order;
+}
+
+DepthRelation DepthOrderGraph::compare_triangles(unsigned a, unsigned b) {
+    const TransparentItem &first = transparent_items_[a], &second = transparent_items_[b];
     const std::size_t size_a = geometry(a).triangles.size(), size_b = geometry(b).triangles.size();
-    if (std::max(size_a, size_b) > kMaxOrderedTriangles) return order;
+    if (std::max(size_a, size_b) > kMaxOrderedTriangles) return DepthRelation::unknown;
     // Looking for those that cover each other costs time as well.
-    if ((compared_ += size_a + size_b) > 16 * kMaxComparedPairs) return order;
+    if ((compared_ += size_a + size_b) > 16 * kMaxComparedPairs) return DepthRelation::unknown;
     const auto mine = covering(a, second), others = covering(b, first);
     const std::size_t pairs = mine.size() * others.size();
-    if (pairs > kMaxComparedPairs || (compared_ += pairs) > 16 * kMaxComparedPairs) return order;
-    return depth_relation(mine, others, kNegligible * size);
+    if (pairs > kMaxComparedPairs || (compared_ += pairs) > 16 * kMaxComparedPairs)
+        return DepthRelation::unknown;
+    return depth_relation(mine, others, kNegligible * (first.radius + second.radius));
+}
+
+bool DepthOrderGraph::is_flat(unsigned index) const {
+    const auto& axes = transparent_items_[index].box.axes;
+    const double thickness = std::min({glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2])});
+    return is_flattened(items_[index].view_from_node) ||
+           thickness <= kNegligible * transparent_items_[index].radius;
 }
 
 std::vector<FrontFacingTriangle> DepthOrderGraph::covering(unsigned index, const TransparentItem& other) {
@@ -246,11 +268,14 @@ double DepthOrderGraph::depth() const {
     double sum = 0;
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
     for (const TransparentItem& transparent : transparent_items_) {
-        sum += area(transparent.low, transparent.high);
-        low = glm::min(low, transparent.low);
-        high = glm::max(high, transparent.high);
+        const glm::dvec2 item_low = glm::clamp(transparent.low, -image_corner_, image_corner_);
+        const glm::dvec2 item_high = glm::clamp(transparent.high, -image_corner_, image_corner_);
+        sum += area(item_low, item_high);
+        low = glm::min(low, item_low);
+        high = glm::max(high, item_high);
     }
-    return sum / area(low, high);
+    const double all = area(low, high);
+    return all > 0 ? sum / all : 0;
 }
 
 double DepthOrderGraph::risk(const std::vector<unsigned>& group) const {
@@ -303,12 +328,12 @@ bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) cons
 
 }  // namespace
 
-std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const scene::Scene& scene,
-                                                const scene::Light& light, Methods::Transparency method,
+std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes) {
-    DepthOrderGraph graph(items, scene, light, shapes);
+    DepthOrderGraph graph(items, view, shapes);
     std::vector<std::vector<unsigned>> order;
-    const bool ordered = graph.compare_all(), sorted = method == Methods::Transparency::sorted;
+    const bool ordered = graph.compare_all(),
+               sorted = view.methods.transparency == Methods::Transparency::sorted;
     const bool all_exact = !ordered && !sorted && graph.depth() <= kMaxMeanLayers;
     if (ordered) {
         order = graph.groups();

@@ -4,6 +4,7 @@
 
 #include "plan/frame_plan.hpp"
 #include "plan/transparency_cache.hpp"
+#include "plan/view.hpp"
 
 namespace vrut::plan {
 
@@ -13,8 +14,7 @@ namespace vrut::plan {
 /// wrong order could change a colour by more than 1/255; with Transparency::sorted they are drawn by their
 /// distance. Above kMaxOverlappingPairs pairs that overlap in the width of the screen everything is one exact
 /// group, or, where more than kMaxMeanLayers lie over each other on average, drawn by its distance.
-std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const scene::Scene& scene,
-                                                const scene::Light& light, Methods::Transparency method,
+std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes);
 
 inline constexpr std::size_t kMaxOverlappingPairs = std::size_t{1} << 20;

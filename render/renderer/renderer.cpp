@@ -32,24 +32,16 @@ struct Renderer::Impl {
         if (context.lost()) throw base::ContextLost("the graphics driver has reset itself");
     }
 
-    static void require_memory() {
-        constexpr int kMostErrors = 100;
-        GLenum error = glGetError();
-        for (int i = 0; i < kMostErrors && error != GL_NO_ERROR && error != GL_OUT_OF_MEMORY; ++i)
-            error = glGetError();
-        if (error == GL_OUT_OF_MEMORY)
-            throw base::OutOfMemory("the graphics driver has no memory to draw with");
-    }
-
     /// Draws. The one place that asks whether the context was lost meanwhile, whatever that made of it, and
-    /// whether there was too little memory for something.
+    /// whether OpenGL reported an error. Errors of a frame that failed before are no errors of this one.
     template <class Draw>
     auto draw_or_fail(Draw draw) {
         try {
+            gl::take_gl_error();
             gl::set_up_drawing();
             auto drawn = draw();
             require_context();
-            require_memory();
+            gl::throw_on_gl_error("to draw");
             return drawn;
         } catch (const std::bad_alloc&) {
             require_context();

@@ -15,7 +15,8 @@ namespace vrut::renderer {
 
 /// Renders a view of a scene. Owns all of EGL and GL: created, used and destroyed on one thread. Drawing
 /// functions throw ContextLost after a driver reset, and the renderer is unusable from then on; they throw
-/// OutOfMemory if an allocation fails, and the renderer stays usable.
+/// OutOfMemory if an allocation fails, and the renderer stays usable, and GlError if OpenGL reports another
+/// error.
 class Renderer {
 public:
     /// Throws std::runtime_error if no device of this machine can draw. `device` is an index in EGL's

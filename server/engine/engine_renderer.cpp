@@ -76,6 +76,8 @@ void Engine::show_arrived() {
             lose_renderer(lost.what());
             if (++arrival_losses_ < kMostLosses) return;
             rejected = next.name + ": the graphics driver is lost whenever it gets this scene";
+        } catch (const std::exception& error) {
+            rejected = next.name + ": " + error.what();
         }
     }
     show(*std::exchange(arrived_, std::nullopt), std::move(rejected));

@@ -19,12 +19,13 @@ namespace {
 constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0}, refused_threads{0};
-std::atomic<bool> lost{false}, told{false};
+std::atomic<bool> lost{false}, told{false}, queries_withheld{false};
+std::atomic<int> stalls{0};
 
 std::mutex mutex;  // of what follows
 std::map<GLuint, std::size_t> buffers, textures;
 std::size_t used = 0, most = kAll;
-GLenum error = GL_NO_ERROR;
+GLenum error = GL_NO_ERROR, allocation_error = GL_NO_ERROR, draw_error = GL_NO_ERROR;
 
 template <class Function>
 Function* real(const char* name) {
@@ -34,8 +35,8 @@ Function* real(const char* name) {
 /// Whether there is room for it; else the error is there.
 bool take(std::map<GLuint, std::size_t>& objects, GLuint name, std::size_t bytes) {
     const std::lock_guard lock(mutex);
-    if (bytes > most - std::min(used, most)) {
-        error = GL_OUT_OF_MEMORY;
+    if (allocation_error != GL_NO_ERROR || bytes > most - std::min(used, most)) {
+        error = allocation_error != GL_NO_ERROR ? allocation_error : GL_OUT_OF_MEMORY;
         return false;
     }
     std::size_t& held = objects[name];  // of another context's, perhaps: then that is forgotten
@@ -63,12 +64,26 @@ void limit_memory(std::size_t bytes) {
     const std::lock_guard lock(mutex);
     most = bytes;
 }
+void fail_allocations(unsigned with) {
+    const std::lock_guard lock(mutex);
+    allocation_error = with;
+}
+void fail_draw(unsigned with) {
+    const std::lock_guard lock(mutex);
+    draw_error = with;
+}
+void withhold_queries() { queries_withheld = true; }
+int query_stalls() { return stalls; }
 void refuse_threads(int count) { refused_threads = count; }
 void heal() {
     refuse_threads(0);
     reset_after(std::numeric_limits<int>::max());
     refuse_contexts(0);
     limit_memory(kAll);
+    fail_allocations(GL_NO_ERROR);
+    fail_draw(GL_NO_ERROR);
+    queries_withheld = false;
+    stalls = 0;
 }
 
 }  // namespace vrut::gl_faults
@@ -101,13 +116,26 @@ GLenum APIENTRY glGetGraphicsResetStatus() {
 void APIENTRY glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
     static auto* const draw = real<decltype(glDrawElements)>("glDrawElements");
     if (draws_left-- == 0) lost = true;
-    if (!lost) draw(mode, count, type, indices);
+    const std::unique_lock lock(mutex);
+    if (const GLenum failure = std::exchange(draw_error, GL_NO_ERROR); failure != GL_NO_ERROR)
+        error = failure;
+    else if (!lost)
+        draw(mode, count, type, indices);
 }
 
 void APIENTRY glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
                            void* pixels) {
     static auto* const read = real<decltype(glReadPixels)>("glReadPixels");
     if (!lost) read(x, y, width, height, format, type, pixels);
+}
+
+void APIENTRY glGetQueryObjectuiv(GLuint query, GLenum name, GLuint* value) {
+    static auto* const get = real<decltype(glGetQueryObjectuiv)>("glGetQueryObjectuiv");
+    GLuint available = 0;
+    get(query, GL_QUERY_RESULT_AVAILABLE, &available);
+    if (name == GL_QUERY_RESULT && (!available || queries_withheld)) ++stalls;
+    get(query, name, value);
+    if (name == GL_QUERY_RESULT_AVAILABLE && queries_withheld) *value = 0;
 }
 
 GLenum APIENTRY glGetError() {

@@ -15,6 +15,14 @@ void refuse_contexts(int count);
 std::size_t memory_used();
 /// They hold no more than so much from now on.
 void limit_memory(std::size_t bytes);
+/// Buffers and textures are given no memory from now on, and OpenGL reports that error.
+void fail_allocations(unsigned error);
+/// The next draw does nothing, and OpenGL reports that error.
+void fail_draw(unsigned error);
+/// The GPU is far behind: from now on the result of no query is available to who does not wait for it.
+void withhold_queries();
+/// How often a query's result was asked for before it was available.
+int query_stalls();
 /// So many threads cannot be begun.
 void refuse_threads(int count);
 /// The end of all that.

@@ -1,4 +1,5 @@
 // The driver's memory is short: what fits is drawn as ever, and what does not is told.
+#include "gl/gl.hpp"
 #include "gl_faults.hpp"
 #include "renderer_fixture.hpp"
 
@@ -136,4 +137,37 @@ TEST_CASE("a picture larger than the driver holds is refused in a sentence") {
                          base::OutOfMemory);
     view.width = view.height = 64;
     renderer.render(view, image, stats);
+}
+
+TEST_CASE("an error that is no lack of memory is reported by its name, and the next picture is whole") {
+    const HealedMemory healed;
+    const plan::View view = view_of(everything());
+    scene::Image expected, image;
+    plan::FrameStats stats;
+    {
+        renderer::Renderer renderer;
+        renderer.render(view, expected, stats);
+        gl_faults::fail_draw(GL_INVALID_OPERATION);
+        CHECK_THROWS_WITH_AS(renderer.render(view, image, stats),
+                             "OpenGL reports GL_INVALID_OPERATION where it was asked to draw", base::GlError);
+        renderer.render(view, image, stats);
+        CHECK(image.rgba == expected.rgba);
+        // Lack of memory: what was drawn before makes room, and the picture is drawn again.
+        gl_faults::fail_draw(GL_OUT_OF_MEMORY);
+        renderer.render(view, image, stats);
+        CHECK(image.rgba == expected.rgba);
+    }
+    renderer::Renderer renderer;
+    gl_faults::fail_allocations(GL_INVALID_VALUE);
+    CHECK_THROWS_WITH_AS(
+        renderer.upload(view),
+        doctest::Contains("OpenGL reports GL_INVALID_VALUE where it was asked for 0.0 MiB of"),
+        base::GlError);
+    CHECK_THROWS_WITH_AS(
+        renderer.render(view, image, stats),
+        doctest::Contains("OpenGL reports GL_INVALID_VALUE where it was asked for a picture of"),
+        base::GlError);
+    gl_faults::heal();
+    renderer.render(view, image, stats);
+    CHECK(image.rgba == expected.rgba);
 }

@@ -120,6 +120,21 @@ TEST_CASE("more panes than can be compared are sorted at each pixel where not to
     CHECK(groups[0].exact);
 }
 
+TEST_CASE("panes that reach behind the eye count as one layer where more panes are than can be compared") {
+    const Part around_eye = pane(9000, {0, 0.5, 0}, moved_by({0, -0.3, 4.5}) * turned_by(90, {1, 0, 0}));
+    for (const bool deep : {false, true}) {
+        CAPTURE(deep);
+        std::vector<Part> parts{around_eye};
+        for (int i = 0; i < 2500; ++i)
+            parts.push_back(pane(i + 1, {0.5, 0, 0},
+                                 moved_by({0, deep ? 0 : 0.03 * (i % 50 - 25), -0.01 * (i * 617 % 2500)}) *
+                                     scaled_by({1, deep ? 1 : 0.01, 1})));
+        const auto groups = groups_of(parts);
+        REQUIRE(groups.size() == 1);
+        CHECK(groups[0].exact == !deep);
+    }
+}
+
 TEST_CASE("more panes than can be compared, in a deep stack, are drawn by their distance") {
     std::vector<Part> parts;
     parts.reserve(1500);
@@ -131,4 +146,36 @@ TEST_CASE("more panes than can be compared, in a deep stack, are drawn by their 
     CHECK(!groups[0].exact);
     for (std::size_t i = 1; i < 1500; ++i)
         CHECK(groups[0].items[i - 1].view_from_node[3].z < groups[0].items[i].view_from_node[3].z);
+}
+
+namespace {
+
+/// Two nodes of one geometry in one place.
+std::vector<plan::TransparentGroup> groups_of_coincident(const scene::Geometry& geometry,
+                                                         std::vector<scene::Material> materials) {
+    plan::View view = view_from({0, 0, 5});
+    view.scene = coincident_scene(geometry, std::move(materials), turned_by(20, {0, 1, 0}));
+    return plan::plan_frame(view).scene.transparent;
+}
+
+}  // namespace
+
+TEST_CASE("coincident glass is an exact group where a ray can meet the shape twice") {
+    scene::Material red = pane(1, {0.9, 0, 0}, glm::dmat4(1)).material,
+                    blue = pane(1, {0, 0, 0.9}, glm::dmat4(1)).material;
+    const auto is_exact = [&](const scene::Geometry& geometry) {
+        const auto groups = groups_of_coincident(geometry, {red, blue});
+        REQUIRE(groups.size() == 1);
+        REQUIRE(groups[0].items.size() == 2);
+        CHECK(groups[0].items[0].node < groups[0].items[1].node);
+        return groups[0].exact;
+    };
+    CHECK(is_exact(sphere(1, 8)));
+    CHECK_FALSE(is_exact(quad(1)));
+    red.two_sided = false;
+    CHECK(is_exact(sphere(1, 8)));  // of one the backs are drawn
+    blue.two_sided = false;
+    CHECK_FALSE(is_exact(sphere(1, 8)));  // of a convex shape only fronts
+    CHECK_FALSE(is_exact(quad(1)));
+    CHECK(is_exact(sphere(1, 40)));  // more triangles than are compared
 }

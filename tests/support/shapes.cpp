@@ -39,6 +39,27 @@ std::shared_ptr<const scene::PlacedScene> scene_of(const std::vector<Part>& give
     return std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
 }
 
+std::shared_ptr<const scene::PlacedScene> coincident_scene(const scene::Geometry& geometry,
+                                                           std::vector<scene::Material> materials,
+                                                           const glm::dmat4& matrix) {
+    scene::SceneParts parts;
+    parts.geometries = {geometry};
+    parts.materials = std::move(materials);
+    for (scene::Index i = 0; i < static_cast<scene::Index>(parts.materials.size()); ++i)
+        parts.nodes.push_back({scene::Node{i + 1,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           matrix,
+                                           scene::GeometryData{0, i}},
+                               0});
+    auto scene = scene::Scene::build(std::move(parts));
+    if (!scene) throw std::logic_error(scene.error().message);
+    return std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
+}
+
 scene::Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular, double shininess) {
     scene::Material material;
     material.diffuse = {diffuse, 1};

@@ -20,6 +20,11 @@ struct Part {
 std::shared_ptr<const scene::PlacedScene> scene_of(const std::vector<Part>& parts,
                                                    std::vector<scene::Texture> textures = {});
 
+/// Nodes of one geometry under one matrix, one for each material, by rising id.
+std::shared_ptr<const scene::PlacedScene> coincident_scene(const scene::Geometry& geometry,
+                                                           std::vector<scene::Material> materials,
+                                                           const glm::dmat4& matrix = glm::dmat4(1));
+
 scene::Material material_of(const glm::dvec3& diffuse, const glm::dvec3& specular = glm::dvec3(0),
                             double shininess = 0);
 

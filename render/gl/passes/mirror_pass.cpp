@@ -4,8 +4,8 @@
 
 namespace vrut::gl {
 
-std::vector<bool> MirrorPass::seen(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
-                                   const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
+void MirrorPass::query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
+                       const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
     solid_color_.use(glm::dvec3(0), clip_from_view);
     glEnable(GL_DEPTH_TEST);
@@ -22,14 +22,16 @@ std::vector<bool> MirrorPass::seen(std::span<const plan::MirrorItem> mirrors, Gp
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glDepthMask(GL_TRUE);
+    glFlush();  // the GPU begins while the first mirror is prepared
     ++stats.passes;
-    std::vector<bool> result;
-    for (std::size_t i = 0; i < mirrors.size(); ++i) {
-        GLuint any = 0;
-        glGetQueryObjectuiv(queries_[i].get(), GL_QUERY_RESULT, &any);
-        result.push_back(any != 0);
-    }
-    return result;
+}
+
+std::optional<bool> MirrorPass::seen(std::size_t index) const {
+    GLuint available = 0, any = 0;
+    glGetQueryObjectuiv(queries_[index].get(), GL_QUERY_RESULT_AVAILABLE, &available);
+    if (!available) return {};
+    glGetQueryObjectuiv(queries_[index].get(), GL_QUERY_RESULT, &any);
+    return any != 0;
 }
 
 void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,

@@ -81,18 +81,21 @@ void PerPixelListsPass::clear_lists() const {
 void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size_t first, GpuScene& scene,
                                 SurfacePrograms& programs, plan::FrameStats& stats) {
     bind();
-    if (first == 0) clear_lists();
+    if (first == 0) {
+        clear_lists();
+        collected_triangles_ = 0;
+    }
     glEnable(GL_DEPTH_TEST);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const plan::DrawItem& item = items[i];
+    for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::per_pixel_glass, item, geometry,
                      scene.scene()->material(item.material));
-        set_draw_order(static_cast<GLuint>(first + i));
+        set_first_triangle(collected_triangles_);
         glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
         set_cull_mode(item);
         draw_triangles(geometry, stats);
+        collected_triangles_ += static_cast<GLuint>(geometry.index_count / 3);
     }
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);

@@ -12,9 +12,11 @@
 namespace vrut::gl {
 
 /// Faces of transparent materials whose order changes from pixel to pixel. Those that the depth lets through
-/// are kept in a list for each pixel, which is then composited from near to far; at equal depth the item that
-/// comes later is in front. There is room for two layers in each pixel of the picture, but 64 MiB at most;
-/// lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
+/// are kept in a list for each pixel, which is then composited from near to far. At equal depth the item that
+/// comes later is in front, and of one item the triangle that comes later in the index buffer: the later one
+/// of the file, unless a level of detail is drawn. The order in which the GPU appends fragments, which OpenGL
+/// does not define, changes nothing. There is room for two layers in each pixel of the picture, but 64 MiB at
+/// most; lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
 /// single pixel needs more than all of it.
 class PerPixelListsPass {
 public:
@@ -51,6 +53,7 @@ private:
 
     std::vector<math::PixelBox> pending_boxes_;  // the last one first
     std::size_t pixels_ = 0;
+    GLuint collected_triangles_ = 0;  ///< since the lists were cleared; modulo 2^32
     GlBuffer fragments_, heads_;
     GlProgram composite_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes

@@ -24,7 +24,7 @@ enum SurfaceUniform : GLint {
     two_sided_at = 9,
     reflectivity_at = 10,
     alpha_at = 11,
-    order_at = 12,
+    first_triangle_at = 12,
     clip_plane_at = 13,
 };
 
@@ -185,7 +185,7 @@ void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
 
 void NodeIdProgram::set_node(scene::Index number) { glUniform1i(node_at, number); }
 
-void set_draw_order(GLuint order) { glUniform1ui(order_at, order); }
+void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }
 
 void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
     glm::dmat4 view_from_local = item.view_from_node;

@@ -87,8 +87,9 @@ private:
 /// The buffers of shaders/per_pixel_lists.glsl.
 inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
 
-/// With a per_pixel_glass program: at equal depth the higher order is in front.
-void set_draw_order(GLuint order);
+/// With a per_pixel_glass program: the number of the next draw's first triangle. At equal depth the triangle
+/// with the higher number is in front.
+void set_first_triangle(GLuint number);
 
 /// Where the next draw of the current program lies.
 void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry);

@@ -8,8 +8,7 @@ out vec4 color;
 bool is_nearer(uint a, uint b) {
     float depth_a = fragments[a - 1].depth, depth_b = fragments[b - 1].depth;
     if (depth_a != depth_b) return depth_a > depth_b;
-    uint order_a = fragments[a - 1].order, order_b = fragments[b - 1].order;
-    return order_a != order_b ? order_a > order_b : a > b;
+    return fragments[a - 1].order > fragments[b - 1].order;
 }
 
 void main() {

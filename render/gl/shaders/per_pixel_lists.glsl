@@ -1,7 +1,7 @@
 // Lists of the transparent layers at each pixel of a box. Layers are numbered from 1.
 struct Fragment {
     uint next;  // in the same pixel; 0 for none
-    uint order;
+    uint order;  // of triangles; at equal depth the higher one is in front
     float depth;  // reversed
     uint red_green, blue_alpha;  // multiplied by alpha
 };

@@ -29,7 +29,7 @@ layout(binding = 2) uniform sampler2D reflection;
 layout(location = 11) uniform float alpha;
 #endif
 #ifdef LAYERED
-layout(location = 12) uniform uint order;
+layout(location = 12) uniform uint first_triangle;
 layout(early_fragment_tests) in;
 #else
 out vec4 color;
@@ -95,7 +95,7 @@ void main() {
     vec4 layer = vec4(own, 1) * alpha;
 #endif
 #if defined(LAYERED)
-    append_fragment(layer, order);
+    append_fragment(layer, first_triangle + uint(gl_PrimitiveID));
 #elif defined(GLASS)
     color = layer;
 #else
