@@ -97,7 +97,7 @@ struct Renderer::Impl {
         for (gl::SampleDrawing& sample : in_flight)
             if (sample.abandoned()) targets = sample.release();
         std::erase_if(in_flight, [](const gl::SampleDrawing& sample) { return sample.abandoned(); });
-        if (!targets) targets = std::make_unique<gl::SampleTargets>();
+        if (!targets) targets = std::make_unique<gl::SampleTargets>(programs);
         return in_flight.emplace_back(job, std::move(targets));
     }
 
@@ -111,10 +111,11 @@ struct Renderer::Impl {
     gl::GlContext context;  // first: destroyed after everything below
     std::unique_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
-    gl::Passes passes;
+    gl::Programs programs;
+    gl::Passes passes{programs};
     std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
     std::unique_ptr<gl::SampleTargets> targets;  // of a sample before, for the next
-    gl::IdPass ids;
+    gl::IdPass ids{programs};
     std::vector<std::uint8_t> pixels;  // of a sample
 };
 

@@ -23,7 +23,7 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan
     glDisable(GL_BLEND);
     const bool stylized = mode == plan::DrawMode::stylized;
     glDepthMask(!stylized);  // of one colour, none hides another
-    if (stylized) solid_color_.use(scene::kStylizedEdges, clip_from_view);
+    if (stylized) use_solid_color(programs_, scene::kStylizedEdges, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
         if (stylized)
@@ -40,7 +40,7 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_BLEND);
-    solid_color_.use(color, clip_from_view);
+    use_solid_color(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         set_transform(item, scene.geometry(item.geometry));
         draw_lines(scene.edges(item.geometry), stats);

@@ -9,6 +9,7 @@ namespace vrut::gl {
 /// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too.
 class EdgePass {
 public:
+    explicit EdgePass(Programs& programs) : programs_(programs) {}
     /// Realistic ones in their materials under the view's light, stylized ones in one colour; hidden where a
     /// face stands before them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
     void draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
@@ -18,7 +19,7 @@ public:
                       const glm::dmat4& clip_from_view, plan::FrameStats& stats);
 
 private:
-    SolidColorProgram solid_color_;
+    Programs& programs_;
 };
 
 }  // namespace vrut::gl

@@ -37,12 +37,12 @@ std::vector<scene::Index> IdPass::draw(std::span<const plan::DrawItem> items, Gp
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDisable(GL_BLEND);
-    program_.use(clip_from_view);
+    use_node_id(programs_, clip_from_view);
     plan::FrameStats stats;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
-        program_.set_node(item.node);
+        set_node(item.node);
         set_cull_mode(item);
         draw_triangles(geometry, stats);
     }

@@ -4,7 +4,6 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "gl/shader_sources.hpp"
 #include "plan/frame_plan.hpp"
 #include "scene/colors.hpp"
 
@@ -21,8 +20,7 @@ constexpr GLuint kPointsBinding = 1;
 
 void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
                       const Framebuffer& target, plan::FrameStats& stats) {
-    if (!program_) {
-        program_ = make_program(shader_source("marker.vert"), shader_source("marker.frag"));
+    if (!points_) {
         empty_vertex_array_ = make_vertex_array();
         points_ = make_dynamic_buffer("markers", kBatch * sizeof(glm::vec4));
     }
@@ -35,7 +33,7 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
     glTextureBarrier();  // the depth that is read is the target's own
     glDepthMask(GL_FALSE);
     glBindTextureUnit(0, target.depth().get());
-    glUseProgram(program_.get());
+    programs_.use(FixedProgram::marker);
     glBindVertexArray(empty_vertex_array_.get());
     const glm::mat4 clip(clip_from_view);
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));

@@ -7,7 +7,7 @@ namespace vrut::gl {
 std::vector<bool> MirrorPass::seen(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
                                    const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
-    solid_color_.use(glm::dvec3(0), clip_from_view);
+    use_solid_color(programs_, glm::dvec3(0), clip_from_view);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GEQUAL);
     glDepthMask(GL_FALSE);
@@ -48,7 +48,7 @@ void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     glDisable(GL_BLEND);
-    solid_color_.use(background, clip_from_view);
+    use_solid_color(programs_, background, clip_from_view);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
     set_transform(mirror.surface, geometry);
     set_cull_mode(mirror.surface);

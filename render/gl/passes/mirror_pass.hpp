@@ -14,6 +14,7 @@ namespace vrut::gl {
 /// there. One target serves all mirrors in turn.
 class MirrorPass {
 public:
+    explicit MirrorPass(Programs& programs) : programs_(programs) {}
     /// Which mirrors are seen from `clip_from_view` in the current target, behind nothing that has been drawn
     /// there.
     std::vector<bool> seen(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
@@ -35,7 +36,7 @@ public:
 
 private:
     std::optional<Framebuffer> target_;
-    SolidColorProgram solid_color_;
+    Programs& programs_;
     std::vector<GlQuery> queries_;
 };
 

@@ -32,7 +32,7 @@ void OpaquePass::reset_depth(std::span<const plan::DrawItem> items, GpuScene& sc
     glDepthFunc(GL_ALWAYS);
     glDepthRange(0, 0);
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    solid_color_.use(glm::dvec3(0), clip_from_view);
+    use_solid_color(programs_, glm::dvec3(0), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);

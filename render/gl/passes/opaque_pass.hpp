@@ -10,6 +10,7 @@ namespace vrut::gl {
 /// little further away, so that their edges lie before them.
 class OpaquePass {
 public:
+    explicit OpaquePass(Programs& programs) : programs_(programs) {}
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
     void draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
               SurfacePrograms& programs, plan::FrameStats& stats);
@@ -18,7 +19,7 @@ public:
                      plan::FrameStats& stats);
 
 private:
-    SolidColorProgram solid_color_;
+    Programs& programs_;
 };
 
 }  // namespace vrut::gl

@@ -4,7 +4,6 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
-#include "gl/shader_sources.hpp"
 #include "scene/colors.hpp"
 
 namespace vrut::gl {
@@ -21,8 +20,9 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
-void use(const GlProgram& program, int width, const plan::PixelBox& box, const GlTexture& texture) {
-    glUseProgram(program.get());
+void use(Programs& programs, FixedProgram program, int width, const plan::PixelBox& box,
+         const GlTexture& texture) {
+    programs.use(program);
     glUniform1i(width_at, width);
     glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
     glBindTextureUnit(0, texture.get());
@@ -51,10 +51,7 @@ void OutlinePass::prepare(const Framebuffer& target) {
         mask_.reset();
         mask_.emplace(target.width(), target.height());
     }
-    if (empty_vertex_array_) return;
-    distance_program_ = make_program(shader_source("screen.vert"), shader_source("row_distance.frag"));
-    outline_program_ = make_program(shader_source("screen.vert"), shader_source("outline.frag"));
-    empty_vertex_array_ = make_vertex_array();
+    if (!empty_vertex_array_) empty_vertex_array_ = make_vertex_array();
 }
 
 void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
@@ -85,7 +82,7 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
     glEnable(GL_SCISSOR_TEST);
     scissor(box_);
     glClearColor(1, 1, 1, 1);
-    solid_color_.use(glm::dvec3(1), clip_from_view);
+    use_solid_color(programs_, glm::dvec3(1), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
@@ -108,10 +105,10 @@ void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     scissor(box_);
     glBindVertexArray(empty_vertex_array_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
-    use(distance_program_, width, box_, mask_->covered);
+    use(programs_, FixedProgram::row_distance, width, box_, mask_->covered);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.bind();
-    use(outline_program_, width, box_, mask_->across);
+    use(programs_, FixedProgram::outline, width, box_, mask_->across);
     const glm::vec3 color(scene::kSelection);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);

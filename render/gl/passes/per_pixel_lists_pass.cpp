@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "gl/shader_sources.hpp"
-
 namespace vrut::gl {
 
 namespace {
@@ -26,10 +24,7 @@ void split(const plan::PixelBox& box, std::uint64_t parts, std::vector<plan::Pix
 }  // namespace
 
 void PerPixelListsPass::prepare(std::size_t pixels) {
-    if (!composite_) {
-        composite_ = make_program(shader_source("screen.vert"), shader_source("composite_lists.frag"));
-        empty_vertex_array_ = make_vertex_array();
-    }
+    if (!empty_vertex_array_) empty_vertex_array_ = make_vertex_array();
     if (pixels == pixels_) return;
     release();
     fragments_ =
@@ -117,7 +112,7 @@ void PerPixelListsPass::blend(plan::FrameStats& stats) {
     glDisable(GL_CLIP_DISTANCE0);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    glUseProgram(composite_.get());
+    programs_.use(FixedProgram::composite_lists);
     glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     // The lists are written again: Mesa's llvmpipe would not wait for this.

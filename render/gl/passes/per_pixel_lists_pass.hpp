@@ -18,6 +18,7 @@ namespace vrut::gl {
 /// single pixel needs more than all of it.
 class PerPixelListsPass {
 public:
+    explicit PerPixelListsPass(Programs& programs) : programs_(programs) {}
     /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
     /// composited, again and again while it is drawing.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
@@ -52,7 +53,7 @@ private:
     std::vector<plan::PixelBox> pending_boxes_;  // the last one first
     std::size_t pixels_ = 0;
     GlBuffer fragments_, heads_;
-    GlProgram composite_;
+    Programs& programs_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
