@@ -89,11 +89,12 @@ plan::PixelBox SampleDrawing::full_viewport() const {
 /// Another step may have drawn something else.
 void SampleDrawing::bind_target(const plan::MirrorItem* mirror, StepContext& step) {
     if (step.bound == mirror) return;
-    set_up_drawing();
-    if (mirror)
+    if (mirror) {
         targets_->mirrors.bind(*mirror);
-    else
+    } else {
         targets_->image_target->bind();
+        set_scissor({});
+    }
     step.passes.programs.begin(camera_in(mirror), step.view, step.scene);
     step.bound = mirror;
 }
@@ -178,6 +179,7 @@ void SampleDrawing::clear(StepContext& step) {
     const plan::View& view = step.view;
     glClearColor(static_cast<float>(view.background.color.r), static_cast<float>(view.background.color.g),
                  static_cast<float>(view.background.color.b), 1);
+    apply(PipelineState());
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (BackgroundPass::is_needed(view)) step.passes.background.draw(camera_, view, *step.scene, step.stats);
 }

@@ -47,7 +47,7 @@ struct Renderer::Impl {
     template <class Draw>
     auto draw_or_fail(Draw draw) {
         try {
-            gl::set_up_drawing();
+            gl::set_constant_state();
             auto drawn = draw();
             require_context();
             require_memory();

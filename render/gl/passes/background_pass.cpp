@@ -35,10 +35,7 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
         glBindSampler(0, clamped_.get());
     }
     // At infinity: in a mirror only its own pixels have nothing nearer.
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    apply(PipelineState());
     glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindSampler(0, 0);

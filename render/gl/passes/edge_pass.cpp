@@ -1,5 +1,6 @@
 #include "gl/passes/edge_pass.hpp"
 
+#include "gl/passes/drawing.hpp"
 #include "scene/colors.hpp"
 
 namespace vrut::gl {
@@ -18,11 +19,10 @@ void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
 
 void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDisable(GL_BLEND);
     const bool stylized = mode == plan::DrawMode::stylized;
-    glDepthMask(!stylized);  // of one colour, none hides another
+    PipelineState state;
+    state.depth_write = !stylized;  // of one colour, none hides another
+    apply(state);
     if (stylized) use_solid_color(programs_, scene::kStylizedEdges, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
@@ -33,13 +33,13 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan
                          scene.scene()->material(item.material));
         draw_lines(scene.edges(item.geometry), stats);
     }
-    glDepthMask(GL_TRUE);
 }
 
 void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dvec3& color,
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
+    PipelineState state;
+    state.depth_test = false;
+    apply(state);
     use_solid_color(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         set_transform(item, scene.geometry(item.geometry));

@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
+#include "gl/passes/drawing.hpp"
 #include "plan/frame_plan.hpp"
 #include "scene/colors.hpp"
 
@@ -26,12 +27,13 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, kPointsBinding, points_.get());
     target.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    set_scissor({});
+    PipelineState state;
+    state.depth_test = false;
+    state.depth_write = false;
+    state.blend = PipelineState::Blend::alpha;
+    apply(state);
     glTextureBarrier();  // the depth that is read is the target's own
-    glDepthMask(GL_FALSE);
     glBindTextureUnit(0, target.depth().get());
     programs_.use(FixedProgram::marker);
     glBindVertexArray(empty_vertex_array_.get());
@@ -51,8 +53,6 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
         ++stats.draws;
     }
     glBindTextureUnit(0, 0);
-    glDepthMask(GL_TRUE);
-    glDisable(GL_BLEND);
     ++stats.passes;
 }
 

@@ -20,6 +20,12 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
+PipelineState over_everything() {
+    PipelineState state;
+    state.depth_test = false;
+    return state;
+}
+
 void use(Programs& programs, FixedProgram program, int width, const plan::PixelBox& box,
          const GlTexture& texture) {
     programs.use(program);
@@ -66,8 +72,8 @@ void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& s
     }
     box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    set_scissor(box_);
+    apply(PipelineState());
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT);
 }
@@ -76,11 +82,8 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     const glm::ivec2 picture{mask_->width, mask_->height};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    apply(over_everything());
+    set_scissor(box_);
     glClearColor(1, 1, 1, 1);
     use_solid_color(programs_, glm::dvec3(1), clip_from_view);
     for (const plan::DrawItem& item : items) {
@@ -90,19 +93,16 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
         // So small that it may miss all centres of pixels: it is found all the same.
         const plan::PixelBox box = box_of(item, scene, clip_from_view, picture);
         if (box.size().x > 2 || box.size().y > 2) continue;
-        scissor(box);
+        set_scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);
-        scissor(box_);
+        set_scissor(box_);
     }
 }
 
 void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     const int width = outline_width(target.height());
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    apply(over_everything());
+    set_scissor(box_);
     glBindVertexArray(empty_vertex_array_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
     use(programs_, FixedProgram::row_distance, width, box_, mask_->covered);
@@ -113,7 +113,7 @@ void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindTextureUnit(0, 0);
-    glDisable(GL_SCISSOR_TEST);
+    set_scissor({});
     stats.draws += 2;
     ++stats.passes;
 }

@@ -58,9 +58,7 @@ void PerPixelListsPass::begin(std::span<const plan::DrawItem> items, const GpuSc
 void PerPixelListsPass::bind() const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFragmentsBinding, fragments_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kHeadsBinding, heads_.get());
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box());
-    glDepthMask(GL_FALSE);
+    set_scissor(box());
 }
 
 void PerPixelListsPass::clear_lists() const {
@@ -77,19 +75,19 @@ void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size
                                 SurfacePrograms& programs, plan::FrameStats& stats) {
     bind();
     if (first == 0) clear_lists();
-    glEnable(GL_DEPTH_TEST);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    PipelineState state;
+    state.depth_write = false;
+    state.color_write = false;
     for (std::size_t i = 0; i < items.size(); ++i) {
         const plan::DrawItem& item = items[i];
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::per_pixel_glass, item, geometry,
                      scene.scene()->material(item.material));
         set_draw_order(static_cast<GLuint>(first + i));
-        glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
-        set_cull_mode(item);
+        state.depth_func = item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL;
+        apply(state.for_item(item));
         draw_triangles(geometry, stats);
     }
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -107,17 +105,16 @@ std::uint64_t PerPixelListsPass::composite(plan::FrameStats& stats) {
 }
 
 void PerPixelListsPass::blend(plan::FrameStats& stats) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_CLIP_DISTANCE0);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    PipelineState state;
+    state.depth_test = false;
+    state.depth_write = false;
+    state.blend = PipelineState::Blend::premultiplied;
+    apply(state);
     programs_.use(FixedProgram::composite_lists);
     glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     // The lists are written again: Mesa's llvmpipe would not wait for this.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    glDisable(GL_BLEND);
     ++stats.draws;
     ++stats.passes;
 }

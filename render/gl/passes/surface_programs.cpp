@@ -80,11 +80,7 @@ void set_clip(const glm::dmat4& clip_from_view) {
 }
 
 void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (!item.clip_plane) {
-        glDisable(GL_CLIP_DISTANCE0);
-        return;
-    }
-    glEnable(GL_CLIP_DISTANCE0);
+    if (!item.clip_plane) return;
     const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
                                glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1)));
     glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
