@@ -5,7 +5,7 @@
 #include "gl/passes/drawing.hpp"
 #include "math/sample_sequence.hpp"
 #include "plan/projection.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 
@@ -34,6 +34,7 @@ struct SampleDrawing::StepContext {
     Passes& passes;
     plan::DrawBudget& budget;
     plan::FrameStats& stats;
+    scene::Style style = plan::style_of(view);
     /// What commands draw into; none after one that has changed it.
     std::optional<const plan::MirrorItem*> bound = {};
 };
@@ -131,11 +132,11 @@ void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const
     Passes& passes = step.passes;
     switch (command.kind) {
         case Kind::opaque:
-            return passes.opaque.draw(items, *step.scene, step.view.mode, passes.programs, step.stats);
+            return passes.opaque.draw(items, *step.scene, step.style, passes.programs, step.stats);
         case Kind::sorted_glass:
             return passes.transparent.draw(items, *step.scene, passes.programs, step.stats);
         case Kind::edges:
-            return passes.edges.draw(items, *step.scene, step.view.mode, clip, passes.programs, step.stats);
+            return passes.edges.draw(items, *step.scene, step.style, clip, passes.programs, step.stats);
         case Kind::edges_overlay:
             return passes.edges.draw_overlay(items, *step.scene, scene::kSelection, clip, step.stats);
         case Kind::reset_depth:
@@ -168,7 +169,7 @@ void SampleDrawing::draw_once(const plan::DrawCommand& command, StepContext& ste
         case Kind::markers:
             return passes.markers.draw(
                 step.plan.markers,
-                step.view.wireframe ? MarkerPass::MarkerFade::none : MarkerPass::MarkerFade::by_depth, clip,
+                step.style.faces ? MarkerPass::MarkerFade::by_depth : MarkerPass::MarkerFade::none, clip,
                 image_target, step.stats);
         default:
             return;

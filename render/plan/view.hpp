@@ -11,6 +11,7 @@
 #include "scene/camera.hpp"
 #include "scene/light.hpp"
 #include "scene/scene.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::mesh {
 class DetailLevels;
@@ -39,8 +40,7 @@ struct PlacedMarker {
     bool operator==(const PlacedMarker&) const = default;
 };
 
-/// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
-enum class DrawMode { realistic, stylized };
+using scene::DrawMode;
 
 /// How a picture is drawn where one method costs more and comes nearer to the reference than another. The
 /// default is the most accurate.
@@ -75,6 +75,8 @@ struct View {
 
     bool operator==(const View&) const = default;
 };
+
+inline scene::Style style_of(const View& view) { return scene::style_of(view.mode, view.wireframe); }
 
 /// What a picture took.
 struct FrameStats {

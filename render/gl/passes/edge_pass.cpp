@@ -1,7 +1,6 @@
 #include "gl/passes/edge_pass.hpp"
 
 #include "gl/passes/drawing.hpp"
-#include "scene/colors.hpp"
 
 namespace vrut::gl {
 
@@ -17,16 +16,15 @@ void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
 
 }  // namespace
 
-void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
-    const bool stylized = mode == plan::DrawMode::stylized;
     PipelineState state;
-    state.depth_write = !stylized;  // of one colour, none hides another
+    state.depth_write = !style.edge_color;  // of one colour, none hides another
     apply(state);
-    if (stylized) use_solid_color(programs_, scene::kStylizedEdges, clip_from_view);
+    if (style.edge_color) use_solid_color(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
-        if (stylized)
+        if (style.edge_color)
             set_transform(item, geometry);
         else
             programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,

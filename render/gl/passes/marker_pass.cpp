@@ -6,7 +6,7 @@
 
 #include "gl/passes/drawing.hpp"
 #include "plan/frame_plan.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 

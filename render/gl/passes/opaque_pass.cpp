@@ -1,19 +1,18 @@
 #include "gl/passes/opaque_pass.hpp"
 
 #include "gl/passes/drawing.hpp"
-#include "scene/colors.hpp"
 
 namespace vrut::gl {
 
-void OpaquePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+void OpaquePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
                       SurfacePrograms& programs, plan::FrameStats& stats) {
-    const bool stylized = mode == plan::DrawMode::stylized;
     PipelineState state;
-    state.behind_edges = stylized;
+    state.behind_edges = style.edges;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        programs.use(SurfacePrograms::SurfaceKind::faces, item, geometry,
-                     stylized ? scene::stylized_faces() : scene.scene()->material(item.material));
+        programs.use(
+            SurfacePrograms::SurfaceKind::faces, item, geometry,
+            style.override_material ? *style.override_material : scene.scene()->material(item.material));
         apply(state.for_item(item));
         draw_triangles(geometry, stats);
     }

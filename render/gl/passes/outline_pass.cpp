@@ -4,7 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 
