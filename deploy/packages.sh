@@ -19,9 +19,11 @@ RUN_PACKAGES=(
     libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
     libassimp5 libmeshoptimizer2d libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 zlib1g libssl3 libqrencode4
 )
-# To test: doctest, a browser and what steers it, and what checks the source's format.
+# To test: doctest, a browser and what steers it, and what checks the source's format and the shaders.
 # shellcheck disable=SC2034
-TEST_PACKAGES=(doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14)
+TEST_PACKAGES=(
+    doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
+)
 # To test all: another browser, what the charts, the examples and deploy/ work with, and what checks the source.
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(

@@ -4,7 +4,7 @@
 
 #include "gl/passes/drawing.hpp"
 #include "math/sample_sequence.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 
@@ -33,6 +33,7 @@ struct SampleDrawing::StepContext {
     Passes& passes;
     plan::DrawBudget& budget;
     plan::FrameStats& stats;
+    scene::Style style = plan::style_of(view);
     /// What commands draw into; none after one that has changed it.
     std::optional<const plan::MirrorItem*> bound = {};
 };
@@ -111,11 +112,12 @@ math::PixelBox SampleDrawing::full_viewport() const {
 /// Another step may have drawn something else.
 void SampleDrawing::bind_target(const plan::MirrorItem* mirror, StepContext& step) {
     if (step.bound == mirror) return;
-    set_up_drawing();
-    if (mirror)
+    if (mirror) {
         targets_->mirrors.bind(*mirror);
-    else
+    } else {
         targets_->image_target->bind();
+        set_scissor({});
+    }
     step.passes.programs.begin(camera_in(mirror), step.view, step.scene);
     step.bound = mirror;
 }
@@ -152,11 +154,11 @@ void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const
     Passes& passes = step.passes;
     switch (command.kind) {
         case Kind::opaque:
-            return passes.opaque.draw(items, *step.scene, step.view.mode, passes.programs, step.stats);
+            return passes.opaque.draw(items, *step.scene, step.style, passes.programs, step.stats);
         case Kind::sorted_glass:
             return passes.transparent.draw(items, *step.scene, passes.programs, step.stats);
         case Kind::edges:
-            return passes.edges.draw(items, *step.scene, step.view.mode, clip, passes.programs, step.stats);
+            return passes.edges.draw(items, *step.scene, step.style, clip, passes.programs, step.stats);
         case Kind::edges_overlay:
             return passes.edges.draw_overlay(items, *step.scene, scene::kSelection, clip, step.stats);
         case Kind::reset_depth:
@@ -189,7 +191,7 @@ void SampleDrawing::draw_once(const plan::DrawCommand& command, StepContext& ste
         case Kind::markers:
             return passes.markers.draw(
                 step.plan.markers,
-                step.view.wireframe ? MarkerPass::MarkerFade::none : MarkerPass::MarkerFade::by_depth, clip,
+                step.style.faces ? MarkerPass::MarkerFade::by_depth : MarkerPass::MarkerFade::none, clip,
                 image_target, step.stats);
         default:
             return;
@@ -200,6 +202,7 @@ void SampleDrawing::clear(StepContext& step) {
     const plan::View& view = step.view;
     glClearColor(static_cast<float>(view.background.color.r), static_cast<float>(view.background.color.g),
                  static_cast<float>(view.background.color.b), 1);
+    apply(PipelineState());
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (BackgroundPass::is_needed(view)) step.passes.background.draw(camera_, view, *step.scene, step.stats);
 }

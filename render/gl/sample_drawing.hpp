@@ -22,6 +22,8 @@ namespace vrut::gl {
 
 /// Passes that hold nothing of a sample that is not whole.
 struct Passes {
+    explicit Passes(Programs& compiled)
+        : programs(compiled), background(compiled), opaque(compiled), edges(compiled), markers(compiled) {}
     SurfacePrograms programs;
     BackgroundPass background;
     OpaquePass opaque;
@@ -32,6 +34,8 @@ struct Passes {
 
 /// What holds a sample until it is whole.
 struct SampleTargets {
+    explicit SampleTargets(Programs& programs)
+        : mirrors(programs), per_pixel_lists(programs), outline(programs) {}
     std::optional<Framebuffer> image_target;
     MirrorPass mirrors;
     PerPixelListsPass per_pixel_lists;

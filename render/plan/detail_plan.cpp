@@ -129,7 +129,7 @@ double max_screen_space_scale(const glm::dmat4& view_from_node, const math::Boun
 }
 
 void select_levels(FramePlan& plan, const View& view) {
-    if (!view.levels || view.mode != DrawMode::realistic || view.wireframe) return;
+    if (!view.levels || style_of(view).edges) return;
     if (view.levels->scene() != view.scene->scene) return;
     const LevelSelector selector(view);
     selector.select_in(plan.scene);

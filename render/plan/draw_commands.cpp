@@ -25,10 +25,11 @@ void add_draw_lists(Commands& commands, const DrawLists& lists, const MirrorItem
 }
 
 void add_selection(Commands& commands, const FramePlan& plan, const View& view) {
-    if (view.wireframe) return add(commands, Kind::edges_overlay, nullptr, plan.selected);
+    const scene::Style style = style_of(view);
+    if (!style.faces) return add(commands, Kind::edges_overlay, nullptr, plan.selected);
     add(commands, Kind::reset_depth, nullptr, plan.selected);
     add_draw_lists(commands, plan.overlay, nullptr);
-    if (view.mode == DrawMode::stylized) add(commands, Kind::edges, nullptr, plan.selected);
+    if (style.edges) add(commands, Kind::edges, nullptr, plan.selected);
     add(commands, Kind::outline_mask, nullptr, plan.selected);
     commands.push_back({Kind::outline, nullptr, plan.selected});
 }

@@ -21,7 +21,7 @@ constexpr std::int64_t kListed = 20, kOrdered = 20;
 
 /// None where the node draws nothing.
 std::optional<DrawItem> item_of(const scene::PlacedScene& placed, std::size_t node, const glm::dmat4& view,
-                                DrawMode mode) {
+                                const scene::Style& style) {
     const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[node].data);
     if (!data || data->geometry == scene::kNone) return {};
     const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
@@ -37,7 +37,7 @@ std::optional<DrawItem> item_of(const scene::PlacedScene& placed, std::size_t no
           glm::length(in_view.max) < scene::kMaxDrawDistance))
         return {};
     const double determinant = scene::relative_determinant(glm::dmat3(item.view_from_node));
-    const bool mirror = mode == DrawMode::realistic && mirror_plane(*placed.scene, item);
+    const bool mirror = !style.override_material && mirror_plane(*placed.scene, item);
     const bool both =
         is_flattened(item.view_from_node) || mirror || placed.scene->material(material).two_sided;
     item.cull_mode = both ? CullMode::none : CullMode::back;
@@ -90,7 +90,7 @@ DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, Tr
         return !scene.is_transparent(scene.material(item.material));
     };
     DrawLists lists;
-    if (view.mode == DrawMode::stylized || std::all_of(items.begin(), items.end(), is_opaque)) {
+    if (style_of(view).override_material || std::all_of(items.begin(), items.end(), is_opaque)) {
         lists.opaque = std::move(items);
         return lists;
     }
@@ -106,7 +106,7 @@ DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, Tr
 DrawLists draw_lists_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
                         TransparencyCache& shapes) {
     DrawLists lists = draw_lists_in_mirror(std::move(items), view, shapes);
-    if (view.mode == DrawMode::stylized) return lists;
+    if (style_of(view).override_material) return lists;
     lists.mirrors = extract_mirrors(lists.opaque, all, view);
     for (MirrorItem& mirror : lists.mirrors)
         mirror.reflected = draw_lists_in_mirror(std::move(mirror.reflected.opaque), view, shapes);
@@ -162,12 +162,13 @@ std::vector<DrawItem> visible_items(const View& view) {
     const scene::PlacedScene& placed = *view.scene;
     const std::vector<bool> shown = scene::shown_nodes(placed, view.camera.eye);
     const glm::dmat4 view_matrix = scene::view_from_world(view.camera);
+    const scene::Style style = style_of(view);
     std::vector<DrawItem> items;
     for (std::size_t i = 0; i < shown.size(); ++i)
         if (shown[i])
-            if (const auto item = item_of(placed, i, view_matrix, view.mode)) items.push_back(*item);
+            if (const auto item = item_of(placed, i, view_matrix, style)) items.push_back(*item);
     sort_by_id(items, *placed.scene);
-    if (!view.wireframe && view.mode == DrawMode::realistic) assign_textures(items, view);
+    if (style.faces && !style.override_material) assign_textures(items, view);
     return items;
 }
 
@@ -207,12 +208,13 @@ void FramePlanner::find_items(const View& view) {
 
     if (view.selected != scene::kNone)
         plan_.selected = extract(items_, scene::subtree(*placed.scene, view.selected));
-    if (view.wireframe || view.mode == DrawMode::stylized) plan_.edges = items_;
+    if (style_of(view).edges) plan_.edges = items_;
 }
 
 /// Of glass, which will be put in order; what only mirrors show is left to that.
 bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
-    if (view.wireframe || view.mode == DrawMode::stylized) return true;
+    const scene::Style style = style_of(view);
+    if (!style.faces || style.override_material) return true;
     const scene::Scene& scene = *view.scene->scene;
     const std::size_t count = items_.size() + plan_.selected.size();
     for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {
@@ -224,7 +226,7 @@ bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, Draw
 }
 
 void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes) {
-    if (view.wireframe) return;
+    if (!style_of(view).faces) return;
     plan_.scene = draw_lists_of(std::move(items_), unculled_items_, view, shapes);
     plan_.overlay = draw_lists_of(plan_.selected, unculled_items_, view, shapes);
     select_levels(plan_, view);
@@ -263,7 +265,7 @@ FramePlan plan_frame(const View& view) {
 }
 
 std::vector<DrawItem> visible_faces(const View& view) {
-    if (!view.scene || view.wireframe) return {};
+    if (!view.scene || !style_of(view).faces) return {};
     std::vector<DrawItem> items = visible_items(view);
     cull_frustum(items, view);
     return items;

@@ -11,6 +11,7 @@
 #include "scene/camera.hpp"
 #include "scene/light.hpp"
 #include "scene/scene.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::mesh {
 class DetailLevels;
@@ -39,8 +40,7 @@ struct PlacedMarker {
     bool operator==(const PlacedMarker&) const = default;
 };
 
-/// Realistic: with the materials. Stylized: dark blue faces and light blue edges, which emphasize shapes.
-enum class DrawMode { realistic, stylized };
+using scene::DrawMode;
 
 /// Trade-offs between cost and accuracy. The defaults are the most accurate methods.
 struct Methods {
@@ -83,6 +83,8 @@ inline math::Projection projection_of(const View& view) {
 /// Distance of the near plane: a 128th of the near distance that hosts are told (scene::fit_clip_range).
 /// Reversed float depth is as precise with a nearer plane.
 double near_distance(const View& view);
+
+inline scene::Style style_of(const View& view) { return scene::style_of(view.mode, view.wireframe); }
 
 /// Costs of an image.
 struct FrameStats {

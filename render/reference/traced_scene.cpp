@@ -7,7 +7,6 @@
 #include <tuple>
 
 #include "math/ray_space.hpp"
-#include "scene/colors.hpp"
 
 namespace vrut::reference {
 
@@ -57,11 +56,11 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
     part.normal_matrix = normal_matrix(glm::dmat3(matrix), determinant);
 
     const scene::Material& material = scene.material(placed.nodes[node].material);
-    const bool stylized = view.mode == plan::DrawMode::stylized;
-    part.material = stylized ? &scene::stylized_faces() : &material;
-    part.transparent = !stylized && scene.is_transparent(material);
+    const scene::Material* const override_material = plan::style_of(view).override_material;
+    part.material = override_material ? override_material : &material;
+    part.transparent = !override_material && scene.is_transparent(material);
     const auto& plane = scene.plane(data->geometry);
-    if (!stylized && !part.transparent && material.reflectivity > 0 && plane)
+    if (!override_material && !part.transparent && material.reflectivity > 0 && plane)
         part.mirror = math::transformed(matrix, math::Plane{plane->normal, plane->point - center});
     const bool singular = !(std::abs(determinant) > 1e-12);
     part.two_sided = singular || material.two_sided || part.mirror;
@@ -86,7 +85,7 @@ void number_coincident(std::vector<TracedInstance>& parts, const scene::PlacedSc
 
 std::vector<TracedInstance> parts_of(const plan::View& view) {
     std::vector<TracedInstance> parts;
-    if (!view.scene || view.wireframe) return parts;
+    if (!view.scene || !plan::style_of(view).faces) return parts;
     const auto& nodes = view.scene->scene->nodes();
     const std::vector<bool> shown = scene::shown_nodes(*view.scene, view.camera.eye);
     for (std::size_t i = 0; i < shown.size(); ++i)

@@ -38,7 +38,7 @@ struct Renderer::Impl {
     auto draw_or_fail(Draw draw) {
         try {
             gl::take_gl_error();
-            gl::set_up_drawing();
+            gl::set_constant_state();
             auto drawn = draw();
             require_context();
             gl::throw_on_gl_error("to draw");
@@ -88,7 +88,7 @@ struct Renderer::Impl {
         for (gl::SampleDrawing& sample : in_flight)
             if (sample.abandoned()) targets = sample.release();
         std::erase_if(in_flight, [](const gl::SampleDrawing& sample) { return sample.abandoned(); });
-        if (!targets) targets = std::make_unique<gl::SampleTargets>();
+        if (!targets) targets = std::make_unique<gl::SampleTargets>(programs);
         return in_flight.emplace_back(job, std::move(targets));
     }
 
@@ -102,10 +102,11 @@ struct Renderer::Impl {
     gl::GlContext context;  // first: destroyed after everything below
     std::unique_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
-    gl::Passes passes;
+    gl::Programs programs;
+    gl::Passes passes{programs};
     std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
     std::unique_ptr<gl::SampleTargets> targets;  // of a sample before, for the next
-    gl::IdPass ids;
+    gl::IdPass ids{programs};
     std::vector<std::uint8_t> pixels;  // of a sample
 };
 

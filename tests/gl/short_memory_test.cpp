@@ -39,6 +39,24 @@ plan::View view_of(const std::shared_ptr<const scene::PlacedScene>& scene) {
     return view;
 }
 
+/// Glass hidden by an opaque node of the same geometry: their depths are compared exactly.
+std::shared_ptr<const scene::PlacedScene> hidden_glass() {
+    scene::SceneParts parts;
+    parts.geometries = {quad(2)};
+    parts.materials = {glass(), material_of({0.7, 0.5, 0.3})};
+    for (const scene::Index i : {0, 1})
+        parts.nodes.push_back({scene::Node{i + 1,
+                                           {},
+                                           scene::NodeType::geometry,
+                                           scene::kNone,
+                                           {},
+                                           true,
+                                           glm::dmat4(1),
+                                           scene::GeometryData{0, i}},
+                               0});
+    return std::make_shared<const scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
+}
+
 }  // namespace
 
 TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the next one is whole") {
@@ -170,4 +188,36 @@ TEST_CASE("an error that is no lack of memory is reported by its name, and the n
     gl_faults::heal();
     renderer.render(view, image, stats);
     CHECK(image.rgba == expected.rgba);
+}
+
+TEST_CASE("a frame that fails in its midst leaves the next one as a new renderer draws it") {
+    const HealedMemory healed;
+    const auto plain = hidden_glass();
+    // A mirror whose plane cuts a part, and a part that does not fit.
+    const auto failing =
+        scene_of({{1, quad(6), mirror(), moved_by({0, 0, -1})},
+                  {2, sphere(1, 12), material_of({0.7, 0.5, 0.3}), moved_by({0, 0, -1})},
+                  {3, sphere(0.5, 200), material_of({0.2, 0.7, 0.3}), moved_by({0, 0.5, 0.2})}});
+    plan::View view = view_from({0.5, 1, 5});
+    view.scene = plain;
+    scene::Image expected, image;
+    plan::FrameStats stats;
+    renderer::Renderer().render(view, expected, stats);
+    for (const plan::DrawMode mode : {plan::DrawMode::realistic, plan::DrawMode::stylized})
+        for (const bool wireframe : {false, true}) {
+            CAPTURE(static_cast<int>(mode));
+            CAPTURE(wireframe);
+            plan::View broken = view;
+            broken.scene = failing;
+            broken.mode = mode;
+            broken.wireframe = wireframe;
+            renderer::Renderer renderer;
+            renderer.render(view, image, stats);
+            CHECK(image.rgba == expected.rgba);
+            gl_faults::limit_memory(gl_faults::memory_used() + 600'000);
+            CHECK_THROWS_AS(renderer.render(broken, image, stats), base::OutOfMemory);
+            gl_faults::heal();
+            renderer.render(view, image, stats);
+            CHECK(image.rgba == expected.rgba);
+        }
 }

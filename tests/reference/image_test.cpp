@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "reference_image.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 using namespace vrut;
 

@@ -3,7 +3,6 @@
 #include <glm/gtc/type_ptr.hpp>
 
 #include "gl/passes/drawing.hpp"
-#include "gl/shader_sources.hpp"
 
 namespace vrut::gl {
 
@@ -20,12 +19,7 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
         clamped_ = make_clamping_sampler();
     }
     const bool has_environment = view.background.cube_map.has_value();
-    GlProgram& program = has_environment ? environment_program_ : image_program_;
-    if (!program)
-        program = make_program(
-            shader_source("screen.vert"),
-            shader_source(has_environment ? "background_environment.frag" : "background_image.frag"));
-    glUseProgram(program.get());
+    programs_.use(has_environment ? FixedProgram::background_environment : FixedProgram::background_image);
     // A sample that lies beside its pixel's centre has moved the projection.
     const glm::dmat4& clip = camera.clip_from_view;
     glUniform2f(pixel_at, 2.0F / static_cast<float>(view.width), 2.0F / static_cast<float>(view.height));
@@ -41,10 +35,7 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
         glBindSampler(0, clamped_.get());
     }
     // At infinity: in a mirror only its own pixels have nothing nearer.
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
+    apply(PipelineState());
     glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindSampler(0, 0);

@@ -7,6 +7,7 @@ namespace vrut::gl {
 /// A picture or a panorama behind everything; a plain colour needs no pass.
 class BackgroundPass {
 public:
+    explicit BackgroundPass(Programs& programs) : programs_(programs) {}
     static bool is_needed(const plan::View& view) {
         return view.scene && (view.background.cube_map || view.background.texture != scene::kNone);
     }
@@ -15,7 +16,7 @@ public:
     void draw(const CameraMatrices& camera, const plan::View& view, GpuScene& scene, plan::FrameStats& stats);
 
 private:
-    GlProgram image_program_, environment_program_;
+    Programs& programs_;
     GlSampler clamped_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };

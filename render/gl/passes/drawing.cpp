@@ -4,34 +4,9 @@
 
 namespace vrut::gl {
 
-void set_up_drawing() {
-    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    glClearDepth(0);
-    glEnable(GL_DEPTH_TEST);
-    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    glDisable(GL_DITHER);
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CLIP_DISTANCE0);
-    glDepthMask(GL_TRUE);
-    glDepthRange(0, 1);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-}
-
-void set_cull_mode(const plan::DrawItem& item, bool front_only) {
-    if (item.cull_mode == plan::CullMode::none && !front_only)
-        glDisable(GL_CULL_FACE);
-    else
-        glEnable(GL_CULL_FACE);
-    glCullFace(GL_BACK);
-    glFrontFace(item.mirrored ? GL_CW : GL_CCW);
-}
-
-void scissor(const math::PixelBox& box) {
-    glScissor(box.low.x, box.low.y, std::max(box.size().x, 0), std::max(box.size().y, 0));
-}
-
 namespace {
+
+void enable(GLenum capability, bool enabled) { enabled ? glEnable(capability) : glDisable(capability); }
 
 void draw_indices(const GlVertexArray& vertex_array, GLsizei count, plan::FrameStats& stats) {
     glBindVertexArray(vertex_array.get());
@@ -41,6 +16,43 @@ void draw_indices(const GlVertexArray& vertex_array, GLsizei count, plan::FrameS
 }
 
 }  // namespace
+
+PipelineState PipelineState::for_item(const plan::DrawItem& item, bool front_only) const {
+    PipelineState state = *this;
+    state.cull_back = item.cull_mode != plan::CullMode::none || front_only;
+    state.clockwise_front = item.mirrored;
+    state.clipped = item.clip_plane.has_value();
+    return state;
+}
+
+void apply(const PipelineState& state) {
+    enable(GL_DEPTH_TEST, state.depth_test);
+    glDepthFunc(state.depth_func);
+    glDepthMask(state.depth_write);
+    glDepthRange(0, state.farthest ? 0 : 1);
+    glColorMask(state.color_write, state.color_write, state.color_write, state.color_write);
+    enable(GL_BLEND, state.blend != PipelineState::Blend::none);
+    glBlendFuncSeparate(state.blend == PipelineState::Blend::alpha ? GL_SRC_ALPHA : GL_ONE,
+                        GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    enable(GL_CULL_FACE, state.cull_back);
+    glFrontFace(state.clockwise_front ? GL_CW : GL_CCW);
+    enable(GL_POLYGON_OFFSET_FILL, state.behind_edges);
+    enable(GL_CLIP_DISTANCE0, state.clipped);
+}
+
+void set_constant_state() {
+    glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    glClearDepth(0);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    glDisable(GL_DITHER);
+    glCullFace(GL_BACK);
+    glPolygonOffset(-1, -16);
+}
+
+void set_scissor(const std::optional<plan::PixelBox>& box) {
+    enable(GL_SCISSOR_TEST, box.has_value());
+    if (box) glScissor(box->low.x, box->low.y, std::max(box->size().x, 0), std::max(box->size().y, 0));
+}
 
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats) {
     draw_indices(geometry.vertex_array, geometry.index_count, stats);

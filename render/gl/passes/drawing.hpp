@@ -1,19 +1,44 @@
 #pragma once
 
+#include <optional>
+
 #include "gl/gpu_scene.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
 namespace vrut::gl {
 
-/// All that drawing changes, as each pass expects it: what was drawn before may have failed in its midst.
-void set_up_drawing();
+/// How fragments come to be and what becomes of them: all of it, so that a pass that declares it depends on
+/// nothing that was drawn, or failed, before.
+struct PipelineState {
+    enum class Blend {
+        none,
+        premultiplied,  ///< colours that are multiplied by alpha
+        alpha,
+    };
+    bool depth_test = true;
+    GLenum depth_func = GL_GEQUAL;  ///< depth falls with distance
+    bool depth_write = true;
+    bool farthest = false;  ///< all fragments have the depth of the background
+    bool color_write = true;
+    Blend blend = Blend::none;
+    bool cull_back = false;
+    bool clockwise_front = false;
+    bool behind_edges = false;  ///< moved away from the eye by what a line's pixel may lie beside the line
+    bool clipped = false;       ///< by the plane of the program
 
-/// From here on the sides of an item that do not show are left out; `front_only`: of a two-sided one, too.
-void set_cull_mode(const plan::DrawItem& item, bool front_only = false);
+    /// The same, with the sides of an item that show; `front_only`: of a two-sided one, too.
+    PipelineState for_item(const plan::DrawItem& item, bool front_only = false) const;
+};
 
-/// Nothing outside the box is drawn or cleared, while GL_SCISSOR_TEST is enabled.
-void scissor(const math::PixelBox& box);
+/// Makes it that of the context.
+void apply(const PipelineState& state);
+
+/// What no pass changes.
+void set_constant_state();
+
+/// Nothing outside the box is drawn or cleared; none: everything is.
+void set_scissor(const std::optional<math::PixelBox>& box);
 
 /// With the current program; adds to the draws and triangles of `stats`.
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats);

@@ -1,6 +1,6 @@
 #include "gl/passes/edge_pass.hpp"
 
-#include "scene/colors.hpp"
+#include "gl/passes/drawing.hpp"
 
 namespace vrut::gl {
 
@@ -16,31 +16,29 @@ void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
 
 }  // namespace
 
-void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDisable(GL_BLEND);
-    const bool stylized = mode == plan::DrawMode::stylized;
-    glDepthMask(!stylized);  // of one colour, none hides another
-    if (stylized) solid_color_.use(scene::kStylizedEdges, clip_from_view);
+    PipelineState state;
+    state.depth_write = !style.edge_color;  // of one colour, none hides another
+    apply(state);
+    if (style.edge_color) use_solid_color(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item.geometry);
-        if (stylized)
+        if (style.edge_color)
             set_transform(item, geometry);
         else
             programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
                          scene.scene()->material(item.material));
         draw_lines(scene.edges(item.geometry), stats);
     }
-    glDepthMask(GL_TRUE);
 }
 
 void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dvec3& color,
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    solid_color_.use(color, clip_from_view);
+    PipelineState state;
+    state.depth_test = false;
+    apply(state);
+    use_solid_color(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         set_transform(item, scene.geometry(item.geometry));
         draw_lines(scene.edges(item.geometry), stats);

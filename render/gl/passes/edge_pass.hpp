@@ -9,16 +9,17 @@ namespace vrut::gl {
 /// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too.
 class EdgePass {
 public:
-    /// Realistic ones in their materials under the view's light, stylized ones in one colour; hidden where a
-    /// face stands before them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
-    void draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+    explicit EdgePass(Programs& programs) : programs_(programs) {}
+    /// In the style's colour, or in their materials under the view's light; hidden where a face stands before
+    /// them. Draws into the bound framebuffer; adds its draws and edges to `stats`.
+    void draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
               const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats);
     /// In one colour, over everything.
     void draw_overlay(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dvec3& color,
                       const glm::dmat4& clip_from_view, plan::FrameStats& stats);
 
 private:
-    SolidColorProgram solid_color_;
+    Programs& programs_;
 };
 
 }  // namespace vrut::gl

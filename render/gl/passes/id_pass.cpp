@@ -32,18 +32,18 @@ std::vector<scene::Index> IdPass::draw(std::span<const plan::DrawItem> items, Gp
     const Target target(width, height);
     glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer.get());
     glViewport(0, 0, width, height);
+    set_scissor({});
+    const PipelineState state;
+    apply(state);
     glClearBufferiv(GL_COLOR, 0, &scene::kNone);
     glClear(GL_DEPTH_BUFFER_BIT);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDisable(GL_BLEND);
-    program_.use(clip_from_view);
+    use_node_id(programs_, clip_from_view);
     plan::FrameStats stats;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
-        program_.set_node(item.node);
-        set_cull_mode(item);
+        set_node(item.node);
+        apply(state.for_item(item));
         draw_triangles(geometry, stats);
     }
     std::vector<scene::Index> nodes(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));

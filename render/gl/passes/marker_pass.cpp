@@ -4,9 +4,9 @@
 #include <array>
 #include <glm/gtc/type_ptr.hpp>
 
-#include "gl/shader_sources.hpp"
+#include "gl/passes/drawing.hpp"
 #include "plan/frame_plan.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 
@@ -21,21 +21,21 @@ constexpr GLuint kPointsBinding = 1;
 
 void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const glm::dmat4& clip_from_view,
                       const Framebuffer& target, plan::FrameStats& stats) {
-    if (!program_) {
-        program_ = make_program(shader_source("marker.vert"), shader_source("marker.frag"));
+    if (!points_) {
         empty_vertex_array_ = make_vertex_array();
         points_ = make_dynamic_buffer("markers", kBatch * sizeof(glm::vec4));
     }
     glBindBufferBase(GL_UNIFORM_BUFFER, kPointsBinding, points_.get());
     target.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    set_scissor({});
+    PipelineState state;
+    state.depth_test = false;
+    state.depth_write = false;
+    state.blend = PipelineState::Blend::alpha;
+    apply(state);
     glTextureBarrier();  // the depth that is read is the target's own
-    glDepthMask(GL_FALSE);
     glBindTextureUnit(0, target.depth().get());
-    glUseProgram(program_.get());
+    programs_.use(FixedProgram::marker);
     glBindVertexArray(empty_vertex_array_.get());
     const glm::mat4 clip(clip_from_view);
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
@@ -53,8 +53,6 @@ void MarkerPass::draw(std::span<const glm::dvec3> points, MarkerFade fade, const
         ++stats.draws;
     }
     glBindTextureUnit(0, 0);
-    glDepthMask(GL_TRUE);
-    glDisable(GL_BLEND);
     ++stats.passes;
 }
 

@@ -3,7 +3,7 @@
 #include <span>
 
 #include "gl/framebuffer.hpp"
-#include "gl/shader_program.hpp"
+#include "gl/programs.hpp"
 #include "plan/view.hpp"
 
 namespace vrut::gl {
@@ -12,6 +12,7 @@ namespace vrut::gl {
 /// seen, and the fainter the more of its surroundings is hidden.
 class MarkerPass {
 public:
+    explicit MarkerPass(Programs& programs) : programs_(programs) {}
     /// What depth tells of a point: whether it is hidden, or, in a wireframe, nothing.
     enum class MarkerFade { by_depth, none };
 
@@ -21,7 +22,7 @@ public:
               const Framebuffer& target, plan::FrameStats& stats);
 
 private:
-    GlProgram program_;
+    Programs& programs_;
     GlBuffer points_;
     GlVertexArray empty_vertex_array_;  ///< a sign's corners need no attributes
 };

@@ -7,21 +7,18 @@ namespace vrut::gl {
 void MirrorPass::query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
                        const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
-    solid_color_.use(glm::dvec3(0), clip_from_view);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glDepthMask(GL_FALSE);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    use_solid_color(programs_, glm::dvec3(0), clip_from_view);
+    PipelineState state;
+    state.depth_write = false;
+    state.color_write = false;
     for (std::size_t i = 0; i < mirrors.size(); ++i) {
         const GpuGeometry& geometry = scene.geometry(mirrors[i].surface);
         set_transform(mirrors[i].surface, geometry);
-        set_cull_mode(mirrors[i].surface);
+        apply(state.for_item(mirrors[i].surface));
         glBeginQuery(GL_ANY_SAMPLES_PASSED, queries_[i].get());
         draw_triangles(geometry, stats);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
     }
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_TRUE);
     glFlush();  // the GPU begins while the first mirror is prepared
     ++stats.passes;
 }
@@ -43,39 +40,34 @@ void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm
     }
     bind(mirror);
     // Nothing comes before what is nearest; but at the mirror's pixels everything does.
-    glClearDepth(1);
-    glClear(GL_DEPTH_BUFFER_BIT);
-    glClearDepth(0);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_ALWAYS);
-    glDepthRange(0, 0);
-    glDisable(GL_BLEND);
-    solid_color_.use(background, clip_from_view);
+    PipelineState state;
+    state.depth_func = GL_ALWAYS;
+    state.farthest = true;
+    apply(state.for_item(mirror.surface));
+    constexpr GLfloat kNearest = 1;
+    glClearBufferfv(GL_DEPTH, 0, &kNearest);
+    use_solid_color(programs_, background, clip_from_view);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
     set_transform(mirror.surface, geometry);
-    set_cull_mode(mirror.surface);
     draw_triangles(geometry, stats);
-    glDepthRange(0, 1);
 }
 
 void MirrorPass::bind(const plan::MirrorItem& mirror) const {
     target_->bind();
-    glEnable(GL_SCISSOR_TEST);
-    scissor(mirror.box);
+    set_scissor(mirror.box);
 }
 
 void MirrorPass::close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
                        SurfacePrograms& programs, plan::FrameStats& stats) {
     picture.bind();
-    glDisable(GL_SCISSOR_TEST);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(mirror.surface.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
-    glDisable(GL_BLEND);
+    set_scissor({});
+    PipelineState state;
+    state.depth_func = mirror.surface.occluded_by_coincident ? GL_GREATER : GL_GEQUAL;
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
     programs.use(SurfacePrograms::SurfaceKind::mirror, mirror.surface, geometry,
                  scene.scene()->material(mirror.surface.material));
     glBindTextureUnit(SurfacePrograms::kReflectionUnit, target_->color().get());
-    set_cull_mode(mirror.surface);
+    apply(state.for_item(mirror.surface));
     draw_triangles(geometry, stats);
     // What is bound for reading must not be what is drawn into next.
     glBindTextureUnit(SurfacePrograms::kReflectionUnit, 0);

@@ -26,6 +26,7 @@ public:
 /// there. One target serves all mirrors in turn.
 class MirrorPass {
 public:
+    explicit MirrorPass(Programs& programs) : programs_(programs) {}
     /// Asks the GPU which mirrors are seen from `clip_from_view` in the current target, behind nothing that
     /// has been drawn there. The answers replace those of the query before.
     void query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene, const glm::dmat4& clip_from_view,
@@ -52,7 +53,7 @@ public:
 
 private:
     std::optional<Framebuffer> target_;
-    SolidColorProgram solid_color_;
+    Programs& programs_;
     std::vector<GlQuery> queries_;
 };
 

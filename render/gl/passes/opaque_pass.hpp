@@ -6,19 +6,20 @@
 
 namespace vrut::gl {
 
-/// Faces under the view's light: realistic ones in their materials, stylized ones all in the same, and a
-/// little further away, so that their edges lie before them.
+/// Faces under the view's light; where their edges are drawn, too, a little further away, so that these lie
+/// before them.
 class OpaquePass {
 public:
+    explicit OpaquePass(Programs& programs) : programs_(programs) {}
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
-    void draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan::DrawMode mode,
+    void draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
               SurfacePrograms& programs, plan::FrameStats& stats);
     /// What was drawn before is behind these items from here on, wherever they cover it.
     void reset_depth(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
                      plan::FrameStats& stats);
 
 private:
-    SolidColorProgram solid_color_;
+    Programs& programs_;
 };
 
 }  // namespace vrut::gl

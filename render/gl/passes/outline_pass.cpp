@@ -4,8 +4,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <stdexcept>
 
-#include "gl/shader_sources.hpp"
-#include "scene/colors.hpp"
+#include "scene/style.hpp"
 
 namespace vrut::gl {
 
@@ -21,8 +20,15 @@ GlFramebuffer make_target(const GlTexture& texture) {
     return framebuffer;
 }
 
-void use(const GlProgram& program, int width, const math::PixelBox& box, const GlTexture& texture) {
-    glUseProgram(program.get());
+PipelineState over_everything() {
+    PipelineState state;
+    state.depth_test = false;
+    return state;
+}
+
+void use(Programs& programs, FixedProgram program, int width, const math::PixelBox& box,
+         const GlTexture& texture) {
+    programs.use(program);
     glUniform1i(width_at, width);
     glUniform4i(box_at, box.low.x, box.low.y, box.high.x, box.high.y);
     glBindTextureUnit(0, texture.get());
@@ -51,10 +57,7 @@ void OutlinePass::prepare(const Framebuffer& target) {
         mask_.reset();
         mask_.emplace(target.width(), target.height());
     }
-    if (empty_vertex_array_) return;
-    distance_program_ = make_program(shader_source("screen.vert"), shader_source("row_distance.frag"));
-    outline_program_ = make_program(shader_source("screen.vert"), shader_source("outline.frag"));
-    empty_vertex_array_ = make_vertex_array();
+    if (!empty_vertex_array_) empty_vertex_array_ = make_vertex_array();
 }
 
 void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
@@ -69,8 +72,8 @@ void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& s
     }
     box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    set_scissor(box_);
+    apply(PipelineState());
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT);
 }
@@ -79,13 +82,10 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     const glm::ivec2 picture{mask_->width, mask_->height};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    apply(over_everything());
+    set_scissor(box_);
     glClearColor(1, 1, 1, 1);
-    solid_color_.use(glm::dvec3(1), clip_from_view);
+    use_solid_color(programs_, glm::dvec3(1), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         set_transform(item, geometry);
@@ -93,30 +93,27 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
         // So small that it may miss all centres of pixels: it is found all the same.
         const math::PixelBox box = box_of(item, scene, clip_from_view, picture);
         if (box.size().x > 2 || box.size().y > 2) continue;
-        scissor(box);
+        set_scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);
-        scissor(box_);
+        set_scissor(box_);
     }
 }
 
 void OutlinePass::draw(const Framebuffer& target, plan::FrameStats& stats) {
     const int width = outline_width(target.height());
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box_);
+    apply(over_everything());
+    set_scissor(box_);
     glBindVertexArray(empty_vertex_array_.get());
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->across_target.get());
-    use(distance_program_, width, box_, mask_->covered);
+    use(programs_, FixedProgram::row_distance, width, box_, mask_->covered);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     target.bind();
-    use(outline_program_, width, box_, mask_->across);
+    use(programs_, FixedProgram::outline, width, box_, mask_->across);
     const glm::vec3 color(scene::kSelection);
     glUniform3fv(color_at, 1, glm::value_ptr(color));
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glBindTextureUnit(0, 0);
-    glDisable(GL_SCISSOR_TEST);
+    set_scissor({});
     stats.draws += 2;
     ++stats.passes;
 }

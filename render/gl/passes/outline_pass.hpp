@@ -15,6 +15,7 @@ namespace vrut::gl {
 /// 4w + 2 looks at a pixel.
 class OutlinePass {
 public:
+    explicit OutlinePass(Programs& programs) : programs_(programs) {}
     /// Begins an outline around items in a picture like `target`: each is to be covered before it is drawn.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const Framebuffer& target);
@@ -35,8 +36,7 @@ private:
     };
     std::optional<Mask> mask_;
     math::PixelBox box_;  ///< the outline, and all that it surrounds
-    SolidColorProgram solid_color_;
-    GlProgram distance_program_, outline_program_;
+    Programs& programs_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 

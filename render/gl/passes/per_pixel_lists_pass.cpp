@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "gl/shader_sources.hpp"
-
 namespace vrut::gl {
 
 namespace {
@@ -26,10 +24,7 @@ void split(const math::PixelBox& box, std::uint64_t parts, std::vector<math::Pix
 }  // namespace
 
 void PerPixelListsPass::prepare(std::size_t pixels) {
-    if (!composite_) {
-        composite_ = make_program(shader_source("screen.vert"), shader_source("composite_lists.frag"));
-        empty_vertex_array_ = make_vertex_array();
-    }
+    if (!empty_vertex_array_) empty_vertex_array_ = make_vertex_array();
     if (pixels == pixels_) return;
     release();
     fragments_ =
@@ -63,9 +58,7 @@ void PerPixelListsPass::begin(std::span<const plan::DrawItem> items, const GpuSc
 void PerPixelListsPass::bind() const {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kFragmentsBinding, fragments_.get());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, kHeadsBinding, heads_.get());
-    glEnable(GL_SCISSOR_TEST);
-    scissor(box());
-    glDepthMask(GL_FALSE);
+    set_scissor(box());
 }
 
 void PerPixelListsPass::clear_lists() const {
@@ -85,19 +78,19 @@ void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size
         clear_lists();
         collected_triangles_ = 0;
     }
-    glEnable(GL_DEPTH_TEST);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    PipelineState state;
+    state.depth_write = false;
+    state.color_write = false;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::per_pixel_glass, item, geometry,
                      scene.scene()->material(item.material));
         set_first_triangle(collected_triangles_);
-        glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
-        set_cull_mode(item);
+        state.depth_func = item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL;
+        apply(state.for_item(item));
         draw_triangles(geometry, stats);
         collected_triangles_ += static_cast<GLuint>(geometry.index_count / 3);
     }
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
 }
 
@@ -115,17 +108,16 @@ std::uint64_t PerPixelListsPass::composite(plan::FrameStats& stats) {
 }
 
 void PerPixelListsPass::blend(plan::FrameStats& stats) {
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glDisable(GL_CLIP_DISTANCE0);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    glUseProgram(composite_.get());
+    PipelineState state;
+    state.depth_test = false;
+    state.depth_write = false;
+    state.blend = PipelineState::Blend::premultiplied;
+    apply(state);
+    programs_.use(FixedProgram::composite_lists);
     glBindVertexArray(empty_vertex_array_.get());
     glDrawArrays(GL_TRIANGLES, 0, 3);
     // The lists are written again: Mesa's llvmpipe would not wait for this.
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
-    glDisable(GL_BLEND);
     ++stats.draws;
     ++stats.passes;
 }

@@ -20,6 +20,7 @@ namespace vrut::gl {
 /// single pixel needs more than all of it.
 class PerPixelListsPass {
 public:
+    explicit PerPixelListsPass(Programs& programs) : programs_(programs) {}
     /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
     /// composited, again and again while it is drawing.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
@@ -55,7 +56,7 @@ private:
     std::size_t pixels_ = 0;
     GLuint collected_triangles_ = 0;  ///< since the lists were cleared; modulo 2^32
     GlBuffer fragments_, heads_;
-    GlProgram composite_;
+    Programs& programs_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 

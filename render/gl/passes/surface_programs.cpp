@@ -2,17 +2,13 @@
 
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
-#include <string_view>
-#include <vector>
-
-#include "gl/shader_sources.hpp"
 
 namespace vrut::gl {
 
 namespace {
 
 enum SurfaceUniform : GLint {
-    clip_from_view_at = 0,  // of SolidColorProgram; others find it in the view's block
+    clip_from_view_at = 0,  // of programs of one colour; surfaces find it in the view's block
     view_from_local_at = 1,
     normal_matrix_at = 2,
     solid_color_at = 3,
@@ -84,53 +80,28 @@ void set_clip(const glm::dmat4& clip_from_view) {
 }
 
 void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (!item.clip_plane) {
-        glDisable(GL_CLIP_DISTANCE0);
-        return;
-    }
-    glEnable(GL_CLIP_DISTANCE0);
+    if (!item.clip_plane) return;
     const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
                                glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1)));
     glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
 }
 
-}  // namespace
-
-SurfacePrograms::LightKind SurfacePrograms::kind_of(const scene::Light& light, const CameraMatrices& camera) {
+SurfaceVariant::Light kind_of(const scene::Light& light, const CameraMatrices& camera) {
     // It stays at the true eye, which in a mirror is not the one that sees.
     const bool reflected = glm::determinant(glm::dmat3(camera.view_from_world)) < 0;
-    if (light.headlight) return reflected ? LightKind::point : LightKind::headlight;
+    if (light.headlight) return reflected ? SurfaceVariant::Light::point : SurfaceVariant::Light::headlight;
     switch (light.type) {
         case scene::LightData::Type::directional:
-            return LightKind::directional;
+            return SurfaceVariant::Light::directional;
         case scene::LightData::Type::spot:
-            return LightKind::spot;
+            return SurfaceVariant::Light::spot;
         case scene::LightData::Type::point:
             break;
     }
-    return LightKind::point;
+    return SurfaceVariant::Light::point;
 }
 
-GlProgram SurfacePrograms::make(const ProgramKey& key) {
-    constexpr std::array<std::string_view, 4> kLights{"HEADLIGHT", "POINT", "DIRECTIONAL", "SPOT"};
-    std::vector<std::string_view> defines;
-    const auto define = [&](bool wanted, std::string_view name) {
-        if (wanted) defines.push_back(name);
-    };
-    define(true, kLights[static_cast<std::size_t>(key.light)]);
-    define(key.kind == SurfaceKind::edges, "EDGES");
-    define(key.textured, "TEXTURED");
-    define(key.environment, "ENVIRONMENT");
-    const bool layered = key.kind == SurfaceKind::per_pixel_glass;
-    define(layered || key.kind == SurfaceKind::glass, "GLASS");
-    define(layered, "LAYERED");
-    define(key.kind == SurfaceKind::mirror, "MIRROR");
-    define(key.clipped, "CLIPPED");
-    const bool at_vertex = key.lit_at == plan::Methods::Lighting::vertex;
-    define(at_vertex, "LIT_AT_VERTEX");
-    define(!at_vertex || key.environment, "NEEDS_NORMAL");
-    return make_program(shader_source("surface.vert", defines), shader_source("surface.frag", defines));
-}
+}  // namespace
 
 void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene) {
     scene_ = scene;
@@ -145,16 +116,14 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
 
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
-    const ProgramKey key{
+    const SurfaceVariant variant{
         kind, light_, item.texture != scene::kNone, item.environment, item.clip_plane.has_value(), lit_at_};
-    GlProgram& program = programs_[key];
-    if (!program) program = make(key);
-    glUseProgram(program.get());
+    programs_.use(variant);
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
-    if (key.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
-    if (key.environment) {
+    if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (variant.environment) {
         glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
         glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
     }
@@ -169,21 +138,18 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     set_clip_plane(item, geometry);
 }
 
-void SolidColorProgram::use(const glm::dvec3& color, const glm::dmat4& clip_from_view) {
-    if (!program_)
-        program_ = make_program(shader_source("solid_color.vert"), shader_source("solid_color.frag"));
-    glUseProgram(program_.get());
+void use_solid_color(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view) {
+    programs.use(FixedProgram::solid_color);
     set_clip(clip_from_view);
     set(solid_color_at, glm::vec3(color));
 }
 
-void NodeIdProgram::use(const glm::dmat4& clip_from_view) {
-    if (!program_) program_ = make_program(shader_source("solid_color.vert"), shader_source("node_id.frag"));
-    glUseProgram(program_.get());
+void use_node_id(Programs& programs, const glm::dmat4& clip_from_view) {
+    programs.use(FixedProgram::node_id);
     set_clip(clip_from_view);
 }
 
-void NodeIdProgram::set_node(scene::Index number) { glUniform1i(node_at, number); }
+void set_node(scene::Index number) { glUniform1i(node_at, number); }
 
 void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }
 

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <map>
-#include <tuple>
+#include <array>
+#include <optional>
 
 #include "gl/gpu_scene.hpp"
-#include "gl/shader_program.hpp"
+#include "gl/programs.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
@@ -18,18 +18,13 @@ struct CameraMatrices {
 
 /// Phong light (Macků 2016, eq. 6.4–6.9 in their robust form) per pixel, or per vertex: then what light adds
 /// to the matte and to the shiny part of a surface is interpolated, and the rest is done at the pixel as
-/// ever. A program is compiled for what surfaces and lights ask of it, when they first do.
+/// ever.
 class SurfacePrograms {
 public:
-    enum class SurfaceKind {
-        faces,
-        edges,            ///< without sides: their normals are turned to the viewer
-        glass,            ///< faces, their colour multiplied by alpha
-        per_pixel_glass,  ///< the same, into the lists of per_pixel_lists.glsl
-        mirror,           ///< faces, mixed with what lies at their pixels in the texture of kReflectionUnit
-    };
-    static constexpr GLuint kReflectionUnit = 2;
+    using SurfaceKind = SurfaceVariant::Kind;
+    static constexpr GLuint kReflectionUnit = 2;  ///< the texture of a mirror
 
+    explicit SurfacePrograms(Programs& programs) : programs_(programs) {}
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
     void begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene);
     /// Makes the program for this item the current one and gives it all that it needs.
@@ -37,52 +32,21 @@ public:
              const scene::Material& material);
 
 private:
-    enum class LightKind { headlight, point, directional, spot };
-    struct ProgramKey {
-        SurfaceKind kind = SurfaceKind::faces;
-        LightKind light = LightKind::headlight;
-        bool textured = false;
-        bool environment = false;
-        bool clipped = false;
-        plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
-
-        bool operator<(const ProgramKey& other) const {
-            const auto key = [](const ProgramKey& v) {
-                return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
-            };
-            return key(*this) < key(other);
-        }
-    };
-    static LightKind kind_of(const scene::Light& light, const CameraMatrices& camera);
-    static GlProgram make(const ProgramKey& key);
-
-    LightKind light_ = LightKind::headlight;
+    Programs& programs_;
+    SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
     plan::Methods::Lighting lit_at_ = plan::Methods::Lighting::pixel;
-    std::map<ProgramKey, GlProgram> programs_;
     GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
 };
 
-/// One colour everywhere.
-class SolidColorProgram {
-public:
-    void use(const glm::dvec3& color, const glm::dmat4& clip_from_view);
+/// The program of one colour everywhere.
+void use_solid_color(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view);
 
-private:
-    GlProgram program_;
-};
-
-/// The number of a node everywhere, into a target of integers.
-class NodeIdProgram {
-public:
-    void use(const glm::dmat4& clip_from_view);
-    /// Of what is drawn from here on.
-    void set_node(scene::Index number);
-
-private:
-    GlProgram program_;
-};
+/// The program that writes the number of a node everywhere, into a target of integers.
+void use_node_id(Programs& programs, const glm::dmat4& clip_from_view);
+/// Of what it draws from here on.
+void set_node(scene::Index number);
 
 /// The buffers of shaders/per_pixel_lists.glsl.
 inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;

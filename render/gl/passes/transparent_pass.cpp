@@ -6,23 +6,20 @@ namespace vrut::gl {
 
 void TransparentPass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, SurfacePrograms& programs,
                            plan::FrameStats& stats) {
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    PipelineState state;
+    state.depth_write = false;
+    state.blend = PipelineState::Blend::premultiplied;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
         programs.use(SurfacePrograms::SurfaceKind::glass, item, geometry,
                      scene.scene()->material(item.material));
-        glDepthFunc(item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL);
-        set_cull_mode(item, item.order != nullptr);
+        state.depth_func = item.occluded_by_coincident ? GL_GREATER : GL_GEQUAL;
+        apply(state.for_item(item, item.order != nullptr));
         if (item.order)
             draw_triangles(scene.sorted_triangles(item), stats);
         else
             draw_triangles(geometry, stats);
     }
-    glDisable(GL_BLEND);
-    glDepthMask(GL_TRUE);
 }
 
 }  // namespace vrut::gl

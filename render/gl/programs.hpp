@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gl/handles.hpp"
+#include "plan/view.hpp"
+
+namespace vrut::gl {
+
+/// Programs that do not depend on what a scene holds.
+enum class FixedProgram {
+    background_environment,
+    background_image,
+    composite_lists,
+    marker,
+    node_id,
+    outline,
+    row_distance,
+    solid_color,
+};
+inline constexpr std::size_t kFixedPrograms = 8;
+
+/// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
+struct SurfaceVariant {
+    enum class Kind {
+        faces,
+        edges,            ///< without sides: their normals are turned to the viewer
+        glass,            ///< faces, their colour multiplied by alpha
+        per_pixel_glass,  ///< the same, into the lists of per_pixel_lists.glsl
+        mirror,           ///< faces, mixed with what lies at their pixels in a texture
+    };
+    enum class Light { headlight, point, directional, spot };
+
+    Kind kind = Kind::faces;
+    Light light = Light::headlight;
+    bool textured = false;
+    bool environment = false;  ///< reflects the environment map
+    bool clipped = false;      ///< by a plane
+    plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
+
+    auto operator<=>(const SurfaceVariant&) const = default;
+};
+
+/// Those that some view of some scene needs.
+std::vector<SurfaceVariant> reachable_surface_variants();
+
+/// GLSL, with the version and all that it #includes and #defines.
+struct ProgramSource {
+    std::string vertex, fragment;
+};
+ProgramSource source_of(FixedProgram program);
+ProgramSource source_of(const SurfaceVariant& variant);
+
+/// The programs of a context, for all passes: each is compiled when it is first used.
+class Programs {
+public:
+    /// Makes it the current one.
+    void use(FixedProgram program);
+    void use(const SurfaceVariant& variant);
+
+private:
+    std::array<GlProgram, kFixedPrograms> fixed_;
+    std::map<SurfaceVariant, GlProgram> surfaces_;
+};
+
+}  // namespace vrut::gl
