@@ -1,7 +1,5 @@
 #include "mesh/detail_levels.hpp"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -9,15 +7,13 @@
 #include <thread>
 #include <vector>
 
+#include "base/thread_priority.hpp"
 #include "mesh/vertex_cache_order.hpp"
 #include "mesh/watertight.hpp"
 
 namespace vrut::mesh {
 
 namespace {
-
-/// On Linux a thread has a niceness of its own.
-void lower_thread_priority() { static_cast<void>(setpriority(PRIO_PROCESS, 0, 10)); }
 
 std::vector<DetailLevel> levels_of(const scene::Geometry& geometry, const std::atomic<bool>& stop) {
     std::vector<DetailLevel> levels = simplify(geometry, stop);
@@ -81,7 +77,7 @@ void DetailLevels::LevelGenerator::report(const std::exception& error) const {
 }
 
 void DetailLevels::LevelGenerator::run() {
-    lower_thread_priority();
+    base::lower_thread_priority();
     try {
         make_all();
     } catch (const std::exception& error) {

@@ -22,6 +22,45 @@ constexpr unsigned kNowhere = std::numeric_limits<unsigned>::max();
 
 float squared_length(const glm::vec3& v) { return glm::dot(v, v); }
 
+/// Squared distance of a point from a triangle. Ericson 2004, "Real-Time Collision Detection", 5.1.5.
+float squared_distance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
+    const glm::vec3 ab = b - a, ac = c - a, ap = p - a;
+    const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
+    if (d1 <= 0 && d2 <= 0) return squared(ap);
+    const glm::vec3 bp = p - b;
+    const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
+    if (d3 >= 0 && d4 <= d3) return squared(bp);
+    const float vc = d1 * d4 - d3 * d2;
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(ap - ab * (d1 > d3 ? d1 / (d1 - d3) : 0));
+    const glm::vec3 cp = p - c;
+    const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
+    if (d6 >= 0 && d5 <= d6) return squared(cp);
+    const float vb = d5 * d2 - d1 * d6;
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(ap - ac * (d2 > d6 ? d2 / (d2 - d6) : 0));
+    const float va = d3 * d6 - d5 * d4, along_b = d4 - d3, along_c = d5 - d6;
+    if (va <= 0 && along_b >= 0 && along_c >= 0)
+        return squared(bp - (c - b) * (along_b + along_c > 0 ? along_b / (along_b + along_c) : 0));
+    const float sum = va + vb + vc;
+    if (!(sum > 0)) return std::min({squared(ap), squared(bp), squared(cp)});
+    return squared(ap - ab * (vb / sum) - ac * (vc / sum));
+}
+
+/// A triangle and its squared distance from a point.
+struct ClosestTriangle {
+    unsigned number = 0;
+    float squared = std::numeric_limits<float>::infinity();
+};
+
+Bvh<float> tree_of(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
+    std::vector<Bvh<float>::Box> boxes;
+    boxes.reserve(triangles.size());
+    for (const glm::uvec3& t : triangles) {
+        const glm::vec3 &a = positions[t.x], &b = positions[t.y], &c = positions[t.z];
+        boxes.push_back({glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))});
+    }
+    return Bvh<float>(boxes);
+}
+
 }  // namespace
 
 SurfaceDeviation::SurfaceDeviation(std::span<const glm::vec3> positions,
@@ -86,15 +125,24 @@ bool SurfaceDeviation::move_anchors(std::span<const glm::uvec3> before, std::spa
 /// it.
 void SurfaceDeviation::include(const glm::vec3& point, unsigned& anchor, MeasuredSurface& surface) {
     if (stop_.load(std::memory_order_relaxed)) return;
-    ClosestTriangle found{0, std::numeric_limits<float>::infinity()};
+    ClosestTriangle found;
     for (const unsigned number : surface.adjacency.of(anchor)) {
         const glm::uvec3& t = surface.triangles[number];
         const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
         if (here < found.squared) found = {number, here};
         if (here <= squared_) return;
     }
-    if (!surface.tree) surface.tree.emplace(positions_, surface.triangles);
-    found = surface.tree->nearest(point, found, squared_);
+    if (!surface.tree) surface.tree = tree_of(positions_, surface.triangles);
+    float farthest = found.squared;
+    surface.tree->visit(
+        [&](const Bvh<float>::Box& box) { return squared(point - glm::clamp(point, box.min, box.max)); },
+        farthest,
+        [&](std::uint32_t number) {
+            const glm::uvec3& t = surface.triangles[number];
+            const float here = squared_distance(point, positions_[t.x], positions_[t.y], positions_[t.z]);
+            if (here < found.squared) found = {number, here};
+            farthest = found.squared <= squared_ ? -1 : found.squared;  // near enough: the search ends
+        });
     squared_ = std::max(squared_, found.squared);
     const glm::uvec3& t = surface.triangles[found.number];
     anchor = t.x;
@@ -104,7 +152,7 @@ void SurfaceDeviation::include(const glm::vec3& point, unsigned& anchor, Measure
 }
 
 unsigned SurfaceDeviation::closest_triangle(const glm::vec3& point, const glm::uvec3& triangle) const {
-    ClosestTriangle found{0, std::numeric_limits<float>::infinity()};
+    ClosestTriangle found;
     const glm::uvec3 now(anchors_[triangle.x], anchors_[triangle.y], anchors_[triangle.z]);
     for (int k = 0; k < 3; ++k) {
         if (k > 0 && (now[k] == now[0] || now[k] == now[k - 1])) continue;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/triangle_bvh.hpp"
+#include "mesh/bvh.hpp"
 #include "mesh/vertex_adjacency.hpp"
 
 namespace vrut::mesh {
@@ -35,7 +35,7 @@ private:
     struct MeasuredSurface {
         std::span<const glm::uvec3> triangles;
         VertexAdjacency adjacency;
-        std::optional<ClosestTriangleBvh> tree{};  // made when it is first needed
+        std::optional<Bvh<float>> tree{};  // made when it is first needed
     };
     static bool has_edge(const MeasuredSurface& surface, unsigned from, unsigned to);
     bool move_anchors(std::span<const glm::uvec3> before, std::span<const glm::uvec3> after);

@@ -110,44 +110,122 @@ Windings drawn_windings(const InstanceAtRay& part, const scene::Material& materi
     return {both || determinant > 0, both || determinant < 0};
 }
 
-/// The triangle that is met first, and before `hit.distance`; `hit.node` and `hit.point` are left alone.
-/// `corners` is memory that is used again.
-bool intersect_triangles(const InstanceAtRay& part, const math::RaySpace& space, const Windings& faces,
-                         std::vector<glm::dvec3>& corners, Hit& hit) {
-    corners.clear();
-    for (const glm::dvec3& position : part.geometry.positions)
-        corners.push_back(space.to_ray_space(part.seen(position)));
+/// The search for the first triangle of a part along a ray.
+class TriangleSearch {
+public:
+    /// Looks for hits before `farthest`.
+    TriangleSearch(const InstanceAtRay& part, const math::RaySpace& space, const Windings& windings,
+                   double farthest)
+        : part_(part), space_(space), windings_(windings), farthest_(farthest) {}
 
-    bool met = false;
-    for (const glm::uvec3& triangle : part.geometry.triangles) {
-        const glm::dvec3 &a = corners[triangle.x], &b = corners[triangle.y], &c = corners[triangle.z];
+    /// Of equal distances the lower number is hit, in whatever order they are asked.
+    void test(std::uint32_t number) {
+        const glm::uvec3& triangle = part_.geometry.triangles[number];
+        const glm::dvec3 a = corner(triangle.x), b = corner(triangle.y), c = corner(triangle.z);
         const double u = math::edge_function(c, b), v = math::edge_function(a, c),
                      w = math::edge_function(b, a);
         // Asked for what is hit, not for what is missed: a number that is not finite misses.
         const bool clockwise = u >= 0 && v >= 0 && w >= 0;
         const bool counter_clockwise = u <= 0 && v <= 0 && w <= 0;
-        if (!(clockwise && faces.clockwise) && !(counter_clockwise && faces.counter_clockwise)) continue;
+        if (!(clockwise && windings_.clockwise) && !(counter_clockwise && windings_.counter_clockwise))
+            return;
         const double area = u + v + w;
-        if (area == 0) continue;
+        if (area == 0) return;
         const double distance = a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area;
-        if (!(distance > 0 && distance < hit.distance)) continue;
-        const glm::dvec3 normal = face_normal(part, triangle);
-        if (normal == glm::dvec3(0)) continue;
-        hit.distance = distance;
-        hit.normal = normal;
-        met = true;
+        if (!(distance > 0)) return;
+        if (!(distance < farthest_ || (met_ && distance == farthest_ && number < number_))) return;
+        const glm::dvec3 normal = face_normal(part_, triangle);
+        if (normal == glm::dvec3(0)) return;
+        farthest_ = distance;
+        normal_ = normal;
+        number_ = number;
+        met_ = true;
     }
-    return met;
+    bool met() const { return met_; }
+    const double& farthest() const { return farthest_; }
+    const glm::dvec3& normal() const { return normal_; }
+
+private:
+    glm::dvec3 corner(unsigned vertex) const {
+        return space_.to_ray_space(part_.seen(part_.geometry.positions[vertex]));
+    }
+
+    const InstanceAtRay& part_;
+    const math::RaySpace& space_;
+    Windings windings_;
+    double farthest_;  ///< the distance of the hit, once there is one
+    glm::dvec3 normal_{0};
+    std::uint32_t number_ = 0;
+    bool met_ = false;
+};
+
+double sum_of(const glm::dvec3& v) { return v.x + v.y + v.z; }
+
+glm::dmat3 absolute(const glm::dmat3& m) { return {glm::abs(m[0]), glm::abs(m[1]), glm::abs(m[2])}; }
+
+/// A ray in the space of a geometry's tree. Its slack covers all that differs between that space and the one
+/// in which triangles are asked: no box of a triangle that TriangleSearch would hit is missed.
+class RayInTree {
+public:
+    /// None where the part is flat, or so thin or so far away that the slack would be the whole tree.
+    static std::optional<RayInTree> of(const InstanceAtRay& part, const Ray& ray) {
+        const double scale = tree_scale(part.geometry);
+        const glm::dmat3 axes = part.axes * scale;  // eye = axes * tree + center
+        const glm::dvec3 center = part.seen(part.geometry.bounds.center());
+        const glm::dmat3 inverse = glm::inverse(axes);
+        // |positions - origin| is 4 at most: the box is no further from its exact_origin.
+        const glm::dvec3 extent = 4.0 * (absolute(axes) * glm::dvec3(1)) + glm::abs(part.place);
+        const double largest = std::max({extent.x, extent.y, extent.z});
+        // What the inverse is off by, however it was computed, and what is rounded: of the ray, of the
+        // triangles as it sees them, of their shear to its direction.
+        const glm::dvec3 off = absolute(inverse * axes - glm::dmat3(1)) * glm::dvec3(1.001);
+        const glm::dvec3 slack = off + absolute(inverse) * glm::dvec3(kRounding * largest);
+        if (!(std::max({slack.x, slack.y, slack.z}) < 1)) return {};
+        return RayInTree(axes, center, inverse, slack, ray.direction, largest);
+    }
+
+    /// Of the distances at which the ray may hit the triangles of a box. It is the least of the whole box's,
+    /// since the distance of a sliver's hit is as uncertain as its corners are far apart.
+    double operator()(const Bvh<float>::Box& box) const {
+        if (std::isnan(slabs_.entry(box))) return std::numeric_limits<double>::quiet_NaN();
+        const glm::dvec3 a = glm::dvec3(box.min) * depth_, b = glm::dvec3(box.max) * depth_;
+        return sum_of(glm::min(a, b)) + nearest_;
+    }
+
+private:
+    static constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
+
+    RayInTree(const glm::dmat3& axes, const glm::dvec3& center, const glm::dmat3& inverse,
+              const glm::dvec3& slack, const glm::dvec3& direction, double largest)
+        : slabs_(inverse * -center, inverse * direction, slack) {
+        // RaySpace's distance, which runs along the direction's longest axis.
+        const glm::dvec3 size = glm::abs(direction);
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        depth_ = glm::dvec3(axes[0][axis], axes[1][axis], axes[2][axis]) / direction[axis];
+        nearest_ = center[axis] / direction[axis] - kRounding * largest / size[axis];
+    }
+
+    SlabRay slabs_;
+    glm::dvec3 depth_{0};  ///< distance along the ray for each of the tree's axes
+    double nearest_ = 0;   ///< and at its origin, less the slack
+};
+
+void search(TriangleSearch& triangles, const InstanceAtRay& part, const Ray& ray, const Bvh<float>* tree) {
+    const auto test = [&](std::uint32_t number) { triangles.test(number); };
+    if (tree)
+        if (const auto in_tree = RayInTree::of(part, ray))
+            return tree->visit(*in_tree, triangles.farthest(), test);
+    for (std::uint32_t number = 0; number < part.geometry.triangles.size(); ++number) test(number);
 }
 
 }  // namespace
 
-std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent) {
+std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent,
+                        const PickingTrees* trees) {
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::dvec3(0)) return {};
     const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
     const auto& nodes = placed.scene->nodes();
     const math::RaySpace space(ray.direction);
-    std::vector<glm::dvec3> corners;
     Hit best;
     best.distance = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -166,11 +244,15 @@ std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool t
         // A tie is met too where the id is higher.
         const bool wins_ties =
             best.node != scene::kNone && nodes[i].id > nodes[static_cast<std::size_t>(best.node)].id;
-        Hit hit = best;
-        if (wins_ties) hit.distance = std::nextafter(best.distance, std::numeric_limits<double>::infinity());
-        if (!intersect_triangles(part, space, drawn_windings(part, material), corners, hit)) continue;
-        hit.node = static_cast<scene::Index>(i);
-        best = hit;
+        const double farthest = wins_ties
+                                    ? std::nextafter(best.distance, std::numeric_limits<double>::infinity())
+                                    : best.distance;
+        TriangleSearch triangles(part, space, drawn_windings(part, material), farthest);
+        search(triangles, part, ray, trees ? trees->of(data->geometry) : nullptr);
+        if (!triangles.met()) continue;
+        best.node = static_cast<scene::Index>(i);
+        best.distance = triangles.farthest();
+        best.normal = triangles.normal();
     }
     if (best.node == scene::kNone) return {};
     best.point = ray.origin + ray.direction * best.distance;

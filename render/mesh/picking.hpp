@@ -3,6 +3,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 
+#include "mesh/picking_trees.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::mesh {
@@ -26,7 +27,9 @@ struct Hit {
 /// whatever their picture's alpha is there. Edges and corners belong to their triangles, so that a closed
 /// surface has no gaps; a triangle without area, or seen exactly along its plane, is missed. Nothing is hit
 /// by a ray that is not finite or has no direction. Edge test: Woop, Benthin, Wald, "Watertight Ray/Triangle
-/// Intersection", JCGT 2(1), 2013.
-std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent);
+/// Intersection", JCGT 2(1), 2013. `trees`, of the same scene, change the time that it takes, and no bit of
+/// the result: a geometry without a tree is searched triangle by triangle.
+std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent,
+                        const PickingTrees* trees = nullptr);
 
 }  // namespace vrut::mesh

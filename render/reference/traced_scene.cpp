@@ -98,13 +98,25 @@ std::vector<TracedInstance> parts_of(const plan::View& view) {
     return parts;
 }
 
-std::vector<math::Bounds> boxes_of(const std::vector<TracedInstance>& parts, const auto& triangles) {
-    std::vector<math::Bounds> boxes;
+/// A part of a coordinate, far above what the test of a triangle rounds off.
+constexpr double kSlack = 1e-14;
+
+double largest_of(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+mesh::SlabRay slab_ray(const RayDifferential& ray) {
+    return {ray.origin, ray.direction, glm::dvec3(kSlack * largest_of(ray.origin))};
+}
+
+std::vector<mesh::Bvh<double>::Box> boxes_of(const std::vector<TracedInstance>& parts,
+                                             const auto& triangles) {
+    std::vector<mesh::Bvh<double>::Box> boxes;
     boxes.reserve(triangles.size());
     for (const auto& triangle : triangles) {
         const TracedInstance& part = parts[triangle.part];
-        math::Bounds& box = boxes.emplace_back();
+        math::Bounds box;
         for (int k = 0; k < 3; ++k) box.add(part.positions[part.geometry->triangles[triangle.index][k]]);
+        const double slack = kSlack * std::max(largest_of(box.min), largest_of(box.max));
+        boxes.push_back({box.min - slack, box.max + slack});
     }
     return boxes;
 }
@@ -161,7 +173,9 @@ std::optional<TriangleHit> TracedScene::closest_opaque_hit(const RayDifferential
     const math::RaySpace space(ray.direction);
     TriangleHit first;
     first.distance = std::numeric_limits<double>::infinity();
-    opaque_.tree.visit(ray.origin, ray.direction, first.distance, [&](std::uint32_t number) {
+    const mesh::SlabRay slabs = slab_ray(ray);
+    const auto entry = [&](const auto& box) { return slabs.entry(box); };
+    opaque_.tree.visit(entry, first.distance, [&](std::uint32_t number) {
         const TriangleRef& triangle = opaque_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
         auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);
@@ -179,7 +193,9 @@ std::vector<TriangleHit> TracedScene::transparent_hits_before(const RayDifferent
     std::vector<TriangleHit> hits;
     const math::RaySpace space(ray.direction);
     const double farthest = end ? end->distance : std::numeric_limits<double>::infinity();
-    transparent_.tree.visit(ray.origin, ray.direction, farthest, [&](std::uint32_t number) {
+    const mesh::SlabRay slabs = slab_ray(ray);
+    const auto entry = [&](const auto& box) { return slabs.entry(box); };
+    transparent_.tree.visit(entry, farthest, [&](std::uint32_t number) {
         const TriangleRef& triangle = transparent_.triangles[number];
         if (is_coincident(triangle.part, excluded)) return;
         auto hit = intersect(parts_[triangle.part], triangle.index, space, ray.origin);

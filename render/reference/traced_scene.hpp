@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/bvh.hpp"
 #include "plan/view.hpp"
-#include "reference/box_tree.hpp"
 
 namespace vrut::reference {
 
@@ -72,7 +72,7 @@ private:
     struct TriangleSet {
         TriangleSet(const std::vector<TracedInstance>& parts, bool transparent);
         std::vector<TriangleRef> triangles;
-        RayBvh tree;
+        mesh::Bvh<double> tree;
     };
 
     std::vector<TracedInstance> parts_;

@@ -126,7 +126,9 @@ Engine::~Engine() {
     file_results_->close();
 }
 
-scenes::LoadedScene Engine::with_notices(scenes::LoadedScene scene) const {
+/// With what the engine adds to a scene that it shows: notices, and trees for picks, which are not awaited.
+scenes::LoadedScene Engine::prepared(scenes::LoadedScene scene) const {
+    scene.picking_trees = std::make_shared<const mesh::PickingTrees>(scene.placed->scene);
     if (renderer_.software)
         scene.notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
     return scene;
@@ -142,7 +144,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     read_levels(scene);
     room::RoomOptions options;
     connect_files(options);
-    room_.emplace(with_notices(scene), std::move(options));
+    room_.emplace(prepared(scene), std::move(options));
     try {
         if (renderer_.upload) renderer_.upload(room_->visible());
     } catch (const vrut::base::OutOfMemory& error) {

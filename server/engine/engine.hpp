@@ -214,7 +214,7 @@ private:
     std::size_t choose_level();
 
     void begin(const scenes::LoadedScene& scene);
-    scenes::LoadedScene with_notices(scenes::LoadedScene scene) const;
+    scenes::LoadedScene prepared(scenes::LoadedScene scene) const;
 
     scenes::SceneLibrary library_;
     std::filesystem::path record_folder_;

@@ -89,7 +89,7 @@ void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> 
     if (loading.refused) {
         observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *loading.refused}});
     } else {
-        room_->show(with_notices(*loaded.scene), time_of(base::Clock::now()));
+        room_->show(prepared(*loaded.scene), time_of(base::Clock::now()));
         use(loaded.levels);
         pixel_budget_ = limits_;
         last_change_ = base::Clock::now();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/picking_trees.hpp"
 #include "messages.hpp"
 #include "scene/scene.hpp"
 
@@ -16,6 +17,7 @@ struct LoadedScene {
     std::string sha256;  ///< of its file, in hexadecimal
     std::shared_ptr<const scene::PlacedScene> placed;
     std::vector<std::string> notices;
+    std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
 };
 
 /// What the reader reported about a scene, and which of its features are not drawn.

@@ -49,7 +49,7 @@ void set_constant_state() {
     glPolygonOffset(-1, -16);
 }
 
-void set_scissor(const std::optional<plan::PixelBox>& box) {
+void set_scissor(const std::optional<math::PixelBox>& box) {
     enable(GL_SCISSOR_TEST, box.has_value());
     if (box) glScissor(box->low.x, box->low.y, std::max(box->size().x, 0), std::max(box->size().y, 0));
 }

@@ -1,10 +1,9 @@
-#include "reference/box_tree.hpp"
+#include "reference/traced_scene.hpp"
 
 #include <doctest/doctest.h>
 
 #include <random>
 
-#include "reference/traced_scene.hpp"
 #include "shapes.hpp"
 
 using namespace vrut;
@@ -88,16 +87,4 @@ TEST_CASE("the tree finds what trying each triangle finds") {
         }
     }
     CHECK(hits > 300);
-}
-
-TEST_CASE("boxes in one place, and none at all") {
-    const double farthest = std::numeric_limits<double>::infinity();
-    const std::vector<math::Bounds> same(1000, math::Bounds{{1, 1, 1}, {2, 2, 2}});
-    std::vector<int> met(same.size());
-    reference::RayBvh(same).visit({1.5, 1.5, 9}, {0, 0, -1}, farthest, [&](std::uint32_t i) { ++met[i]; });
-    CHECK(met == std::vector<int>(1000, 1));
-    reference::RayBvh(same).visit({3, 1.5, 9}, {0, 0, -1}, farthest,
-                                  [](std::uint32_t) { FAIL("it is missed"); });
-    reference::RayBvh({}).visit({0, 0, 0}, {0, 0, -1}, farthest,
-                                [](std::uint32_t) { FAIL("there is none"); });
 }
