@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "engine/images.hpp"
 #include "net/server.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
@@ -64,7 +65,8 @@ void announce(const net::ListenAddress& listen, std::uint16_t port, const net::A
 /// Throws std::runtime_error where there are fewer threads than the server and a driver in software take:
 /// such a driver does not look whether it got its own, and waits for them for ever.
 void require_threads() {
-    constexpr unsigned kOwn = 8, kMostOfDriver = 32;
+    constexpr unsigned kEncoders = 2;  // of frames and of snapshots
+    constexpr unsigned kOwn = 8 + kEncoders * (engine::JpegEncoder::kMaxThreads - 1), kMostOfDriver = 32;
     std::latch all_asked(1);
     std::vector<std::jthread> threads;
     const unsigned needed = kOwn + std::min(std::thread::hardware_concurrency(), kMostOfDriver);

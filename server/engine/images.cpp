@@ -3,37 +3,192 @@
 #include <turbojpeg.h>
 #include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <bit>
+#include <exception>
 #include <memory>
 #include <stdexcept>
+#include <system_error>
 
 namespace vrut::server::engine {
 
-JpegEncoder::JpegEncoder() : handle_(tjInitCompress()) {
-    if (!handle_) throw std::runtime_error("the JPEG encoder does not start");
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A strip has at most so many pixels, or one row of MCUs where that has more. It then has at most 65535
+/// MCUs, as a restart interval must. Smaller ones gain nothing (tests/bench/jpeg_bench.cpp).
+constexpr int kMaxStripPixels = 1 << 17;
+constexpr int kMaxSide = 65'500;  // libjpeg's JPEG_MAX_DIMENSION
+
+int mcu_side(bool subsampled) { return subsampled ? 16 : 8; }
+
+/// In pixels, a multiple of the MCU's height.
+int strip_height(int width, bool subsampled) {
+    const int mcu = mcu_side(subsampled);
+    return std::max(1, kMaxStripPixels / (width * mcu)) * mcu;
 }
 
-JpegEncoder::~JpegEncoder() { tjDestroy(handle_); }
+std::size_t big_endian_16(std::span<const std::uint8_t> bytes, std::size_t at) {
+    return static_cast<std::size_t>(bytes[at]) << 8 | bytes[at + 1];
+}
+
+/// Offset of the first marker segment of that kind, one that stands before the entropy-coded data.
+std::size_t find_segment(std::span<const std::uint8_t> jpeg, std::uint8_t marker) {
+    std::size_t at = 2;  // behind SOI
+    while (jpeg[at + 1] != marker) at += 2 + big_endian_16(jpeg, at + 2);
+    return at;
+}
+
+constexpr std::uint8_t kSof0 = 0xC0, kRst0 = 0xD0, kEoi = 0xD9, kSos = 0xDA, kDri = 0xDD;
+
+/// The entropy-coded data between SOS and EOI.
+std::span<const std::uint8_t> entropy_coded(std::span<const std::uint8_t> jpeg) {
+    const std::size_t sos = find_segment(jpeg, kSos);
+    const std::size_t start = sos + 2 + big_endian_16(jpeg, sos + 2);
+    return jpeg.subspan(start, jpeg.size() - start - 2);
+}
+
+/// Makes the file of the first strip, without EOI, the beginning of one of `height` rows, whose restart
+/// intervals have `interval` MCUs (ITU-T T.81, B.2.4.4).
+void make_header(Bytes& jpeg, int height, int interval) {
+    const auto two = [](int value) {
+        return std::array{static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value & 0xFF)};
+    };
+    const auto sof = static_cast<std::ptrdiff_t>(find_segment(jpeg, kSof0));
+    std::ranges::copy(two(height), jpeg.begin() + sof + 5);
+    const auto sos = static_cast<std::ptrdiff_t>(find_segment(jpeg, kSos));
+    const auto [high, low] = two(interval);
+    const std::uint8_t dri[] = {0xFF, kDri, 0, 4, high, low};
+    jpeg.insert(jpeg.begin() + sos, std::begin(dri), std::end(dri));
+}
+
+}  // namespace
+
+struct JpegEncoder::Job {
+    const scene::Image& image;
+    int quality;
+    bool subsampled;
+    int strip_height;           // of all but the last
+    std::vector<Bytes> strips;  // the first with its headers, the others from the first entropy-coded byte
+    std::size_t next = 0, in_progress = 0;
+    std::exception_ptr error = nullptr;
+};
+
+class JpegEncoder::Compressor {
+public:
+    Compressor() : handle_(tjInitCompress()) {
+        if (!handle_) throw std::runtime_error("the JPEG encoder does not start");
+    }
+    ~Compressor() { tjDestroy(handle_); }
+    Compressor(const Compressor&) = delete;
+    Compressor& operator=(const Compressor&) = delete;
+
+    Bytes compress(const Job& job, std::size_t strip) {
+        const scene::Image& image = job.image;
+        const int top = static_cast<int>(strip) * job.strip_height;
+        const int height = std::min(job.strip_height, image.height - top);
+        const int sampling = job.subsampled ? TJSAMP_420 : TJSAMP_444;
+        // What the worst strip needs is many times what most take: it is kept for the next, and the file
+        // copied.
+        const unsigned long worst = tjBufSize(image.width, height, sampling);
+        if (scratch_size_ < worst) {
+            scratch_ = std::make_unique_for_overwrite<std::uint8_t[]>(worst);
+            scratch_size_ = worst;
+        }
+        const std::size_t rows_below = static_cast<std::size_t>(image.height - top - height);
+        const std::uint8_t* pixels =
+            image.rgba.data() + rows_below * static_cast<std::size_t>(image.width) * 4;
+        unsigned char* out = scratch_.get();
+        unsigned long size = scratch_size_;
+        if (tjCompress2(handle_, pixels, image.width, 0, height, TJPF_RGBA, &out, &size, sampling,
+                        job.quality, TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
+            throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
+                                     tjGetErrorStr2(handle_));
+        const std::span<const std::uint8_t> file(out, size), coded = entropy_coded(file);
+        return {strip == 0 ? file.begin() : coded.begin(), coded.end()};
+    }
+
+private:
+    tjhandle handle_;
+    std::unique_ptr<std::uint8_t[]> scratch_;  // of the largest size that was needed
+    std::size_t scratch_size_ = 0;
+};
+
+JpegEncoder::JpegEncoder() : compressor_(std::make_unique<Compressor>()) {
+    const unsigned threads = std::min(std::thread::hardware_concurrency(), kMaxThreads);
+    try {
+        while (workers_.size() + 1 < threads)
+            workers_.emplace_back([this, compressor = std::make_unique<Compressor>()](
+                                      const std::stop_token& stop) { work(stop, *compressor); });
+    } catch (const std::system_error&) {  // no thread can be had: it encodes with fewer
+    }
+}
+
+JpegEncoder::~JpegEncoder() = default;
+
+void JpegEncoder::work(const std::stop_token& stop, Compressor& compressor) {
+    std::unique_lock lock(mutex_);
+    while (strips_left_.wait(lock, stop, [&] { return job_ && job_->next < job_->strips.size(); })) {
+        compress_strips(lock, compressor);
+        strip_done_.notify_one();
+    }
+}
+
+/// Until none is left to begin.
+void JpegEncoder::compress_strips(std::unique_lock<std::mutex>& lock, Compressor& compressor) {
+    Job& job = *job_;
+    while (job.next < job.strips.size()) {
+        const std::size_t strip = job.next++;
+        ++job.in_progress;
+        lock.unlock();
+        std::exception_ptr error;
+        try {
+            job.strips[strip] = compressor.compress(job, strip);
+        } catch (...) {
+            error = std::current_exception();
+        }
+        lock.lock();
+        --job.in_progress;
+        if (error) {
+            job.error = error;
+            job.next = job.strips.size();
+        }
+    }
+}
 
 std::vector<std::uint8_t> JpegEncoder::encode(const scene::Image& image, int quality, bool subsampled) {
-    const int sampling = subsampled ? TJSAMP_420 : TJSAMP_444;
-    // What the worst picture needs is many times what most take: it is kept for the next, and the file
-    // copied.
-    const unsigned long worst = tjBufSize(image.width, image.height, sampling);
-    if (worst == static_cast<unsigned long>(-1))
+    if (std::min(image.width, image.height) < 1 || std::max(image.width, image.height) > kMaxSide)
         throw std::runtime_error("a picture of " + std::to_string(image.width) + " x " +
                                  std::to_string(image.height) + " pixels cannot be encoded as JPEG");
-    if (scratch_size_ < worst) {
-        scratch_ = std::make_unique_for_overwrite<std::uint8_t[]>(worst);
-        scratch_size_ = worst;
+    Job job{image, quality, subsampled, strip_height(image.width, subsampled), {}};
+    job.strips.resize(static_cast<std::size_t>((image.height - 1) / job.strip_height + 1));
+    {
+        std::unique_lock lock(mutex_);
+        job_ = &job;
+        for (std::size_t i = 1; i < std::min(job.strips.size(), workers_.size() + 1); ++i)
+            strips_left_.notify_one();
+        compress_strips(lock, *compressor_);
+        strip_done_.wait(lock, [&] { return job.in_progress == 0; });
+        job_ = nullptr;
     }
-    unsigned char* out = scratch_.get();
-    unsigned long size = scratch_size_;
-    if (tjCompress2(handle_, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &out, &size,
-                    sampling, quality, TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
-        throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
-                                 tjGetErrorStr2(handle_));
-    return {scratch_.get(), scratch_.get() + size};
+    if (job.error) std::rethrow_exception(job.error);
+
+    Bytes jpeg = std::move(job.strips[0]);
+    if (job.strips.size() > 1) {
+        const int mcu = mcu_side(subsampled);
+        make_header(jpeg, image.height, ((image.width - 1) / mcu + 1) * (job.strip_height / mcu));
+    }
+    std::size_t size = jpeg.size();
+    for (const Bytes& strip : job.strips) size += strip.size() + 2;  // the first is empty now
+    jpeg.reserve(size);
+    for (std::size_t i = 1; i < job.strips.size(); ++i) {
+        jpeg.insert(jpeg.end(), {0xFF, static_cast<std::uint8_t>(kRst0 + (i - 1) % 8)});
+        jpeg.insert(jpeg.end(), job.strips[i].begin(), job.strips[i].end());
+    }
+    jpeg.insert(jpeg.end(), {0xFF, kEoi});
+    return jpeg;
 }
 
 std::vector<std::uint8_t> encode_pfm(int width, int height, std::span<const glm::dvec3> colors) {

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <condition_variable>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "io/texture_writer.hpp"
@@ -12,21 +15,32 @@
 
 namespace vrut::server::engine {
 
-/// Encodes pictures as JFIF files. One for each thread.
+/// Encodes images as baseline JPEG (JFIF) with the Huffman tables of ITU-T T.81, K.3. Its threads encode
+/// horizontal strips of an image, which are restart intervals of the file (E.1.3). The file depends on the
+/// image alone, not on the number of threads. One caller at a time.
 class JpegEncoder {
 public:
+    /// The caller's thread is one of them.
+    static constexpr unsigned kMaxThreads = 4;
+
     JpegEncoder();
     ~JpegEncoder();
-    JpegEncoder(const JpegEncoder&) = delete;
-    JpegEncoder& operator=(const JpegEncoder&) = delete;
 
     /// `quality` 1 to 100; 4:2:0 when `subsampled`, else 4:4:4. Throws std::runtime_error.
     std::vector<std::uint8_t> encode(const scene::Image& image, int quality, bool subsampled);
 
 private:
-    void* handle_;
-    std::unique_ptr<std::uint8_t[]> scratch_;  // of the largest size that was needed
-    std::size_t scratch_size_ = 0;
+    class Compressor;
+    struct Job;
+
+    void work(const std::stop_token& stop, Compressor& compressor);
+    void compress_strips(std::unique_lock<std::mutex>& lock, Compressor& compressor);
+
+    std::unique_ptr<Compressor> compressor_;  // of the caller's thread
+    std::mutex mutex_;
+    Job* job_ = nullptr;  // guarded by mutex_
+    std::condition_variable_any strips_left_, strip_done_;
+    std::vector<std::jthread> workers_;  // last: they use all of the above
 };
 
 /// RGB in 32-bit floats, rows from the bottom up, as a PFM file.

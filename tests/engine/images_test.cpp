@@ -5,9 +5,11 @@
 #include <turbojpeg.h>
 
 #include <algorithm>
+#include <random>
 
 #include "base/files.hpp"
 #include "frame_header.hpp"
+#include "io/image_file.hpp"
 
 using namespace vrut;
 using namespace vrut::server::base;
@@ -38,6 +40,40 @@ std::vector<std::uint8_t> decode_jpeg(const std::vector<std::uint8_t>& jpeg, int
     REQUIRE(tjDecompress2(handle, jpeg.data(), jpeg.size(), rgb.data(), width, 0, height, TJPF_RGB, 0) == 0);
     tjDestroy(handle);
     return rgb;
+}
+
+/// Smooth colors with noise, so that every strip has low and high frequencies.
+scene::Image noisy_gradient(int width, int height) {
+    scene::Image image;
+    image.resize(width, height);
+    std::minstd_rand random;
+    std::size_t at = 0;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (const int value : {x * 255 / width, y * 255 / height, (x + y) / 4, 255})
+                image.rgba[at++] = static_cast<std::uint8_t>(value ^ static_cast<int>(random() >> 8 & 31));
+    return image;
+}
+
+/// The whole image in one piece, as libjpeg-turbo encodes it.
+std::vector<std::uint8_t> encode_without_strips(const scene::Image& image, int quality, bool subsampled) {
+    tjhandle handle = tjInitCompress();
+    unsigned char* data = nullptr;
+    unsigned long size = 0;
+    REQUIRE(tjCompress2(handle, image.rgba.data(), image.width, 0, image.height, TJPF_RGBA, &data, &size,
+                        subsampled ? TJSAMP_420 : TJSAMP_444, quality, TJFLAG_BOTTOMUP) == 0);
+    std::vector<std::uint8_t> jpeg(data, data + size);
+    tjFree(data);
+    tjDestroy(handle);
+    return jpeg;
+}
+
+/// Markers RST0 to RST7 by their number, in the order in which they stand.
+std::vector<int> restart_markers(const std::vector<std::uint8_t>& jpeg) {
+    std::vector<int> numbers;
+    for (std::size_t i = 0; i + 1 < jpeg.size(); ++i)
+        if (jpeg[i] == 0xFF && jpeg[i + 1] >= 0xD0 && jpeg[i + 1] <= 0xD7) numbers.push_back(jpeg[i + 1] & 7);
+    return numbers;
 }
 
 }  // namespace
@@ -76,9 +112,62 @@ TEST_CASE("a JPEG is upright, sampled as asked, and stays one with a comment in 
     }
 }
 
-TEST_CASE("a picture without pixels is no JPEG, and that is said") {
-    CHECK_THROWS_WITH(JpegEncoder().encode(scene::Image{}, 90, false),
+TEST_CASE("a JPEG of several strips decodes to the pixels of one that is encoded as a whole") {
+    struct Size {
+        int width = 0, height = 0;
+        std::size_t strips[2] = {};  // 4:4:4, 4:2:0
+    };
+    const Size sizes[] = {{1, 1, {1, 1}},      {640, 192, {1, 1}},  {640, 193, {1, 2}},
+                          {641, 479, {3, 3}},  {1280, 720, {8, 8}}, {1277, 961, {11, 11}},
+                          {9, 16'384, {2, 2}}, {16'384, 17, {3, 2}}};
+    const auto read = [](const std::vector<std::uint8_t>& jpeg) {  // fails at the decoder's first warning
+        return io::decode_image({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
+    };
+    JpegEncoder encoder;
+    for (const auto& [width, height, strips] : sizes) {
+        const scene::Image image = noisy_gradient(width, height);
+        for (const bool subsampled : {false, true})
+            for (const int quality : {1, 75, 100}) {
+                CAPTURE(width);
+                CAPTURE(height);
+                CAPTURE(subsampled);
+                CAPTURE(quality);
+                const std::vector<std::uint8_t> jpeg = encoder.encode(image, quality, subsampled);
+                const std::vector<std::uint8_t> whole = encode_without_strips(image, quality, subsampled);
+                int decoded_width = 0, decoded_height = 0, sampling = -1;
+                const auto expected = decode_jpeg(whole, decoded_width, decoded_height, sampling);
+                CHECK(decode_jpeg(jpeg, decoded_width, decoded_height, sampling) == expected);
+                CHECK(decoded_width == width);
+                CHECK(decoded_height == height);
+                CHECK(sampling == (subsampled ? TJSAMP_420 : TJSAMP_444));
+                const std::vector<int> markers = restart_markers(jpeg);
+                CHECK(markers.size() + 1 == strips[subsampled ? 1 : 0]);
+                for (std::size_t i = 0; i < markers.size(); ++i) CHECK(markers[i] == static_cast<int>(i % 8));
+                if (markers.empty()) CHECK(jpeg == whole);
+                REQUIRE(read(jpeg).has_value());
+                CHECK(read(jpeg)->rgba == read(whole)->rgba);
+            }
+    }
+}
+
+TEST_CASE("a picture without pixels, or with a side that JPEG cannot have, is no JPEG, and that is said") {
+    JpegEncoder encoder;
+    CHECK_THROWS_WITH(encoder.encode(scene::Image{}, 90, false),
                       "a picture of 0 x 0 pixels cannot be encoded as JPEG");
+    CHECK_THROWS_WITH(encoder.encode(two_halves(3, 65'501), 90, false),
+                      "a picture of 3 x 65501 pixels cannot be encoded as JPEG");
+    CHECK_THROWS_WITH(encoder.encode(two_halves(65'501, 3), 90, false),
+                      "a picture of 65501 x 3 pixels cannot be encoded as JPEG");
+}
+
+TEST_CASE("what fails in a strip fails the picture, and the encoder goes on") {
+    const scene::Image image = noisy_gradient(1280, 720);
+    JpegEncoder encoder;
+    for (int i = 0; i < 20; ++i) {
+        CHECK_THROWS_WITH(encoder.encode(image, 101, true),
+                          doctest::Contains("a picture cannot be encoded as JPEG: "));
+        CHECK(encoder.encode(image, 75, true).size() > 1000);
+    }
 }
 
 TEST_CASE("one pixel, and a line of them, can be encoded") {
