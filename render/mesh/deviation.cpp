@@ -26,23 +26,23 @@ float squared_length(const glm::vec3& v) { return glm::dot(v, v); }
 float squared_distance(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b, const glm::vec3& c) {
     const glm::vec3 ab = b - a, ac = c - a, ap = p - a;
     const float d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-    if (d1 <= 0 && d2 <= 0) return squared(ap);
+    if (d1 <= 0 && d2 <= 0) return squared_length(ap);
     const glm::vec3 bp = p - b;
     const float d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-    if (d3 >= 0 && d4 <= d3) return squared(bp);
+    if (d3 >= 0 && d4 <= d3) return squared_length(bp);
     const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared(ap - ab * (d1 > d3 ? d1 / (d1 - d3) : 0));
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return squared_length(ap - ab * (d1 > d3 ? d1 / (d1 - d3) : 0));
     const glm::vec3 cp = p - c;
     const float d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-    if (d6 >= 0 && d5 <= d6) return squared(cp);
+    if (d6 >= 0 && d5 <= d6) return squared_length(cp);
     const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared(ap - ac * (d2 > d6 ? d2 / (d2 - d6) : 0));
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return squared_length(ap - ac * (d2 > d6 ? d2 / (d2 - d6) : 0));
     const float va = d3 * d6 - d5 * d4, along_b = d4 - d3, along_c = d5 - d6;
     if (va <= 0 && along_b >= 0 && along_c >= 0)
-        return squared(bp - (c - b) * (along_b + along_c > 0 ? along_b / (along_b + along_c) : 0));
+        return squared_length(bp - (c - b) * (along_b + along_c > 0 ? along_b / (along_b + along_c) : 0));
     const float sum = va + vb + vc;
-    if (!(sum > 0)) return std::min({squared(ap), squared(bp), squared(cp)});
-    return squared(ap - ab * (vb / sum) - ac * (vc / sum));
+    if (!(sum > 0)) return std::min({squared_length(ap), squared_length(bp), squared_length(cp)});
+    return squared_length(ap - ab * (vb / sum) - ac * (vc / sum));
 }
 
 /// A triangle and its squared distance from a point.
@@ -135,7 +135,9 @@ void SurfaceDeviation::include(const glm::vec3& point, unsigned& anchor, Measure
     if (!surface.tree) surface.tree = tree_of(positions_, surface.triangles);
     float farthest = found.squared;
     surface.tree->visit(
-        [&](const Bvh<float>::Box& box) { return squared(point - glm::clamp(point, box.min, box.max)); },
+        [&](const Bvh<float>::Box& box) {
+            return squared_length(point - glm::clamp(point, box.min, box.max));
+        },
         farthest,
         [&](std::uint32_t number) {
             const glm::uvec3& t = surface.triangles[number];

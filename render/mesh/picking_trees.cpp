@@ -17,9 +17,11 @@ namespace vrut::mesh {
 
 namespace {
 
-constexpr std::size_t kFewTriangles = 64;  ///< as quickly asked one by one
+constexpr std::size_t kNoTreeBelow = 64;  ///< as quickly asked one by one
 
-bool is_finite(const glm::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite_position(const glm::dvec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// The nearest float on either side, so that the box holds what was rounded.
 Bvh<float>::Box rounded_outwards(const glm::dvec3& low, const glm::dvec3& high) {
@@ -34,7 +36,7 @@ Bvh<float>::Box rounded_outwards(const glm::dvec3& low, const glm::dvec3& high) 
 
 std::optional<Bvh<float>> tree_of(const scene::Geometry& geometry) {
     const double scale = tree_scale(geometry);
-    if (geometry.triangles.size() <= kFewTriangles || !(scale > 0) || !std::isfinite(1 / scale)) return {};
+    if (geometry.triangles.size() <= kNoTreeBelow || !(scale > 0) || !std::isfinite(1 / scale)) return {};
     const glm::dvec3 center = geometry.bounds.center();
     std::vector<Bvh<float>::Box> boxes;
     boxes.reserve(geometry.triangles.size());
@@ -42,7 +44,7 @@ std::optional<Bvh<float>> tree_of(const scene::Geometry& geometry) {
         const auto corner = [&](int k) { return (geometry.positions[t[k]] - center) / scale; };
         const glm::dvec3 a = corner(0), b = corner(1), c = corner(2);
         // No box holds such a triangle.
-        if (!is_finite(a) || !is_finite(b) || !is_finite(c)) return {};
+        if (!is_finite_position(a) || !is_finite_position(b) || !is_finite_position(c)) return {};
         boxes.push_back(rounded_outwards(glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))));
     }
     return Bvh<float>(boxes);
