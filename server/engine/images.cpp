@@ -163,7 +163,7 @@ std::vector<std::uint8_t> JpegEncoder::encode(const scene::Image& image, int qua
         throw std::runtime_error("a picture of " + std::to_string(image.width) + " x " +
                                  std::to_string(image.height) + " pixels cannot be encoded as JPEG");
     Job job{image, quality, subsampled, strip_height(image.width, subsampled), {}};
-    job.strips.resize(static_cast<std::size_t>((image.height - 1) / job.strip_height + 1));
+    job.strips.resize(static_cast<std::size_t>((image.height - 1) / job.strip_height) + 1);
     {
         std::unique_lock lock(mutex_);
         job_ = &job;

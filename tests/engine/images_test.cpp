@@ -124,12 +124,12 @@ TEST_CASE("a JPEG of several strips decodes to the pixels of one that is encoded
         return io::decode_image({reinterpret_cast<const char*>(jpeg.data()), jpeg.size()});
     };
     JpegEncoder encoder;
-    for (const auto& [width, height, strips] : sizes) {
-        const scene::Image image = noisy_gradient(width, height);
+    for (const Size& size : sizes) {
+        const scene::Image image = noisy_gradient(size.width, size.height);
         for (const bool subsampled : {false, true})
             for (const int quality : {1, 75, 100}) {
-                CAPTURE(width);
-                CAPTURE(height);
+                CAPTURE(size.width);
+                CAPTURE(size.height);
                 CAPTURE(subsampled);
                 CAPTURE(quality);
                 const std::vector<std::uint8_t> jpeg = encoder.encode(image, quality, subsampled);
@@ -137,11 +137,11 @@ TEST_CASE("a JPEG of several strips decodes to the pixels of one that is encoded
                 int decoded_width = 0, decoded_height = 0, sampling = -1;
                 const auto expected = decode_jpeg(whole, decoded_width, decoded_height, sampling);
                 CHECK(decode_jpeg(jpeg, decoded_width, decoded_height, sampling) == expected);
-                CHECK(decoded_width == width);
-                CHECK(decoded_height == height);
+                CHECK(decoded_width == size.width);
+                CHECK(decoded_height == size.height);
                 CHECK(sampling == (subsampled ? TJSAMP_420 : TJSAMP_444));
                 const std::vector<int> markers = restart_markers(jpeg);
-                CHECK(markers.size() + 1 == strips[subsampled ? 1 : 0]);
+                CHECK(markers.size() + 1 == size.strips[subsampled ? 1 : 0]);
                 for (std::size_t i = 0; i < markers.size(); ++i) CHECK(markers[i] == static_cast<int>(i % 8));
                 if (markers.empty()) CHECK(jpeg == whole);
                 REQUIRE(read(jpeg).has_value());
