@@ -33,7 +33,8 @@ public:
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
-    /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon. The scene
+    /// Brings what a view's scene shows, in the picture or beside it, to the GPU, to be drawn soon, and
+    /// compiles the programs that any view of it by the same methods can need. The scene
     /// drawn last stays there, too, until then; for good where this throws.
     void upload(const plan::View& view);
 
