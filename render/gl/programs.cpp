@@ -47,9 +47,68 @@ bool is_reachable(const SurfaceVariant& variant) {
     return !(variant.clipped && variant.light == Light::headlight);
 }
 
+/// What a scene's surfaces and lights may ask of programs.
+struct SceneFeatures {
+    bool texcoords = false, planes = false, environment_map = false;
+    bool opaque_textured = false, glass = false, glass_textured = false;
+    bool reflective = false, reflective_glass = false;
+    std::array<bool, 4> lights{};  ///< by SurfaceVariant::Light
+    bool mirrors() const { return planes && reflective; }
+};
+
+void add_material(SceneFeatures& features, const scene::Scene& scene, const scene::Material& material) {
+    const bool glass = scene.is_transparent(material), textured = material.texture != scene::kNone;
+    features.glass |= glass;
+    (glass ? features.glass_textured : features.opaque_textured) |= textured;
+    (glass ? features.reflective_glass : features.reflective) |= material.reflectivity > 0;
+}
+
+SceneFeatures features_of(const scene::Scene& scene) {
+    SceneFeatures features;
+    for (std::size_t i = 0; i < scene.geometries().size(); ++i) {
+        features.texcoords |= !scene.geometries()[i].texcoords.empty();
+        features.planes |= scene.plane(static_cast<scene::Index>(i)).has_value();
+    }
+    for (const scene::Material& material : scene.materials()) add_material(features, scene, material);
+    for (const scene::Node& node : scene.nodes()) {
+        if (const auto* light = std::get_if<scene::LightData>(&node.data))
+            features.lights[static_cast<std::size_t>(light_kind(light->type))] = true;
+        if (const auto* background = std::get_if<scene::BackgroundData>(&node.data))
+            features.environment_map |= background->cube_textures.has_value();
+    }
+    features.lights[static_cast<std::size_t>(Light::headlight)] = true;
+    // A mirror shows what the headlight lights, from beside it.
+    if (features.mirrors()) features.lights[static_cast<std::size_t>(Light::point)] = true;
+    return features;
+}
+
+bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
+    const bool is_glass = variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass;
+    const bool textured = is_glass ? features.glass_textured : features.opaque_textured;
+    const bool reflective = is_glass ? features.reflective_glass : features.reflective;
+    if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
+    if (is_glass && !features.glass) return false;
+    if (variant.kind == Kind::mirror && !features.mirrors()) return false;
+    if (variant.textured && !(textured && features.texcoords)) return false;
+    if (variant.environment && !(reflective && features.environment_map)) return false;
+    return !variant.clipped || features.mirrors();
+}
+
 GlProgram compile(const ProgramSource& source) { return make_program(source.vertex, source.fragment); }
 
 }  // namespace
+
+SurfaceVariant::Light light_kind(scene::LightData::Type type) {
+    switch (type) {
+        case scene::LightData::Type::directional:
+            return Light::directional;
+        case scene::LightData::Type::spot:
+            return Light::spot;
+        case scene::LightData::Type::point:
+            break;
+    }
+    return Light::point;
+}
 
 std::vector<SurfaceVariant> reachable_surface_variants() {
     using Lighting = plan::Methods::Lighting;
@@ -62,6 +121,15 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
                         kind, light, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, lit_at};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
+    return variants;
+}
+
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at) {
+    const SceneFeatures features = features_of(scene);
+    std::vector<SurfaceVariant> variants = reachable_surface_variants();
+    std::erase_if(variants, [&](const SurfaceVariant& variant) {
+        return variant.lit_at != lit_at || !may_need(features, variant);
+    });
     return variants;
 }
 
@@ -90,19 +158,32 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     return {shader_source("surface.vert", defines), shader_source("surface.frag", defines)};
 }
 
-void Programs::use(FixedProgram program) {
+const GlProgram& Programs::at(FixedProgram program) {
     GlProgram& compiled = fixed_[static_cast<std::size_t>(program)];
-    if (!compiled) compiled = compile(source_of(program));
-    glUseProgram(compiled.get());
+    if (!compiled) {
+        compiled = compile(source_of(program));
+        ++compiled_;
+    }
+    return compiled;
 }
 
-void Programs::use(const SurfaceVariant& variant) {
+const GlProgram& Programs::at(const SurfaceVariant& variant) {
     GlProgram& compiled = surfaces_[variant];
     if (!compiled) {
         assert(is_reachable(variant));
         compiled = compile(source_of(variant));
+        ++compiled_;
     }
-    glUseProgram(compiled.get());
+    return compiled;
+}
+
+void Programs::use(FixedProgram program) { glUseProgram(at(program).get()); }
+
+void Programs::use(const SurfaceVariant& variant) { glUseProgram(at(variant).get()); }
+
+void Programs::compile_for(const scene::Scene& scene, plan::Methods::Lighting lit_at) {
+    for (std::size_t i = 0; i < kFixedPrograms; ++i) at(static_cast<FixedProgram>(i));
+    for (const SurfaceVariant& variant : surface_variants(scene, lit_at)) at(variant);
 }
 
 }  // namespace vrut::gl

@@ -9,6 +9,7 @@
 
 #include "gl/handles.hpp"
 #include "plan/view.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut::gl {
 
@@ -46,8 +47,14 @@ struct SurfaceVariant {
     auto operator<=>(const SurfaceVariant&) const = default;
 };
 
+SurfaceVariant::Light light_kind(scene::LightData::Type type);
+
 /// Those that some view of some scene needs.
 std::vector<SurfaceVariant> reachable_surface_variants();
+
+/// Those that views of a scene may need: in every drawing mode, with each of its materials on any node, each
+/// of its lights or none, and its environment map or none.
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at);
 
 /// GLSL, with the version and all that it #includes and #defines.
 struct ProgramSource {
@@ -56,16 +63,25 @@ struct ProgramSource {
 ProgramSource source_of(FixedProgram program);
 ProgramSource source_of(const SurfaceVariant& variant);
 
-/// The programs of a context, for all passes: each is compiled when it is first used.
+/// The programs of a context, for all passes: each is compiled when it is first used, if not before.
 class Programs {
 public:
     /// Makes it the current one.
     void use(FixedProgram program);
     void use(const SurfaceVariant& variant);
+    /// Compiles all that views of a scene may need. Takes milliseconds for each program that is not there
+    /// yet.
+    void compile_for(const scene::Scene& scene, plan::Methods::Lighting lit_at);
+    /// How many were compiled so far.
+    int compiled() const { return compiled_; }
 
 private:
+    const GlProgram& at(FixedProgram program);
+    const GlProgram& at(const SurfaceVariant& variant);
+
     std::array<GlProgram, kFixedPrograms> fixed_;
     std::map<SurfaceVariant, GlProgram> surfaces_;
+    int compiled_ = 0;
 };
 
 }  // namespace vrut::gl

@@ -95,6 +95,7 @@ struct FrameStats {
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;
     int uploads = 0;         ///< geometries, edges, textures and cube maps uploaded to the GPU
+    int programs = 0;        ///< compiled
     double render_ms = 0;    ///< from the first command to the fence behind the last
     double readback_ms = 0;  ///< from the GPU into memory
 };

@@ -65,6 +65,7 @@ struct Renderer::Impl {
 
     void upload(const plan::View& view) {
         staged.reset();
+        programs.compile_for(*view.scene->scene, view.methods.light);
         if (scene && scene->scene() == view.scene->scene) return;
         auto next = std::make_unique<gl::GpuScene>(view.scene->scene);
         next->upload_shown(view);
@@ -122,11 +123,12 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
         stats.render_ms += milliseconds_since(start);
         return false;
     }
-    const int uploads_before = scene ? scene->uploads() : 0;
+    const int uploads_before = scene ? scene->uploads() : 0, programs_before = programs.compiled();
     gl::SampleDrawing& sample = sample_of(job);
     const bool drawn = sample.draw(job, scene.get(), passes, budget);
     gl::wait_for_gl();
     stats.render_ms += milliseconds_since(start);
+    stats.programs += programs.compiled() - programs_before;
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;
     if (!drawn) return false;
 

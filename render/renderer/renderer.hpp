@@ -34,8 +34,9 @@ public:
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
-    /// Uploads the geometry and textures that the view needs, so that the next step() does not have to. The
-    /// scene drawn last stays on the GPU until then, or for good if this throws.
+    /// Uploads the geometry and textures that the view needs, and compiles the programs that any view of its
+    /// scene by the same methods can need, so that the next step() does not have to. The scene drawn last
+    /// stays on the GPU until then, or for good if this throws.
     void upload(const plan::View& view);
 
     /// Draws the next sample, or the part of it that fits the budget of one step (DrawBudget); the first

@@ -90,15 +90,7 @@ SurfaceVariant::Light kind_of(const scene::Light& light, const CameraMatrices& c
     // It stays at the true eye, which in a mirror is not the one that sees.
     const bool reflected = glm::determinant(glm::dmat3(camera.view_from_world)) < 0;
     if (light.headlight) return reflected ? SurfaceVariant::Light::point : SurfaceVariant::Light::headlight;
-    switch (light.type) {
-        case scene::LightData::Type::directional:
-            return SurfaceVariant::Light::directional;
-        case scene::LightData::Type::spot:
-            return SurfaceVariant::Light::spot;
-        case scene::LightData::Type::point:
-            break;
-    }
-    return SurfaceVariant::Light::point;
+    return light_kind(light.type);
 }
 
 }  // namespace
