@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/self_intersection.hpp"
 #include "mesh/vertex_adjacency.hpp"
 
 namespace vrut::mesh {
@@ -117,8 +118,12 @@ bool is_watertight(const scene::Geometry& geometry, const std::atomic<bool>& sto
     const std::vector<glm::uvec3> triangles = with_merged_positions(geometry);
     if (stop || triangles.empty()) return false;
     UnionFind components(triangles.size());
-    return unite_across_edges(triangles, geometry.positions.size(), components, stop) &&
-           have_positive_volume(geometry, triangles, components);
+    if (!unite_across_edges(triangles, geometry.positions.size(), components, stop) ||
+        !have_positive_volume(geometry, triangles, components))
+        return false;
+    std::vector<unsigned> component_of(triangles.size());
+    for (unsigned i = 0; i < triangles.size(); ++i) component_of[i] = components.find(i);
+    return !may_self_intersect(geometry.positions, triangles, component_of, stop);
 }
 
 }  // namespace vrut::mesh

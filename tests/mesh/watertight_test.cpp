@@ -55,6 +55,37 @@ TEST_CASE("a surface is closed where it has an inside and all triangles face awa
     CHECK_FALSE(mesh::is_watertight(whole, stop));
 }
 
+TEST_CASE("a surface that crosses itself is not closed: its backs can be seen from outside") {
+    // A tube in the shape of an 8: its two halves are wound against each other where it is flat.
+    const auto tube = [](double crossing) {
+        return surface(48, 12, [=](double u, double v) {
+            const double a = 2 * std::numbers::pi * u, b = 2 * std::numbers::pi * v;
+            const glm::dvec3 center(2 * std::sin(a), std::sin(2 * a), crossing * std::cos(a));
+            const glm::dvec3 along =
+                glm::normalize(glm::dvec3(2 * std::cos(a), 2 * std::cos(2 * a), -crossing * std::sin(a)));
+            const glm::dvec3 up(0, 0, 1), aside = glm::normalize(glm::cross(along, up));
+            return center + 0.3 * (std::cos(b) * aside + std::sin(b) * glm::cross(aside, along));
+        });
+    };
+    const auto either = [](const scene::Geometry& geometry) {
+        return closed(welded(geometry)) || closed(inside_out(welded(geometry)));
+    };
+    CHECK(either(tube(1)));        // it passes over itself
+    CHECK_FALSE(either(tube(0)));  // and through itself
+    // A ball of which one corner is pushed out through the other side, so that it is inside out there.
+    scene::Geometry pushed = welded(sphere(1, 12));
+    CHECK(closed(pushed));
+    const glm::dvec3 corner = pushed.positions[pushed.positions.size() / 2];
+    for (glm::dvec3& position : pushed.positions)
+        if (position == corner) position = -1.5 * corner;
+    CHECK_FALSE(closed(pushed));
+    // Two that cross each other are closed: behind each back is a front of its own.
+    CHECK(closed(together(solid_ball(), solid_ball(), {0.5, 0.3, 0.1})));
+    // Flat faces of many triangles do not cross.
+    scene::Geometry bar = box({1, 0.5, 0.25});
+    CHECK(closed(bar));
+}
+
 TEST_CASE("every piece of a closed surface is") {
     const scene::Geometry whole = solid_ball();
     CHECK(closed(together(whole, whole, {3, 0, 0})));
