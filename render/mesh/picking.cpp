@@ -236,7 +236,7 @@ std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool t
             placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const scene::Material& material = placed.scene->material(placed.nodes[i].material);
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
-        if (through_transparent && placed.scene->is_transparent(material)) continue;
+        if (through_transparent && placed.scene->is_transparent(material, data->geometry)) continue;
 
         const InstanceAtRay part(geometry, placed.world[i], ray.origin);
         const std::optional<double> from = box_entry(part, ray.direction);

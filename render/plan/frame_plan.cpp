@@ -87,7 +87,7 @@ DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, Tr
     const scene::PlacedScene& placed = *view.scene;
     const scene::Scene& scene = *placed.scene;
     const auto is_opaque = [&](const DrawItem& item) {
-        return !scene.is_transparent(scene.material(item.material));
+        return !scene.is_transparent(scene.material(item.material), item.geometry);
     };
     DrawLists lists;
     if (style_of(view).override_material || std::all_of(items.begin(), items.end(), is_opaque)) {
@@ -176,7 +176,7 @@ double marker_radius(int picture_height) { return std::max(picture_height / 120.
 
 bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material) {
     const scene::Material& of = scene.material(material);
-    return of.reflectivity > 0 && !scene.is_transparent(of) && scene.plane(geometry);
+    return of.reflectivity > 0 && !scene.is_transparent(of, geometry) && scene.plane(geometry);
 }
 
 bool is_flattened(const glm::dmat4& view_from_node) {
@@ -220,7 +220,8 @@ bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, Draw
     for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {
         const DrawItem& item = shapes_found_ < items_.size() ? items_[shapes_found_]
                                                              : plan_.selected[shapes_found_ - items_.size()];
-        if (scene.is_transparent(scene.material(item.material))) budget.spend(shapes.find(item));
+        if (scene.is_transparent(scene.material(item.material), item.geometry))
+            budget.spend(shapes.find(item));
     }
     return shapes_found_ == count;
 }
@@ -274,11 +275,12 @@ std::vector<DrawItem> visible_faces(const View& view) {
 ClassCounts count_classes(const scene::PlacedScene& placed) {
     ClassCounts counts;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
-        if (!std::holds_alternative<scene::GeometryData>(placed.scene->nodes()[i].data)) continue;
+        const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[i].data);
+        if (!data) continue;
         const scene::Material& material = placed.scene->material(placed.nodes[i].material);
-        ++(placed.scene->is_transparent(material) ? counts.transparent
-           : material.reflectivity > 0            ? counts.reflective
-                                                  : counts.solid);
+        ++(placed.scene->is_transparent(material, data->geometry) ? counts.transparent
+           : material.reflectivity > 0                            ? counts.reflective
+                                                                  : counts.solid);
     }
     return counts;
 }

@@ -58,7 +58,7 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
     const scene::Material& material = scene.material(placed.nodes[node].material);
     const scene::Material* const override_material = plan::style_of(view).override_material;
     part.material = override_material ? override_material : &material;
-    part.transparent = !override_material && scene.is_transparent(material);
+    part.transparent = !override_material && scene.is_transparent(material, data->geometry);
     const auto& plane = scene.plane(data->geometry);
     if (!override_material && !part.transparent && material.reflectivity > 0 && plane)
         part.mirror = math::transformed(matrix, math::Plane{plane->normal, plane->point - center});

@@ -180,6 +180,12 @@ bool Scene::is_transparent(const Material& material) const {
            (material.texture != kNone && textures_[static_cast<std::size_t>(material.texture)].transparent);
 }
 
+bool Scene::is_transparent(const Material& material, Index geometry) const {
+    const bool textured =
+        geometry != kNone && !geometries_[static_cast<std::size_t>(geometry)].texcoords.empty();
+    return textured ? is_transparent(material) : material.diffuse.a < 1;
+}
+
 Index Scene::find_node(Id id) const { return index_of(index_by_id_, id); }
 
 std::uint64_t Scene::triangle_count() const {
@@ -261,7 +267,7 @@ std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm
     return shown;
 }
 
-bool is_shown(const PlacedScene& placed, Index node) {
+bool is_shown(const PlacedScene& placed, Index node, const std::optional<glm::dvec3>& eye) {
     const auto& nodes = placed.scene->nodes();
     if (node == kNone) return false;
     for (Index parent; placed.nodes[static_cast<std::size_t>(node)].active; node = parent) {
@@ -270,7 +276,7 @@ bool is_shown(const PlacedScene& placed, Index node) {
         const auto& children = nodes[static_cast<std::size_t>(parent)].children;
         const auto place =
             static_cast<std::size_t>(std::find(children.begin(), children.end(), node) - children.begin());
-        if (!chooses(placed, static_cast<std::size_t>(parent), place, std::nullopt)) return false;
+        if (!chooses(placed, static_cast<std::size_t>(parent), place, eye)) return false;
     }
     return false;
 }

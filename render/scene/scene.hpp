@@ -170,6 +170,8 @@ public:
     }
     /// Whether something can be seen through it: its diffuse alpha or one of its texture's is below 1.
     bool is_transparent(const Material& material) const;
+    /// The same on a geometry: without texture coordinates it shows no texture.
+    bool is_transparent(const Material& material, Index geometry) const;
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;
@@ -221,8 +223,8 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<Nod
 /// Returns for each node whether it is shown: it and its ancestors are active, and switches and LODs select
 /// it. LODs select by the distance of `eye` (world space); without an eye all their children count.
 std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm::dvec3>& eye);
-/// The same for one node, with all children of LODs; false for kNone.
-bool is_shown(const PlacedScene& placed, Index node);
+/// The same for one node; false for kNone.
+bool is_shown(const PlacedScene& placed, Index node, const std::optional<glm::dvec3>& eye);
 
 /// For each node, whether it is `top` or hangs below it.
 std::vector<bool> subtree(const Scene& scene, Index top);

@@ -19,7 +19,8 @@ std::optional<std::string> picture_of(const scene::BackgroundData& data, const s
     return image.empty() ? std::nullopt : std::optional(image);
 }
 
-void add_backgrounds(const scene::PlacedScene& placed, protocol::BackgroundsState& backgrounds) {
+void add_backgrounds(const scene::PlacedScene& placed, const glm::dvec3& eye,
+                     protocol::BackgroundsState& backgrounds) {
     auto items = *backgrounds.items;
     scene::Id first = -1;
     for (std::size_t i = 0; i < placed.nodes.size(); ++i) {
@@ -28,7 +29,7 @@ void add_backgrounds(const scene::PlacedScene& placed, protocol::BackgroundsStat
         if (!data) continue;
         const glm::dvec4 color = glm::min(placed.scene->material(data->material).diffuse, glm::dvec4(1));
         items[std::to_string(node.id)] = {node.name, color, picture_of(*data, *placed.scene)};
-        if (scene::is_shown(placed, static_cast<scene::Index>(i)) && (first < 0 || node.id < first))
+        if (scene::is_shown(placed, static_cast<scene::Index>(i), eye) && (first < 0 || node.id < first))
             first = node.id;
     }
     backgrounds.items.set(std::move(items));
@@ -152,7 +153,7 @@ protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
     state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);
     add_lights(scene, state.lights);
-    add_backgrounds(placed, state.backgrounds);
+    add_backgrounds(placed, state.camera.eye, state.backgrounds);
     count_classes(state, placed);
     return state;
 }
@@ -262,11 +263,11 @@ tl::expected<std::vector<scene::NodeState>, Error> node_states(
 
 namespace {
 
-/// The active one, if its subtree is; its colour is the state's.
+/// The active one, if it is shown; its colour is the state's.
 plan::Background background_of(const protocol::BackgroundsState& backgrounds,
-                               const scene::PlacedScene& placed) {
+                               const scene::PlacedScene& placed, const glm::dvec3& eye) {
     const scene::Index node = find_node(*placed.scene, backgrounds.active);
-    if (!scene::is_shown(placed, node)) return {glm::dvec3(backgrounds.color), scene::kNone, {}};
+    if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color), scene::kNone, {}};
     const auto& data =
         std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
     return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),
@@ -282,7 +283,7 @@ std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol:
         glm::dvec3 point = marker.point;
         if (marker.node) {
             const scene::Index node = placed.scene->find_node(*marker.node);
-            if (!scene::is_shown(placed, node)) continue;
+            if (!scene::is_shown(placed, node, std::nullopt)) continue;
             point = glm::dvec3(placed.world[static_cast<std::size_t>(node)] * glm::dvec4(point, 1));
         }
         const bool finite = std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
@@ -303,7 +304,7 @@ plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::Pl
     view.wireframe = state.renderer.wireframe;
     if (state.renderer.show_selection && state.selection.node)
         view.selected = placed->scene->find_node(*state.selection.node);
-    view.background = background_of(state.backgrounds, *placed);
+    view.background = background_of(state.backgrounds, *placed, view.camera.eye);
     view.scene = std::move(placed);
     return view;
 }

@@ -46,7 +46,7 @@ tl::expected<std::vector<scene::NodeState>, protocol::Error> node_states(
 std::vector<plan::PlacedMarker> markers_of(const std::map<std::string, protocol::Marker>& markers,
                                            const scene::PlacedScene& placed);
 /// What of the state and the scene is to be seen, but for size, samples and marks. The background is the
-/// active one, if its subtree is active, else the plain colour.
+/// active one, if it is shown, else the plain colour.
 plan::View view_of(const protocol::State& state, std::shared_ptr<const scene::PlacedScene> placed);
 /// What a picture says of itself, but for its number, revision, quality and times.
 protocol::FrameHeader header_of(const protocol::State& state, const plan::View& view,

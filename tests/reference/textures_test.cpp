@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "plan/frame_plan.hpp"
 #include "reference/shading.hpp"
 #include "reference_image.hpp"
 
@@ -69,6 +70,25 @@ TEST_CASE("without texture coordinates there is no picture") {
     check_same(
         traced(scene_of({{1, quad(1), material, glm::dmat4(1)}}, {{"", noise(2, 2), false}}), view).color[0],
         {0.1, 0.9, 0.1});
+}
+
+TEST_CASE("without texture coordinates the alpha of a picture counts as 1") {
+    scene::Material material = glowing({0, 0, 0});
+    material.texture = 0;
+    material.reflectivity = 1;
+    scene::Image holes = noise(2, 2);
+    holes.rgba[3] = 0;
+    const std::vector<Part> parts{
+        {1, quad(1), material, glm::dmat4(1)},
+        {2, quad(9), glowing({1, 0, 0}), moved_by({0, 0, 9}) * turned_by(180, {0, 1, 0})}};
+    // It is opaque, and a mirror.
+    const auto scene = scene_of(parts, {{"", holes, true}});
+    const plan::View view = look({0, 0, 5}, {0, 0, 0});
+    check_same(traced(scene, view).color[0], {1, 0, 0});
+    CHECK(plan::count_classes(*scene) == plan::ClassCounts{1, 0, 1});
+    plan::View shown = view;
+    shown.scene = scene;
+    CHECK(plan::plan_frame(shown).scene.mirrors.size() == 1);
 }
 
 TEST_CASE("magnified it is bilinear, and repeats") {

@@ -532,6 +532,25 @@ TEST_CASE("the view has the active background's colour and pictures, or else the
     CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, {}});
 }
 
+TEST_CASE("of the backgrounds of a LOD the one is active that the eye's distance chooses") {
+    Stage stage("a", scene_of(R"(vrut-text 1
+material 1 "Near" diffuse 1 0 0 1 end
+material 2 "Far" diffuse 0 1 0 1 end
+node 1 "Which" lod parent 0 ranges 1 end
+node 2 "Near" background parent 1 material 1 end
+node 3 "Far" background parent 1 material 2 end
+node 4 "Eye" camera parent 0 eye 0 0 5 focus 0 0 0 end
+)",
+                              "backgrounds.vrut"));
+    const auto color = [&] { return stage.room.visible().background.color; };
+    CHECK(color() == glm::dvec3(0, 1, 0));
+    // It stays the active one, but is not shown from there.
+    stage.say("a", patch(R"({"camera":{"eye":[0,0,0.5],"focus":[0,0,0]}})"));
+    CHECK(color() == plan::kDefaultBackground);
+    stage.say("a", patch(R"({"backgrounds":{"active":"2"}})"));
+    CHECK(color() == glm::dvec3(1, 0, 0));
+}
+
 // --- what the state says may be said back
 
 namespace {
