@@ -1,10 +1,10 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <map>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "gl/handles.hpp"
@@ -44,7 +44,12 @@ struct SurfaceVariant {
     bool clipped = false;      ///< by a plane
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
 
-    auto operator<=>(const SurfaceVariant&) const = default;
+    bool operator<(const SurfaceVariant& other) const {
+        const auto key = [](const SurfaceVariant& v) {
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+        };
+        return key(*this) < key(other);
+    }
 };
 
 SurfaceVariant::Light light_kind(scene::LightData::Type type);
