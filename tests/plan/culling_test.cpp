@@ -1,7 +1,6 @@
-#include "math/frustum.hpp"
-
 #include <doctest/doctest.h>
 
+#include "math/frustum.hpp"
 #include "plan/frame_plan.hpp"
 #include "random_parts.hpp"
 #include "shapes.hpp"
