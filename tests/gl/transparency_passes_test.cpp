@@ -9,7 +9,7 @@
 #include "expected_image.hpp"
 #include "gl/context.hpp"
 #include "gl/passes/per_pixel_lists_pass.hpp"
-#include "plan/projection.hpp"
+#include "gl/programs.hpp"
 #include "reference/reference.hpp"
 #include "renderer_fixture.hpp"
 
@@ -76,16 +76,17 @@ void reverse_fragments() {
 std::vector<std::uint8_t> composited_lists(const plan::View& view, bool reversed) {
     const gl::GlContext context;
     gl::GpuScene scene(view.scene->scene);
-    gl::SurfacePrograms programs;
-    gl::PerPixelListsPass pass;
+    gl::Programs compiled;
+    gl::SurfacePrograms programs(compiled);
+    gl::PerPixelListsPass pass(compiled);
     plan::FrameStats stats;
     gl::Framebuffer target(view.width, view.height, true);
-    gl::set_up_drawing();
+    gl::set_constant_state();
     target.bind();
     glClearColor(0, 0, 0, 1);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
-    const glm::dmat4 clip = plan::reversed_clip_from_view(
-        view, scene::fit_clip_range(view.camera, view.scene->bounds).near, glm::dvec2(0));
+    const glm::dmat4 clip =
+        math::reversed_clip_from_view(plan::projection_of(view), plan::near_distance(view));
     programs.begin({clip, scene::view_from_world(view.camera)}, view, &scene);
     const std::vector<plan::DrawItem> items = plan::visible_items(view);
     const glm::ivec2 size(view.width, view.height);
