@@ -35,7 +35,7 @@ Bvh<T>::Bvh(std::span<const Box> boxes) : order_(boxes.size()) {
         nodes_.push_back(leaf(first, half));
         nodes_.push_back(leaf(first + half, count - half));
     }
-    nodes_.shrink_to_fit();
+    nodes_ = std::vector<Node>(nodes_.begin(), nodes_.end());  // no room to spare; reports a lack of memory
 }
 
 template class Bvh<float>;
