@@ -127,6 +127,13 @@ Scene::BuildError find_cycle(const PartNodes& nodes, const IdToIndex& index_by_i
             culprit};
 }
 
+std::vector<std::optional<math::Plane>> fitted_planes(const std::vector<Geometry>& geometries) {
+    std::vector<std::optional<math::Plane>> planes;
+    planes.reserve(geometries.size());
+    for (const Geometry& geometry : geometries) planes.push_back(fitted_plane(geometry));
+    return planes;
+}
+
 }  // namespace
 
 tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
@@ -151,8 +158,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     scene.geometries_ = std::move(parts.geometries);
     scene.notices_ = std::move(parts.notices);
     for (Geometry& geometry : scene.geometries_) move_near_zero(geometry.texcoords);
-    scene.planes_.reserve(scene.geometries_.size());
-    for (const Geometry& geometry : scene.geometries_) scene.planes_.push_back(fitted_plane(geometry));
+    scene.planes_ = fitted_planes(scene.geometries_);
     std::vector<Index> new_index(in.size());
     for (std::size_t i = 0; i < order.size(); ++i)
         new_index[static_cast<std::size_t>(order[i])] = static_cast<Index>(i);

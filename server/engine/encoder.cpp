@@ -86,9 +86,8 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const scene::I
         encoded->file = io::encode_png(image);
         encoded->header_offset = kPngTextOffset;
     } else {
-        if (!jpeg_) jpeg_.emplace();
-        encoded->file = jpeg_->encode(image, quality.jpeg_quality,
-                                      quality.subsampling == protocol::Quality::Subsampling::yuv420);
+        encoded->file = jpeg_.encode(image, quality.jpeg_quality,
+                                     quality.subsampling == protocol::Quality::Subsampling::yuv420);
         encoded->header_offset = protocol::comment_offset(encoded->file);
     }
     metrics_.bytes_held += encoded->file.capacity();

@@ -53,7 +53,7 @@ private:
     scene::Image spare_;
     bool closed_ = false;
     base::Watchdog watchdog_;
-    std::optional<JpegEncoder> jpeg_;
+    JpegEncoder jpeg_;    // of the encode thread; its own threads are there from the start
     std::thread thread_;  // last: it uses all of the above
 };
 
