@@ -202,7 +202,7 @@ void FramePlanner::find_items(const View& view) {
     if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
             return is_mirror(*placed.scene, item.geometry, item.material);
         }))
-        unculled_items_ = items_;  // what lies beside the picture may be seen in a mirror
+        unculled_items_ = items_;  // a mirror can show items outside of the frustum
     cull_frustum(items_, view);
     plan_.markers = markers_of(view, scene::view_from_world(view.camera));
 

@@ -14,23 +14,9 @@ std::array<scene::Image, 6> six(int size, scene::Image (*make)(int, int, unsigne
 /// The parts before backgrounds that `view` is given to show.
 std::shared_ptr<const scene::PlacedScene> scene_with(const std::vector<scene::Image>& images,
                                                      const std::vector<Part>& given = {}) {
-    scene::SceneParts parts;
-    for (const scene::Image& image : images) parts.textures.push_back({"background.png", image, false});
-    for (const Part& part : given) {
-        const auto index = static_cast<scene::Index>(parts.geometries.size());
-        parts.materials.push_back(part.material);
-        parts.geometries.push_back(part.geometry);
-        parts.nodes.push_back({scene::Node{part.id,
-                                           {},
-                                           scene::NodeType::geometry,
-                                           scene::kNone,
-                                           {},
-                                           true,
-                                           part.matrix,
-                                           scene::GeometryData{index, index}},
-                               0});
-    }
-    return std::make_shared<scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts))));
+    std::vector<scene::Texture> textures;
+    for (const scene::Image& image : images) textures.push_back({"background.png", image, false});
+    return scene_of(given, std::move(textures));
 }
 
 plan::View before_picture(plan::View view) {

@@ -20,7 +20,7 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
     }
     const bool has_environment = view.background.cube_map.has_value();
     programs_.use(has_environment ? FixedProgram::background_environment : FixedProgram::background_image);
-    // A sample that lies beside its pixel's centre has moved the projection.
+    // The sample's offset in its pixel is part of the projection.
     const glm::dmat4& clip = camera.clip_from_view;
     glUniform2f(pixel_at, 2.0F / static_cast<float>(view.width), 2.0F / static_cast<float>(view.height));
     glUniform2f(shift_at, static_cast<float>(clip[2][0]), static_cast<float>(clip[2][1]));

@@ -24,7 +24,7 @@ struct PipelineState {
     Blend blend = Blend::none;
     bool cull_back = false;
     bool clockwise_front = false;
-    bool behind_edges = false;  ///< moved away from the eye by what a line's pixel may lie beside the line
+    bool behind_edges = false;  ///< polygon offset: edges on these faces pass the depth test
     bool clipped = false;       ///< by the plane of the program
 
     /// The same, with the sides of an item that show; `front_only`: of a two-sided one, too.

@@ -13,7 +13,7 @@ namespace vrut::gl {
 class MarkerPass {
 public:
     explicit MarkerPass(Programs& programs) : programs_(programs) {}
-    /// What depth tells of a point: whether it is hidden, or, in a wireframe, nothing.
+    /// Whether the depth test can hide a point; in a wireframe it cannot.
     enum class MarkerFade { by_depth, none };
 
     /// `points` in view space, all before the eye, are drawn in that order into `target`, whose depth is the
