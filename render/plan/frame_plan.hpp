@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,7 +77,12 @@ struct FramePlan {
     DrawLists overlay;                ///< over everything before: the faces of what is selected
     std::vector<DrawItem> selected;   ///< that itself, in no other list
     std::vector<glm::dvec3> markers;  ///< in view space, from far to near
+    /// Levels that the view wants and that are not resident: finer ones stand in their place.
+    std::vector<std::pair<scene::Index, const mesh::DetailLevel*>> missing_levels;
 };
+
+/// Whether a geometry's level of detail is on the GPU; empty: it does not matter.
+using IsResident = std::function<bool(scene::Index, const mesh::DetailLevel&)>;
 
 /// Whether a geometry in that material is a planar mirror; other reflective ones reflect the panorama.
 bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material);
@@ -89,7 +95,9 @@ class FramePlanner {
 public:
     /// Continues until `work` is spent. Returns true when the plan is complete. All calls must pass the same
     /// view; `shapes` must belong to its scene and caches what is computed for later frames.
-    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget);
+    /// Of the levels of detail, it plans with those that are resident.
+    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget,
+              const IsResident& is_resident = {});
     /// Once it is whole. It stays where it is.
     const FramePlan& plan() const { return plan_; }
 
@@ -97,7 +105,7 @@ private:
     enum class PlanStage { items, shapes, draw_lists, done };
     void find_items(const View& view);
     bool find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget);
-    void find_draw_lists(const View& view, TransparencyCache& shapes);
+    void find_draw_lists(const View& view, TransparencyCache& shapes, const IsResident& is_resident);
 
     PlanStage stage_ = PlanStage::items;
     std::vector<DrawItem> items_,

@@ -6,7 +6,8 @@
 
 namespace vrut::gl {
 
-/// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too.
+/// The edges of triangles as lines a pixel wide, each once; where a geometry's edges are not resident, the
+/// outlines of its triangles. Those of back faces are drawn too.
 class EdgePass {
 public:
     /// Realistic ones in their materials under the view's light, stylized ones in one colour; hidden where a
