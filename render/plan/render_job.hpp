@@ -29,8 +29,8 @@ struct RenderJob {
     FrameStats stats;    ///< of all steps since it was begun or went on
     Keep keep = Keep::image;
     /// Set before the first step: the image does not wait until levels of detail and edges are on the GPU. In
-    /// the place of a level it shows a finer one that is there, in the place of edges the outlines of all
-    /// triangles (FrameStats::substitutes). Other images wait for all that they show.
+    /// the place of a level it shows a finer one that is there; in a wireframe, parts without edges are faces
+    /// (FrameStats::substitutes). Other images wait for all that they show.
     bool interactive = false;
     bool memory_released = false;  ///< by the renderer for the sample that is next: it has no more to release
     std::vector<std::uint8_t>

@@ -92,9 +92,8 @@ struct FrameStats {
     int readbacks = 0;  ///< of pixels, from the GPU into memory
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;
-    int substitutes =
-        0;            ///< items whose triangles' outlines are drawn, since their edges are not uploaded yet
-    int uploads = 0;  ///< geometries, edges, textures and cube maps brought to the GPU
+    int substitutes = 0;     ///< items without their edges, which were not uploaded yet
+    int uploads = 0;         ///< geometries, edges, textures and cube maps brought to the GPU
     double render_ms = 0;    ///< from the first command to the fence behind the last
     double readback_ms = 0;  ///< from the GPU into memory
 };

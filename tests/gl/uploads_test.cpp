@@ -153,7 +153,7 @@ TEST_CASE("an upload that finds no memory midway leaves the scene before, and no
     CHECK(image.rgba == expected.rgba);
 }
 
-TEST_CASE("a wireframe is drawn at once, with the triangles' outlines until there are edges") {
+TEST_CASE("a wireframe is drawn at once, with faces until there are edges") {
     plan::View view = large_view();
     plan::View wireframe = view;
     wireframe.wireframe = true;

@@ -7,23 +7,12 @@ namespace vrut::gl {
 
 namespace {
 
-/// All triangles' outlines: an edge once for each of its triangles.
-void draw_outlines(const GpuGeometry& geometry, plan::FrameStats& stats) {
-    glDisable(GL_CULL_FACE);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    draw_triangles(geometry, stats);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    ++stats.substitutes;
-}
-
-/// `geometry` is the item's.
-void draw_edges(const GpuEdges* edges, const GpuGeometry& geometry, plan::FrameStats& stats) {
-    if (!edges) return draw_outlines(geometry, stats);
-    if (edges->index_count == 0) return;  // triangles that are points
-    glBindVertexArray(edges->vertex_array.get());
-    glDrawElements(GL_LINES, edges->index_count, GL_UNSIGNED_INT, nullptr);
+void draw_lines(const GpuEdges& edges, plan::FrameStats& stats) {
+    if (edges.index_count == 0) return;  // triangles that are points
+    glBindVertexArray(edges.vertex_array.get());
+    glDrawElements(GL_LINES, edges.index_count, GL_UNSIGNED_INT, nullptr);
     ++stats.draws;
-    stats.edges += static_cast<std::uint64_t>(edges->index_count) / 2;
+    stats.edges += static_cast<std::uint64_t>(edges.index_count) / 2;
 }
 
 }  // namespace
@@ -37,13 +26,21 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, plan
     glDepthMask(!stylized);  // of one colour, none hides another
     if (stylized) solid_color_.use(scene::kStylizedEdges, clip_from_view);
     for (const plan::DrawItem& item : items) {
+        const GpuEdges* edges = scene.edges(item.geometry);
+        stats.substitutes += edges == nullptr;
+        if (!edges && stylized) continue;  // its faces are drawn
         const GpuGeometry& geometry = scene.geometry(item);
         if (stylized)
             set_transform(item, geometry);
         else
-            programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
-                         scene.scene()->material(item.material));
-        draw_edges(scene.edges(item.geometry), geometry, stats);
+            programs.use(edges ? SurfacePrograms::SurfaceKind::edges : SurfacePrograms::SurfaceKind::faces,
+                         item, geometry, scene.scene()->material(item.material));
+        if (edges) {
+            draw_lines(*edges, stats);
+        } else {
+            set_cull_mode(item);
+            draw_triangles(geometry, stats);
+        }
     }
     glDepthMask(GL_TRUE);
 }
@@ -54,9 +51,11 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
     glDisable(GL_BLEND);
     solid_color_.use(color, clip_from_view);
     for (const plan::DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item);
-        set_transform(item, geometry);
-        draw_edges(scene.edges(item.geometry), geometry, stats);
+        const GpuEdges* edges = scene.edges(item.geometry);
+        stats.substitutes += edges == nullptr;
+        if (!edges) continue;
+        set_transform(item, scene.geometry(item));
+        draw_lines(*edges, stats);
     }
 }
 
