@@ -1,27 +1,15 @@
 #include "gl/gpu_scene.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <numeric>
-#include <tuple>
+#include <utility>
 
-#include "gl/gpu_textures.hpp"
+#include "gl/vertex_arrays.hpp"
 #include "mesh/simplification.hpp"
+#include "plan/frame_plan.hpp"
 
 namespace vrut::gl {
 
 namespace {
-
-struct GpuVertex {
-    glm::vec3 position, normal;
-};
-
-struct VertexArrays {
-    std::vector<GpuVertex> vertices;
-    std::vector<unsigned> corners;      ///< for each vertex the geometry's of which it is made
-    std::vector<glm::uvec3> triangles;  ///< empty: the geometry's
-};
 
 GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
     GlVertexArray result = make_vertex_array();
@@ -38,67 +26,6 @@ GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices)
     return result;
 }
 
-/// Corners whose normal is missing or zero get the face normal and a vertex of their own, so that the shader
-/// needs no special case. Most geometries have none of them and keep their index buffer.
-VertexArrays make_arrays(const scene::Geometry& geometry, const glm::dvec3& origin) {
-    const auto position = [&](unsigned i) { return glm::vec3(geometry.positions[i] - origin); };
-    // Unit, so that float can square them.
-    const auto normal = [&](unsigned i) {
-        const glm::dvec3 given = geometry.normals.empty() ? glm::dvec3(0) : glm::dvec3(geometry.normals[i]);
-        const double length = glm::length(given);
-        return length > 0 ? glm::vec3(given / length) : glm::vec3(0);
-    };
-
-    VertexArrays arrays;
-    bool all = !geometry.normals.empty();
-    if (all) {
-        arrays.vertices.reserve(geometry.positions.size());
-        for (unsigned i = 0; i < geometry.positions.size(); ++i) {
-            arrays.vertices.push_back({position(i), normal(i)});
-            all = all && arrays.vertices.back().normal != glm::vec3(0);
-        }
-        arrays.corners.resize(arrays.vertices.size());
-        std::iota(arrays.corners.begin(), arrays.corners.end(), 0U);
-    }
-    if (all) return arrays;
-    arrays.triangles = geometry.triangles;
-    for (glm::uvec3& triangle : arrays.triangles) {
-        const glm::uvec3 corners = triangle;
-        for (int k = 0; k < 3; ++k) {
-            if (normal(corners[k]) != glm::vec3(0)) continue;
-            const glm::dvec3& a = geometry.positions[corners[0]];
-            const glm::dvec3 cross =
-                glm::cross(geometry.positions[corners[1]] - a, geometry.positions[corners[2]] - a);
-            const double length = glm::length(cross);
-            triangle[k] = static_cast<unsigned>(arrays.vertices.size());
-            arrays.vertices.push_back(
-                {position(corners[k]), length > 0 ? glm::vec3(cross / length) : glm::vec3(0)});
-            arrays.corners.push_back(corners[k]);
-        }
-    }
-    return arrays;
-}
-
-const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const scene::Geometry& geometry) {
-    return arrays.triangles.empty() ? geometry.triangles : arrays.triangles;
-}
-
-/// Subtracts an integer offset, which repeating textures do not show, so that float keeps more digits of the
-/// interpolated coordinates.
-std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry) {
-    glm::dvec2 low(geometry.texcoords.front()), high = low;
-    for (const glm::dvec2 texcoord : geometry.texcoords) {
-        low = glm::min(low, texcoord);
-        high = glm::max(high, texcoord);
-    }
-    const glm::dvec2 origin = glm::floor((low + high) / 2.0);
-    std::vector<glm::vec2> result;
-    result.reserve(corners.size());
-    for (const unsigned corner : corners)
-        result.emplace_back(glm::dvec2(geometry.texcoords[corner]) - origin);
-    return result;
-}
-
 void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array) {
     const GLuint array = vertex_array.get();
     glVertexArrayVertexBuffer(array, 1, texcoords.get(), 0, sizeof(glm::vec2));
@@ -107,84 +34,45 @@ void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array)
     glVertexArrayAttribBinding(array, 2, 1);
 }
 
-GpuGeometry upload(const scene::Geometry& geometry) {
-    GpuGeometry result;
-    result.origin = geometry.bounds.center();
-    const VertexArrays arrays = make_arrays(geometry, result.origin);
-    result.vertices =
-        make_buffer("vertices", arrays.vertices.data(), arrays.vertices.size() * sizeof(GpuVertex));
-    const std::vector<glm::uvec3>& triangles = triangles_of(arrays, geometry);
-    result.indices = make_buffer("triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
-    result.index_count = static_cast<GLsizei>(triangles.size() * 3);
-
-    result.vertex_array = vertex_array_of(result.vertices, result.indices);
-    if (geometry.texcoords.empty()) return result;
-    const std::vector<glm::vec2> texcoords = texcoords_of(arrays.corners, geometry);
-    result.texcoords =
-        make_buffer("texture coordinates", texcoords.data(), texcoords.size() * sizeof(glm::vec2));
-    add_texcoords(result.texcoords, result.vertex_array);
-    return result;
+/// Of a geometry of the scene, whose triangles need no copy; else with its triangles.
+PreparedData geometry_data(const scene::Geometry& geometry) {
+    PreparedData data;
+    data.arrays = make_arrays(geometry, geometry.bounds.center());
+    if (!geometry.texcoords.empty()) data.texcoords = texcoords_of(data.arrays.corners, geometry);
+    return data;
 }
 
-/// For each position the lowest index of one that is the same, so that corners with normals of their own are
-/// known as one.
-std::vector<unsigned> first_with_same_position(const std::vector<glm::dvec3>& positions) {
-    std::vector<unsigned> order(positions.size());
-    std::iota(order.begin(), order.end(), 0U);
-    const auto before = [&](unsigned a, unsigned b) {
-        const glm::dvec3 &p = positions[a], &q = positions[b];
-        return std::tie(p.x, p.y, p.z, a) < std::tie(q.x, q.y, q.z, b);
-    };
-    std::sort(order.begin(), order.end(), before);
-    std::vector<unsigned> first(positions.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
-        first[order[i]] = same ? first[order[i - 1]] : order[i];
-    }
-    return first;
+PreparedData level_data(const scene::Geometry& geometry, const mesh::DetailLevel& level) {
+    scene::Geometry simplified = mesh::geometry_of(geometry, level);
+    PreparedData data = geometry_data(simplified);
+    if (data.arrays.triangles.empty()) data.arrays.triangles = std::move(simplified.triangles);
+    return data;
 }
 
-/// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
-std::vector<glm::uvec2> unique_edges(const scene::Geometry& geometry,
-                                     const std::vector<glm::uvec3>& vertices) {
-    struct EdgeCandidate {
-        glm::uvec2 corners;  // known as one, the lower first
-        std::size_t number;
-        glm::uvec2 vertices;
-    };
-    const std::vector<unsigned> representative = first_with_same_position(geometry.positions);
-    std::vector<EdgeCandidate> edges;
-    edges.reserve(vertices.size() * 3);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-        for (int k = 0; k < 3; ++k) {
-            const int next = (k + 1) % 3;
-            const unsigned a = representative[geometry.triangles[i][k]],
-                           b = representative[geometry.triangles[i][next]];
-            if (a == b) continue;
-            edges.push_back(
-                {{std::min(a, b), std::max(a, b)}, edges.size(), {vertices[i][k], vertices[i][next]}});
-        }
-    const auto key = [](const EdgeCandidate& edge) {
-        return std::tie(edge.corners.x, edge.corners.y, edge.number);
-    };
-    std::sort(edges.begin(), edges.end(),
-              [&](const EdgeCandidate& a, const EdgeCandidate& b) { return key(a) < key(b); });
-    std::vector<glm::uvec2> result;
-    for (std::size_t i = 0; i < edges.size(); ++i)
-        if (i == 0 || edges[i].corners != edges[i - 1].corners) result.push_back(edges[i].vertices);
-    return result;
+PreparedData edges_data(const scene::Geometry& geometry) {
+    const VertexArrays arrays = make_arrays(geometry, geometry.bounds.center());
+    PreparedData data;
+    data.edges = unique_edges(geometry, triangles_of(arrays, geometry));
+    return data;
 }
 
-GpuEdges upload_edges(const scene::Geometry& geometry, const GpuGeometry& uploaded) {
-    GpuEdges result;
-    const VertexArrays arrays = make_arrays(geometry, uploaded.origin);
-    const auto edges = unique_edges(geometry, triangles_of(arrays, geometry));
-    if (edges.empty()) return result;
-    result.indices = make_buffer("edges", edges.data(), edges.size() * sizeof(glm::uvec2));
-    result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
-    result.index_count = static_cast<GLsizei>(edges.size() * 2);
-    return result;
+/// Without contents; those are for `upload` to copy.
+template <class Element>
+GlBuffer create_buffer(const char* what, const std::vector<Element>& elements, Upload& upload) {
+    GlBuffer buffer = make_dynamic_buffer(what, elements.size() * sizeof(Element));
+    upload.add(buffer, elements);
+    return buffer;
 }
+
+int limit_of(GLenum name) {
+    GLint limit = 0;
+    glGetIntegerv(name, &limit);
+    return limit;
+}
+
+using Kind = ResourceKey::Kind;
+
+ResourceKey key_of(Kind kind, scene::Index index, int level = 0) { return {kind, {index, level}}; }
 
 }  // namespace
 
@@ -194,72 +82,254 @@ GpuScene::GpuScene(std::shared_ptr<const scene::Scene> scene)
       edges_(geometries_.size()),
       textures_(scene_->textures().size()) {}
 
-void GpuScene::upload_shown(const plan::View& view) {
-    for (const plan::DrawItem& item : plan::visible_items(view)) {
-        geometry(item.geometry);
-        if (item.texture != scene::kNone) texture(item.texture);
+// --- requests
+
+bool GpuScene::is_resident(const ResourceKey& key) const {
+    const auto index = static_cast<std::size_t>(key.indices[0]);
+    switch (key.kind) {
+        case Kind::geometry:
+            return bool(geometries_[index].vertex_array);
+        case Kind::level:
+            return levels_.contains({key.indices[0], key.indices[1]});
+        case Kind::edges:
+            return edges_[index].has_value();
+        case Kind::texture:
+            return bool(textures_[index]);
+        case Kind::cube_map:
+            return cube_maps_.contains(key.indices);
     }
-    if (view.background.cube_map)
-        cube_map(*view.background.cube_map);
-    else if (view.background.texture != scene::kNone)
-        texture(view.background.texture);
+    return false;
 }
 
-const GpuGeometry& GpuScene::geometry(scene::Index index) {
-    GpuGeometry& geometry = geometries_[static_cast<std::size_t>(index)];
-    if (!geometry.vertex_array) {
-        geometry = upload(scene_->geometries()[static_cast<std::size_t>(index)]);
-        ++uploads_;
+bool GpuScene::can_draw(scene::Index geometry, const mesh::DetailLevel& level) const {
+    if (is_resident(key_of(Kind::level, geometry, level.number))) return true;
+    const auto any = levels_.lower_bound({geometry, 0});
+    return !is_resident(key_of(Kind::geometry, geometry)) &&
+           (any == levels_.end() || any->first.first != geometry);
+}
+
+/// Of what is not resident.
+template <class Make>
+bool GpuScene::request(const ResourceKey& key, Need need, const Make& make) {
+    if (need == Need::soon && failed_.contains(key)) return false;
+    const auto [requested, is_new] = requested_.try_emplace(key, need);
+    if (need == Need::now) requested->second = need;
+    if (is_new) preparation_.post(key, need, make);
+    return false;
+}
+
+bool GpuScene::request_geometry(scene::Index index, Need need) {
+    const ResourceKey key = key_of(Kind::geometry, index);
+    return is_resident(key) ||
+           request(key, need, [scene = scene_, &read = read_geometry(index)] { return geometry_data(read); });
+}
+
+bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
+                       const std::shared_ptr<const mesh::DetailLevels>& levels, Need need) {
+    const ResourceKey key = key_of(Kind::level, geometry, level.number);
+    return is_resident(key) ||
+           request(key, need, [scene = scene_, levels, &read = read_geometry(geometry), &level] {
+               return level_data(read, level);
+           });
+}
+
+bool GpuScene::request(const plan::DrawItem& item, const std::shared_ptr<const mesh::DetailLevels>& levels) {
+    const bool has_texture = item.texture == scene::kNone || request_texture(item.texture);
+    if (item.level) return request(item.geometry, *item.level, levels, Need::now) && has_texture;
+    const bool has_level = !item.order && is_resident(key_of(Kind::level, item.geometry, 0));
+    return (has_level || request_geometry(item.geometry, Need::now)) && has_texture;
+}
+
+bool GpuScene::request_edges(const plan::DrawItem& item, Need need) {
+    const scene::Index index = item.geometry;
+    const ResourceKey key = key_of(Kind::edges, index);
+    const bool has_geometry = request_geometry(index, need);
+    const bool has_edges =
+        is_resident(key) ||
+        request(key, need, [scene = scene_, &read = read_geometry(index)] { return edges_data(read); });
+    return has_edges && has_geometry;
+}
+
+bool GpuScene::request_texture(scene::Index index) {
+    return is_resident(key_of(Kind::texture, index)) ||
+           request(key_of(Kind::texture, index), Need::now, make_texture(index));
+}
+
+std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
+    return [scene = scene_, index, largest = limit_of(GL_MAX_TEXTURE_SIZE)] {
+        PreparedData data;
+        data.texture = texture_data(scene->textures()[static_cast<std::size_t>(index)].image, largest);
+        return data;
+    };
+}
+
+bool GpuScene::request_cube_map(const std::array<scene::Index, 6>& textures) {
+    const ResourceKey key{Kind::cube_map, textures};
+    return is_resident(key) || request(key, Need::now, make_cube_map(textures));
+}
+
+std::function<PreparedData()> GpuScene::make_cube_map(const std::array<scene::Index, 6>& textures) const {
+    return [scene = scene_, textures, largest = limit_of(GL_MAX_CUBE_MAP_TEXTURE_SIZE)] {
+        std::array<const scene::Image*, 6> images{};
+        for (std::size_t i = 0; i < 6; ++i)
+            images[i] = &scene->textures()[static_cast<std::size_t>(textures[i])].image;
+        PreparedData data;
+        data.texture = cube_map_data(images, largest);
+        return data;
+    };
+}
+
+bool GpuScene::request_background(const plan::View& view) {
+    if (view.background.cube_map) return request_cube_map(*view.background.cube_map);
+    return view.background.texture == scene::kNone || request_texture(view.background.texture);
+}
+
+bool GpuScene::request_shown(const plan::View& view) {
+    bool all = request_background(view);
+    for (const plan::DrawItem& item : plan::visible_items(view)) all = request(item, view.levels) && all;
+    return all;
+}
+
+// --- uploads
+
+void GpuScene::create_geometry(Arrival& arrival) {
+    const PreparedData& data = arrival.result.data;
+    const scene::Geometry& read = read_geometry(arrival.result.key.indices[0]);
+    GpuGeometry& geometry = arrival.geometry;
+    geometry.origin = read.bounds.center();
+    const std::vector<glm::uvec3>& triangles = triangles_of(data.arrays, read);
+    geometry.vertices = create_buffer("vertices", data.arrays.vertices, arrival.upload);
+    geometry.indices = create_buffer("triangles", triangles, arrival.upload);
+    geometry.index_count = static_cast<GLsizei>(triangles.size() * 3);
+    geometry.vertex_array = vertex_array_of(geometry.vertices, geometry.indices);
+    if (data.texcoords.empty()) return;
+    geometry.texcoords = create_buffer("texture coordinates", data.texcoords, arrival.upload);
+    add_texcoords(geometry.texcoords, geometry.vertex_array);
+}
+
+void GpuScene::create_edges(Arrival& arrival) {
+    const std::vector<glm::uvec2>& edges = arrival.result.data.edges;
+    if (edges.empty()) return;
+    arrival.edges.indices = create_buffer("edges", edges, arrival.upload);
+    arrival.edges.index_count = static_cast<GLsizei>(edges.size() * 2);
+}
+
+void GpuScene::create_storage(Arrival& arrival) {
+    const ResourceKey& key = arrival.result.key;
+    if (key.kind == Kind::geometry || key.kind == Kind::level) {
+        create_geometry(arrival);
+    } else if (key.kind == Kind::edges) {
+        create_edges(arrival);
+    } else {
+        const TextureData& data = arrival.result.data.texture;
+        arrival.texture = make_texture_for(data);
+        for (const TextureImage& image : data.images) arrival.upload.add(arrival.texture, image);
     }
-    return geometry;
+    arrival.has_storage = true;
+}
+
+void GpuScene::finish(Arrival& arrival) {
+    const ResourceKey& key = arrival.result.key;
+    const scene::Index index = key.indices[0];
+    const auto at = static_cast<std::size_t>(index);
+    switch (key.kind) {
+        case Kind::geometry:
+            geometries_[at] = std::move(arrival.geometry);
+            break;
+        case Kind::level:
+            levels_[{index, key.indices[1]}] = std::move(arrival.geometry);
+            // The same triangles in another order: edges alone need the file's.
+            if (key.indices[1] == 0 && !edges_[at] && !requested_.contains(key_of(Kind::edges, index)))
+                geometries_[at] = {};
+            break;
+        case Kind::edges:
+            if (arrival.edges.indices)
+                arrival.edges.vertex_array = vertex_array_of(geometry(index).vertices, arrival.edges.indices);
+            edges_[at] = std::move(arrival.edges);
+            break;
+        case Kind::texture:
+            textures_[at] = std::move(arrival.texture);
+            break;
+        case Kind::cube_map:
+            cube_maps_[key.indices] = std::move(arrival.texture);
+            break;
+    }
+    ++uploads_;
+}
+
+/// True if it is resident.
+bool GpuScene::proceed(Arrival& arrival, plan::DrawBudget& budget) {
+    constexpr std::int64_t kObject = 400;  // for its storage, in units of DrawBudget
+    if (arrival.result.error) std::rethrow_exception(arrival.result.error);
+    if (is_resident(arrival.result.key)) return true;  // it was uploaded at once meanwhile
+    if (!arrival.has_storage) {
+        budget.spend(kObject);
+        create_storage(arrival);
+    }
+    if (!arrival.upload.step(budget)) return false;
+    finish(arrival);
+    return true;
+}
+
+void GpuScene::upload(plan::DrawBudget& budget) {
+    while (!budget.is_spent()) {
+        if (!arrival_) {
+            auto prepared = preparation_.take();
+            if (!prepared) return;
+            arrival_.emplace(Arrival{*std::move(prepared)});
+        }
+        const ResourceKey key = arrival_->result.key;
+        try {
+            if (!proceed(*arrival_, budget)) continue;
+            arrival_.reset();
+            requested_.erase(key);
+        } catch (const std::exception&) {
+            arrival_.reset();
+            if (requested_.extract(key).mapped() == Need::now) throw;
+            failed_.insert(key);
+        }
+    }
+}
+
+void GpuScene::upload_at_once(const ResourceKey& key, const std::function<PreparedData()>& make) {
+    Arrival arrival{{key, make(), nullptr}};
+    create_storage(arrival);
+    for (plan::DrawBudget budget(true); !arrival.upload.step(budget);) budget = plan::DrawBudget(true);
+    finish(arrival);
+}
+
+// --- lookups
+
+const GpuGeometry& GpuScene::geometry(scene::Index index) {
+    const ResourceKey key = key_of(Kind::geometry, index);
+    if (!is_resident(key)) upload_at_once(key, [&] { return geometry_data(read_geometry(index)); });
+    return geometries_[static_cast<std::size_t>(index)];
 }
 
 const GpuGeometry& GpuScene::geometry(const plan::DrawItem& item) {
-    if (!item.level) return geometry(item.geometry);
-    GpuGeometry& level = levels_[{item.geometry, item.level->number}];
-    if (!level.vertex_array) {
-        level = upload(
-            mesh::geometry_of(scene_->geometries()[static_cast<std::size_t>(item.geometry)], *item.level));
-        ++uploads_;
-        // The same in another order: what still needs the file's uploads it again.
-        if (item.level->number == 0) geometries_[static_cast<std::size_t>(item.geometry)] = {};
-    }
-    return level;
+    const ResourceKey key = key_of(Kind::level, item.geometry, item.level ? item.level->number : 0);
+    if (item.level && !is_resident(key))
+        upload_at_once(key, [&] { return level_data(read_geometry(item.geometry), *item.level); });
+    const bool as_in_file = !item.level && (is_resident(key_of(Kind::geometry, item.geometry)) ||
+                                            item.order || !is_resident(key));
+    return as_in_file ? geometry(item.geometry) : levels_.at({item.geometry, key.indices[1]});
 }
 
-bool GpuScene::is_resident(const plan::DrawItem& item) const {
-    if (!item.level) return bool(geometries_[static_cast<std::size_t>(item.geometry)].vertex_array);
-    return levels_.contains({item.geometry, item.level->number});
-}
-
-const GpuEdges& GpuScene::edges(scene::Index index) {
-    std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
-    if (!edges) {
-        edges = upload_edges(scene_->geometries()[static_cast<std::size_t>(index)], geometry(index));
-        ++uploads_;
-    }
-    return *edges;
+const GpuEdges* GpuScene::edges(scene::Index index) const {
+    const std::optional<GpuEdges>& edges = edges_[static_cast<std::size_t>(index)];
+    return edges ? &*edges : nullptr;
 }
 
 const GlTexture& GpuScene::texture(scene::Index index) {
-    GlTexture& texture = textures_[static_cast<std::size_t>(index)];
-    if (!texture) {
-        texture = upload_texture(scene_->textures()[static_cast<std::size_t>(index)].image);
-        ++uploads_;
-    }
-    return texture;
+    const ResourceKey key = key_of(Kind::texture, index);
+    if (!is_resident(key)) upload_at_once(key, make_texture(index));
+    return textures_[static_cast<std::size_t>(index)];
 }
 
 const GlTexture& GpuScene::cube_map(const std::array<scene::Index, 6>& textures) {
-    GlTexture& cube_map = cube_maps_[textures];
-    if (!cube_map) {
-        std::array<const scene::Image*, 6> images{};
-        for (std::size_t i = 0; i < 6; ++i)
-            images[i] = &scene_->textures()[static_cast<std::size_t>(textures[i])].image;
-        cube_map = upload_cube_map(images);
-        ++uploads_;
-    }
-    return cube_map;
+    const ResourceKey key{Kind::cube_map, textures};
+    if (!is_resident(key)) upload_at_once(key, make_cube_map(textures));
+    return cube_maps_.at(textures);
 }
 
 bool GpuScene::ByOrder::operator()(const GpuTriangles* a, const GpuTriangles* b) const {

@@ -1,14 +1,19 @@
 #pragma once
 
 #include <array>
+#include <chrono>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "gl/handles.hpp"
+#include "gl/preparation.hpp"
+#include "gl/upload.hpp"
 #include "plan/frame_plan.hpp"
 #include "scene/scene.hpp"
 
@@ -42,31 +47,80 @@ struct GpuTriangles {
     GLsizei index_count = 0;
 };
 
-/// The geometries and textures of a scene, each uploaded when it is first drawn.
+/// The geometries and textures of a scene on the GPU. Their data is made on other threads (Preparation), when
+/// it is first asked for, and copied in steps.
 class GpuScene {
 public:
     explicit GpuScene(std::shared_ptr<const scene::Scene> scene);
     const std::shared_ptr<const scene::Scene>& scene() const { return scene_; }
-    /// What a view of it shows, in the picture or beside it. Throws OutOfMemory, as all below.
-    void upload_shown(const plan::View& view);
+
+    // Each asks for what is not resident, and returns true if all is resident.
+    /// What a view of it shows, in the picture or beside it.
+    bool request_shown(const plan::View& view);
+    /// What an item's faces take; `levels` hold its level, if it has one.
+    bool request(const plan::DrawItem& item, const std::shared_ptr<const mesh::DetailLevels>& levels);
+    bool request(scene::Index geometry, const mesh::DetailLevel& level,
+                 const std::shared_ptr<const mesh::DetailLevels>& levels, Need need);
+    /// What an item's edges take.
+    bool request_edges(const plan::DrawItem& item, Need need);
+    bool request_background(const plan::View& view);
+
+    /// Copies what is made until `budget` is spent. Throws OutOfMemory for what is needed now, as the lookups
+    /// below do; what is needed soon is not asked for again as such.
+    void upload(plan::DrawBudget& budget);
+    /// Until there is something to copy, or `patience` has passed.
+    void wait(std::chrono::milliseconds patience) const { preparation_.wait(patience); }
+    /// Whether nothing that was asked for is missing.
+    bool is_complete() const { return requested_.empty(); }
+
+    /// Whether a level is resident; also where nothing is that could stand in its place.
+    bool can_draw(scene::Index geometry, const mesh::DetailLevel& level) const;
+
+    // Of what was not asked for before, all is made and copied at once.
     const GpuGeometry& geometry(scene::Index index);
-    /// Of an item: its level's, if it has one.
+    /// Of an item: its level's, if it has one; else the file's, or level 0, which has the same triangles.
     const GpuGeometry& geometry(const plan::DrawItem& item);
-    /// Whether that is there already.
-    bool is_resident(const plan::DrawItem& item) const;
-    const GpuEdges& edges(scene::Index index);
+    /// Null while they are not resident.
+    const GpuEdges* edges(scene::Index index) const;
     /// Its triangles in an item's order, which is not null. Items of the same geometry and order share them.
     /// Beyond kMaxSortedBytes those that have not been asked for the longest are given back; a result is
     /// valid until the next call.
     const GpuTriangles& sorted_triangles(const plan::DrawItem& item);
     static constexpr std::size_t kMaxSortedBytes = std::size_t{32} << 20;
     const GlTexture& texture(scene::Index index);
-    /// Of the six textures (upload_cube_map()).
+    /// Of the six textures (cube_map_data()).
     const GlTexture& cube_map(const std::array<scene::Index, 6>& textures);
     /// Geometries, their levels, orders and edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
 private:
+    /// On its way to the GPU.
+    struct Arrival {
+        Preparation::Result result;
+        bool has_storage = false;
+        GpuGeometry geometry = {};
+        GpuEdges edges = {};
+        GlTexture texture = {};
+        Upload upload = {};
+    };
+    bool is_resident(const ResourceKey& key) const;
+    template <class Make>
+    bool request(const ResourceKey& key, Need need, const Make& make);
+    bool request_geometry(scene::Index index, Need need);
+    bool request_texture(scene::Index index);
+    bool request_cube_map(const std::array<scene::Index, 6>& textures);
+    std::function<PreparedData()> make_texture(scene::Index index) const;
+    std::function<PreparedData()> make_cube_map(const std::array<scene::Index, 6>& textures) const;
+    const scene::Geometry& read_geometry(scene::Index index) const {
+        return scene_->geometries()[static_cast<std::size_t>(index)];
+    }
+    void create_storage(Arrival& arrival);
+    void create_geometry(Arrival& arrival);
+    void create_edges(Arrival& arrival);
+    bool proceed(Arrival& arrival, plan::DrawBudget& budget);
+    void finish(Arrival& arrival);
+    void upload_at_once(const ResourceKey& key, const std::function<PreparedData()>& make);
+
     std::shared_ptr<const scene::Scene> scene_;
     std::vector<GpuGeometry> geometries_;
     std::map<std::pair<scene::Index, int>, GpuGeometry> levels_;  // by geometry and the level's number
@@ -84,6 +138,11 @@ private:
     std::vector<GlTexture> textures_;
     std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
     int uploads_ = 0;
+
+    Preparation preparation_;
+    std::map<ResourceKey, Need> requested_;  // and not resident yet
+    std::set<ResourceKey> failed_;           // of those that are needed soon
+    std::optional<Arrival> arrival_;         // the one that is being copied
 };
 
 }  // namespace vrut::gl

@@ -8,26 +8,6 @@ namespace vrut::gl {
 
 namespace {
 
-/// An image and the levels below it, from the first that is no larger than `limit` names.
-class MipChain {
-public:
-    MipChain(const scene::Image& image, GLenum limit) : image_(image), below_(mip_levels(image)) {
-        GLint largest = 0;
-        glGetIntegerv(limit, &largest);
-        while (std::max(at(0).width, at(0).height) > largest) ++first_;
-    }
-    int count() const { return static_cast<int>(below_.size() - first_) + 1; }
-    const scene::Image& at(int level) const {
-        const std::size_t i = first_ + static_cast<std::size_t>(level);
-        return i == 0 ? image_ : below_[i - 1];
-    }
-
-private:
-    const scene::Image& image_;
-    std::vector<scene::Image> below_;
-    std::size_t first_ = 0;
-};
-
 scene::Image upside_down(const scene::Image& image) {
     scene::Image result;
     result.resize(image.width, image.height);
@@ -37,35 +17,39 @@ scene::Image upside_down(const scene::Image& image) {
     return result;
 }
 
+bool fits(const scene::Image& image, int largest) { return std::max(image.width, image.height) <= largest; }
+
 }  // namespace
 
-GlTexture upload_texture(const scene::Image& image) {
-    const MipChain levels(image, GL_MAX_TEXTURE_SIZE);
-    GlTexture texture =
-        make_mipmapped_texture(GL_TEXTURE_2D, levels.at(0).width, levels.at(0).height, levels.count());
-    for (int i = 0; i < levels.count(); ++i) {
-        const scene::Image& level = levels.at(i);
-        glTextureSubImage2D(texture.get(), i, 0, 0, level.width, level.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                            level.rgba.data());
+TextureData texture_data(const scene::Image& image, int largest) {
+    TextureData data;
+    if (fits(image, largest)) data.images.push_back({&image});
+    for (scene::Image& level : mip_levels(image)) {
+        if (!fits(level, largest)) continue;
+        data.made.push_back(std::move(level));
+        data.images.push_back({&data.made.back(), static_cast<GLint>(data.images.size())});
     }
-    return texture;
+    return data;
 }
 
-GlTexture upload_cube_map(const std::array<const scene::Image*, 6>& images) {
-    constexpr std::array<int, 6> kFaces{0, 1, 2, 3, 5, 4};  // of px nx py ny pz nz
-    GlTexture texture;
-    for (std::size_t face = 0; face < 6; ++face) {
-        const MipChain levels(*images[face], GL_MAX_CUBE_MAP_TEXTURE_SIZE);
-        if (!texture)
-            texture = make_mipmapped_texture(GL_TEXTURE_CUBE_MAP, levels.at(0).width, levels.at(0).height,
-                                             levels.count());
-        for (int i = 0; i < levels.count(); ++i) {
-            const scene::Image level = upside_down(levels.at(i));  // GL has the top row of a face first
-            glTextureSubImage3D(texture.get(), i, 0, 0, kFaces[face], level.width, level.height, 1, GL_RGBA,
-                                GL_UNSIGNED_BYTE, level.rgba.data());
+TextureData cube_map_data(const std::array<const scene::Image*, 6>& images, int largest) {
+    constexpr std::array<GLint, 6> kFaces{0, 1, 2, 3, 5, 4};  // of px nx py ny pz nz
+    TextureData data;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const TextureData face = texture_data(*images[k], largest);
+        for (const TextureImage& level : face.images) {
+            data.made.push_back(upside_down(*level.image));  // GL has the top row of a face first
+            data.images.push_back({&data.made.back(), level.level, kFaces[k]});
         }
     }
-    return texture;
+    return data;
+}
+
+GlTexture make_texture_for(const TextureData& data) {
+    const bool is_cube_map = data.images.front().face.has_value();
+    const scene::Image& largest = *data.images.front().image;
+    return make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D, largest.width,
+                                  largest.height, data.images.back().level + 1);
 }
 
 }  // namespace vrut::gl

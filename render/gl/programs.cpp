@@ -1,6 +1,8 @@
 #include "gl/programs.hpp"
 
+#include <algorithm>
 #include <cassert>
+#include <cstdint>
 
 #include "gl/shader_program.hpp"
 #include "gl/shader_sources.hpp"
@@ -177,13 +179,29 @@ const GlProgram& Programs::at(const SurfaceVariant& variant) {
     return compiled;
 }
 
+bool Programs::is_compiled(FixedProgram program) const {
+    return bool(fixed_[static_cast<std::size_t>(program)]);
+}
+
+bool Programs::is_compiled(const SurfaceVariant& variant) const { return surfaces_.contains(variant); }
+
 void Programs::use(FixedProgram program) { glUseProgram(at(program).get()); }
 
 void Programs::use(const SurfaceVariant& variant) { glUseProgram(at(variant).get()); }
 
-void Programs::compile_for(const scene::Scene& scene, plan::Methods::Lighting lit_at) {
-    for (std::size_t i = 0; i < kFixedPrograms; ++i) at(static_cast<FixedProgram>(i));
-    for (const SurfaceVariant& variant : surface_variants(scene, lit_at)) at(variant);
+bool Programs::compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at,
+                            plan::DrawBudget& budget) {
+    constexpr std::int64_t kProgram = plan::DrawBudget::kMostUpload;
+    const auto compile_next = [&](auto program) {
+        const int before = compiled_;
+        if (budget.is_spent() && !is_compiled(program)) return false;
+        at(program);
+        budget.spend((compiled_ - before) * kProgram);
+        return true;
+    };
+    for (std::size_t i = 0; i < kFixedPrograms; ++i)
+        if (!compile_next(static_cast<FixedProgram>(i))) return false;
+    return std::ranges::all_of(surface_variants(scene, lit_at), compile_next);
 }
 
 }  // namespace vrut::gl

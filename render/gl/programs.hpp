@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gl/handles.hpp"
+#include "plan/draw_budget.hpp"
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
 
@@ -74,13 +75,15 @@ public:
     /// Makes it the current one.
     void use(FixedProgram program);
     void use(const SurfaceVariant& variant);
-    /// Compiles all that views of a scene may need. Takes milliseconds for each program that is not there
-    /// yet.
-    void compile_for(const scene::Scene& scene, plan::Methods::Lighting lit_at);
+    /// Compiles what views of a scene may need until `budget` is spent: each program spends
+    /// DrawBudget::kMostUpload. Returns true when all are compiled.
+    bool compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at, plan::DrawBudget& budget);
     /// How many were compiled so far.
     int compiled() const { return compiled_; }
 
 private:
+    bool is_compiled(FixedProgram program) const;
+    bool is_compiled(const SurfaceVariant& variant) const;
     const GlProgram& at(FixedProgram program);
     const GlProgram& at(const SurfaceVariant& variant);
 

@@ -1,6 +1,7 @@
 #include "gl/sample_drawing.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 #include "gl/passes/drawing.hpp"
 #include "math/sample_sequence.hpp"
@@ -38,8 +39,10 @@ struct SampleDrawing::StepContext {
     std::optional<const plan::MirrorItem*> bound = {};
 };
 
-SampleDrawing::SampleDrawing(const plan::RenderJob& job, std::unique_ptr<SampleTargets> targets)
+SampleDrawing::SampleDrawing(const plan::RenderJob& job, std::shared_ptr<GpuScene> scene,
+                             std::unique_ptr<SampleTargets> targets)
     : planner_(job.planner),
+      scene_(std::move(scene)),
       targets_(std::move(targets)),
       camera_{clip_of(job), scene::view_from_world(job.view.camera)},
       commands_(plan::draw_commands(job.planner->plan(), job.view)) {
@@ -63,8 +66,37 @@ void SampleDrawing::use_target(const plan::View& view, bool rgba16) {
     target.emplace(view.width, view.height, rgba16);
 }
 
-bool SampleDrawing::draw(plan::RenderJob& job, GpuScene* scene, Passes& passes, plan::DrawBudget& budget) {
-    StepContext step{job.view, job.planner->plan(), scene, passes, budget, job.stats};
+/// Asks for what the sample takes. Returns true if it can be drawn.
+bool SampleDrawing::request_all(const plan::RenderJob& job) const {
+    const Need need = job.interactive ? Need::soon : Need::now;
+    bool all = !BackgroundPass::is_needed(job.view) || scene_->request_background(job.view);
+    for (const plan::DrawCommand& command : commands_) {
+        const bool edges = command.kind == Kind::edges || command.kind == Kind::edges_overlay;
+        for (const plan::DrawItem& item : command.items)
+            if (!edges || !scene_->request_edges(item, need))
+                all = (!edges || job.interactive) && scene_->request(item, job.view.levels) && all;
+        for (const plan::MirrorItem& mirror : command.mirrors)
+            all = scene_->request(mirror.surface, job.view.levels) && all;
+    }
+    for (const auto& [geometry, level] : job.planner->plan().missing_levels)
+        scene_->request(geometry, *level, job.view.levels, Need::soon);
+    return all;
+}
+
+/// True if the sample can be drawn.
+bool SampleDrawing::upload(const plan::RenderJob& job, plan::DrawBudget& budget) const {
+    constexpr std::chrono::milliseconds kPatience{2};
+    const bool all = request_all(job);
+    plan::DrawBudget upload_budget(true, plan::DrawBudget::kMostUpload);
+    scene_->upload(upload_budget);
+    budget.spend(upload_budget.spent());
+    if (!all && upload_budget.spent() == 0) scene_->wait(kPatience);
+    return all;
+}
+
+bool SampleDrawing::draw(plan::RenderJob& job, Passes& passes, plan::DrawBudget& budget) {
+    if (scene_ && !upload(job, budget)) return false;
+    StepContext step{job.view, job.planner->plan(), scene_.get(), passes, budget, job.stats};
     while (command_ < commands_.size() && !budget.is_spent()) {
         const plan::DrawCommand& command = commands_[command_];
         if (!execute_if_seen(command, step)) continue;
@@ -144,8 +176,7 @@ std::span<const plan::DrawItem> SampleDrawing::next_batch(const plan::DrawComman
                                                           const math::PixelBox& box,
                                                           StepContext& step) const {
     return step.budget.next_batch(command.items.subspan(item_), *step.scene->scene(), camera_.clip_from_view,
-                                  box, full_viewport().high,
-                                  [&](const plan::DrawItem& item) { return step.scene->is_resident(item); });
+                                  box, full_viewport().high);
 }
 
 void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const plan::DrawItem> items,

@@ -46,15 +46,20 @@ struct SampleTargets {
 /// The next sample of a rendering, which may take several steps. Others may be drawn between them.
 class SampleDrawing {
 public:
-    SampleDrawing(const plan::RenderJob& job, std::unique_ptr<SampleTargets> targets);
+    /// `scene` is the rendering's; null where it has none.
+    SampleDrawing(const plan::RenderJob& job, std::shared_ptr<GpuScene> scene,
+                  std::unique_ptr<SampleTargets> targets);
 
     bool belongs_to(const plan::RenderJob& job) const { return planner_.lock() == job.planner; }
     /// Whether nobody has the rendering any more.
     bool abandoned() const { return planner_.expired(); }
+    /// Kept until the sample is drawn, though others are drawn between its steps.
+    const std::shared_ptr<GpuScene>& scene() const { return scene_; }
 
     /// Draws on, until `work` is spent. True if the sample is drawn: then the picture's target holds it.
-    /// `scene` is the rendering's; null where it has none.
-    bool draw(plan::RenderJob& job, GpuScene* scene, Passes& passes, plan::DrawBudget& budget);
+    /// Until all that it takes is on the GPU it draws nothing, but uploads as much as
+    /// DrawBudget::kMostUpload.
+    bool draw(plan::RenderJob& job, Passes& passes, plan::DrawBudget& budget);
 
     Framebuffer& image_target() { return *targets_->image_target; }
     /// For another sample, whether this one is drawn or not.
@@ -66,6 +71,8 @@ public:
 private:
     struct StepContext;  ///< what drawing is given, and what is bound meanwhile
     void use_target(const plan::View& view, bool rgba16);
+    bool request_all(const plan::RenderJob& job) const;
+    bool upload(const plan::RenderJob& job, plan::DrawBudget& budget) const;
     void bind_target(const plan::MirrorItem* mirror, StepContext& step);
     /// True if the command is done.
     bool execute_if_seen(const plan::DrawCommand& command, StepContext& step);
@@ -87,6 +94,7 @@ private:
     CameraMatrices camera_in(const plan::MirrorItem* mirror) const;
 
     std::weak_ptr<const plan::FramePlanner> planner_;
+    std::shared_ptr<GpuScene> scene_;
     std::unique_ptr<SampleTargets> targets_;
     CameraMatrices camera_;
     std::vector<plan::DrawCommand> commands_;

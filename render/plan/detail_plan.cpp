@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -28,7 +29,8 @@ double max_scale(const glm::dmat3& m) {
 class LevelSelector {
 public:
     /// Levels that are made meanwhile wait for the next picture: all of a geometry's items see the same.
-    explicit LevelSelector(const View& view) : view_(view), scene_(*view.scene->scene) {
+    LevelSelector(FramePlan& plan, const View& view, const IsResident& is_resident)
+        : plan_(plan), view_(view), scene_(*view.scene->scene), is_resident_(is_resident) {
         for (std::size_t i = 0; i < scene_.geometries().size(); ++i)
             levels_.push_back(view.levels->of(static_cast<scene::Index>(i)));
     }
@@ -81,12 +83,23 @@ private:
         });
         const math::Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const double most = view_.detail / max_screen_space_scale(item.view_from_node, box, view_);
-        for (const mesh::DetailLevel& level : levels_[static_cast<std::size_t>(item.geometry)])
-            if (level.number == 0 || (!is_full_detail && level.error <= most)) item.level = &level;
+        const mesh::DetailLevel* missing = nullptr;
+        for (const mesh::DetailLevel& level :
+             std::views::reverse(levels_[static_cast<std::size_t>(item.geometry)])) {
+            if (level.number != 0 && (is_full_detail || level.error > most)) continue;
+            if (!is_resident_ || is_resident_(item.geometry, level)) {
+                item.level = &level;
+                break;
+            }
+            if (!missing) missing = &level;
+        }
+        if (missing) plan_.missing_levels.emplace_back(item.geometry, missing);
     }
 
+    FramePlan& plan_;
     const View& view_;
     const scene::Scene& scene_;
+    const IsResident& is_resident_;
     std::vector<std::span<const mesh::DetailLevel>> levels_;
 };
 
@@ -128,10 +141,10 @@ double max_screen_space_scale(const glm::dmat4& view_from_node, const math::Boun
     return max_scale(glm::dmat3(view_from_node)) * obliquity * view.height / (sides.height() * depth);
 }
 
-void select_levels(FramePlan& plan, const View& view) {
+void select_levels(FramePlan& plan, const View& view, const IsResident& is_resident) {
     if (!view.levels || style_of(view).edges) return;
     if (view.levels->scene() != view.scene->scene) return;
-    const LevelSelector selector(view);
+    const LevelSelector selector(plan, view, is_resident);
     selector.select_in(plan.scene);
     selector.select_in_mirrors(plan.overlay);
 }

@@ -11,8 +11,9 @@ double max_screen_space_scale(const glm::dmat4& view_from_node, const math::Boun
 /// Selects for each face the coarsest level of detail whose error stays within `view.detail` pixels. Level 0
 /// (all triangles, reordered), if there is one, is used when `view.detail` is 0 and for textured items.
 /// Selected items and glass with ordered triangles get no level. Items with equal geometry and matrix get the
-/// same level, so that their depths are equal.
-void select_levels(FramePlan& plan, const View& view);
+/// same level, so that their depths are equal. Only resident levels are selected: where the view would select
+/// another, that is noted in the plan, and a finer one, or none, stands in its place.
+void select_levels(FramePlan& plan, const View& view, const IsResident& is_resident = {});
 
 /// Culls the back faces of two-sided opaque items that are watertight: front faces of the same item hide
 /// them, so the image does not change. Skipped where the eye or the near plane may be inside, or a mirror

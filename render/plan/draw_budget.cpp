@@ -7,21 +7,18 @@ namespace vrut::plan {
 namespace {
 
 constexpr std::int64_t kDraw = 150, kTriangle = 3;
-constexpr std::int64_t kUpload = 400, kUploadedTriangle = 10;  // besides, for the first draw
 
-std::int64_t cost_of(const DrawItem& item, const scene::Geometry& geometry, bool is_uploaded) {
+std::int64_t cost_of(const DrawItem& item, const scene::Geometry& geometry) {
     const auto triangles =
         static_cast<std::int64_t>((item.level ? item.level->triangles : geometry.triangles).size());
-    const std::int64_t draw = kDraw + kTriangle * triangles;
-    return is_uploaded ? draw : draw + kUpload + kUploadedTriangle * triangles;
+    return kDraw + kTriangle * triangles;
 }
 
 }  // namespace
 
 std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items, const scene::Scene& scene,
                                                  const glm::dmat4& clip_from_view, const math::PixelBox& box,
-                                                 const glm::ivec2& viewport,
-                                                 const std::function<bool(const DrawItem&)>& is_uploaded) {
+                                                 const glm::ivec2& viewport) {
     std::size_t count = 0;
     for (; count < items.size() && !is_spent(); ++count) {
         const DrawItem& item = items[count];
@@ -29,7 +26,7 @@ std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items
         const math::PixelBox covered = math::intersection(
             pixel_box(geometry.bounds, clip_from_view * item.view_from_node, viewport), box);
         if (!covered.empty()) spend_pixels(std::int64_t{covered.size().x} * covered.size().y);
-        spend(cost_of(item, geometry, is_uploaded(item)));
+        spend(cost_of(item, geometry));
     }
     return items.first(count);
 }

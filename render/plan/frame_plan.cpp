@@ -226,15 +226,17 @@ bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, Draw
     return shapes_found_ == count;
 }
 
-void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes) {
+void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes,
+                                   const IsResident& is_resident) {
     if (!style_of(view).faces) return;
     plan_.scene = draw_lists_of(std::move(items_), unculled_items_, view, shapes);
     plan_.overlay = draw_lists_of(plan_.selected, unculled_items_, view, shapes);
-    select_levels(plan_, view);
+    select_levels(plan_, view, is_resident);
     cull_backfaces(plan_, view);
 }
 
-bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
+bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget& budget,
+                        const IsResident& is_resident) {
     while (stage_ != PlanStage::done && !budget.is_spent()) {
         switch (stage_) {
             case PlanStage::items:
@@ -247,7 +249,7 @@ bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget&
                 break;
             case PlanStage::draw_lists:
                 budget.spend(kOrdered * static_cast<std::int64_t>(items_.size() + plan_.selected.size()));
-                find_draw_lists(view, shapes);
+                find_draw_lists(view, shapes, is_resident);
                 stage_ = PlanStage::done;
                 break;
             case PlanStage::done:

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -76,7 +77,12 @@ struct FramePlan {
     DrawLists overlay;                ///< drawn over everything before: the selected faces
     std::vector<DrawItem> selected;   ///< the selected items; they are in no other list
     std::vector<glm::dvec3> markers;  ///< in view space, back to front
+    /// Levels that the view asks for and that are not resident. The items have finer ones instead.
+    std::vector<std::pair<scene::Index, const mesh::DetailLevel*>> missing_levels;
 };
+
+/// Returns true if a geometry's level of detail is on the GPU. Empty: all levels may be used.
+using IsResident = std::function<bool(scene::Index, const mesh::DetailLevel&)>;
 
 /// Returns true if a geometry with that material is a planar mirror; other reflective ones reflect the
 /// environment map.
@@ -90,7 +96,9 @@ class FramePlanner {
 public:
     /// Continues until `work` is spent. Returns true when the plan is complete. All calls must pass the same
     /// view; `shapes` must belong to its scene and caches what is computed for later frames.
-    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget);
+    /// An item's level is one for which `is_resident` returns true.
+    bool step(const View& view, TransparencyCache& shapes, DrawBudget& budget,
+              const IsResident& is_resident = {});
     /// The complete plan. Its address does not change.
     const FramePlan& plan() const { return plan_; }
 
@@ -98,7 +106,7 @@ private:
     enum class PlanStage { items, shapes, draw_lists, done };
     void find_items(const View& view);
     bool find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget);
-    void find_draw_lists(const View& view, TransparencyCache& shapes);
+    void find_draw_lists(const View& view, TransparencyCache& shapes, const IsResident& is_resident);
 
     PlanStage stage_ = PlanStage::items;
     std::vector<DrawItem> items_,

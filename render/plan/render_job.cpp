@@ -29,6 +29,7 @@ RenderJob::RenderJob(View what, scene::Image buffer, Keep what_to_keep)
 void RenderJob::refine(int more_samples, scene::Image buffer) {
     assert(keep == Keep::samples && more_samples >= samples);
     view.samples = more_samples;
+    interactive = false;
     stats = {};
     image = std::move(buffer);
     image.resize(view.width, view.height);
@@ -36,6 +37,7 @@ void RenderJob::refine(int more_samples, scene::Image buffer) {
 
 bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels) {
     ++job.samples;
+    job.memory_released = false;
     if (job.samples == 1) {
         (job.keep == RenderJob::Keep::samples ? job.first : job.image.rgba).swap(pixels);
     } else if (job.samples == 2) {

@@ -28,6 +28,11 @@ struct RenderJob {
     scene::Image image;  ///< of the view's size; its pixels once all samples are drawn
     FrameStats stats;    ///< of all steps since it was begun or went on
     Keep keep = Keep::image;
+    /// Set before the first step: the image does not wait until levels of detail and edges are on the GPU. In
+    /// the place of a level it shows a finer one that is there; in a wireframe, parts without edges are faces
+    /// (FrameStats::substitutes). Other images wait for all that they show.
+    bool interactive = false;
+    bool memory_released = false;  ///< by the renderer for the sample that is next: it has no more to release
     std::vector<std::uint8_t>
         first;  ///< bytes of the first sample, while it is the only one and there may be others
     std::vector<std::uint32_t> sums;  ///< for each byte of the image, over two samples or more; else empty

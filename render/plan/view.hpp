@@ -94,6 +94,7 @@ struct FrameStats {
     int readbacks = 0;  ///< of pixels, from the GPU into memory
     std::uint64_t triangles = 0;
     std::uint64_t edges = 0;
+    int substitutes = 0;     ///< items drawn without their edges, which are not resident yet
     int uploads = 0;         ///< geometries, edges, textures and cube maps uploaded to the GPU
     int programs = 0;        ///< compiled
     double render_ms = 0;    ///< from the first command to the fence behind the last

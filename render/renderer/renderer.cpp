@@ -55,21 +55,30 @@ struct Renderer::Impl {
     void use_scene(const std::shared_ptr<const scene::Scene>& wanted) {
         if (scene && scene->scene() == wanted) return;
         scene.reset();
-        if (staged && staged->scene() == wanted)
-            scene = std::move(staged);
-        else
-            scene = std::make_unique<gl::GpuScene>(wanted);
+        for (const gl::SampleDrawing& sample : in_flight)
+            if (sample.scene() && sample.scene()->scene() == wanted) scene = sample.scene();
+        if (!scene && staged && staged->scene() == wanted) scene = std::move(staged);
+        if (!scene) scene = std::make_shared<gl::GpuScene>(wanted);
         staged.reset();
         shapes.emplace(*wanted);
     }
 
-    void upload(const plan::View& view) {
-        staged.reset();
-        programs.compile_for(*view.scene->scene, view.methods.light);
-        if (scene && scene->scene() == view.scene->scene) return;
-        auto next = std::make_unique<gl::GpuScene>(view.scene->scene);
-        next->upload_shown(view);
-        staged = std::move(next);
+    bool upload_step(const plan::View& view) {
+        constexpr std::chrono::milliseconds kPatience{2};
+        const std::shared_ptr<const scene::Scene>& wanted = view.scene->scene;
+        forget_abandoned_samples();
+        auto next = std::exchange(staged, nullptr);  // given up if this throws
+        if (!next || next->scene() != wanted) {
+            next = scene && scene->scene() == wanted ? scene : std::make_shared<gl::GpuScene>(wanted);
+            if (next != scene) next->request_shown(view);
+        }
+        plan::DrawBudget budget(context.software(), plan::DrawBudget::kMostUpload);
+        if (next != scene) next->upload(budget);
+        const bool compiled = programs.compile_step(*wanted, view.methods.light, budget);
+        if (budget.spent() == 0 && !next->is_complete()) next->wait(kPatience);
+        gl::wait_for_gl();
+        staged = next;
+        return compiled && (next == scene || next->is_complete());
     }
 
     /// Gives back what was drawn with; what is needed comes again.
@@ -86,11 +95,15 @@ struct Renderer::Impl {
         const auto is_its = [&](const gl::SampleDrawing& sample) { return sample.belongs_to(job); };
         if (const auto found = std::ranges::find_if(in_flight, is_its); found != in_flight.end())
             return *found;
+        forget_abandoned_samples();
+        if (!targets) targets = std::make_unique<gl::SampleTargets>(programs);
+        return in_flight.emplace_back(job, job.view.scene ? scene : nullptr, std::move(targets));
+    }
+
+    void forget_abandoned_samples() {
         for (gl::SampleDrawing& sample : in_flight)
             if (sample.abandoned()) targets = sample.release();
         std::erase_if(in_flight, [](const gl::SampleDrawing& sample) { return sample.abandoned(); });
-        if (!targets) targets = std::make_unique<gl::SampleTargets>(programs);
-        return in_flight.emplace_back(job, std::move(targets));
     }
 
     void forget_sample_of(const plan::RenderJob& job) {
@@ -101,7 +114,7 @@ struct Renderer::Impl {
     bool draw(plan::RenderJob& job);
 
     gl::GlContext context;  // first: destroyed after everything below
-    std::unique_ptr<gl::GpuScene> scene, staged;
+    std::shared_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
     gl::Programs programs;
     gl::Passes passes{programs};
@@ -119,13 +132,18 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     if (view.scene) use_scene(view.scene->scene);
     plan::DrawBudget budget(context.software());
     if (!job.planner) job.planner = std::make_shared<plan::FramePlanner>();
-    if (view.scene && !job.planner->step(view, *shapes, budget)) {
+    plan::IsResident is_resident;
+    if (job.interactive)
+        is_resident = [this](scene::Index geometry, const mesh::DetailLevel& level) {
+            return scene->can_draw(geometry, level);
+        };
+    if (view.scene && !job.planner->step(view, *shapes, budget, is_resident)) {
         stats.render_ms += milliseconds_since(start);
         return false;
     }
     const int uploads_before = scene ? scene->uploads() : 0, programs_before = programs.compiled();
     gl::SampleDrawing& sample = sample_of(job);
-    const bool drawn = sample.draw(job, scene.get(), passes, budget);
+    const bool drawn = sample.draw(job, passes, budget);
     gl::wait_for_gl();
     stats.render_ms += milliseconds_since(start);
     stats.programs += programs.compiled() - programs_before;
@@ -177,10 +195,12 @@ bool Renderer::step(plan::RenderJob& job) {
     try {
         return impl_->step(job);
     } catch (const base::OutOfMemory&) {
+        if (job.memory_released) throw;
         // Much may be there of pictures before: levels of detail, edges, the targets of larger ones.
         impl_->release();
+        job.memory_released = true;
+        return false;
     }
-    return impl_->step(job);
 }
 
 void Renderer::render(const plan::View& view, scene::Image& image, plan::FrameStats& stats) {
@@ -191,11 +211,13 @@ void Renderer::render(const plan::View& view, scene::Image& image, plan::FrameSt
     stats = job.stats;
 }
 
+bool Renderer::upload_step(const plan::View& view) {
+    return impl_->draw_or_fail([&] { return impl_->upload_step(view); });
+}
+
 void Renderer::upload(const plan::View& view) {
-    impl_->draw_or_fail([&] {
-        impl_->upload(view);
-        return true;
-    });
+    while (!upload_step(view)) {
+    }
 }
 
 std::vector<scene::Index> Renderer::node_ids(const plan::View& view) {

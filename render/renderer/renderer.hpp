@@ -34,15 +34,20 @@ public:
     long gl_objects() const;
     std::vector<std::string> take_messages();
 
-    /// Uploads the geometry and textures that the view needs, and compiles the programs that any view of its
-    /// scene by the same methods can need, so that the next step() does not have to. The scene drawn last
-    /// stays on the GPU until then, or for good if this throws.
+    /// Uploads what the view's scene shows, in the image or beside it, and compiles the programs that any
+    /// view of the scene by the same methods can need, so that the next step() does not have to: as much as
+    /// fits the budget of one step (DrawBudget::kMostUpload). The data is prepared on another thread, for
+    /// which this waits a few milliseconds at most. Returns true when all is there. The scene drawn last
+    /// stays on the GPU until then, or for good if this throws; steps of it may be interleaved.
+    bool upload_step(const plan::View& view);
+    /// Calls upload_step() until it returns true.
     void upload(const plan::View& view);
 
     /// Draws the next sample, or the part of it that fits the budget of one step (DrawBudget); the first
-    /// steps may only plan. Returns true when the image is complete. Steps of several RenderJobs may be
-    /// interleaved. If this throws, completed samples are kept and the current one starts again; after
-    /// ContextLost continue with a new Renderer. The scene drawn last stays on the GPU.
+    /// steps may only plan, or upload (RenderJob::interactive says what it waits for). Returns true when the
+    /// image is complete. Steps of several RenderJobs may be interleaved. If this throws, completed samples
+    /// are kept and the current one starts again; after ContextLost continue with a new Renderer. The scene
+    /// drawn last stays on the GPU.
     bool step(plan::RenderJob& job);
 
     /// Draws the whole view into `image`, resized to fit, and fills `stats`. Blocks until the image is

@@ -36,7 +36,7 @@ FrameRendererFactory gl_renderer(std::optional<int> device) {
         return FrameRenderer{renderer->description(),
                              renderer->software(),
                              renderer->max_size(),
-                             [renderer](const plan::View& view) { renderer->upload(view); },
+                             [renderer](const plan::View& view) { return renderer->upload_step(view); },
                              [renderer](plan::RenderJob& rendering) { return renderer->step(rendering); },
                              [renderer] { return renderer->gl_objects(); }};
     };
@@ -146,7 +146,8 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     connect_files(options);
     room_.emplace(prepared(scene), std::move(options));
     try {
-        if (renderer_.upload) renderer_.upload(room_->visible());
+        while (renderer_.upload_step && !renderer_.upload_step(room_->visible())) {
+        }
     } catch (const vrut::base::OutOfMemory& error) {
         throw std::runtime_error(scene.name + ": " + error.what());
     }
@@ -174,7 +175,7 @@ void Engine::run() {
 void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(earlier(until, stats_.due()), files_due());
     if (room_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
-    if (!waiting_.empty()) until = base::Clock::now();
+    if (!waiting_.empty() || (arrived_ && !renewal_)) until = base::Clock::now();
     watchdog_.idle();
     std::vector<EngineEvent> events = mailbox_.wait(until);
     watchdog_.busy();
@@ -348,8 +349,10 @@ void Engine::broadcast(const protocol::Loading& loading) {
 }
 
 void Engine::handle(const scenes::SceneLoaded& loaded) {
-    arrived_ = loaded;
-    arrival_losses_ = 0;
+    arrived_ = Arrived{loaded};
+    if (loaded.scene)
+        arrived_->view =
+            room::view_of(room::starting_state(*loaded.scene->placed, 1, {}), loaded.scene->placed);
 }
 
 void Engine::handle(const MessageReceived& received) {

@@ -123,6 +123,12 @@ private:
         std::size_t level = 0;
         plan::RenderJob job;
     };
+    /// A scene that was read, or why it was not.
+    struct Arrived {
+        scenes::SceneLoaded loaded;
+        plan::View view = {};  ///< its first
+        int losses = 0;        ///< of the context, while it was uploaded
+    };
     struct Snapshot {
         room::PictureOrder order;
         std::optional<plan::RenderJob> job = {};  ///< none: not begun
@@ -135,7 +141,8 @@ private:
     };
     static constexpr int kMostLosses = 2;  // of the context, by one snapshot or scene
 
-    // --- the loop: drain, apply, publish, schedule, one step
+    // --- the loop: drain, apply, publish, schedule, one step; one of the upload, too, while a scene is
+    // opened
     void run();
     void drain(std::optional<base::Clock::time_point> until);
     void apply();
@@ -234,13 +241,12 @@ private:
     scenes::SceneLoader loader_;
     FrameRendererFactory factory_;
     FrameRenderer renderer_;
-    std::optional<Renewal> renewal_;              ///< while there is no renderer
-    std::size_t tries_ = 0;                       ///< renderers made since the last whole picture
-    std::optional<scenes::SceneLoaded> arrived_;  ///< to be shown
-    int arrival_losses_ = 0;                      ///< of the context, by what has arrived
-    PictureLimits pixel_budget_;                  ///< of the live picture, as far as is known
-    protocol::Resize budget_for_;                 ///< of a view of this size
-    std::optional<Failed> failed_;                ///< what cannot be drawn, even small, or not encoded
+    std::optional<Renewal> renewal_;  ///< while there is no renderer
+    std::size_t tries_ = 0;           ///< renderers made since the last whole picture
+    std::optional<Arrived> arrived_;  ///< to be shown once it is uploaded
+    PictureLimits pixel_budget_;      ///< of the live picture, as far as is known
+    protocol::Resize budget_for_;     ///< of a view of this size
+    std::optional<Failed> failed_;    ///< what cannot be drawn, even small, or not encoded
 
     std::optional<room::Room> room_;
     std::map<std::string, Client> clients_;

@@ -201,6 +201,7 @@ void Engine::begin_frame(Refinement refinement) {
     try {
         frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refinement, level,
                                      begin_job(std::move(view), refinement)});
+        frame_->job.interactive = !still;
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }
@@ -248,7 +249,8 @@ void Engine::finish_frame() {
     }
     encoder_.offer(std::move(frame.picture), std::move(frame.job.image));
     refining_.reset();
-    if (frame.job.keep == plan::RenderJob::Keep::samples && frame.refinement != Refinement::sharp)
+    if (frame.job.keep == plan::RenderJob::Keep::samples && frame.refinement != Refinement::sharp &&
+        stats.substitutes == 0)
         refining_ = std::move(frame.job);
 }
 

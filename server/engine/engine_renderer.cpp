@@ -60,27 +60,29 @@ void Engine::renew_renderer() {
     notice("The graphics driver had to be started again; drawing goes on with " + renderer_.description);
 }
 
-/// Brings what has arrived to the graphics card first; where that fails, the scene that is shown goes on.
+/// Uploads one step of the scene that has arrived, and shows it once all is there: until then frames of the
+/// old scene are drawn between the steps. Where the upload fails, the old scene stays.
 void Engine::show_arrived() {
     if (renewal_) return;
     std::optional<std::string> rejected;
-    if (!arrived_->scene) {
-        rejected = arrived_->scene.error();
-    } else if (renderer_.upload) {
-        const scenes::LoadedScene& next = *arrived_->scene;
+    const scenes::SceneLoaded& loaded = arrived_->loaded;
+    if (!loaded.scene) {
+        rejected = loaded.scene.error();
+    } else if (renderer_.upload_step) {
+        const scenes::LoadedScene& next = *loaded.scene;
         try {
-            renderer_.upload(room::view_of(room::starting_state(*next.placed, 1, {}), next.placed));
+            if (!renderer_.upload_step(arrived_->view)) return;
         } catch (const vrut::base::OutOfMemory& error) {
             rejected = next.name + ": " + error.what();
         } catch (const vrut::base::ContextLost& lost) {
             lose_renderer(lost.what());
-            if (++arrival_losses_ < kMostLosses) return;
+            if (++arrived_->losses < kMostLosses) return;
             rejected = next.name + ": the graphics driver is lost whenever it gets this scene";
         } catch (const std::exception& error) {
             rejected = next.name + ": " + error.what();
         }
     }
-    show(*std::exchange(arrived_, std::nullopt), std::move(rejected));
+    show(std::exchange(arrived_, std::nullopt)->loaded, std::move(rejected));
 }
 
 void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> rejected) {

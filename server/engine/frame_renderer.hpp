@@ -17,8 +17,8 @@ struct FrameRenderer {
     std::string description;
     bool software = false;
     int max_size = 16384;
-    /// As Renderer::take; empty: there is nothing to be taken.
-    std::function<void(const plan::View&)> upload = {};
+    /// As Renderer::upload_step; empty: there is nothing to upload.
+    std::function<bool(const plan::View&)> upload_step = {};
     /// As Renderer::step.
     std::function<bool(plan::RenderJob&)> step = {};
     std::function<long()> gl_objects = {};  ///< how many live; where there may be any

@@ -178,6 +178,10 @@ TEST_CASE("what needs memory later, as edges do, ends nothing where there is non
         faulty.client->wait_for("ok");
     };
     wireframe(true);
+    // What moves is drawn without edges; a refined frame needs them.
+    faulty.client->send({{"type", "frame"}});
+    CHECK(faulty.client->wait_for("frame")["renderer"]["wireframe"] == true);
+    CHECK_FALSE(faulty.has_notice("cannot be drawn"));
     faulty.client->send({{"type", "frame"}});
     CHECK(eventually([&] {
         faulty.client->receive(10ms);

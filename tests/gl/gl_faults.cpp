@@ -21,6 +21,7 @@ constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0}, refused_threads{0};
 std::atomic<bool> lost{false}, told{false}, queries_withheld{false};
 std::atomic<int> stalls{0};
+std::atomic<std::size_t> copied{0};
 
 std::mutex mutex;  // of what follows
 std::map<GLuint, std::size_t> buffers, textures;
@@ -60,6 +61,7 @@ std::size_t memory_used() {
     const std::lock_guard lock(mutex);
     return used;
 }
+std::size_t bytes_copied() { return copied; }
 void limit_memory(std::size_t bytes) {
     const std::lock_guard lock(mutex);
     most = bytes;
@@ -146,7 +148,29 @@ GLenum APIENTRY glGetError() {
 
 void APIENTRY glNamedBufferStorage(GLuint buffer, GLsizeiptr size, const void* data, GLbitfield flags) {
     static auto* const store = real<decltype(glNamedBufferStorage)>("glNamedBufferStorage");
+    if (data) copied += static_cast<std::size_t>(size);
     if (take(buffers, buffer, static_cast<std::size_t>(size))) store(buffer, size, data, flags);
+}
+
+void APIENTRY glNamedBufferSubData(GLuint buffer, GLintptr offset, GLsizeiptr size, const void* data) {
+    static auto* const copy = real<decltype(glNamedBufferSubData)>("glNamedBufferSubData");
+    copied += static_cast<std::size_t>(size);
+    copy(buffer, offset, size, data);
+}
+
+void APIENTRY glTextureSubImage2D(GLuint texture, GLint level, GLint x, GLint y, GLsizei width,
+                                  GLsizei height, GLenum format, GLenum type, const void* pixels) {
+    static auto* const copy = real<decltype(glTextureSubImage2D)>("glTextureSubImage2D");
+    copied += 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    copy(texture, level, x, y, width, height, format, type, pixels);
+}
+
+void APIENTRY glTextureSubImage3D(GLuint texture, GLint level, GLint x, GLint y, GLint z, GLsizei width,
+                                  GLsizei height, GLsizei depth, GLenum format, GLenum type,
+                                  const void* pixels) {
+    static auto* const copy = real<decltype(glTextureSubImage3D)>("glTextureSubImage3D");
+    copied += 4 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    copy(texture, level, x, y, z, width, height, depth, format, type, pixels);
 }
 
 void APIENTRY glDeleteBuffers(GLsizei count, const GLuint* names) {

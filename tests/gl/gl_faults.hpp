@@ -13,6 +13,8 @@ void reset_after(int draws);
 void refuse_contexts(int count);
 /// What buffers and textures hold now, in bytes.
 std::size_t memory_used();
+/// Bytes copied from memory to buffers and textures so far.
+std::size_t bytes_copied();
 /// They hold no more than so much from now on.
 void limit_memory(std::size_t bytes);
 /// Buffers and textures are given no memory from now on, and OpenGL reports that error.

@@ -20,16 +20,22 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
     PipelineState state;
     state.depth_write = !style.edge_color;  // of one colour, none hides another
-    apply(state);
     if (style.edge_color) use_solid_color(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item.geometry);
+        const GpuEdges* edges = scene.edges(item.geometry);
+        stats.substitutes += edges == nullptr;
+        if (!edges && style.edge_color) continue;  // its faces are drawn
+        const GpuGeometry& geometry = scene.geometry(item);
         if (style.edge_color)
             set_transform(item, geometry);
         else
-            programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
-                         scene.scene()->material(item.material));
-        draw_lines(scene.edges(item.geometry), stats);
+            programs.use(edges ? SurfacePrograms::SurfaceKind::edges : SurfacePrograms::SurfaceKind::faces,
+                         item, geometry, scene.scene()->material(item.material));
+        apply(edges ? state : state.for_item(item));
+        if (edges)
+            draw_lines(*edges, stats);
+        else
+            draw_triangles(geometry, stats);
     }
 }
 
@@ -40,8 +46,11 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
     apply(state);
     use_solid_color(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
-        set_transform(item, scene.geometry(item.geometry));
-        draw_lines(scene.edges(item.geometry), stats);
+        const GpuEdges* edges = scene.edges(item.geometry);
+        stats.substitutes += edges == nullptr;
+        if (!edges) continue;
+        set_transform(item, scene.geometry(item));
+        draw_lines(*edges, stats);
     }
 }
 

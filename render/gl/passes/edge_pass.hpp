@@ -6,7 +6,9 @@
 
 namespace vrut::gl {
 
-/// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too.
+/// The edges of triangles as lines a pixel wide, each once. Those of back faces are drawn too. Of an item
+/// whose edges are not resident, faces in its material stand in the place of realistic ones, and nothing in
+/// that of others (FrameStats::substitutes).
 class EdgePass {
 public:
     explicit EdgePass(Programs& programs) : programs_(programs) {}

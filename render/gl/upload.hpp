@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "gl/gpu_textures.hpp"
+#include "gl/handles.hpp"
+#include "plan/draw_budget.hpp"
+
+namespace vrut::gl {
+
+/// Copies from memory to buffers and textures, piece by piece. Both ends must live until it is done.
+class Upload {
+public:
+    template <class Element>
+    void add(const GlBuffer& buffer, const std::vector<Element>& elements) {
+        const std::span bytes = std::as_bytes(std::span(elements));
+        parts_.push_back({buffer.get(), bytes.data(), 1, bytes.size(), {}});
+    }
+    void add(const GlTexture& texture, const TextureImage& image);
+    /// Goes on until `budget` is spent: that, and a piece of 256 KiB or a row of texels more. True once all
+    /// is copied.
+    bool step(plan::DrawBudget& budget);
+
+private:
+    struct Part {
+        GLuint name = 0;
+        const std::byte* data = nullptr;
+        std::size_t row_bytes = 1, rows = 0;  ///< of a buffer single bytes
+        TextureImage image;                   ///< none for a buffer
+    };
+    static void copy(const Part& part, std::size_t first, std::size_t count);
+
+    std::vector<Part> parts_;
+    std::size_t part_ = 0, row_ = 0;  // the next
+};
+
+}  // namespace vrut::gl
