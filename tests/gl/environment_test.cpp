@@ -150,6 +150,30 @@ TEST_CASE("a chrome ball reflects the panorama") {
         }
 }
 
+TEST_CASE("a small chrome ball reflects the panorama minified, to its rim") {
+    RendererFixture studio;
+    // Of more triangles than pixels along its rim.
+    const auto scene = scene_of({1, sphere(1, 24), chrome(1), glm::dmat4(1)}, six(128));
+    for (const glm::ivec2& size : {glm::ivec2(64, 48), glm::ivec2(24, 18)}) {
+        CAPTURE(size.x);
+        plan::View view = in_panorama(view_from({1, 1, 5}));
+        view.width = size.x;
+        view.height = size.y;
+        view.scene = scene;
+        const reference::ReferenceImage expected = reference::trace(view);
+        const TextureMismatch off =
+            deviation(studio.draw(scene, view), [&](double px, double py) -> std::optional<glm::dvec3> {
+                const auto at = static_cast<std::size_t>(view.height - 1 - static_cast<int>(py)) *
+                                    static_cast<std::size_t>(view.width) +
+                                static_cast<std::size_t>(px);
+                if (expected.node[at] == scene::kNone) return std::nullopt;
+                return expected.color[at];
+            });
+        CHECK(off.pixels > 50);
+        CHECK_MESSAGE(off.worst <= 5, off.where);
+    }
+}
+
 TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirrored as it may be") {
     RendererFixture studio;
     const std::array<scene::Image, 6> images = six(32, noise);

@@ -83,8 +83,18 @@ void main() {
 #endif
     vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
 #ifdef ENVIRONMENT
-    vec3 seen = world_from_view * reflect(-to_eye, n);
-    own = mix(own, sample_environment(environment_map, seen, dFdx(seen), dFdy(seen)), reflectivity);
+    // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
+    // direction follow by the chain rule, but for the part along it, which does not turn it.
+    vec3 ray = world_from_view * -to_eye;
+    vec3 normal = world_from_view * (dot(view_normal, view_normal) < 1e-12 ? n : view_normal);
+    vec3 scaled = 2 / dot(normal, normal) * normal;
+    float along = dot(ray, scaled);
+    vec3 reflected = ray - along * normal;
+    vec3 dray = dFdx(ray), dnormal = dFdx(normal);
+    vec3 ddx = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
+    dray = dFdy(ray), dnormal = dFdy(normal);
+    vec3 ddy = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
+    own = mix(own, sample_environment(environment_map, reflected, ddx, ddy), reflectivity);
 #endif
 #ifdef MIRROR
     own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);
