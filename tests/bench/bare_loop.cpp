@@ -33,6 +33,7 @@ enum Uniform : GLint {
     shininess_at = 5,
     two_sided_at = 6,
     light_color_at = 7,
+    attenuation_at = 8,
 };
 
 constexpr std::string_view kVertexShader = R"(#version 450 core
@@ -46,7 +47,9 @@ invariant gl_Position;
 
 void main() {
     view_position = (view_from_local * vec4(position, 1)).xyz;
-    view_normal = mat3(view_from_local) * normal;
+    vec3 n = mat3(view_from_local) * normal;
+    float size = length(n);
+    view_normal = size > 0 ? n / size : vec3(0);
     gl_Position = clip_from_local * vec4(position, 1);
 }
 )";
@@ -59,17 +62,23 @@ layout(location = 4) uniform vec3 specular;
 layout(location = 5) uniform float shininess;
 layout(location = 6) uniform bool two_sided;
 layout(location = 7) uniform vec3 light_color;
+layout(location = 8) uniform vec3 attenuation;
 in vec3 view_position;
 in vec3 view_normal;
 out vec4 color;
 
 void main() {
-    vec3 to_eye = -view_position / length(view_position);
-    vec3 n = normalize(view_normal);
+    float d = length(view_position);
+    vec3 to_eye = -view_position / d;
+    vec3 n = view_normal;
+    vec3 across = dFdx(view_position), upwards = dFdy(view_position);
+    if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
+    n = normalize(n);
     if (two_sided && dot(n, to_eye) < 0) n = -n;
     float lambert = max(dot(to_eye, n), 0);
     float highlight = max(dot(reflect(-to_eye, n), to_eye), 1e-30);
-    vec2 light = lambert * vec2(1, pow(highlight, shininess));
+    float intensity = 1 / max(dot(attenuation, vec3(1, d, d * d)), 1e-6);
+    vec2 light = lambert * intensity * vec2(1, pow(highlight, shininess));
     color = vec4(clamp(base + (diffuse * light.x + specular * light.y) * light_color, 0, 1), 1);
 }
 )";
@@ -282,6 +291,7 @@ void BareLoop::clear(const plan::View& view) {
     set(clip_from_local_at, clip_from_local);
     set(view_from_local_at, view_from_local_);
     set(light_color_at, view.light.color);
+    set(attenuation_at, glm::dvec4(view.light.attenuation, 0));
 }
 
 void BareLoop::draw_all(const std::vector<const BareDraw*>& draws, bool flush) {
