@@ -1,0 +1,88 @@
+#include "plan/material_groups.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace vrut::plan {
+
+namespace {
+
+constexpr double kMargin = 1e-4;         ///< of the distance from the eye: beyond float's rounding of depth
+constexpr std::size_t kRunLength = 16;   ///< items
+constexpr std::size_t kMostTests = 512;  ///< of boxes, for one item
+
+bool overlap(const math::Bounds& a, const math::Bounds& b) {
+    return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
+}
+
+/// What an item covers in view space.
+math::Bounds box_of(const DrawItem& item, const scene::Scene& scene) {
+    math::Bounds box =
+        transformed(item.view_from_node, scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds);
+    const double margin = kMargin * std::max(glm::length(box.min), glm::length(box.max));
+    box.min -= margin;
+    box.max += margin;
+    return box;
+}
+
+/// Items of one material, in runs whose boxes are tested first.
+class Group {
+public:
+    explicit Group(scene::Index material) : material_(material) {}
+    scene::Index material() const { return material_; }
+
+    void add(std::size_t item, const math::Bounds& box) {
+        if (items_.size() % kRunLength == 0) runs_.emplace_back();
+        runs_.back().add(box);
+        items_.push_back(item);
+        boxes_.push_back(box);
+    }
+    /// Also true where `tests` do not suffice to find out.
+    bool may_overlap(const math::Bounds& box, std::size_t& tests) const {
+        for (std::size_t run = 0; run < runs_.size(); ++run) {
+            if (tests == 0) return true;
+            --tests;
+            if (!overlap(runs_[run], box)) continue;
+            const std::size_t end = std::min((run + 1) * kRunLength, boxes_.size());
+            for (std::size_t i = run * kRunLength; i < end; ++i)
+                if (overlap(boxes_[i], box)) return true;
+        }
+        return false;
+    }
+    const std::vector<std::size_t>& items() const { return items_; }
+
+private:
+    scene::Index material_;
+    std::vector<std::size_t> items_;
+    std::vector<math::Bounds> boxes_, runs_;
+};
+
+/// The last group of the item's material behind which nothing overlaps the item; null: there is none.
+Group* group_for(std::vector<Group>& groups, scene::Index material, const math::Bounds& box) {
+    std::size_t tests = kMostTests;
+    for (std::size_t k = groups.size(); k > 0; --k) {
+        Group& group = groups[k - 1];
+        if (group.material() == material) return &group;
+        if (group.may_overlap(box, tests)) return nullptr;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+void group_by_material(std::vector<DrawItem>& items, const scene::Scene& scene) {
+    std::vector<Group> groups;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        const math::Bounds box = box_of(items[i], scene);
+        Group* group = group_for(groups, items[i].material, box);
+        if (!group) group = &groups.emplace_back(items[i].material);
+        group->add(i, box);
+    }
+    std::vector<DrawItem> grouped;
+    grouped.reserve(items.size());
+    for (const Group& group : groups)
+        for (const std::size_t i : group.items()) grouped.push_back(std::move(items[i]));
+    items = std::move(grouped);
+}
+
+}  // namespace vrut::plan
