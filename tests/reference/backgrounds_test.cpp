@@ -1,5 +1,6 @@
 #include <random>
 
+#include "noise.hpp"
 #include "reference/textures.hpp"
 #include "reference_image.hpp"
 
@@ -7,18 +8,9 @@ using namespace vrut;
 
 namespace {
 
-scene::Texture noise(unsigned seed, int width, int height) {
-    std::mt19937 random(seed);
-    scene::Texture texture;
-    texture.image.resize(width, height);
-    for (std::uint8_t& byte : texture.image.rgba) byte = static_cast<std::uint8_t>(random());
-    for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
-    return texture;
-}
-
 std::vector<scene::Texture> six(int size) {
     std::vector<scene::Texture> textures;
-    for (unsigned i = 0; i < 6; ++i) textures.push_back(noise(i + 1, size, size));
+    for (unsigned i = 0; i < 6; ++i) textures.push_back({"", noise(size, size, i + 1), false});
     return textures;
 }
 
@@ -64,7 +56,7 @@ TEST_CASE("nothing but a background") {
 TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") {
     plan::View view = picture({1, 2, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const scene::Texture texture = noise(3, 4, 3);
+    const scene::Texture texture{"", noise(4, 3, 3), false};
     check_shows(traced(scene_of({}, {texture}), view), texture.image);
 
     scene::Texture two;
@@ -83,7 +75,7 @@ TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") 
 TEST_CASE("a mirror shows the background's picture at the same pixel") {
     plan::View view = picture({0, 3, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const scene::Texture texture = noise(3, 4, 3);
+    const scene::Texture texture{"", noise(4, 3, 3), false};
     scene::Material mirror = glowing({0, 0, 0});
     mirror.reflectivity = 1;
     const auto shown = traced(scene_of({{1, quad(50), mirror, glm::dmat4(1)}}, {texture}), view);
