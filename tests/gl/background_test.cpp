@@ -112,6 +112,32 @@ TEST_CASE("a panorama is filtered across its edges and corners") {
                 }
 }
 
+TEST_CASE("the corner of a cube map is the mean of its three texels") {
+    RendererFixture studio;
+    const std::array<scene::Image, 6> images = six(4);
+    const auto scene = scene_with(listed(images));
+    const auto check_corner = [&](const glm::dvec3& corner, const glm::ivec2& in_x, const glm::ivec2& in_y,
+                                  const glm::ivec2& in_z) {
+        // Column and row from the bottom left, in the pictures that look along x, y and z.
+        const auto texel = [&](int axis, const glm::ivec2& at) {
+            const scene::Image& image = images[static_cast<std::size_t>(2 * axis + (corner[axis] < 0))];
+            return glm::dvec3(pixel_of(image, at.x, image.height - 1 - at.y)) / 255.0;
+        };
+        const plan::View view = in_panorama(looking(corner, {0.1, 1, 0.2}, 1, 1, 1));
+        const glm::ivec3 off = pixel_of(studio.draw(scene, view), 0, 0) -
+                               bytes_of((texel(0, in_x) + texel(1, in_y) + texel(2, in_z)) / 3.0);
+        CHECK(std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)}) <= 1);
+    };
+    check_corner({1, 1, 1}, {3, 3}, {3, 3}, {0, 3});
+    check_corner({1, 1, -1}, {0, 3}, {3, 0}, {3, 3});
+    check_corner({1, -1, 1}, {3, 0}, {3, 0}, {0, 0});
+    check_corner({1, -1, -1}, {0, 0}, {3, 3}, {3, 0});
+    check_corner({-1, 1, 1}, {0, 3}, {0, 3}, {3, 3});
+    check_corner({-1, 1, -1}, {3, 3}, {0, 0}, {0, 3});
+    check_corner({-1, -1, 1}, {0, 0}, {0, 0}, {3, 0});
+    check_corner({-1, -1, -1}, {3, 0}, {0, 3}, {0, 0});
+}
+
 TEST_CASE("a panorama is minified by the pixel's longer side, in any direction") {
     RendererFixture studio;
     for (const int size : {64, 100, 255})

@@ -106,6 +106,17 @@ TEST_CASE("flat faces of a reflective box reflect the panorama, turned and mirro
     }
 }
 
+TEST_CASE("a curved reflective part that its matrix presses flat reflects the panorama") {
+    RendererFixture studio;
+    scene::Geometry bent = quad(1);
+    bent.positions[2].z = 0.5;
+    bent.bounds.add(bent.positions[2]);
+    const Part pressed{1, bent, chrome(0.6), turned_by(20, {0, 1, 0}) * scaled_by({1, 1, 0})};
+    const PictureMismatch off = check(pressed, six(32), view_from({2, 1.5, 3}), studio);
+    CHECK(off.surfaces > 300);
+    CHECK_MESSAGE(off.worst <= 2, off.where);
+}
+
 TEST_CASE("a surface's own colour is clamped before the panorama is mixed in") {
     RendererFixture studio;
     scene::Material bright = chrome(0.5);

@@ -133,6 +133,14 @@ TEST_CASE("a flattened part is drawn from both sides, lit along the axis that is
 
 TEST_CASE("a part that is only thin is not flat") {
     RendererFixture studio;
+    // A determinant of 1e-12 of the product of the axes' lengths is the limit.
+    for (const double determinant : {0.99e-12, 1.01e-12}) {
+        glm::dmat4 skewed(1);
+        skewed[2] = {1, 0, determinant, 0};
+        const auto scene = scene_of({{1, quad(1), kPlain, skewed}});
+        CHECK(covered(studio.draw(scene, view_from({0, 0, 4}))) > 300);
+        CHECK((covered(studio.draw(scene, view_from({0, 0, -4}))) > 300) == (determinant < 1e-12));
+    }
     for (const double thickness : {1e-3, 1e-9}) {
         const auto thin =
             scene_of({{1, sphere(1, 8), kPlain, turned_by(30, {0, 1, 0}) * scaled_by({1, 1, thickness})}});

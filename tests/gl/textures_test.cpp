@@ -197,11 +197,14 @@ TEST_CASE("a texture takes the place of the diffuse colour and of nothing else")
 TEST_CASE("geometry without texture coordinates shows no texture, and flat corners keep theirs") {
     RendererFixture studio;
     const plan::View view = view_from({1, 2, 4});
-    const Board board{noise(8, 8), glm::dvec2(0.4), glm::dvec2(0.5), glm::dmat4(1), 2};
+    scene::Image holes = noise(8, 8);
+    for (std::size_t i = 3; i < holes.rgba.size(); i += 4) holes.rgba[i] = holes.rgba[i - 1];
+    const Board board{holes, glm::dvec2(0.4), glm::dvec2(0.5), glm::dmat4(1), 2};
     const auto with = scene_of(board);
     const auto drawn = [&](bool normals, bool texcoords) {
         scene::SceneParts parts;
         parts.textures = with->scene->textures();
+        parts.textures[0].transparent = true;
         parts.materials = with->scene->materials();
         parts.geometries = with->scene->geometries();
         if (!normals) parts.geometries[0].normals.clear();

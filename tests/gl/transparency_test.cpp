@@ -107,6 +107,10 @@ TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emiss
     material = glass({3, 0.5, 0}, 0.5);
     check_middle(studio.draw(scene_of({{1, quad(1), material}}), odd_view({0, 0, 5})),
                  glm::mix(plan::kDefaultBackground, glm::dvec3(1, 0.5, 0), 0.5));
+    // And so is the background before glass is blended over it.
+    plan::View bright = odd_view({0, 0, 5});
+    bright.background.color = {4, 0.5, 0};
+    check_middle(studio.draw(scene_of({{1, quad(1), glass({0, 0, 1}, 0.5)}}), bright), {0.5, 0.25, 0.5});
 }
 
 TEST_CASE("glass shows what is behind it and is hidden by what is before it") {
