@@ -241,6 +241,9 @@ TEST_CASE("numbers") {
     CHECK(up_of("-0") == 0);
     CHECK(up_of("4.9406564584124654e-324") == 4.9406564584124654e-324);
     CHECK(up_of("0.30000000000000004") == 0.30000000000000004);
+    // A light may be brighter than 1.
+    const scene::Scene lamp = read_well("vrut-text 1 node 1 \"\" light color 1.5 200 0 1 end");
+    CHECK(data_of<scene::LightData>(lamp, 1).color == glm::dvec4(1.5, 200, 0, 1));
 }
 
 TEST_CASE("lines may end as on Windows, and blocks may stand on one") {
