@@ -10,10 +10,11 @@ namespace vrut::plan {
 
 /// Returns the transparent items in groups, sorted from far to near in view space (the eye is the origin).
 /// `items` are sorted by rising id. A plane that separates the bounding boxes of two items decides their
-/// order: the item on the eye's side is in front. If no plane separates two items, or items form a cycle,
-/// they become an exact group, whose order is found at each pixel. If the wrong order changes no colour by
-/// more than 1/255, or under Transparency::sorted, they are sorted by the distance of their centres instead.
-/// An item that overlaps itself in an unknown order is an exact group of its own, under the same conditions.
+/// order: the item on the eye's side is in front. Without such a plane their triangles are compared. If that
+/// decides nothing, or items form a cycle, they become an exact group, whose order is found at each pixel. If
+/// the wrong order changes no colour by more than 1/255, or under Transparency::sorted, they are sorted by
+/// the distance of their centres instead. An item that overlaps itself in an unknown order is an exact group
+/// of its own, under the same conditions.
 ///
 /// If more than kMaxOverlappingPairs pairs overlap in x on the screen, items are not compared. Then all items
 /// are one exact group. If more than kMaxMeanLayers of them cover a pixel on average, they are sorted by
