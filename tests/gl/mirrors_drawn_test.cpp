@@ -204,10 +204,11 @@ TEST_CASE("the sixteen largest mirrors are drawn as the reference has them, the 
     for (unsigned i = 0; i < 6; ++i) sky.push_back({"sky.png", cloudy(64, 64, i + 1), false});
     const auto smallest = static_cast<scene::Id>(plan::kMaxMirrors) + 1;
     std::vector<Part> parts;
-    for (scene::Id id = 1; id <= smallest; ++id)
-        parts.push_back(
-            {id, quad(id == smallest ? 0.42 : 0.45), mirror_of(0.8),
-             moved_by({static_cast<double>((id - 1) % 6) - 2.5, static_cast<double>((id - 1) / 6) - 1, 0})});
+    for (scene::Id id = 1; id <= smallest; ++id) {
+        const scene::Id column = (id - 1) % 6, row = (id - 1) / 6;
+        parts.push_back({id, quad(id == smallest ? 0.42 : 0.45), mirror_of(0.8),
+                         moved_by({static_cast<double>(column) - 2.5, static_cast<double>(row) - 1, 0})});
+    }
     const std::vector<Part> mirrors = parts;
     // Behind the eye, for all of them to reflect.
     parts.push_back({100, quad(40), paint({0, 1, 0}), moved_by({0, 0, 20})});
