@@ -21,11 +21,13 @@ enum class FixedProgram {
     composite_lists,
     marker,
     node_id,
+    node_id_double_single,
     outline,
     row_distance,
     solid_color,
+    solid_color_double_single,
 };
-inline constexpr std::size_t kFixedPrograms = 8;
+inline constexpr std::size_t kFixedPrograms = 10;
 
 /// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
 struct SurfaceVariant {
@@ -44,10 +46,11 @@ struct SurfaceVariant {
     bool environment = false;  ///< reflects the environment map
     bool clipped = false;      ///< by a plane
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
+    bool double_single = false;  ///< GpuGeometry::is_double_single()
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
-            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single);
         };
         return key(*this) < key(other);
     }
