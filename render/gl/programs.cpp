@@ -53,6 +53,7 @@ bool is_reachable(const SurfaceVariant& variant) {
     const bool plain = !variant.environment && !variant.clipped;
     if (variant.kind == Kind::edges && (variant.textured || !plain)) return false;
     if (variant.kind == Kind::mirror && !plain) return false;
+    if (variant.anisotropic && !variant.textured) return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
 
@@ -134,20 +135,22 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 16; ++bits) {
+                for (int bits = 0; bits < 32; ++bits) {
                     const SurfaceVariant variant{
-                        kind,   light,          (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
-                        lit_at, (bits & 8) != 0};
+                        kind,   light,           (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+                        lit_at, (bits & 8) != 0, (bits & 16) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
 }
 
-std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at) {
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods) {
     const SceneFeatures features = features_of(scene);
     std::vector<SurfaceVariant> variants = reachable_surface_variants();
+    const bool anisotropic = methods.texture_filter == plan::Methods::TextureFilter::anisotropic;
     std::erase_if(variants, [&](const SurfaceVariant& variant) {
-        return variant.lit_at != lit_at || !may_need(features, variant);
+        return variant.lit_at != methods.light || variant.anisotropic != (variant.textured && anisotropic) ||
+               !may_need(features, variant);
     });
     return variants;
 }
@@ -174,6 +177,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.kind == Kind::mirror, "MIRROR");
     define(variant.clipped, "CLIPPED");
     define(variant.double_single, "DOUBLE_SINGLE");
+    define(variant.anisotropic, "ANISOTROPIC");
     const bool at_vertex = variant.lit_at == plan::Methods::Lighting::vertex;
     define(at_vertex, "LIT_AT_VERTEX");
     define(!at_vertex || variant.environment, "NEEDS_NORMAL");
@@ -209,7 +213,7 @@ void Programs::use(FixedProgram program) { glUseProgram(at(program).get()); }
 
 void Programs::use(const SurfaceVariant& variant) { glUseProgram(at(variant).get()); }
 
-bool Programs::compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at,
+bool Programs::compile_step(const scene::Scene& scene, const plan::Methods& methods,
                             plan::DrawBudget& budget) {
     constexpr std::int64_t kProgram = plan::DrawBudget::kMostUpload;
     const auto compile_next = [&](auto program) {
@@ -224,7 +228,7 @@ bool Programs::compile_step(const scene::Scene& scene, plan::Methods::Lighting l
         const auto program = static_cast<FixedProgram>(i);
         if ((double_single || !is_double_single(program)) && !compile_next(program)) return false;
     }
-    return std::ranges::all_of(surface_variants(scene, lit_at), compile_next);
+    return std::ranges::all_of(surface_variants(scene, methods), compile_next);
 }
 
 }  // namespace vrut::gl

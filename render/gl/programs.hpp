@@ -47,10 +47,12 @@ struct SurfaceVariant {
     bool clipped = false;      ///< by a plane
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
     bool double_single = false;  ///< GpuGeometry::is_double_single()
+    bool anisotropic = false;    ///< filter of its texture
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
-            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single);
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
+                            v.anisotropic);
         };
         return key(*this) < key(other);
     }
@@ -63,7 +65,7 @@ std::vector<SurfaceVariant> reachable_surface_variants();
 
 /// Those that views of a scene may need: in every drawing mode, with each of its materials on any node, each
 /// of its lights or none, and its environment map or none.
-std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at);
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods);
 
 /// GLSL, with the version and all that it #includes and #defines.
 struct ProgramSource {
@@ -80,7 +82,7 @@ public:
     void use(const SurfaceVariant& variant);
     /// Compiles what views of a scene may need until `budget` is spent: each program spends
     /// DrawBudget::kMostUpload. Returns true when all are compiled.
-    bool compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at, plan::DrawBudget& budget);
+    bool compile_step(const scene::Scene& scene, const plan::Methods& methods, plan::DrawBudget& budget);
     /// How many were compiled so far.
     int compiled() const { return compiled_; }
 

@@ -12,8 +12,9 @@ namespace vrut::plan {
 /// space) sees them. What lies before what is told by a plane between two boxes: the one on the eye's side is
 /// in front. Items that no such plane parts, and rings of items, become an exact group if drawing them in the
 /// wrong order could change a colour by more than 1/255; with Transparency::sorted they are drawn by their
-/// distance. Above kMaxOverlappingPairs pairs that overlap in the width of the screen everything is one exact
-/// group, or, where more than kMaxMeanLayers lie over each other on average, drawn by its distance.
+/// distance, and with Transparency::per_pixel_lists all items are one exact group. Above kMaxOverlappingPairs
+/// pairs that overlap in the width of the screen everything is one exact group, or, where more than
+/// kMaxMeanLayers lie over each other on average, drawn by its distance.
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes);
 

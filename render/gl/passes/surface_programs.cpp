@@ -127,7 +127,7 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
     scene_ = scene;
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, camera);
-    lit_at_ = view.methods.light;
+    methods_ = view.methods;
     if (!view_uniforms_) view_uniforms_ = make_dynamic_buffer("uniforms", sizeof(ViewUniforms));
     const ViewUniforms uniforms = view_uniforms_of(camera, view);
     glNamedBufferSubData(view_uniforms_.get(), 0, sizeof uniforms, &uniforms);
@@ -136,13 +136,16 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
 
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
-    const SurfaceVariant variant{kind,
-                                 light_,
-                                 item.texture != scene::kNone,
-                                 item.environment,
-                                 item.clip_plane.has_value(),
-                                 lit_at_,
-                                 geometry.is_double_single()};
+    const bool textured = item.texture != scene::kNone;
+    const SurfaceVariant variant{
+        kind,
+        light_,
+        textured,
+        item.environment,
+        item.clip_plane.has_value(),
+        methods_.light,
+        geometry.is_double_single(),
+        textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic};
     programs_.use(variant);
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);

@@ -34,7 +34,7 @@ public:
 private:
     Programs& programs_;
     SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
-    plan::Methods::Lighting lit_at_ = plan::Methods::Lighting::pixel;
+    plan::Methods methods_;
     GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
