@@ -11,40 +11,43 @@ namespace vrut::gl {
 
 namespace {
 
-GlVertexArray vertex_array_of(const GlBuffer& vertices, const GlBuffer& indices) {
+/// Of a geometry's vertices.
+GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices) {
     GlVertexArray result = make_vertex_array();
     const GLuint array = result.get();
-    glVertexArrayVertexBuffer(array, 0, vertices.get(), 0, sizeof(GpuVertex));
     glVertexArrayElementBuffer(array, indices.get());
-    const auto attribute = [&](GLuint location, std::size_t offset) {
+    const auto attribute = [&](GLuint location, GLint size, GLuint binding, std::size_t offset) {
         glEnableVertexArrayAttrib(array, location);
-        glVertexArrayAttribFormat(array, location, 3, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-        glVertexArrayAttribBinding(array, location, 0);
+        glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+        glVertexArrayAttribBinding(array, location, binding);
     };
-    attribute(0, offsetof(GpuVertex, position));
-    attribute(1, offsetof(GpuVertex, normal));
+    glVertexArrayVertexBuffer(array, 0, geometry.vertices.get(), 0, sizeof(GpuVertex));
+    attribute(0, 3, 0, offsetof(GpuVertex, position));
+    attribute(1, 3, 0, offsetof(GpuVertex, normal));
+    if (geometry.texcoords) {
+        glVertexArrayVertexBuffer(array, 1, geometry.texcoords.get(), 0, sizeof(glm::vec2));
+        attribute(2, 2, 1, 0);
+    }
+    if (geometry.is_double_single()) {
+        glVertexArrayVertexBuffer(array, 2, geometry.low_positions.get(), 0, sizeof(glm::vec3));
+        attribute(3, 3, 2, 0);
+    }
     return result;
 }
 
-void add_texcoords(const GlBuffer& texcoords, const GlVertexArray& vertex_array) {
-    const GLuint array = vertex_array.get();
-    glVertexArrayVertexBuffer(array, 1, texcoords.get(), 0, sizeof(glm::vec2));
-    glEnableVertexArrayAttrib(array, 2);
-    glVertexArrayAttribFormat(array, 2, 2, GL_FLOAT, GL_FALSE, 0);
-    glVertexArrayAttribBinding(array, 2, 1);
-}
-
 /// Of a geometry of the scene, whose triangles need no copy; else with its triangles.
-PreparedData geometry_data(const scene::Geometry& geometry) {
+PreparedData geometry_data(const scene::Geometry& geometry, bool double_single) {
     PreparedData data;
-    data.arrays = make_arrays(geometry, geometry.bounds.center());
+    const glm::dvec3 origin = geometry.bounds.center();
+    data.arrays = make_arrays(geometry, origin);
+    if (double_single) data.low_positions = low_positions_of(data.arrays.corners, geometry, origin);
     if (!geometry.texcoords.empty()) data.texcoords = texcoords_of(data.arrays.corners, geometry);
     return data;
 }
 
-PreparedData level_data(const scene::Geometry& geometry, const mesh::DetailLevel& level) {
+PreparedData level_data(const scene::Geometry& geometry, const mesh::DetailLevel& level, bool double_single) {
     scene::Geometry simplified = mesh::geometry_of(geometry, level);
-    PreparedData data = geometry_data(simplified);
+    PreparedData data = geometry_data(simplified, double_single);
     if (data.arrays.triangles.empty()) data.arrays.triangles = std::move(simplified.triangles);
     return data;
 }
@@ -120,16 +123,17 @@ bool GpuScene::request(const ResourceKey& key, Need need, const Make& make) {
 
 bool GpuScene::request_geometry(scene::Index index, Need need) {
     const ResourceKey key = key_of(Kind::geometry, index);
-    return is_resident(key) ||
-           request(key, need, [scene = scene_, &read = read_geometry(index)] { return geometry_data(read); });
+    return is_resident(key) || request(key, need, [scene = scene_, index, &read = read_geometry(index)] {
+               return geometry_data(read, scene->needs_double_single(index));
+           });
 }
 
 bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
                        const std::shared_ptr<const mesh::DetailLevels>& levels, Need need) {
     const ResourceKey key = key_of(Kind::level, geometry, level.number);
     return is_resident(key) ||
-           request(key, need, [scene = scene_, levels, &read = read_geometry(geometry), &level] {
-               return level_data(read, level);
+           request(key, need, [scene = scene_, geometry, levels, &read = read_geometry(geometry), &level] {
+               return level_data(read, level, scene->needs_double_single(geometry));
            });
 }
 
@@ -201,10 +205,11 @@ void GpuScene::create_geometry(Arrival& arrival) {
     geometry.vertices = create_buffer("vertices", data.arrays.vertices, arrival.upload);
     geometry.indices = create_buffer("triangles", triangles, arrival.upload);
     geometry.index_count = static_cast<GLsizei>(triangles.size() * 3);
-    geometry.vertex_array = vertex_array_of(geometry.vertices, geometry.indices);
-    if (data.texcoords.empty()) return;
-    geometry.texcoords = create_buffer("texture coordinates", data.texcoords, arrival.upload);
-    add_texcoords(geometry.texcoords, geometry.vertex_array);
+    if (!data.low_positions.empty())
+        geometry.low_positions = create_buffer("low parts of positions", data.low_positions, arrival.upload);
+    if (!data.texcoords.empty())
+        geometry.texcoords = create_buffer("texture coordinates", data.texcoords, arrival.upload);
+    geometry.vertex_array = vertex_array_of(geometry, geometry.indices);
 }
 
 void GpuScene::create_edges(Arrival& arrival) {
@@ -244,7 +249,7 @@ void GpuScene::finish(Arrival& arrival) {
             break;
         case Kind::edges:
             if (arrival.edges.indices)
-                arrival.edges.vertex_array = vertex_array_of(geometry(index).vertices, arrival.edges.indices);
+                arrival.edges.vertex_array = vertex_array_of(geometry(index), arrival.edges.indices);
             edges_[at] = std::move(arrival.edges);
             break;
         case Kind::texture:
@@ -302,14 +307,19 @@ void GpuScene::upload_at_once(const ResourceKey& key, const std::function<Prepar
 
 const GpuGeometry& GpuScene::geometry(scene::Index index) {
     const ResourceKey key = key_of(Kind::geometry, index);
-    if (!is_resident(key)) upload_at_once(key, [&] { return geometry_data(read_geometry(index)); });
+    if (!is_resident(key))
+        upload_at_once(
+            key, [&] { return geometry_data(read_geometry(index), scene_->needs_double_single(index)); });
     return geometries_[static_cast<std::size_t>(index)];
 }
 
 const GpuGeometry& GpuScene::geometry(const plan::DrawItem& item) {
     const ResourceKey key = key_of(Kind::level, item.geometry, item.level ? item.level->number : 0);
     if (item.level && !is_resident(key))
-        upload_at_once(key, [&] { return level_data(read_geometry(item.geometry), *item.level); });
+        upload_at_once(key, [&] {
+            return level_data(read_geometry(item.geometry), *item.level,
+                              scene_->needs_double_single(item.geometry));
+        });
     const bool as_in_file = !item.level && (is_resident(key_of(Kind::geometry, item.geometry)) ||
                                             item.order || !is_resident(key));
     return as_in_file ? geometry(item.geometry) : levels_.at({item.geometry, key.indices[1]});
@@ -359,8 +369,7 @@ GpuTriangles GpuScene::upload_sorted(const plan::DrawItem& item) {
     GpuTriangles result{item.geometry, item.order, {}, {}, static_cast<GLsizei>(triangles.size() * 3)};
     result.indices =
         make_buffer("ordered triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
-    result.vertex_array = vertex_array_of(uploaded.vertices, result.indices);
-    if (uploaded.texcoords) add_texcoords(uploaded.texcoords, result.vertex_array);
+    result.vertex_array = vertex_array_of(uploaded, result.indices);
     ++uploads_;
     return result;
 }

@@ -23,10 +23,13 @@ namespace vrut::gl {
 /// scene far from the world's origin keeps its precision.
 struct GpuGeometry {
     GlBuffer vertices, indices;
+    GlBuffer low_positions;  ///< what float leaves of each vertex's position, if Scene::needs_double_single()
     GlBuffer texcoords;  ///< for each vertex, if the geometry has any; moved by whole numbers to lie around 0
     GlVertexArray vertex_array;
     GLsizei index_count = 0;
     glm::dvec3 origin{0};
+
+    bool is_double_single() const { return bool(low_positions); }
 };
 
 /// The edges of a geometry's triangles, as lines between its vertices: each once, however many triangles

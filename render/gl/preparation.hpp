@@ -28,10 +28,11 @@ struct ResourceKey {
     }
 };
 
-/// A resource in memory, as the GPU takes it: of a geometry or a level its arrays and texture coordinates, or
-/// the others.
+/// A resource in memory, as the GPU takes it: of a geometry or a level its arrays, the low parts of its
+/// positions and its texture coordinates, or the others.
 struct PreparedData {
     VertexArrays arrays;
+    std::vector<glm::vec3> low_positions;
     std::vector<glm::vec2> texcoords;
     std::vector<glm::uvec2> edges;
     TextureData texture;

@@ -31,6 +31,7 @@ StageFiles files_of(FixedProgram program) {
         case FixedProgram::marker:
             return {"marker.vert", "marker.frag"};
         case FixedProgram::node_id:
+        case FixedProgram::node_id_double_single:
             return {"solid_color.vert", "node_id.frag"};
         case FixedProgram::outline:
             return {"screen.vert", "outline.frag"};
@@ -41,9 +42,15 @@ StageFiles files_of(FixedProgram program) {
         case FixedProgram::row_distance:
             return {"screen.vert", "row_distance.frag"};
         case FixedProgram::solid_color:
+        case FixedProgram::solid_color_double_single:
             break;
     }
     return {"solid_color.vert", "solid_color.frag"};
+}
+
+bool is_double_single(FixedProgram program) {
+    return program == FixedProgram::node_id_double_single ||
+           program == FixedProgram::solid_color_double_single;
 }
 
 /// Edges take the colour of their material alone. A planar mirror shows the scene, not the environment, and
@@ -52,11 +59,19 @@ bool is_reachable(const SurfaceVariant& variant) {
     const bool plain = !variant.environment && !variant.clipped;
     if (variant.kind == Kind::edges && (variant.textured || !plain)) return false;
     if (variant.kind == Kind::mirror && !plain) return false;
+    if (variant.anisotropic && !variant.textured) return false;
     return !(variant.clipped && variant.light == Light::headlight);
+}
+
+bool has_double_single(const scene::Scene& scene) {
+    for (std::size_t i = 0; i < scene.geometries().size(); ++i)
+        if (scene.needs_double_single(static_cast<scene::Index>(i))) return true;
+    return false;
 }
 
 /// What a scene's surfaces and lights may ask of programs.
 struct SceneFeatures {
+    bool double_single = false;
     bool texcoords = false, planes = false, environment_map = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
@@ -73,6 +88,7 @@ void add_material(SceneFeatures& features, const scene::Scene& scene, const scen
 
 SceneFeatures features_of(const scene::Scene& scene) {
     SceneFeatures features;
+    features.double_single = has_double_single(scene);
     for (std::size_t i = 0; i < scene.geometries().size(); ++i) {
         features.texcoords |= !scene.geometries()[i].texcoords.empty();
         features.planes |= scene.plane(static_cast<scene::Index>(i)).has_value();
@@ -95,6 +111,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     const bool textured = is_glass ? features.glass_textured : features.opaque_textured;
     const bool reflective = is_glass ? features.reflective_glass : features.reflective;
     if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
+    if (variant.double_single && !features.double_single) return false;
     if (is_glass && !features.glass) return false;
     if (variant.kind == Kind::mirror && !features.mirrors()) return false;
     if (variant.textured && !(textured && features.texcoords)) return false;
@@ -124,26 +141,31 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 8; ++bits) {
+                for (int bits = 0; bits < 32; ++bits) {
                     const SurfaceVariant variant{
-                        kind, light, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, lit_at};
+                        kind,   light,           (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+                        lit_at, (bits & 8) != 0, (bits & 16) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
 }
 
-std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at) {
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods) {
     const SceneFeatures features = features_of(scene);
     std::vector<SurfaceVariant> variants = reachable_surface_variants();
+    const bool anisotropic = methods.texture_filter == plan::Methods::TextureFilter::anisotropic;
     std::erase_if(variants, [&](const SurfaceVariant& variant) {
-        return variant.lit_at != lit_at || !may_need(features, variant);
+        return variant.lit_at != methods.light || variant.anisotropic != (variant.textured && anisotropic) ||
+               !may_need(features, variant);
     });
     return variants;
 }
 
 ProgramSource source_of(FixedProgram program) {
     const StageFiles files = files_of(program);
-    return {shader_source(files.vertex), shader_source(files.fragment)};
+    std::vector<std::string_view> defines;
+    if (is_double_single(program)) defines.push_back("DOUBLE_SINGLE");
+    return {shader_source(files.vertex, defines), shader_source(files.fragment)};
 }
 
 ProgramSource source_of(const SurfaceVariant& variant) {
@@ -160,6 +182,8 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");
     define(variant.kind == Kind::mirror, "MIRROR");
     define(variant.clipped, "CLIPPED");
+    define(variant.double_single, "DOUBLE_SINGLE");
+    define(variant.anisotropic, "ANISOTROPIC");
     const bool at_vertex = variant.lit_at == plan::Methods::Lighting::vertex;
     define(at_vertex, "LIT_AT_VERTEX");
     define(!at_vertex || variant.environment, "NEEDS_NORMAL");
@@ -195,7 +219,7 @@ void Programs::use(FixedProgram program) { glUseProgram(at(program).get()); }
 
 void Programs::use(const SurfaceVariant& variant) { glUseProgram(at(variant).get()); }
 
-bool Programs::compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at,
+bool Programs::compile_step(const scene::Scene& scene, const plan::Methods& methods,
                             plan::DrawBudget& budget) {
     constexpr std::int64_t kProgram = plan::DrawBudget::kMostUpload;
     const auto compile_next = [&](auto program) {
@@ -205,9 +229,12 @@ bool Programs::compile_step(const scene::Scene& scene, plan::Methods::Lighting l
         budget.spend((compiled_ - before) * kProgram);
         return true;
     };
-    for (std::size_t i = 0; i < kFixedPrograms; ++i)
-        if (!compile_next(static_cast<FixedProgram>(i))) return false;
-    return std::ranges::all_of(surface_variants(scene, lit_at), compile_next);
+    const bool double_single = has_double_single(scene);
+    for (std::size_t i = 0; i < kFixedPrograms; ++i) {
+        const auto program = static_cast<FixedProgram>(i);
+        if ((double_single || !is_double_single(program)) && !compile_next(program)) return false;
+    }
+    return std::ranges::all_of(surface_variants(scene, methods), compile_next);
 }
 
 }  // namespace vrut::gl

@@ -22,13 +22,15 @@ enum class FixedProgram {
     composite_lists,
     marker,
     node_id,
+    node_id_double_single,
     outline,
     resolve_planes,
     resolve_rgba,
     row_distance,
     solid_color,
+    solid_color_double_single,
 };
-inline constexpr std::size_t kFixedPrograms = 11;
+inline constexpr std::size_t kFixedPrograms = 13;
 
 /// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
 struct SurfaceVariant {
@@ -47,10 +49,13 @@ struct SurfaceVariant {
     bool environment = false;  ///< reflects the environment map
     bool clipped = false;      ///< by a plane
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
+    bool double_single = false;  ///< GpuGeometry::is_double_single()
+    bool anisotropic = false;    ///< filter of its texture
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
-            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
+                            v.anisotropic);
         };
         return key(*this) < key(other);
     }
@@ -63,7 +68,7 @@ std::vector<SurfaceVariant> reachable_surface_variants();
 
 /// Those that views of a scene may need: in every drawing mode, with each of its materials on any node, each
 /// of its lights or none, and its environment map or none.
-std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, plan::Methods::Lighting lit_at);
+std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods);
 
 /// GLSL, with the version and all that it #includes and #defines.
 struct ProgramSource {
@@ -80,7 +85,7 @@ public:
     void use(const SurfaceVariant& variant);
     /// Compiles what views of a scene may need until `budget` is spent: each program spends
     /// DrawBudget::kMostUpload. Returns true when all are compiled.
-    bool compile_step(const scene::Scene& scene, plan::Methods::Lighting lit_at, plan::DrawBudget& budget);
+    bool compile_step(const scene::Scene& scene, const plan::Methods& methods, plan::DrawBudget& budget);
     /// How many were compiled so far.
     int compiled() const { return compiled_; }
 

@@ -85,6 +85,17 @@ std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const 
     return result;
 }
 
+std::vector<glm::vec3> low_positions_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry,
+                                        const glm::dvec3& origin) {
+    std::vector<glm::vec3> low;
+    low.reserve(corners.size());
+    for (const unsigned corner : corners) {
+        const glm::dvec3 position = geometry.positions[corner] - origin;
+        low.emplace_back(position - glm::dvec3(glm::vec3(position)));
+    }
+    return low;
+}
+
 std::vector<glm::uvec2> unique_edges(const scene::Geometry& geometry,
                                      const std::vector<glm::uvec3>& vertices) {
     struct EdgeCandidate {

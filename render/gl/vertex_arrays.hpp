@@ -28,6 +28,10 @@ const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const sc
 /// interpolated coordinates.
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry);
 
+/// What rounding leaves of each vertex's position relative to `origin`.
+std::vector<glm::vec3> low_positions_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry,
+                                        const glm::dvec3& origin);
+
 /// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
 std::vector<glm::uvec2> unique_edges(const scene::Geometry& geometry,
                                      const std::vector<glm::uvec3>& vertices);

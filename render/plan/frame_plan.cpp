@@ -211,6 +211,7 @@ void FramePlanner::find_items(const View& view) {
 bool FramePlanner::find_shapes(const View& view, TransparencyCache& shapes, DrawBudget& budget) {
     const scene::Style style = style_of(view);
     if (!style.faces || style.override_material) return true;
+    if (view.methods.transparency == Methods::Transparency::per_pixel_lists) return true;
     const scene::Scene& scene = *view.scene->scene;
     const std::size_t count = items_.size() + plan_.selected.size();
     for (; shapes_found_ < count && !budget.is_spent(); ++shapes_found_) {

@@ -15,8 +15,8 @@ namespace {
 /// rounding.
 constexpr double kSmallestArea = 1.0 / 256;
 
-/// Part of a part's radius. Float positions are wrong by less; where a part stands on a mirror, so much of it
-/// is not reflected.
+/// Part of a part's radius; of one in double-single positions, part of the distance from the eye, if that is
+/// less. Positions are wrong by less; where a part stands on a mirror, so much of it is not reflected.
 constexpr double kClipMargin = 5e-7;
 
 /// Of homogeneous points, at whose corners a plane's product is positive inside.
@@ -123,20 +123,31 @@ bool are_coincident(const DrawItem& a, const DrawItem& b) {
     return a.geometry == b.geometry && a.view_from_node == b.view_from_node;
 }
 
+/// From the eye, of the box around an item.
+double farthest_distance(const DrawItem& item, const scene::Scene& scene) {
+    double farthest = 0;
+    for (const glm::dvec3& corner : math::corners(geometry_of(scene, item).bounds))
+        farthest = std::max(farthest, glm::length(glm::dvec3(item.view_from_node * glm::dvec4(corner, 1))));
+    return farthest;
+}
+
 /// `item` as the mirror shows it; none where all of it lies behind the mirror, or in its plane.
 std::optional<DrawItem> reflected(const DrawItem& item, const scene::Scene& scene, const math::Plane& plane,
-                                  const glm::dmat4& reflection) {
+                                  const MirrorItem& mirror) {
     const math::Bounds& bounds = geometry_of(scene, item).bounds;
     const glm::dmat4& matrix = item.view_from_node;
     // Distances from the plane, of points of the node's space.
     glm::dvec4 distance = glm::dvec4(plane.normal, -glm::dot(plane.normal, plane.point)) * matrix;
     const glm::dvec3 half = bounds.half_extent();
-    const double margin = kClipMargin * glm::length(transformed(matrix, bounds).half_extent());
+    double rounded = glm::length(transformed(matrix, bounds).half_extent());
+    if (scene.needs_double_single(item.geometry))
+        rounded = std::min(rounded, farthest_distance(mirror.surface, scene));
+    const double margin = kClipMargin * rounded;
     const double middle = glm::dot(distance, glm::dvec4(bounds.center(), 1));
     const double reach = glm::dot(glm::abs(glm::dvec3(distance)), half);
     if (!(middle + reach > margin)) return {};
     DrawItem image = item;
-    image.view_from_node = reflection * matrix;
+    image.view_from_node = mirror.reflection * matrix;
     image.mirrored = !item.mirrored;
     if (middle - reach < margin) {
         distance.w -= margin;
@@ -155,7 +166,7 @@ std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const math::Plan
     std::vector<DrawItem> items;
     for (const DrawItem& item : shown) {
         if (are_coincident(item, mirror.surface)) continue;
-        const auto image = reflected(item, scene, plane, mirror.reflection);
+        const auto image = reflected(item, scene, plane, mirror);
         if (image && !math::is_outside(frustum, image->view_from_node, geometry_of(scene, item).bounds))
             items.push_back(*image);
     }

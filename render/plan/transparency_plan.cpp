@@ -333,6 +333,8 @@ bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) cons
 
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes) {
+    if (view.methods.transparency == Methods::Transparency::per_pixel_lists)
+        return {{{items.begin(), items.end()}, true}};
     DepthOrderGraph graph(items, view, shapes);
     std::vector<std::vector<unsigned>> order;
     const bool ordered = graph.compare_all(),

@@ -18,7 +18,7 @@ namespace vrut::plan {
 ///
 /// If more than kMaxOverlappingPairs pairs overlap in x on the screen, items are not compared. Then all items
 /// are one exact group. If more than kMaxMeanLayers of them cover a pixel on average, they are sorted by
-/// distance.
+/// distance. Under Transparency::per_pixel_lists all items are one exact group.
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes);
 

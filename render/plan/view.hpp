@@ -42,12 +42,18 @@ struct PlacedMarker {
 
 using scene::DrawMode;
 
-/// Trade-offs between cost and accuracy. The defaults are the most accurate methods.
+/// Trade-offs between cost and accuracy. The server draws with the defaults; the others are measured.
 struct Methods {
-    enum class Lighting { pixel, vertex };      ///< where Phong's equation is evaluated
-    enum class Transparency { exact, sorted };  ///< sorted at each pixel, or item by item back to front
+    enum class Lighting { pixel, vertex };  ///< where Phong's equation is evaluated
+    enum class Transparency {
+        exact,            ///< sorted at each pixel where no order of items and triangles is right
+        sorted,           ///< item by item back to front
+        per_pixel_lists,  ///< sorted at each pixel everywhere
+    };
+    enum class TextureFilter { trilinear, anisotropic };  ///< of materials' textures
     Lighting light = Lighting::pixel;
     Transparency transparency = Transparency::exact;
+    TextureFilter texture_filter = TextureFilter::trilinear;
 
     bool operator==(const Methods&) const = default;
 };

@@ -76,7 +76,7 @@ struct Renderer::Impl {
         }
         plan::DrawBudget budget(context.software(), plan::DrawBudget::kMostUpload);
         if (next != scene) next->upload(budget);
-        const bool compiled = programs.compile_step(*wanted, view.methods.light, budget);
+        const bool compiled = programs.compile_step(*wanted, view.methods, budget);
         if (budget.spent() == 0 && !next->is_complete()) next->wait(kPatience);
         gl::wait_for_gl();
         staged = next;

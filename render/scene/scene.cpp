@@ -134,6 +134,23 @@ std::vector<std::optional<math::Plane>> fitted_planes(const std::vector<Geometry
     return planes;
 }
 
+/// Of each geometry the longest side of the world-space boxes around its instances, in metres.
+std::vector<double> extents_of(const Scene& scene) {
+    std::vector<double> extents(scene.geometries().size());
+    const std::vector<glm::dmat4> world = world_matrices(scene, file_states(scene));
+    for (std::size_t i = 0; i < world.size(); ++i) {
+        const auto* data = std::get_if<GeometryData>(&scene.nodes()[i].data);
+        if (!data || data->geometry == kNone) continue;
+        const auto geometry = static_cast<std::size_t>(data->geometry);
+        const math::Bounds& bounds = scene.geometries()[geometry].bounds;
+        if (bounds.empty()) continue;
+        const glm::dvec3 half = math::transformed(world[i], bounds).half_extent();
+        extents[geometry] =
+            std::max(extents[geometry], 2 * scene.unit() * std::max({half.x, half.y, half.z}));
+    }
+    return extents;
+}
+
 }  // namespace
 
 tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
@@ -173,6 +190,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
         for (Index child : scene.nodes_[i].children)
             scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
+    scene.extents_ = extents_of(scene);
     return scene;
 }
 

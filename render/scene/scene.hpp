@@ -168,6 +168,13 @@ public:
     const std::optional<math::Plane>& plane(Index geometry) const {
         return planes_[static_cast<std::size_t>(geometry)];
     }
+    /// Whether float positions round what a viewer may see: some instance is longer than 256 m where the file
+    /// places it, so that they are wrong by 8 µm at its ends. They are then sums of two floats (double-single
+    /// arithmetic; Cozzi and Ring 2011, 3D Engine Design for Virtual Globes, 5.4).
+    bool needs_double_single(Index geometry) const {
+        constexpr double kLongestInFloat = 256;
+        return extents_[static_cast<std::size_t>(geometry)] > kLongestInFloat;
+    }
     /// Whether something can be seen through it: its diffuse alpha or one of its texture's is below 1.
     bool is_transparent(const Material& material) const;
     /// The same on a geometry: without texture coordinates it shows no texture.
@@ -189,6 +196,7 @@ private:
     std::vector<Material> materials_;
     std::vector<Geometry> geometries_;
     std::vector<std::optional<math::Plane>> planes_;
+    std::vector<double> extents_;  // of geometries, in metres
     std::vector<Node> nodes_;
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;

@@ -190,6 +190,29 @@ const Row* find(const std::vector<Row>& rows, const Chosen& wanted) {
     return found == rows.end() ? nullptr : &*found;
 }
 
+std::string transparency_label(const Row& row) {
+    using Transparency = plan::Methods::Transparency;
+    switch (row.setting.methods.transparency) {
+        case Transparency::sorted:
+            return "sorted by parts";
+        case Transparency::per_pixel_lists:
+            return "all by lists at each pixel";
+        case Transparency::exact:
+            break;
+    }
+    return "right at each pixel";
+}
+
+std::string texture_filter_label(const Row& row) {
+    using TextureFilter = plan::Methods::TextureFilter;
+    return row.setting.methods.texture_filter == TextureFilter::trilinear ? "trilinear" : "anisotropic";
+}
+
+/// Whether another picture than that of the most accurate setting judges a chart's.
+bool is_judged_from_outside(const SceneRows& scene, std::string_view chart) {
+    return scene.traced || chart == "antialiasing" || chart == "texture-filter";
+}
+
 std::vector<MethodChart> method_charts(const SceneRows& scene) {
     const std::vector<Setting> levels = level_settings(scene);
     const bool smooth =
@@ -202,14 +225,10 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
     sent.push_back(setting_of(engine::kRefined));
     return {
         {"transparency", "transparency",
-         "Ringed: glass that is right at each pixel. Sorted by parts it is wrong wherever panes cross.",
-         kTime,
-         [](const Row& row) {
-             return row.setting.methods.transparency == plan::Methods::Transparency::exact
-                        ? "right at each pixel"
-                        : "sorted by parts";
-         },
-         [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
+         "Ringed: glass that is right at each pixel, by lists only where no order is. Sorted by parts it is "
+         "wrong "
+         "wherever panes cross.",
+         kTime, transparency_label, [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
         {"lighting", "lighting",
          "Ringed: Phong's equation at each pixel. At vertices alone highlights of large triangles are lost.",
          kTime,
@@ -218,6 +237,10 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
                                                                                 : "at vertices";
          },
          [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
+        {"texture-filter", "texture filter",
+         "Ringed: trilinear. Anisotropic, textures seen aslant keep their detail along the other side of the "
+         "pixel.",
+         kTime, texture_filter_label, [](const Row& row) { return row.setting.methods == plan::Methods{}; }},
         {"detail", "level of detail",
          "Ringed: " + (smooth ? moving + ", and " : std::string()) +
              "every triangle, for the picture at rest.",
@@ -255,6 +278,9 @@ std::vector<MethodChart> method_charts(const SceneRows& scene) {
 std::string judge_sentence(const SceneRows& scene, const std::string& chart) {
     if (chart == "antialiasing")
         return "The judge is a picture of " + std::to_string(kJudgeSamples) + " samples a pixel.";
+    if (chart == "texture-filter")
+        return "The judge is the mean of " + std::to_string(kFinerPixels * kFinerPixels) +
+               " finer pixels for each.";
     if (scene.traced) return "The judge is the reference, which follows rays in double precision.";
     return "The judge is the same picture with every triangle, light and glass right at each pixel, not "
            "encoded.";
@@ -263,8 +289,8 @@ std::string judge_sentence(const SceneRows& scene, const std::string& chart) {
 /// Whether the setting is what others are judged by, so that no error of its own is known.
 bool is_judge(const SceneRows& scene, const Row& row) {
     const Setting& setting = row.setting;
-    return !scene.traced && setting.samples == 1 && setting.detail == 0 &&
-           setting.methods == plan::Methods{} && setting.jpeg_quality == 0 && row.chart != "antialiasing";
+    return !is_judged_from_outside(scene, row.chart) && setting.samples == 1 && setting.detail == 0 &&
+           setting.methods == plan::Methods{} && setting.jpeg_quality == 0;
 }
 
 Plot picking_plot(const SceneRows& scene, std::vector<std::string>& sentences) {

@@ -57,6 +57,8 @@ std::vector<Experiment> experiments_of(const Subject& subject, int frames) {
     add("antialiasing", realistic, sample_counts(), Judge::many_samples, frames);
     add("lighting", realistic, lights(), Judge::same_samples, frames);
     add("transparency", realistic, transparencies(), Judge::same_samples, frames);
+    if (!subject.home.scene->scene->textures().empty())
+        add("texture-filter", realistic, texture_filters(), Judge::finer_pixels, frames);
     add("jpeg", realistic, encodings(), Judge::same_samples, frames);
     return list;
 }
@@ -95,14 +97,26 @@ Row Laboratory::row_of(const Experiment& experiment, const Setting& setting) con
     return row;
 }
 
+scene::Image Laboratory::judge(const Experiment& experiment, const plan::View& view) {
+    using Judge = Experiment::Judge;
+    if (experiment.judge == Judge::many_samples) return studio_.exact_picture(view, kJudgeSamples);
+    if (experiment.judge == Judge::finer_pixels) {
+        plan::View finer = view;
+        finer.width *= kFinerPixels;
+        finer.height *= kFinerPixels;
+        scene::Image image = studio_.exact_picture(finer, 1);
+        while (image.width > view.width) image = resized(image, image.width / 2, image.height / 2);
+        return image;
+    }
+    return is_traced(experiment.subject) ? reference::image_of(reference::trace(view_with(view, {})))
+                                         : studio_.exact_picture(view, 1);
+}
+
 std::vector<scene::Image> Laboratory::judges(const Experiment& experiment, std::span<const plan::View> views,
                                              const PartDone& done) {
-    const bool many = experiment.judge == Experiment::Judge::many_samples;
-    const bool traced = !many && is_traced(experiment.subject);
     std::vector<scene::Image> judges;
     for (const plan::View& view : views) {
-        judges.push_back(traced ? reference::image_of(reference::trace(view_with(view, {})))
-                                : studio_.exact_picture(view, many ? kJudgeSamples : 1));
+        judges.push_back(judge(experiment, view));
         if (done) done(static_cast<double>(judges.size()) / static_cast<double>(views.size()));
     }
     return judges;

@@ -38,8 +38,9 @@ bool is_traced(const Subject& subject);
 /// What to measure, and into which rows.
 struct Experiment {
     /// What pictures are judged by: nothing; kJudgeSamples samples a pixel; a picture of the same samples, by
-    /// the reference in double precision where that takes no time, else by the exact methods.
-    enum class Judge { none, many_samples, same_samples };
+    /// the reference in double precision where that takes no time, else by the exact methods; the mean of
+    /// kFinerPixels² pixels of a picture as many times as wide and high.
+    enum class Judge { none, many_samples, same_samples, finer_pixels };
     std::string chart, method = {};
     Subject subject;
     Mode mode = kModes[0];
@@ -52,7 +53,7 @@ struct Experiment {
 inline constexpr std::array kPickings{"ray in double", "picture of ids", "picture of ids, half size",
                                       "every triangle"};
 
-inline constexpr int kJudgeSamples = 64, kJudgedViews = 3;
+inline constexpr int kJudgeSamples = 64, kFinerPixels = 4, kJudgedViews = 3;
 inline constexpr int kTableFrames = 100;  ///< of the thesis's table 7.1
 
 /// Of a scene: the four modes, then one thing after the other, and how it is picked.
@@ -89,6 +90,7 @@ public:
 
 private:
     Row picking_row(const Subject& subject, const std::string& method) const;
+    scene::Image judge(const Experiment& experiment, const plan::View& view);
     std::vector<scene::Image> judges(const Experiment& experiment, std::span<const plan::View> views,
                                      const PartDone& done);
 

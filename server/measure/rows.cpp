@@ -10,13 +10,15 @@ namespace vrut::server::measure {
 
 namespace {
 
-constexpr std::array kColumns{"chart",        "scene",        "sha256",    "renderer",  "machine",
-                              "version",      "mode",         "width",     "height",    "frames",
-                              "scale",        "samples",      "detail",    "light",     "transparency",
-                              "jpeg_quality", "subsampling",  "method",  // what is measured ends here
-                              "triangles",    "ms_mean",      "ms_median", "ms_p5",     "ms_p95",
-                              "bytes_mean",   "bytes_median", "bytes_p5",  "bytes_p95", "flip_mean",
-                              "flip_median",  "flip_p5",      "flip_p95",  "maximum",   "wrong"};
+using Transparency = plan::Methods::Transparency;
+
+constexpr std::array kColumns{
+    "chart",        "scene",          "sha256",       "renderer",    "machine", "version",    "mode",
+    "width",        "height",         "frames",       "scale",       "samples", "detail",     "light",
+    "transparency", "texture_filter", "jpeg_quality", "subsampling", "method",  // what is measured ends here
+    "triangles",    "ms_mean",        "ms_median",    "ms_p5",       "ms_p95",  "bytes_mean", "bytes_median",
+    "bytes_p5",     "bytes_p95",      "flip_mean",    "flip_median", "flip_p5", "flip_p95",   "maximum",
+    "wrong"};
 
 std::string text_of(double value) {
     char text[32];
@@ -30,10 +32,28 @@ std::string one_line(std::string text) {
     return text;
 }
 
+const char* name_of(Transparency transparency) {
+    switch (transparency) {
+        case Transparency::sorted:
+            return "sorted";
+        case Transparency::per_pixel_lists:
+            return "per-pixel lists";
+        case Transparency::exact:
+            break;
+    }
+    return "exact";
+}
+
+Transparency transparency_of(std::string_view name) {
+    for (const Transparency transparency : {Transparency::sorted, Transparency::per_pixel_lists})
+        if (name == name_of(transparency)) return transparency;
+    return Transparency::exact;
+}
+
 std::vector<std::string> key_fields(const Row& row) {
     const Setting& setting = row.setting;
     const bool vertex = setting.methods.light == plan::Methods::Lighting::vertex;
-    const bool sorted = setting.methods.transparency == plan::Methods::Transparency::sorted;
+    const bool anisotropic = setting.methods.texture_filter == plan::Methods::TextureFilter::anisotropic;
     return {row.chart,
             one_line(row.scene),
             row.sha256,
@@ -48,7 +68,8 @@ std::vector<std::string> key_fields(const Row& row) {
             std::to_string(setting.samples),
             text_of(setting.detail),
             vertex ? "vertex" : "pixel",
-            sorted ? "sorted" : "exact",
+            name_of(setting.methods.transparency),
+            anisotropic ? "anisotropic" : "trilinear",
             std::to_string(setting.jpeg_quality),
             setting.subsampled ? "4:2:0" : "4:4:4",
             row.method};
@@ -171,11 +192,13 @@ std::optional<Row> row_of(std::string_view line) {
     row.setting.samples = numbers.take<int>();
     row.setting.detail = numbers.take();
     if ((*fields)[13] == "vertex") row.setting.methods.light = plan::Methods::Lighting::vertex;
-    if ((*fields)[14] == "sorted") row.setting.methods.transparency = plan::Methods::Transparency::sorted;
-    numbers.skip(2);
+    row.setting.methods.transparency = transparency_of((*fields)[14]);
+    if ((*fields)[15] == "anisotropic")
+        row.setting.methods.texture_filter = plan::Methods::TextureFilter::anisotropic;
+    numbers.skip(3);
     row.setting.jpeg_quality = numbers.take<int>();
-    row.setting.subsampled = (*fields)[16] == "4:2:0";
-    row.method = (*fields)[17];
+    row.setting.subsampled = (*fields)[17] == "4:2:0";
+    row.method = (*fields)[18];
     numbers.skip(2);
     row.cost.triangles = numbers.take();
     row.cost.ms = numbers.take_spread();

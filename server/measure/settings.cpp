@@ -11,6 +11,9 @@ namespace vrut::server::measure {
 
 namespace {
 
+using Transparency = plan::Methods::Transparency;
+using TextureFilter = plan::Methods::TextureFilter;
+
 constexpr std::array kScales{0.25, 0.35, 0.5, 0.71, 1.0};
 constexpr std::array kDetails{4.0, 2.0, 1.0, 0.5, 0.25, 0.0};  // by rising accuracy
 
@@ -44,7 +47,10 @@ std::string name_of(const Setting& setting) {
                        (setting.samples == 1 ? " sample" : " samples");
     if (setting.detail > 0) name += ", detail " + number(setting.detail);
     if (setting.methods.light == plan::Methods::Lighting::vertex) name += ", light at vertices";
-    if (setting.methods.transparency == plan::Methods::Transparency::sorted) name += ", glass sorted";
+    if (setting.methods.transparency == Transparency::sorted) name += ", glass sorted";
+    if (setting.methods.transparency == Transparency::per_pixel_lists)
+        name += ", all glass in per-pixel lists";
+    if (setting.methods.texture_filter == TextureFilter::anisotropic) name += ", textures anisotropic";
     if (setting.jpeg_quality > 0)
         name += ", JPEG " + std::to_string(setting.jpeg_quality) + (setting.subsampled ? " 4:2:0" : " 4:4:4");
     return name;
@@ -109,7 +115,7 @@ std::vector<Setting> product(bool with_detail) {
     for (const Setting& setting : encodings()) add(settings, setting);
     Setting vertex, sorted;
     vertex.methods.light = plan::Methods::Lighting::vertex;
-    sorted.methods.transparency = plan::Methods::Transparency::sorted;
+    sorted.methods.transparency = Transparency::sorted;
     settings.push_back(vertex);
     settings.push_back(sorted);
     return settings;
@@ -156,8 +162,15 @@ std::vector<Setting> lights() {
 }
 
 std::vector<Setting> transparencies() {
+    std::vector<Setting> settings(3, not_encoded());
+    settings[0].methods.transparency = Transparency::sorted;
+    settings[1].methods.transparency = Transparency::per_pixel_lists;
+    return settings;
+}
+
+std::vector<Setting> texture_filters() {
     std::vector<Setting> settings(2, not_encoded());
-    settings.front().methods.transparency = plan::Methods::Transparency::sorted;
+    settings.back().methods.texture_filter = TextureFilter::anisotropic;
     return settings;
 }
 

@@ -48,6 +48,7 @@ std::vector<Setting> details();
 std::vector<Setting> sample_counts();
 std::vector<Setting> lights();
 std::vector<Setting> transparencies();
+std::vector<Setting> texture_filters();
 /// The ordinary picture in each JPEG quality and subsampling.
 std::vector<Setting> encodings();
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "renderer_fixture.hpp"
@@ -53,6 +54,45 @@ scene::Material glass(const glm::dvec3& color, double alpha) {
     material.diffuse = {0, 0, 0, alpha};
     material.two_sided = true;
     return material;
+}
+
+plan::View by_lists(plan::View view) {
+    view.methods.transparency = plan::Methods::Transparency::per_pixel_lists;
+    return view;
+}
+
+plan::View anisotropic(plan::View view) {
+    view.methods.texture_filter = plan::Methods::TextureFilter::anisotropic;
+    return view;
+}
+
+/// Root of the mean square of how far the pixels of an image are from the means of those of one `factor`
+/// times as wide and high.
+double distance_from_finer(const scene::Image& image, const scene::Image& finer, int factor) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            glm::dvec3 mean(0);
+            for (int k = 0; k < factor * factor; ++k)
+                mean += glm::dvec3(pixel_of(finer, x * factor + k % factor, y * factor + k / factor));
+            const glm::dvec3 off = glm::dvec3(pixel_of(image, x, y)) - mean / double(factor * factor);
+            sum += glm::dot(off, off) / 3;
+        }
+    return std::sqrt(sum / (image.width * image.height));
+}
+
+/// A floor with stripes along the view and across, every other texel dark.
+std::shared_ptr<const scene::PlacedScene> striped_floor(double alpha) {
+    scene::Texture stripes{"stripes", {}};
+    stripes.image.resize(64, 64);
+    for (std::size_t k = 0; k < stripes.image.rgba.size(); ++k)
+        stripes.image.rgba[k] = k % 4 == 3 || k / 4 % 2 == 0 || k / 256 % 8 == 0 ? 255 : 0;
+    scene::Geometry floor = quad(20);
+    floor.texcoords = {{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+    scene::Material material = material_of({1, 1, 1});
+    material.diffuse.a = alpha;
+    material.texture = 0;
+    return scene_of({{1, floor, material, turned_by(-90, {1, 0, 0})}}, {stripes});
 }
 
 }  // namespace
@@ -160,4 +200,47 @@ TEST_CASE("sorted transparency draws panes that cross one after the other, each 
     CHECK(studio.stats.draws == 3);
     CHECK(studio.stats.passes == 1);
     CHECK(studio.draw(scene, view).rgba == exact.rgba);
+}
+
+TEST_CASE("lists for all glass show what glass in order shows") {
+    RendererFixture studio;
+    std::vector<Part> parts;
+    for (int i = 0; i < 5; ++i)
+        parts.push_back({1 + i * 3 % 5, quad(1), glass({i / 4.0, 0.5, 1 - i / 4.0}, 0.4),
+                         turned_by(3.0 * i, {0, 1, 0}) * moved_by({0.1 * i, 0, 0.5 * i})});
+    parts.push_back({9, sphere(0.5, 12), glass({0.1, 0.7, 0.2}, 0.5), moved_by({0, 0, 4})});
+    parts.push_back({10, box({0.3, 0.3, 0.3}), material_of({0.5, 0.5, 0.5}), moved_by({0.4, 0, 1.2})});
+    const auto scene = scene_of(parts);
+    for (const glm::dvec3& eye : {glm::dvec3(0.3, 0.2, 7), glm::dvec3(1, -2, -5)}) {
+        const plan::View view = view_from(eye);
+        const scene::Image in_order = studio.draw(scene, view);
+        const int draws = studio.stats.draws;
+        CHECK(studio.check(scene, by_lists(view)).surfaces > 300);
+        CHECK(studio.stats.draws == draws + 1);
+        CHECK(apart(in_order, studio.draw(scene, by_lists(view))) <= 1);
+        CHECK(studio.draw(scene, view).rgba == in_order.rgba);
+    }
+}
+
+TEST_CASE("an anisotropic filter keeps what a trilinear one blurs on a floor seen aslant") {
+    RendererFixture studio;
+    constexpr int kFiner = 8;
+    for (const double alpha : {1.0, 0.6}) {
+        const auto floor = striped_floor(alpha);
+        plan::View view = lit_by(scene::LightData::Type::directional, view_from({0, 1, 12}, {0, -0.8, 0}));
+        view.light.direction = {0, -1, 0};
+        plan::View finer = view;
+        finer.width *= kFiner;
+        finer.height *= kFiner;
+        const scene::Image truth = studio.draw(floor, finer), trilinear = studio.draw(floor, view);
+        const double blurred = distance_from_finer(trilinear, truth, kFiner),
+                     kept = distance_from_finer(studio.draw(floor, anisotropic(view)), truth, kFiner);
+        CHECK(blurred > 5);
+        CHECK(kept < 0.6 * blurred);
+        // What was drawn in between leaves nothing behind.
+        CHECK(studio.draw(floor, view).rgba == trilinear.rgba);
+        // Seen straight on, both are one filter.
+        view.camera = view_from({0, 9, 0.001}).camera;
+        CHECK(apart(studio.draw(floor, view), studio.draw(floor, anisotropic(view))) <= 1);
+    }
 }

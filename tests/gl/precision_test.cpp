@@ -1,3 +1,4 @@
+#include "reference/reference.hpp"
 #include "renderer_fixture.hpp"
 
 using namespace vrut;
@@ -28,6 +29,43 @@ std::shared_ptr<const scene::PlacedScene> things(double scale, const glm::dvec3&
                      part(3, quad(3), {0, 0, -1}), part(4, quad(0.5, false), {0, 1, 1})});
 }
 
+/// Adds positions and triangles.
+void add(scene::Geometry& geometry, const scene::Geometry& other, const glm::dmat4& matrix = glm::dmat4(1)) {
+    const auto first = static_cast<unsigned>(geometry.positions.size());
+    for (const glm::dvec3& position : other.positions) {
+        geometry.positions.emplace_back(matrix * glm::dvec4(position, 1));
+        geometry.bounds.add(geometry.positions.back());
+    }
+    for (const glm::uvec3& triangle : other.triangles) geometry.triangles.push_back(triangle + first);
+}
+
+/// Boxes of a metre to a centimetre around the origin, each turned its own way.
+scene::Geometry detail() {
+    scene::Geometry geometry;
+    add(geometry, box({0.7, 0.3, 0.1}), moved_by({0, 0.3, -0.3}) * turned_by(10, {0, 1, 0}));
+    add(geometry, box({0.05, 0.08, 0.05}), moved_by({0, 0.1, 0}) * turned_by(35, {0, 1, 0}));
+    for (int i = 0; i < 4; ++i)
+        add(geometry, box({0.02, 0.015, 0.01}),
+            moved_by({0.06 * i, 0.15, 0.1}) * turned_by(20 + 20 * i, glm::normalize(glm::dvec3(1, 2, i))));
+    return geometry;
+}
+
+/// A strip from the origin to `end` and a bit beyond.
+scene::Geometry ground_to(const glm::dvec3& end) {
+    const glm::dvec3 along = 3.0 * glm::normalize(end), across = glm::cross(along, {0, 1, 0});
+    return surface(1, 1, [&](double u, double v) { return v * (end + along) + (2 * u - 1) * across; });
+}
+
+/// Where a strip of 200 km ends.
+const glm::dvec3 kFarEnd{1.2e5, 0, 1.6e5};
+
+/// The strip and what stands at its end.
+scene::Geometry ground_with_detail() {
+    scene::Geometry geometry = ground_to(kFarEnd);
+    add(geometry, detail(), moved_by(kFarEnd));
+    return geometry;
+}
+
 }  // namespace
 
 TEST_CASE("size and place of a scene do not change its picture") {
@@ -44,6 +82,83 @@ TEST_CASE("size and place of a scene do not change its picture") {
         studio.check(things(1, far, in_file), moved(view, 1, far));
         studio.check(things(1e6, far * 1e6, in_file), moved(view, 1e6, far * 1e6));
     }
+}
+
+TEST_CASE("a geometry of 200 km is drawn as precisely near its end as a small one") {
+    RendererFixture studio;
+    const scene::Material material = material_of({0.6, 0.4, 0.2}, {0.3, 0.3, 0.3}, 30);
+    const glm::dmat4 placed = moved_by({-3e5, 2e5, 1e3}) * turned_by(70, glm::normalize(glm::dvec3(1, 2, 3)));
+    for (const double scale : {1.0, 1e3})  // of the file's numbers; the node's matrix takes it back
+        for (const glm::dmat4& place : {glm::dmat4(1), placed}) {
+            CAPTURE(scale);
+            const scene::Geometry geometry = mapped(ground_with_detail(), scale, {0, 0, 0});
+            const auto scene = scene_of({{1, geometry, material, place * scaled_by(glm::dvec3(1 / scale))}});
+            for (const glm::dvec3& eye :
+                 {glm::dvec3(0.05, 0.16, 0.31), glm::dvec3(-0.3, 0.2, 0.1), glm::dvec3(3, 2, 4)}) {
+                CAPTURE(eye.x);
+                const auto in_world = [&](const glm::dvec3& point) {
+                    return glm::dvec3(place * glm::dvec4(kFarEnd + point, 1));
+                };
+                const plan::View view = view_from(in_world(eye), in_world({0, 0.1, 0}));
+                CHECK(studio.check(scene, view).surfaces > 2000);
+            }
+        }
+}
+
+TEST_CASE("a geometry of 200 km is drawn in every way as two geometries are") {
+    RendererFixture studio;
+    scene::Material matte = material_of({0.6, 0.4, 0.2}), glass = matte, chrome = matte;
+    glass.diffuse.a = 0.5;
+    chrome.reflectivity = 0.7;
+    const Part mirror{3, quad(0.5), chrome, moved_by(kFarEnd + glm::dvec3(-0.4, 0.4, -0.1))};
+    plan::View view = view_from(kFarEnd + glm::dvec3(0.3, 0.6, 1.2), kFarEnd);
+    view.light.headlight = false;
+    view.light.type = scene::LightData::Type::directional;
+    view.light.direction = glm::normalize(glm::dvec3(-1, -2, -1));
+    for (const scene::Material& material : {matte, glass}) {
+        const auto together = scene_of({{1, ground_with_detail(), material, glm::dmat4(1)}, mirror});
+        const auto apart = scene_of({{1, ground_to(kFarEnd), material, glm::dmat4(1)},
+                                     {2, detail(), material, moved_by(kFarEnd)},
+                                     mirror});
+        const auto check = [&] {
+            const scene::Image expected = studio.draw(apart, view), image = studio.draw(together, view);
+            int off = 0;
+            for (int i = 0; i < view.width * view.height; ++i) {
+                const glm::ivec3 is = pixel_of(image, i % view.width, i / view.width),
+                                 should = pixel_of(expected, i % view.width, i / view.width);
+                off += glm::any(glm::greaterThan(glm::abs(is - should), glm::ivec3(2)));
+            }
+            CHECK(off <= 10);  // at edges
+        };
+        check();
+        view.wireframe = true;
+        check();
+        view.mode = plan::DrawMode::stylized;
+        check();
+        view.wireframe = false;
+        check();
+        view.mode = plan::DrawMode::realistic;
+        view.methods.light = plan::Methods::Lighting::vertex;
+        check();
+        view.methods = {};
+        view.selected = 0;  // the root: all
+        check();
+        view.selected = scene::kNone;
+    }
+}
+
+TEST_CASE("nodes of a geometry of 200 km lie where it is drawn") {
+    RendererFixture studio;
+    const scene::Material material = material_of({0.6, 0.4, 0.2});
+    const auto scene = scene_of({{1, ground_with_detail(), material, glm::dmat4(1)}});
+    plan::View view = view_from(kFarEnd + glm::dvec3(0.3, 0.2, 1.2), kFarEnd);
+    view.scene = scene;
+    const std::vector<scene::Index> drawn = studio.renderer().node_ids(view),
+                                    should = reference::trace(view).node;
+    REQUIRE(drawn.size() == should.size());
+    int off = 0;
+    for (std::size_t i = 0; i < drawn.size(); ++i) off += drawn[i] != should[i];
+    CHECK(off <= 2);
 }
 
 TEST_CASE("a flattened part of any size is lit") {

@@ -84,8 +84,10 @@ TEST_CASE("no frame of a scene that was uploaded compiles a program") {
     plan::View view = view_from({0.5, 0.4, 5});
     view.scene = scene;
     view.markers = markers_at({{0, 0, 1}});
-    for (const auto lit_at : {plan::Methods::Lighting::pixel, plan::Methods::Lighting::vertex}) {
-        view.methods.light = lit_at;
+    plan::Methods others{plan::Methods::Lighting::vertex};
+    others.texture_filter = plan::Methods::TextureFilter::anisotropic;
+    for (const plan::Methods& methods : {plan::Methods(), others}) {
+        view.methods = methods;
         studio.renderer().upload(view);
         int frames = 0;
         for (scene::Index node = scene::kNone; node < static_cast<scene::Index>(scene->nodes.size());

@@ -20,7 +20,8 @@ std::string name_of(const gl::SurfaceVariant& variant) {
     return "surface-" + std::to_string(static_cast<int>(variant.kind)) + "-" +
            std::to_string(static_cast<int>(variant.light)) + (variant.textured ? "-textured" : "") +
            (variant.environment ? "-environment" : "") + (variant.clipped ? "-clipped" : "") +
-           (variant.lit_at == plan::Methods::Lighting::vertex ? "-vertex" : "");
+           (variant.lit_at == plan::Methods::Lighting::vertex ? "-vertex" : "") +
+           (variant.double_single ? "-double-single" : "") + (variant.anisotropic ? "-anisotropic" : "");
 }
 
 /// Files of a folder, written as they are named, for glslangValidator.

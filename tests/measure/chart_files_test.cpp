@@ -26,7 +26,8 @@ Row row(const std::string& scene, double scale) {
     row.height = 48;
     row.frames = 3;
     row.setting.scale = scale;
-    row.setting.methods.light = plan::Methods::Lighting::vertex;
+    row.setting.methods = {plan::Methods::Lighting::vertex, plan::Methods::Transparency::per_pixel_lists,
+                           plan::Methods::TextureFilter::anisotropic};
     row.cost.triangles = 12;
     row.cost.ms = {1.5, 1.25, 1, 2};
     row.cost.bytes = {100, 101, 99, 120};

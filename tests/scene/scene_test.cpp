@@ -385,6 +385,25 @@ TEST_CASE("a subtree's bounds hold what shows at and below its node") {
     CHECK(of(0).max == placed.bounds.max);
 }
 
+TEST_CASE("a geometry needs double-single positions where some instance is longer than 256 m") {
+    const auto needs = [](double unit, const glm::dmat4& matrix, double length) {
+        scene::SceneParts parts;
+        parts.unit = unit;
+        parts.geometries = {geometry_of({{0, 0, 0}, {length, 1, 1}}), scene::Geometry()};
+        parts.nodes = {geometry_part(1, 0, 0), geometry_part(2, 0, 0), geometry_part(3, 0, 1)};
+        parts.nodes[1].node.matrix = matrix;
+        const auto scene = scene::Scene::build(std::move(parts));
+        REQUIRE(scene);
+        CHECK_FALSE(scene->needs_double_single(1));  // without positions
+        return scene->needs_double_single(0);
+    };
+    CHECK_FALSE(needs(1, glm::dmat4(1), 255));
+    CHECK(needs(1, glm::dmat4(1), 257));
+    CHECK_FALSE(needs(0.001, glm::dmat4(1), 2e5));
+    CHECK(needs(0.001, glm::dmat4(1), 3e5));
+    CHECK(needs(1, glm::dmat4(glm::dmat3(300)), 1));
+}
+
 TEST_CASE("parts beyond the range of double leave the bounds alone") {
     const double infinity = std::numeric_limits<double>::infinity();
     const std::vector<scene::Geometry> geometries{geometry_of({{-1, -1, -1}, {1, 1, 1}})};

@@ -1,5 +1,7 @@
 #include "gl/passes/edge_pass.hpp"
 
+#include <optional>
+
 #include "gl/passes/drawing.hpp"
 
 namespace vrut::gl {
@@ -20,14 +22,15 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
                     const glm::dmat4& clip_from_view, SurfacePrograms& programs, plan::FrameStats& stats) {
     PipelineState state;
     state.depth_write = !style.edge_color;  // of one colour, none hides another
-    if (style.edge_color) use_solid_color(programs_, *style.edge_color, clip_from_view);
+    std::optional<SolidColorProgram> solid;
+    if (style.edge_color) solid.emplace(programs_, *style.edge_color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;
         if (!edges && style.edge_color) continue;  // its faces are drawn
         const GpuGeometry& geometry = scene.geometry(item);
-        if (style.edge_color)
-            set_transform(item, geometry);
+        if (solid)
+            solid->use(item, geometry);
         else
             programs.use(edges ? SurfacePrograms::SurfaceKind::edges : SurfacePrograms::SurfaceKind::faces,
                          item, geometry, scene.scene()->material(item.material));
@@ -44,12 +47,12 @@ void EdgePass::draw_overlay(std::span<const plan::DrawItem> items, GpuScene& sce
     PipelineState state;
     state.depth_test = false;
     apply(state);
-    use_solid_color(programs_, color, clip_from_view);
+    SolidColorProgram program(programs_, color, clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;
         if (!edges) continue;
-        set_transform(item, scene.geometry(item));
+        program.use(item, scene.geometry(item));
         draw_lines(*edges, stats);
     }
 }

@@ -37,12 +37,11 @@ std::vector<scene::Index> IdPass::draw(std::span<const plan::DrawItem> items, Gp
     apply(state);
     glClearBufferiv(GL_COLOR, 0, &scene::kNone);
     glClear(GL_DEPTH_BUFFER_BIT);
-    use_node_id(programs_, clip_from_view);
+    NodeIdProgram program(programs_, clip_from_view);
     plan::FrameStats stats;
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_transform(item, geometry);
-        set_node(item.node);
+        program.use(item, geometry);
         apply(state.for_item(item));
         draw_triangles(geometry, stats);
     }

@@ -7,13 +7,13 @@ namespace vrut::gl {
 void MirrorPass::query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene,
                        const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
     while (queries_.size() < mirrors.size()) queries_.push_back(make_query(GL_ANY_SAMPLES_PASSED));
-    use_solid_color(programs_, glm::dvec3(0), clip_from_view);
+    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
     PipelineState state;
     state.depth_write = false;
     state.color_write = false;
     for (std::size_t i = 0; i < mirrors.size(); ++i) {
         const GpuGeometry& geometry = scene.geometry(mirrors[i].surface);
-        set_transform(mirrors[i].surface, geometry);
+        program.use(mirrors[i].surface, geometry);
         apply(state.for_item(mirrors[i].surface));
         glBeginQuery(GL_ANY_SAMPLES_PASSED, queries_[i].get());
         draw_triangles(geometry, stats);
@@ -46,9 +46,8 @@ void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm
     apply(state.for_item(mirror.surface));
     constexpr GLfloat kNearest = 1;
     glClearBufferfv(GL_DEPTH, 0, &kNearest);
-    use_solid_color(programs_, background, clip_from_view);
     const GpuGeometry& geometry = scene.geometry(mirror.surface);
-    set_transform(mirror.surface, geometry);
+    SolidColorProgram(programs_, background, clip_from_view).use(mirror.surface, geometry);
     draw_triangles(geometry, stats);
 }
 

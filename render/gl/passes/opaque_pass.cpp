@@ -24,10 +24,10 @@ void OpaquePass::reset_depth(std::span<const plan::DrawItem> items, GpuScene& sc
     state.depth_func = GL_ALWAYS;
     state.farthest = true;
     state.color_write = false;
-    use_solid_color(programs_, glm::dvec3(0), clip_from_view);
+    SolidColorProgram program(programs_, glm::dvec3(0), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_transform(item, geometry);
+        program.use(item, geometry);
         apply(state.for_item(item));
         draw_triangles(geometry, stats);
     }

@@ -85,10 +85,10 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
     apply(over_everything());
     set_scissor(box_);
     glClearColor(1, 1, 1, 1);
-    use_solid_color(programs_, glm::dvec3(1), clip_from_view);
+    SolidColorProgram program(programs_, glm::dvec3(1), clip_from_view);
     for (const plan::DrawItem& item : items) {
         const GpuGeometry& geometry = scene.geometry(item);
-        set_transform(item, geometry);
+        program.use(item, geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
         const math::PixelBox box = box_of(item, scene, clip_from_view, picture);

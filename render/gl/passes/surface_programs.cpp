@@ -22,6 +22,7 @@ enum SurfaceUniform : GLint {
     alpha_at = 11,
     first_triangle_at = 12,
     clip_plane_at = 13,
+    origin_at = 14,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
@@ -79,10 +80,37 @@ void set_clip(const glm::dmat4& clip_from_view) {
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
+/// The point in a node's space that lies at the eye, or of a flattened part's the nearest: least squares,
+/// damped where a direction vanishes. It need not be exact.
+glm::dvec3 point_at_eye(const glm::dmat4& view_from_node) {
+    const glm::dmat3 matrix(view_from_node), transposed = glm::transpose(matrix);
+    glm::dmat3 normal = transposed * matrix;
+    const double damping = 1e-12 * (normal[0][0] + normal[1][1] + normal[2][2]);
+    for (int i = 0; i < 3; ++i) normal[i][i] += damping;
+    return -glm::inverse(normal) * (transposed * glm::dvec3(view_from_node[3]));
+}
+
+/// The origin of local_position() relative to the geometry's.
+glm::vec3 local_origin(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    return geometry.is_double_single() ? glm::vec3(point_at_eye(item.view_from_node) - geometry.origin)
+                                       : glm::vec3(0);
+}
+
+/// Of the current program, where the next draw lies.
+void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    const glm::vec3 origin = local_origin(item, geometry);
+    glm::dmat4 view_from_local = item.view_from_node;
+    view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin + glm::dvec3(origin), 1);
+    const glm::mat4 view(view_from_local);
+    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
+    if (geometry.is_double_single()) set(origin_at, origin);
+}
+
 void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
     if (!item.clip_plane) return;
+    const glm::dvec3 origin = geometry.origin + glm::dvec3(local_origin(item, geometry));
     const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
-                               glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1)));
+                               glm::dot(*item.clip_plane, glm::dvec4(origin, 1)));
     glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
 }
 
@@ -99,7 +127,7 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
     scene_ = scene;
     cube_map_ = view.background.cube_map;
     light_ = kind_of(view.light, camera);
-    lit_at_ = view.methods.light;
+    methods_ = view.methods;
     if (!view_uniforms_) view_uniforms_ = make_dynamic_buffer("uniforms", sizeof(ViewUniforms));
     const ViewUniforms uniforms = view_uniforms_of(camera, view);
     glNamedBufferSubData(view_uniforms_.get(), 0, sizeof uniforms, &uniforms);
@@ -108,8 +136,16 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
 
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
+    const bool textured = item.texture != scene::kNone;
     const SurfaceVariant variant{
-        kind, light_, item.texture != scene::kNone, item.environment, item.clip_plane.has_value(), lit_at_};
+        kind,
+        light_,
+        textured,
+        item.environment,
+        item.clip_plane.has_value(),
+        methods_.light,
+        geometry.is_double_single(),
+        textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic};
     programs_.use(variant);
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
@@ -130,26 +166,26 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     set_clip_plane(item, geometry);
 }
 
-void use_solid_color(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view) {
-    programs.use(FixedProgram::solid_color);
-    set_clip(clip_from_view);
-    set(solid_color_at, glm::vec3(color));
+void SolidColorProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    if (current_ != geometry.is_double_single()) {
+        current_ = geometry.is_double_single();
+        programs_.use(*current_ ? FixedProgram::solid_color_double_single : FixedProgram::solid_color);
+        set_clip(clip_from_view_);
+        set(solid_color_at, glm::vec3(color_));
+    }
+    set_transform(item, geometry);
 }
 
-void use_node_id(Programs& programs, const glm::dmat4& clip_from_view) {
-    programs.use(FixedProgram::node_id);
-    set_clip(clip_from_view);
+void NodeIdProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    if (current_ != geometry.is_double_single()) {
+        current_ = geometry.is_double_single();
+        programs_.use(*current_ ? FixedProgram::node_id_double_single : FixedProgram::node_id);
+        set_clip(clip_from_view_);
+    }
+    glUniform1i(node_at, item.node);
+    set_transform(item, geometry);
 }
-
-void set_node(scene::Index number) { glUniform1i(node_at, number); }
 
 void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }
-
-void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    glm::dmat4 view_from_local = item.view_from_node;
-    view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin, 1);
-    const glm::mat4 view(view_from_local);
-    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
-}
 
 }  // namespace vrut::gl

@@ -34,19 +34,39 @@ public:
 private:
     Programs& programs_;
     SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
-    plan::Methods::Lighting lit_at_ = plan::Methods::Lighting::pixel;
+    plan::Methods methods_;
     GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
 };
 
-/// The program of one colour everywhere.
-void use_solid_color(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view);
+/// The program of one colour everywhere, in both precisions. No other may be used before the last item.
+class SolidColorProgram {
+public:
+    SolidColorProgram(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view)
+        : programs_(programs), color_(color), clip_from_view_(clip_from_view) {}
+    /// Makes the one for this item the current one.
+    void use(const plan::DrawItem& item, const GpuGeometry& geometry);
 
-/// The program that writes the number of a node everywhere, into a target of integers.
-void use_node_id(Programs& programs, const glm::dmat4& clip_from_view);
-/// Of what it draws from here on.
-void set_node(scene::Index number);
+private:
+    Programs& programs_;
+    glm::dvec3 color_;
+    glm::dmat4 clip_from_view_;
+    std::optional<bool> current_;  // double_single
+};
+
+/// The same, which writes the number of an item's node everywhere, into a target of integers.
+class NodeIdProgram {
+public:
+    NodeIdProgram(Programs& programs, const glm::dmat4& clip_from_view)
+        : programs_(programs), clip_from_view_(clip_from_view) {}
+    void use(const plan::DrawItem& item, const GpuGeometry& geometry);
+
+private:
+    Programs& programs_;
+    glm::dmat4 clip_from_view_;
+    std::optional<bool> current_;  // double_single
+};
 
 /// The buffers of shaders/per_pixel_lists.glsl.
 inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
@@ -54,8 +74,5 @@ inline constexpr GLuint kFragmentsBinding = 0, kHeadsBinding = 1;
 /// With a per_pixel_glass program: the number of the next draw's first triangle. At equal depth the triangle
 /// with the higher number is in front.
 void set_first_triangle(GLuint number);
-
-/// Where the next draw of the current program lies.
-void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry);
 
 }  // namespace vrut::gl

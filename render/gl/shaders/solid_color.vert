@@ -1,7 +1,7 @@
 #version 450 core
+#include "local_position.glsl"
 layout(location = 0) uniform mat4 clip_from_view;
 layout(location = 1) uniform mat4 view_from_local;
-layout(location = 0) in vec3 position;
 invariant gl_Position;
 
-void main() { gl_Position = clip_from_view * (view_from_local * vec4(position, 1)); }
+void main() { gl_Position = clip_from_view * (view_from_local * vec4(local_position(), 1)); }

@@ -1,5 +1,6 @@
 #version 450 core
 #include "view_uniforms.glsl"
+#include "local_position.glsl"
 #ifdef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
@@ -9,7 +10,6 @@ layout(location = 2) uniform mat3 normal_matrix;
 layout(location = 13) uniform vec4 clip_plane;
 out float gl_ClipDistance[1];
 #endif
-layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 #ifdef LIT_AT_VERTEX
 layout(location = 9) uniform bool two_sided;
@@ -26,13 +26,14 @@ out vec2 uv;
 #endif
 
 void main() {
+    vec3 local = local_position();
 #ifdef CLIPPED
-    gl_ClipDistance[0] = dot(clip_plane, vec4(position, 1));
+    gl_ClipDistance[0] = dot(clip_plane, vec4(local, 1));
 #endif
 #ifdef TEXTURED
     uv = texcoord;
 #endif
-    vec4 p = view_from_local * vec4(position, 1);
+    vec4 p = view_from_local * vec4(local, 1);
     vec3 n = normal_matrix * normal;
     float size = length(n);
     n = size > 0 ? n / size : vec3(0);

@@ -11,10 +11,26 @@ vec4 sample_level(sampler2D image, vec2 uv, float level) {
     return mix(textureLod(image, uv, finer), textureLod(image, uv, finer + 1), level - finer);
 }
 
+#ifdef ANISOTROPIC
+// The mean along the pixel's longer side, at the level of its shorter one, or of a 16th of the longer
+// (EXT_texture_filter_anisotropic).
+vec4 sample_filtered(sampler2D image, vec2 uv) {
+    vec2 size = vec2(textureSize(image, 0)), dx = dFdx(uv), dy = dFdy(uv);
+    float across = length(dx * size), up = length(dy * size);
+    float longer = max(across, up), shorter = max(min(across, up), 1);
+    int count = int(clamp(ceil(longer / shorter), 1, 16));
+    float level = log2(max(longer / count, 1));
+    vec2 along = across > up ? dx : dy;
+    vec4 sum = vec4(0);
+    for (int i = 0; i < count; ++i) sum += sample_level(image, uv + ((i + 0.5) / count - 0.5) * along, level);
+    return sum / count;
+}
+#else
 vec4 sample_filtered(sampler2D image, vec2 uv) {
     vec2 size = vec2(textureSize(image, 0));
     return sample_level(image, uv, mip_level(dFdx(uv) * size, dFdy(uv) * size));
 }
+#endif
 
 // What lies in a direction of the world, of any length, which changes by `across` and `up` over a pixel.
 vec3 sample_environment(samplerCube environment_map, vec3 direction, vec3 across, vec3 up) {
