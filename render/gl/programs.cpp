@@ -100,6 +100,8 @@ GlProgram compile(const ProgramSource& source) { return make_program(source.vert
 
 }  // namespace
 
+bool is_instanced(SurfaceVariant::Kind kind) { return kind == Kind::faces; }
+
 SurfaceVariant::Light light_kind(scene::LightData::Type type) {
     switch (type) {
         case scene::LightData::Type::directional:
@@ -147,6 +149,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
         if (wanted) defines.push_back(name);
     };
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
+    define(is_instanced(variant.kind), "INSTANCED");
     define(variant.kind == Kind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.environment, "ENVIRONMENT");

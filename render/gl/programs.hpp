@@ -53,6 +53,10 @@ struct SurfaceVariant {
     }
 };
 
+/// Returns true if the matrices and the material are attributes of instances (GpuInstance) instead of
+/// uniforms.
+bool is_instanced(SurfaceVariant::Kind kind);
+
 SurfaceVariant::Light light_kind(scene::LightData::Type type);
 
 /// Those that some view of some scene needs.

@@ -1,7 +1,11 @@
 #include "gl/passes/surface_programs.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+
+#include "plan/draw_groups.hpp"
 
 namespace vrut::gl {
 
@@ -79,11 +83,21 @@ void set_clip(const glm::dmat4& clip_from_view) {
     glUniformMatrix4fv(clip_from_view_at, 1, GL_FALSE, glm::value_ptr(clip));
 }
 
-void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (!item.clip_plane) return;
-    const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
-                               glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1)));
-    glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
+glm::mat4 view_from_local(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    glm::dmat4 matrix = item.view_from_node;
+    matrix[3] = item.view_from_node * glm::dvec4(geometry.origin, 1);
+    return glm::mat4(matrix);
+}
+
+/// Of an item that has one.
+glm::vec4 clip_plane_of(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    return {glm::dvec3(*item.clip_plane), glm::dot(*item.clip_plane, glm::dvec4(geometry.origin, 1))};
+}
+
+bool is_two_sided(const plan::DrawItem& item) { return item.cull_mode != plan::CullMode::back; }
+
+glm::vec3 base_of(const scene::Material& material) {
+    return glm::vec3(material.emission) + glm::vec3(material.ambient);
 }
 
 SurfaceVariant::Light kind_of(const scene::Light& light, const CameraMatrices& camera) {
@@ -106,28 +120,90 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
     glBindBufferBase(GL_UNIFORM_BUFFER, kViewUniformsBinding, view_uniforms_.get());
 }
 
+SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawItem& item) const {
+    return {kind,   light_, item.texture != scene::kNone, item.environment, item.clip_plane.has_value(),
+            lit_at_};
+}
+
+void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
+    if (item.texture != scene::kNone) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (item.environment) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
+}
+
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
-    const SurfaceVariant variant{
-        kind, light_, item.texture != scene::kNone, item.environment, item.clip_plane.has_value(), lit_at_};
-    programs_.use(variant);
+    assert(!is_instanced(kind));
+    programs_.use(variant_of(kind, item));
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
-    if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
-    if (variant.environment) {
-        glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
-        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
-    }
-    set(base_at, glm::vec3(material.emission) + glm::vec3(material.ambient));
+    bind_textures(item);
+    set(base_at, base_of(material));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
-    glUniform1i(two_sided_at, item.cull_mode != plan::CullMode::back || kind == SurfaceKind::edges);
+    glUniform1f(two_sided_at, is_two_sided(item) || kind == SurfaceKind::edges ? 1.0F : 0.0F);
     if (kind == SurfaceKind::glass || kind == SurfaceKind::per_pixel_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
-    if (kind == SurfaceKind::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
-    set_clip_plane(item, geometry);
+    if (item.environment || kind == SurfaceKind::mirror)
+        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
+}
+
+void SurfacePrograms::add_face(const plan::DrawItem& item, const GpuGeometry& geometry,
+                               const scene::Material& material) {
+    GpuInstance& instance = instances_.emplace_back();
+    instance.view_from_local = view_from_local(item, geometry);
+    instance.normal_matrix = glm::mat3x4(normal_matrix(glm::dmat3(item.view_from_node), item.mirrored));
+    instance.base_sides = {base_of(material), is_two_sided(item) ? 1 : 0};
+    instance.diffuse_reflectivity = {glm::vec3(material.diffuse), material.reflectivity};
+    instance.specular_shininess = {glm::vec3(material.specular), material.shininess};
+    if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
+    draws_.push_back({static_cast<GLuint>(geometry.index_count), 1, geometry.first_index,
+                      geometry.first_vertex, static_cast<GLuint>(draws_.size())});
+}
+
+/// `item` and `geometry` stand for all that were added.
+void SurfacePrograms::draw_collected(const plan::DrawItem& item, const GpuGeometry& geometry,
+                                     const PipelineState& state, plan::FrameStats& stats) {
+    if (!draw_buffer_) {
+        instance_buffer_ = make_dynamic_buffer("instances", kMostInstances * sizeof(GpuInstance));
+        draw_buffer_ = make_dynamic_buffer("draws", kMostInstances * sizeof(IndirectDraw));
+    }
+    const auto write = [](const GlBuffer& buffer, const auto& elements) {
+        const std::span bytes = std::as_bytes(std::span(elements));
+        glNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    };
+    write(instance_buffer_, instances_);
+    write(draw_buffer_, draws_);
+    programs_.use(variant_of(SurfaceKind::faces, item));
+    bind_textures(item);
+    apply(state.for_item(item));
+    glBindVertexArray(geometry.buffers->vertex_array.get());
+    glBindVertexBuffer(kInstanceBinding, instance_buffer_.get(), 0, sizeof(GpuInstance));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_buffer_.get());
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(draws_.size()),
+                                0);
+    stats.draws += static_cast<int>(draws_.size());
+    for (const IndirectDraw& draw : draws_) stats.triangles += draw.index_count / 3;
+}
+
+void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
+                                 const scene::Material* material, plan::FrameStats& stats) {
+    while (!items.empty()) {
+        const plan::DrawItem& first = items.front();
+        const GpuGeometry& geometry = scene_->geometry(first);
+        instances_.clear();
+        draws_.clear();
+        for (const plan::DrawItem& item : items.first(std::min(items.size(), kMostInstances))) {
+            if (!plan::share_draw(first, item)) break;
+            const GpuGeometry& own = scene_->geometry(item);
+            if (own.buffers != geometry.buffers) break;
+            add_face(item, own, material ? *material : scene_->scene()->material(item.material));
+        }
+        draw_collected(first, geometry, state, stats);
+        items = items.subspan(draws_.size());
+    }
 }
 
 void use_solid_color(Programs& programs, const glm::dvec3& color, const glm::dmat4& clip_from_view) {
@@ -146,10 +222,7 @@ void set_node(scene::Index number) { glUniform1i(node_at, number); }
 void set_first_triangle(GLuint number) { glUniform1ui(first_triangle_at, number); }
 
 void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    glm::dmat4 view_from_local = item.view_from_node;
-    view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin, 1);
-    const glm::mat4 view(view_from_local);
-    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
+    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view_from_local(item, geometry)));
 }
 
 }  // namespace vrut::gl
