@@ -58,14 +58,15 @@ GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex
 
 /// Without contents.
 std::shared_ptr<const GeometryBuffers> make_geometry_buffers(std::size_t vertices, std::size_t indices,
-                                                             bool texcoords) {
+                                                             bool texcoords, bool shared) {
     const auto buffers = std::make_shared<GeometryBuffers>();
+    buffers->shared = shared;
     buffers->vertices = make_dynamic_buffer("vertices", vertices * sizeof(GpuVertex));
     buffers->indices = make_dynamic_buffer("triangles", indices * sizeof(unsigned));
     if (texcoords)
         buffers->texcoords = make_dynamic_buffer("texture coordinates", vertices * sizeof(glm::vec2));
     buffers->vertex_array = vertex_array_of(*buffers, 0, buffers->indices);
-    add_instances(buffers->vertex_array, buffers->vertices);
+    if (shared) add_instances(buffers->vertex_array, buffers->vertices);
     return buffers;
 }
 
@@ -227,7 +228,7 @@ std::shared_ptr<const GeometryBuffers> GpuScene::share_buffers(GpuGeometry& geom
     if (!buffers || shared.vertices + vertices > shared.capacity ||
         shared.indices + indices > 3 * shared.capacity) {
         const std::size_t capacity = std::min(2 * shared.capacity, SharedBuffers::kMostVertices);
-        buffers = make_geometry_buffers(capacity, 3 * capacity, texcoords);
+        buffers = make_geometry_buffers(capacity, 3 * capacity, texcoords, true);
         shared = {buffers, capacity};
     }
     geometry.first_vertex = static_cast<GLint>(shared.vertices);
@@ -244,10 +245,11 @@ void GpuScene::create_geometry(Arrival& arrival) {
     geometry.origin = read.bounds.center();
     const std::vector<glm::uvec3>& triangles = triangles_of(data.arrays, read);
     const std::size_t vertices = data.arrays.vertices.size(), indices = triangles.size() * 3;
-    const bool small = std::max(vertices, triangles.size()) <= SharedBuffers::kSmall;
+    const bool small =
+        triangles.size() <= plan::kMostTrianglesOfSmall && vertices <= SharedBuffers::kMostVerticesOfSmall;
     geometry.index_count = static_cast<GLsizei>(indices);
     geometry.buffers = small ? share_buffers(geometry, vertices, indices, !data.texcoords.empty())
-                             : make_geometry_buffers(vertices, indices, !data.texcoords.empty());
+                             : make_geometry_buffers(vertices, indices, !data.texcoords.empty(), false);
     const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
     arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
     arrival.upload.add(geometry.buffers->indices, triangles, geometry.first_index / 3);

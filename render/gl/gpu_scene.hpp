@@ -14,6 +14,7 @@
 #include "gl/handles.hpp"
 #include "gl/preparation.hpp"
 #include "gl/upload.hpp"
+#include "plan/draw_groups.hpp"
 #include "plan/frame_plan.hpp"
 #include "scene/scene.hpp"
 
@@ -38,6 +39,7 @@ struct GeometryBuffers {
     GlBuffer
         texcoords;  ///< for each vertex, if the geometries have any; moved by whole numbers to lie around 0
     GlVertexArray vertex_array;
+    bool shared = false;
 };
 
 /// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a
@@ -137,12 +139,13 @@ private:
     }
     /// Buffers that small geometries share. They are freed with the last geometry in them.
     struct SharedBuffers {
-        /// A geometry of so many vertices or triangles is small. Buffers hold twice as many as those before
-        /// them, up to kMostVertices, and three indices for each vertex.
-        static constexpr std::size_t kSmall = std::size_t{1} << 11, kMostVertices = std::size_t{1} << 15;
+        /// Of a small geometry. Buffers hold twice as many as those before them, up to kMostVertices, and
+        /// three indices for each vertex.
+        static constexpr std::size_t kMostVerticesOfSmall = 3 * plan::kMostTrianglesOfSmall,
+                                     kMostVertices = std::size_t{1} << 15;
         std::weak_ptr<const GeometryBuffers> buffers;
-        std::size_t capacity = kSmall / 2;      ///< in vertices
-        std::size_t vertices = 0, indices = 0;  ///< that are taken, from the beginning
+        std::size_t capacity = kMostVerticesOfSmall;  ///< in vertices
+        std::size_t vertices = 0, indices = 0;        ///< that are taken, from the beginning
     };
     void create_storage(Arrival& arrival);
     std::shared_ptr<const GeometryBuffers> share_buffers(GpuGeometry& geometry, std::size_t vertices,

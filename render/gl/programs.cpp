@@ -46,6 +46,7 @@ bool is_reachable(const SurfaceVariant& variant) {
     const bool plain = !variant.environment && !variant.clipped;
     if (variant.kind == Kind::edges && (variant.textured || !plain)) return false;
     if (variant.kind == Kind::mirror && !plain) return false;
+    if (variant.instanced && variant.kind != Kind::faces) return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
 
@@ -100,8 +101,6 @@ GlProgram compile(const ProgramSource& source) { return make_program(source.vert
 
 }  // namespace
 
-bool is_instanced(SurfaceVariant::Kind kind) { return kind == Kind::faces; }
-
 SurfaceVariant::Light light_kind(scene::LightData::Type type) {
     switch (type) {
         case scene::LightData::Type::directional:
@@ -120,9 +119,10 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 8; ++bits) {
+                for (int bits = 0; bits < 16; ++bits) {
                     const SurfaceVariant variant{
-                        kind, light, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, lit_at};
+                        kind,   light,          (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
+                        lit_at, (bits & 8) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -149,7 +149,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
         if (wanted) defines.push_back(name);
     };
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
-    define(is_instanced(variant.kind), "INSTANCED");
+    define(variant.instanced, "INSTANCED");
     define(variant.kind == Kind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.environment, "ENVIRONMENT");

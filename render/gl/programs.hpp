@@ -44,18 +44,16 @@ struct SurfaceVariant {
     bool environment = false;  ///< reflects the environment map
     bool clipped = false;      ///< by a plane
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
+    /// Faces whose matrices and material are attributes of instances (GpuInstance) instead of uniforms.
+    bool instanced = false;
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
-            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at);
+            return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.instanced);
         };
         return key(*this) < key(other);
     }
 };
-
-/// Returns true if the matrices and the material are attributes of instances (GpuInstance) instead of
-/// uniforms.
-bool is_instanced(SurfaceVariant::Kind kind);
 
 SurfaceVariant::Light light_kind(scene::LightData::Type type);
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/simplification.hpp"
+
 namespace vrut::plan {
 
 namespace {
@@ -25,7 +27,18 @@ math::Bounds box_of(const DrawItem& item, const scene::Scene& scene) {
     return box;
 }
 
-/// Items that share draws, in runs whose boxes are tested first.
+bool is_small(const DrawItem& item, const scene::Scene& scene) {
+    const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
+    return (item.level ? item.level->triangles : geometry.triangles).size() <= kMostTrianglesOfSmall;
+}
+
+/// Whether they are drawn faster one after the other.
+bool belong_together(const DrawItem& a, const DrawItem& b, const scene::Scene& scene) {
+    const bool small = is_small(a, scene);
+    return small == is_small(b, scene) && (small || a.material == b.material) && share_draw(a, b);
+}
+
+/// Items that belong together, in runs whose boxes are tested first.
 class Group {
 public:
     /// `first` must outlive it.
@@ -58,12 +71,13 @@ private:
     std::vector<math::Bounds> boxes_, runs_;
 };
 
-/// The last group that shares draws with the item and behind which nothing overlaps it; null: there is none.
-Group* group_for(std::vector<Group>& groups, const DrawItem& item, const math::Bounds& box) {
+/// The last group that the item belongs to and behind which nothing overlaps it; null: there is none.
+Group* group_for(std::vector<Group>& groups, const DrawItem& item, const math::Bounds& box,
+                 const scene::Scene& scene) {
     std::size_t tests = kMostTests;
     for (std::size_t k = groups.size(); k > 0; --k) {
         Group& group = groups[k - 1];
-        if (share_draw(group.first(), item)) return &group;
+        if (belong_together(group.first(), item, scene)) return &group;
         if (group.may_overlap(box, tests)) return nullptr;
     }
     return nullptr;
@@ -78,12 +92,12 @@ bool share_draw(const DrawItem& a, const DrawItem& b) {
 }
 
 void group_for_draws(std::vector<DrawItem>& items, const scene::Scene& scene) {
-    const auto differs = [&](const DrawItem& item) { return !share_draw(items.front(), item); };
+    const auto differs = [&](const DrawItem& item) { return !belong_together(items.front(), item, scene); };
     if (std::ranges::none_of(items, differs)) return;
     std::vector<Group> groups;
     for (std::size_t i = 0; i < items.size(); ++i) {
         const math::Bounds box = box_of(items[i], scene);
-        Group* group = group_for(groups, items[i], box);
+        Group* group = group_for(groups, items[i], box, scene);
         if (!group) group = &groups.emplace_back(items[i]);
         group->add(i, box);
     }

@@ -1,4 +1,4 @@
-// How the time of an image grows with the number of parts: the same triangles as few parts and as many.
+// How the time of an image grows with the number of parts that hold the same triangles.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -94,9 +94,8 @@ void measure(const std::shared_ptr<const scene::PlacedScene>& scene, Times& time
 
 }  // namespace
 
-int main(int argc, char** argv) {
-    std::vector<int> counts{200, 2000, 20000};
-    if (argc > 1) counts = {std::atoi(argv[1])};
+int main() {
+    const std::vector<int> counts{200, 2'000, 20'000};
     std::vector<std::shared_ptr<const scene::PlacedScene>> scenes;
     for (const int count : counts) scenes.push_back(boxes(count));
     std::vector<Times> times(counts.size());

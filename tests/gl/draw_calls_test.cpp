@@ -2,7 +2,6 @@
 #include <random>
 
 #include "gl_faults.hpp"
-#include "mesh/detail_levels.hpp"
 #include "renderer_fixture.hpp"
 
 using namespace vrut;
@@ -43,7 +42,7 @@ TEST_CASE("thousands of small parts are drawn in few calls, as they are drawn on
     constexpr int kParts = 3000;
     RendererFixture studio;
     // Geometries of so many triangles share no buffers.
-    const auto together = scene_of(boxes(kParts, 0)), alone = scene_of(boxes(kParts, 2100));
+    const auto together = scene_of(boxes(kParts, 0)), alone = scene_of(boxes(kParts, 300));
     plan::View view = view_from({0, 2, 9});
     view.width = view.height = 300;
     plan::View lit_at_vertices = view, from_a_point = view;

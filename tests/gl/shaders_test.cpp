@@ -20,6 +20,7 @@ std::string name_of(const gl::SurfaceVariant& variant) {
     return "surface-" + std::to_string(static_cast<int>(variant.kind)) + "-" +
            std::to_string(static_cast<int>(variant.light)) + (variant.textured ? "-textured" : "") +
            (variant.environment ? "-environment" : "") + (variant.clipped ? "-clipped" : "") +
+           (variant.instanced ? "-instanced" : "") +
            (variant.lit_at == plan::Methods::Lighting::vertex ? "-vertex" : "");
 }
 

@@ -1,6 +1,7 @@
 #include "gl/passes/drawing.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 
 namespace vrut::gl {
@@ -57,7 +58,7 @@ void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats) {
     glBindVertexArray(geometry.buffers->vertex_array.get());
     const std::uintptr_t offset = std::uintptr_t{geometry.first_index} * sizeof(unsigned);
     glDrawElementsBaseVertex(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT,
-                             reinterpret_cast<const void*>(offset), geometry.first_vertex);
+                             std::bit_cast<const void*>(offset), geometry.first_vertex);
     count_draw(geometry.index_count, stats);
 }
 

@@ -1,7 +1,6 @@
 #include "gl/passes/surface_programs.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
 
@@ -132,7 +131,6 @@ void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
 
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
-    assert(!is_instanced(kind));
     programs_.use(variant_of(kind, item));
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
@@ -150,8 +148,8 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
 }
 
-void SurfacePrograms::add_face(const plan::DrawItem& item, const GpuGeometry& geometry,
-                               const scene::Material& material) {
+void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
+                                   const scene::Material& material) {
     GpuInstance& instance = instances_.emplace_back();
     instance.view_from_local = view_from_local(item, geometry);
     instance.normal_matrix = glm::mat3x4(normal_matrix(glm::dmat3(item.view_from_node), item.mirrored));
@@ -163,9 +161,7 @@ void SurfacePrograms::add_face(const plan::DrawItem& item, const GpuGeometry& ge
                       geometry.first_vertex, static_cast<GLuint>(draws_.size())});
 }
 
-/// `item` and `geometry` stand for all that were added.
-void SurfacePrograms::draw_collected(const plan::DrawItem& item, const GpuGeometry& geometry,
-                                     const PipelineState& state, plan::FrameStats& stats) {
+void SurfacePrograms::write_instances() {
     if (!draw_buffer_) {
         instance_buffer_ = make_dynamic_buffer("instances", kMostInstances * sizeof(GpuInstance));
         draw_buffer_ = make_dynamic_buffer("draws", kMostInstances * sizeof(IndirectDraw));
@@ -176,10 +172,35 @@ void SurfacePrograms::draw_collected(const plan::DrawItem& item, const GpuGeomet
     };
     write(instance_buffer_, instances_);
     write(draw_buffer_, draws_);
-    programs_.use(variant_of(SurfaceKind::faces, item));
-    bind_textures(item);
-    apply(state.for_item(item));
-    glBindVertexArray(geometry.buffers->vertex_array.get());
+}
+
+/// The number of the first items that one draw call draws. Their buffers are shared.
+std::size_t SurfacePrograms::run_length(std::span<const plan::DrawItem> items) {
+    const GeometryBuffers* buffers = scene_->geometry(items.front()).buffers.get();
+    std::size_t length = 1;
+    while (length < std::min(items.size(), kMostInstances) &&
+           plan::share_draw(items.front(), items[length]) &&
+           scene_->geometry(items[length]).buffers.get() == buffers)
+        ++length;
+    return length;
+}
+
+/// By one draw call.
+void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const PipelineState& state,
+                               const scene::Material* material, plan::FrameStats& stats) {
+    const plan::DrawItem& first = items.front();
+    instances_.clear();
+    draws_.clear();
+    for (const plan::DrawItem& item : items)
+        add_instance(item, scene_->geometry(item),
+                     material ? *material : scene_->scene()->material(item.material));
+    write_instances();
+    SurfaceVariant variant = variant_of(SurfaceKind::faces, first);
+    variant.instanced = true;
+    programs_.use(variant);
+    bind_textures(first);
+    apply(state.for_item(first));
+    glBindVertexArray(scene_->geometry(first).buffers->vertex_array.get());
     glBindVertexBuffer(kInstanceBinding, instance_buffer_.get(), 0, sizeof(GpuInstance));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_buffer_.get());
     glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(draws_.size()),
@@ -193,16 +214,17 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
     while (!items.empty()) {
         const plan::DrawItem& first = items.front();
         const GpuGeometry& geometry = scene_->geometry(first);
-        instances_.clear();
-        draws_.clear();
-        for (const plan::DrawItem& item : items.first(std::min(items.size(), kMostInstances))) {
-            if (!plan::share_draw(first, item)) break;
-            const GpuGeometry& own = scene_->geometry(item);
-            if (own.buffers != geometry.buffers) break;
-            add_face(item, own, material ? *material : scene_->scene()->material(item.material));
+        std::size_t length = 1;
+        if (geometry.buffers->shared) {
+            length = run_length(items);
+            draw_run(items.first(length), state, material, stats);
+        } else {
+            use(SurfaceKind::faces, first, geometry,
+                material ? *material : scene_->scene()->material(first.material));
+            apply(state.for_item(first));
+            draw_triangles(geometry, stats);
         }
-        draw_collected(first, geometry, state, stats);
-        items = items.subspan(draws_.size());
+        items = items.subspan(length);
     }
 }
 

@@ -30,13 +30,12 @@ public:
     explicit SurfacePrograms(Programs& programs) : programs_(programs) {}
     /// What is drawn from here on is seen so, with the textures of `scene`, which must live as long.
     void begin(const CameraMatrices& camera, const plan::View& view, GpuScene* scene);
-    /// Makes the program for this item the current one and gives it all that it needs. Of kinds that are not
-    /// instanced.
+    /// Makes the program for this item the current one and gives it all that it needs.
     void use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
              const scene::Material& material);
     /// Draws the faces of items in their order, with `state` and the sides that show. One draw call draws up
-    /// to kMostInstances consecutive items that share buffers, program, textures and state. `material`: of
-    /// all items; null: each has its own.
+    /// to kMostInstances consecutive items of small geometries that share buffers and plan::share_draw().
+    /// `material`: of all items; null: each has its own.
     void draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
                     const scene::Material* material, plan::FrameStats& stats);
     static constexpr std::size_t kMostInstances = 256;
@@ -50,9 +49,12 @@ private:
     };
     SurfaceVariant variant_of(SurfaceKind kind, const plan::DrawItem& item) const;
     void bind_textures(const plan::DrawItem& item);
-    void add_face(const plan::DrawItem& item, const GpuGeometry& geometry, const scene::Material& material);
-    void draw_collected(const plan::DrawItem& item, const GpuGeometry& geometry, const PipelineState& state,
-                        plan::FrameStats& stats);
+    std::size_t run_length(std::span<const plan::DrawItem> items);
+    void add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
+                      const scene::Material& material);
+    void write_instances();
+    void draw_run(std::span<const plan::DrawItem> items, const PipelineState& state,
+                  const scene::Material* material, plan::FrameStats& stats);
 
     Programs& programs_;
     SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
