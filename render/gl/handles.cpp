@@ -98,6 +98,11 @@ GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes) {
     return make_buffer(what, nullptr, bytes, GL_DYNAMIC_STORAGE_BIT);
 }
 
+GlBuffer make_readback_buffer(const char* what, std::size_t bytes) {
+    return make_buffer(what, nullptr, bytes,
+                       GL_MAP_READ_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT | GL_CLIENT_STORAGE_BIT);
+}
+
 GlVertexArray make_vertex_array() {
     GLuint name = 0;
     glCreateVertexArrays(1, &name);

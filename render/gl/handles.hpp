@@ -73,6 +73,8 @@ using GlProgram = GlHandle<detail::destroy_program>;
 GlBuffer make_buffer(const char* what, const void* data, std::size_t bytes);
 /// Without contents, to be written again and again.
 GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes);
+/// Without contents, to be mapped for reading for as long as it lives.
+GlBuffer make_readback_buffer(const char* what, std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel: a picture's own.

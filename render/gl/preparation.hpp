@@ -2,12 +2,12 @@
 
 #include <array>
 #include <chrono>
-#include <compare>
 #include <cstddef>
 #include <exception>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 #include "gl/gpu_textures.hpp"
@@ -23,7 +23,9 @@ struct ResourceKey {
     /// The geometry, and the number of its level; or the texture; or the six of a cube map.
     std::array<scene::Index, 6> indices{};
 
-    auto operator<=>(const ResourceKey&) const = default;
+    bool operator<(const ResourceKey& other) const {
+        return std::tie(kind, indices) < std::tie(other.kind, other.indices);
+    }
 };
 
 /// A resource in memory, as the GPU takes it: of a geometry or a level its arrays and texture coordinates, or

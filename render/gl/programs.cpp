@@ -20,6 +20,8 @@ struct StageFiles {
 
 StageFiles files_of(FixedProgram program) {
     switch (program) {
+        case FixedProgram::accumulate:
+            return {"screen.vert", "accumulate.frag"};
         case FixedProgram::background_environment:
             return {"screen.vert", "background_environment.frag"};
         case FixedProgram::background_image:
@@ -32,6 +34,10 @@ StageFiles files_of(FixedProgram program) {
             return {"solid_color.vert", "node_id.frag"};
         case FixedProgram::outline:
             return {"screen.vert", "outline.frag"};
+        case FixedProgram::resolve_planes:
+            return {"screen.vert", "resolve_planes.frag"};
+        case FixedProgram::resolve_rgba:
+            return {"screen.vert", "resolve_rgba.frag"};
         case FixedProgram::row_distance:
             return {"screen.vert", "row_distance.frag"};
         case FixedProgram::solid_color:

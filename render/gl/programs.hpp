@@ -16,16 +16,19 @@ namespace vrut::gl {
 
 /// Programs that do not depend on what a scene holds.
 enum class FixedProgram {
+    accumulate,
     background_environment,
     background_image,
     composite_lists,
     marker,
     node_id,
     outline,
+    resolve_planes,
+    resolve_rgba,
     row_distance,
     solid_color,
 };
-inline constexpr std::size_t kFixedPrograms = 8;
+inline constexpr std::size_t kFixedPrograms = 11;
 
 /// What a surface and the light ask of the program that shades it. Each variant is a program of its own.
 struct SurfaceVariant {

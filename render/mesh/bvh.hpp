@@ -27,12 +27,12 @@ public:
         }
     };
 
-    /// No box is empty or infinite; at most 2^32 - 1.
+    /// No box may be empty or infinite. At most 2^32 - 1 boxes.
     explicit Bvh(std::span<const Box> boxes);
 
-    /// Calls `meet(i)` for each box i of which `lower_bound(box)` is at most `farthest`; a NaN excludes a
-    /// box. Of a box that contains another the bound is not above the other's. Boxes of low bounds come
-    /// first, roughly. `meet` may lower `farthest`, which excludes what lies behind it.
+    /// Calls `meet(i)` for each box i with `lower_bound(box)` <= `farthest`; a bound of NaN excludes a box.
+    /// `lower_bound` must be monotone: a box that contains another has no higher bound. Of two children the
+    /// one of the lower bound is visited first. `meet` may lower `farthest`, which prunes the boxes beyond.
     template <typename LowerBound, typename Meet>
     void visit(const LowerBound& lower_bound, const auto& farthest, const Meet& meet) const {
         if (nodes_.empty()) return;
@@ -58,7 +58,7 @@ public:
         }
     }
 
-    /// Memory, in bytes.
+    /// Returns the memory of the hierarchy in bytes.
     std::size_t size_bytes() const {
         return nodes_.size() * sizeof(Node) + order_.size() * sizeof(order_[0]);
     }
@@ -66,10 +66,10 @@ public:
 private:
     struct Node {
         Box box;
-        std::uint32_t first = 0;  ///< of a leaf: in `order_`; else of its two children, which come after it
-        std::uint32_t count = 0;  ///< 0: not a leaf
+        std::uint32_t first = 0;  ///< a leaf's first box in `order_`; else the first of its two children
+        std::uint32_t count = 0;  ///< boxes of a leaf; 0 for an inner node
     };
-    static constexpr std::size_t kMaxDepth = 32;  ///< each level halves the counts
+    static constexpr std::size_t kMaxDepth = 32;  ///< the build halves counts below 2^32
 
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;
@@ -78,22 +78,22 @@ private:
 extern template class Bvh<float>;
 extern template class Bvh<double>;
 
-/// The slab test of a ray and axis-aligned boxes, in double (Kay, Kajiya, "Ray Tracing Complex Scenes",
-/// SIGGRAPH 1986).
+/// The slab test of a ray and an axis-aligned box, in double. Source: Kay, Kajiya, "Ray Tracing Complex
+/// Scenes", SIGGRAPH 1986.
 class SlabRay {
 public:
-    /// Along each axis boxes grow by `slack`; at least 1e-15 of the coordinates of boxes and origin, it
-    /// covers what the test rounds off.
+    /// The test widens boxes by `slack` along each axis. A slack of at least 1e-15 of the largest coordinate
+    /// of boxes and origin makes the test conservative: rounding excludes no box.
     SlabRay(const glm::dvec3& origin, const glm::dvec3& direction, const glm::dvec3& slack)
         : before_(origin - slack), after_(origin + slack) {
-        // Never infinite, so that nothing is 0 times infinity.
+        // A finite reciprocal avoids 0 times infinity, which is NaN.
         for (int axis = 0; axis < 3; ++axis)
             inverse_[axis] = 1 / (std::abs(direction[axis]) < 1e-300 ? std::copysign(1e-300, direction[axis])
                                                                      : direction[axis]);
     }
 
-    /// Parameter at which the ray enters a box, in lengths of the direction, not below 0; NaN where it misses
-    /// the box.
+    /// Returns the ray parameter at which the ray enters the box, in lengths of the direction: 0 if the
+    /// origin lies inside. Returns NaN if the ray misses the box.
     double entry(const auto& box) const {
         const glm::dvec3 a = (glm::dvec3(box.min) - after_) * inverse_,
                          b = (glm::dvec3(box.max) - before_) * inverse_;
@@ -104,7 +104,7 @@ public:
     }
 
 private:
-    glm::dvec3 before_, after_, inverse_{0};  ///< the origin, less and plus the slack
+    glm::dvec3 before_, after_, inverse_{0};  ///< the origin minus and plus the slack
 };
 
 }  // namespace vrut::mesh

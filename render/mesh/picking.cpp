@@ -102,11 +102,11 @@ struct Windings {
     bool clockwise = false, counter_clockwise = false;  ///< in the ray's space
 };
 
-/// The sides that are drawn.
-Windings drawn_windings(const InstanceAtRay& part, const scene::Material& material) {
+/// Returns the windings that are drawn.
+Windings drawn_windings(const InstanceAtRay& part, bool two_sided) {
     const double determinant = scene::relative_determinant(part.axes);
     const bool singular = !(std::abs(determinant) > 1e-12);
-    const bool both = singular || material.two_sided;
+    const bool both = singular || two_sided;
     return {both || determinant > 0, both || determinant < 0};
 }
 
@@ -221,8 +221,9 @@ void search(TriangleSearch& triangles, const InstanceAtRay& part, const Ray& ray
 }  // namespace
 
 std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool through_transparent,
-                        const PickingTrees* trees) {
+                        const PickingTrees* trees, scene::DrawMode mode) {
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || ray.direction == glm::dvec3(0)) return {};
+    const bool uniform = scene::style_of(mode, false).override_material;  // no glass, no mirrors
     const std::vector<bool> shown = scene::shown_nodes(placed, ray.origin);
     const auto& nodes = placed.scene->nodes();
     const math::RaySpace space(ray.direction);
@@ -237,6 +238,9 @@ std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool t
         const scene::Material& material = placed.scene->material(placed.nodes[i].material);
         if (geometry.triangles.empty() || geometry.bounds.empty()) continue;
         if (through_transparent && placed.scene->is_transparent(material, data->geometry)) continue;
+        if (!uniform && material.diffuse.a == 0) continue;
+        const bool two_sided =
+            material.two_sided || (!uniform && placed.scene->is_mirror(material, data->geometry));
 
         const InstanceAtRay part(geometry, placed.world[i], ray.origin);
         const std::optional<double> from = box_entry(part, ray.direction);
@@ -247,7 +251,7 @@ std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool t
         const double farthest = wins_ties
                                     ? std::nextafter(best.distance, std::numeric_limits<double>::infinity())
                                     : best.distance;
-        TriangleSearch triangles(part, space, drawn_windings(part, material), farthest);
+        TriangleSearch triangles(part, space, drawn_windings(part, two_sided), farthest);
         search(triangles, part, ray, trees ? trees->of(data->geometry) : nullptr);
         if (!triangles.met()) continue;
         best.node = static_cast<scene::Index>(i);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -84,8 +83,9 @@ private:
         const math::Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
         const double most = view_.detail / max_screen_space_scale(item.view_from_node, box, view_);
         const mesh::DetailLevel* missing = nullptr;
-        for (const mesh::DetailLevel& level :
-             std::views::reverse(levels_[static_cast<std::size_t>(item.geometry)])) {
+        const std::span levels = levels_[static_cast<std::size_t>(item.geometry)];
+        for (std::size_t k = levels.size(); k > 0; --k) {  // from the coarsest
+            const mesh::DetailLevel& level = levels[k - 1];
             if (level.number != 0 && (is_full_detail || level.error > most)) continue;
             if (!is_resident_ || is_resident_(item.geometry, level)) {
                 item.level = &level;

@@ -62,7 +62,7 @@ void assign_textures(std::vector<DrawItem>& items, const View& view) {
         if (!scene.geometries()[static_cast<std::size_t>(item.geometry)].texcoords.empty())
             item.texture = material.texture;
         item.environment = view.background.cube_map && material.reflectivity > 0 &&
-                           !is_mirror(scene, item.geometry, item.material);
+                           !scene.is_mirror(material, item.geometry);
     }
 }
 
@@ -72,7 +72,7 @@ std::size_t count_reflective(const scene::Scene& scene, bool mirrors) {
     for (const scene::Node& node : scene.nodes())
         if (const auto* data = std::get_if<scene::GeometryData>(&node.data);
             data && data->geometry != scene::kNone && scene.material(data->material).reflectivity > 0)
-            count += is_mirror(scene, data->geometry, data->material) == mirrors;
+            count += scene.is_mirror(scene.material(data->material), data->geometry) == mirrors;
     return count;
 }
 
@@ -175,11 +175,6 @@ std::vector<DrawItem> visible_items(const View& view) {
 
 double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
-bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material) {
-    const scene::Material& of = scene.material(material);
-    return of.reflectivity > 0 && !scene.is_transparent(of, geometry) && scene.plane(geometry);
-}
-
 bool is_flattened(const glm::dmat4& view_from_node) {
     return !(std::abs(scene::relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
 }
@@ -201,7 +196,7 @@ void FramePlanner::find_items(const View& view) {
     const scene::PlacedScene& placed = *view.scene;
     items_ = visible_items(view);
     if (std::any_of(items_.begin(), items_.end(), [&](const DrawItem& item) {
-            return is_mirror(*placed.scene, item.geometry, item.material);
+            return placed.scene->is_mirror(placed.scene->material(item.material), item.geometry);
         }))
         unculled_items_ = items_;  // a mirror can show items outside of the frustum
     cull_frustum(items_, view);

@@ -84,10 +84,6 @@ struct FramePlan {
 /// Returns true if a geometry's level of detail is on the GPU. Empty: all levels may be used.
 using IsResident = std::function<bool(scene::Index, const mesh::DetailLevel&)>;
 
-/// Returns true if a geometry with that material is a planar mirror; other reflective ones reflect the
-/// environment map.
-bool is_mirror(const scene::Scene& scene, scene::Index geometry, scene::Index material);
-
 class TransparencyCache;
 class DrawBudget;
 

@@ -165,7 +165,7 @@ std::vector<DrawItem> reflected_items(const MirrorItem& mirror, const math::Plan
 }  // namespace
 
 std::optional<math::Plane> mirror_plane(const scene::Scene& scene, const DrawItem& item) {
-    if (!is_mirror(scene, item.geometry, item.material)) return {};
+    if (!scene.is_mirror(scene.material(item.material), item.geometry)) return {};
     return transformed(item.view_from_node, *scene.plane(item.geometry));
 }
 

@@ -15,6 +15,7 @@ class FramePlanner;
 /// drawn, it may outlive its renderer, and once it is whole it may go on to more samples.
 struct RenderJob {
     enum class Keep { image, samples };
+    enum class Output { rgba, ycbcr_420, ycbcr_444 };
 
     /// Begins it, and draws nothing. `buffer` is an image whose memory may be used again. With Keep::samples
     /// it can go on once it is whole, even after one sample.
@@ -26,17 +27,22 @@ struct RenderJob {
 
     View view;
     scene::Image image;  ///< of the view's size; its pixels once all samples are drawn
-    FrameStats stats;    ///< of all steps since it was begun or went on
+    /// Set before the last step. A renderer that resolves samples on the GPU then fills `planes` instead of
+    /// the image if this asks for them. Another one leaves the conversion to the encoder.
+    Output output = Output::rgba;
+    scene::PlanarImage planes;  ///< empty if the image is filled
+    FrameStats stats;           ///< of all steps since it was begun or went on
     Keep keep = Keep::image;
     /// Set before the first step: the image does not wait until levels of detail and edges are on the GPU. In
     /// the place of a level it shows a finer one that is there; in a wireframe, parts without edges are faces
     /// (FrameStats::substitutes). Other images wait for all that they show.
     bool interactive = false;
     bool memory_released = false;  ///< by the renderer for the sample that is next: it has no more to release
-    std::vector<std::uint8_t>
-        first;  ///< bytes of the first sample, while it is the only one and there may be others
-    std::vector<std::uint32_t> sums;  ///< for each byte of the image, over two samples or more; else empty
-    int samples = 0;                  ///< drawn, of view.samples
+    int samples = 0;               ///< drawn, of view.samples
+    /// Of a renderer that resolves samples on the CPU: the bytes of the first, while it is the only one and
+    /// there may be others; later for each byte of the image the sum over all samples.
+    std::vector<std::uint8_t> first_sample;
+    std::vector<std::uint32_t> sums;
     std::shared_ptr<FramePlanner> planner = nullptr;  ///< the renderer's, by which it knows this image
     // Copies would share one unfinished sample.
     RenderJob(const RenderJob&) = delete;
@@ -45,12 +51,5 @@ struct RenderJob {
     RenderJob& operator=(RenderJob&&) = default;
     ~RenderJob() = default;
 };
-
-/// Accumulates one sample. May exchange the memory of `pixels` for other. Returns true when all samples are
-/// in.
-bool add_sample(RenderJob& job, std::vector<std::uint8_t>& pixels);
-
-/// Makes the image the average of the samples: once all are drawn.
-void resolve_samples(RenderJob& job);
 
 }  // namespace vrut::plan

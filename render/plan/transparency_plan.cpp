@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kVisibleDifference = 1.0 / 255;
 
-/// Between which colours a material can be seen under a light, whatever its normals.
+/// The range of colours that a material can have under a light, for all normals; 0 to 1.
 struct ColorRange {
     glm::dvec3 low{0}, high{1};
     double alpha = 1;
@@ -32,22 +32,23 @@ ColorRange color_range(const scene::Material& material, const scene::Light& ligh
     return {glm::clamp(unlit, 0.0, 1.0), glm::clamp(unlit + lit, 0.0, 1.0), material.diffuse.a};
 }
 
-/// How much a colour can change where two surfaces are drawn in the wrong order: a₁ a₂ |c₁ - c₂|.
+/// Returns the largest error of a channel, 0 to 1, if two surfaces are blended in the wrong order:
+/// a₁ a₂ |c₁ - c₂|.
 double wrong_order_error(const ColorRange& a, const ColorRange& b) {
     const glm::dvec3 most = glm::max(glm::abs(a.high - b.low), glm::abs(b.high - a.low));
     return a.alpha * b.alpha * std::max({most.x, most.y, most.z});
 }
 
-/// An item as the order sees it: in view space, the eye at the origin, looking along -z.
+/// What decides an item's order, in view space: the eye is the origin and looks along -z.
 struct TransparentItem {
     OrientedBox box;
     double radius = 0;
-    double nearest = 0, farthest = 0;  ///< its range of z
-    glm::dvec2 low{0}, high{0};        ///< around what it can cover, on the plane z = -1
+    double nearest = 0, farthest = 0;  ///< the range of z
+    glm::dvec2 low{0}, high{0};        ///< bounds of the projection on the plane z = -1
     ColorRange colors;
 };
 
-/// A flat box gets a thickness that does not count, so that each of its sides faces somewhere.
+/// Gives a flat box a negligible thickness, so that each of its sides has a normal.
 void thicken(OrientedBox& box) {
     const double size = glm::length(box.axes[0]) + glm::length(box.axes[1]) + glm::length(box.axes[2]);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -79,19 +80,20 @@ TransparentItem transparent_item_of(OrientedBox box, const ColorRange& colors) {
     return result;
 }
 
-/// What a plane at right angles to `axis` tells of two boxes whose extents along it are these: it lies
-/// between them, and the eye, at 0, is on the side of the one in front.
+/// Returns the order of two boxes that a plane perpendicular to an axis separates, from their centres and
+/// half extents along that axis. The eye lies at 0. The box on its side of the plane is in front.
 DepthRelation relation_along_axis(double first, double first_extent, double second, double second_extent) {
     const bool upwards = first < second;
     const double below = upwards ? first + first_extent : second + second_extent;
     const double above = upwards ? second - second_extent : first - first_extent;
-    if (below < 0 && above > 0) return DepthRelation::apart;  // the plane holds the eye
+    if (below < 0 && above > 0) return DepthRelation::apart;  // a plane through the eye separates them
     return ((below + above) / 2 > 0) == upwards ? DepthRelation::first_in_front
                                                 : DepthRelation::second_in_front;
 }
 
-/// Of two boxes by a plane that parts them, for which fifteen directions come into question: those of their
-/// axes and at right angles to two of them. Coplanar ones have the second in front.
+/// Returns the order of two boxes by a plane that separates them. Candidates are the fifteen axes of the
+/// separating axis test: the faces' normals of both and the cross products of their axes. Of coplanar boxes
+/// the second is in front. Source: Gottschalk, Lin, Manocha, "OBBTree", SIGGRAPH 1996.
 DepthRelation depth_relation(const OrientedBox& a, const OrientedBox& b, double size) {
     const double tolerance = 1e-6 * size;
     bool coplanar = false;
@@ -121,32 +123,32 @@ DepthRelation depth_relation(const OrientedBox& a, const OrientedBox& b, double 
     return coplanar ? DepthRelation::second_in_front : DepthRelation::unknown;
 }
 
-/// Which panes lie before which others, as the eye sees them.
+/// The graph of transparent items with an edge from each item to those that lie, or may lie, behind it.
 class DepthOrderGraph {
 public:
     DepthOrderGraph(std::span<const DrawItem> items, const View& view, TransparencyCache& shapes);
 
-    /// False where too many overlap.
+    /// Compares all pairs that overlap on the screen. Returns false, and compares none, if too many overlap.
     bool compare_all();
-    /// Panes by number, in groups that no order parts, from far to near.
+    /// Returns the strongly connected components, from far to near: items whose order is not known.
     std::vector<std::vector<unsigned>> groups() const { return strong_components(behind_); }
-    /// How many lie over each other on average, in the box around all that the picture shows of them.
+    /// Returns the mean number of items over each other, in the bounds of their visible projections.
     double depth() const;
-    /// What drawing a group in some order could change.
+    /// Returns an upper bound of the error of a channel, 0 to 1, if a group is drawn in any order.
     double risk(const std::vector<unsigned>& group) const;
     void sort_by_distance(std::vector<unsigned>& group) const;
-    /// Says of the item how its triangles are to be drawn; true if it may show itself behind itself in an
-    /// order that is not known, and that would be seen.
+    /// Sets the order in which the item's triangles are drawn. Returns true if they overlap in an unknown
+    /// order and a wrong one would be visible.
     bool needs_per_pixel_order(unsigned index, DrawItem& item) const;
 
 private:
     bool are_comparable(std::span<const unsigned> from_left) const;
     DepthRelation compare(unsigned a, unsigned b);
     DepthRelation compare_triangles(unsigned a, unsigned b);
-    /// Whether an item lies in one plane, so that no ray meets it twice.
+    /// Returns true if an item lies in one plane, so that no ray hits it twice.
     bool is_flat(unsigned index) const;
     const std::vector<FrontFacingTriangle>& facing(unsigned index);
-    /// Of its facing triangles those that may lie before or behind something of the other.
+    /// Returns the item's front-facing triangles whose projections overlap the bounds of the other's.
     std::vector<FrontFacingTriangle> covering(unsigned index, const TransparentItem& other);
     const scene::Geometry& geometry(unsigned index) const {
         return scene_.geometries()[static_cast<std::size_t>(items_[index].geometry)];
@@ -155,11 +157,11 @@ private:
     std::span<const DrawItem> items_;
     const scene::Scene& scene_;
     TransparencyCache& shapes_;
-    glm::dvec2 image_corner_;  ///< the upper right one of the picture, on the plane z = -1
+    glm::dvec2 image_corner_;  ///< the picture's upper right corner on the plane z = -1
     std::vector<TransparentItem> transparent_items_;
-    std::vector<std::vector<unsigned>> behind_;  // for each those that lie behind it, or may
+    std::vector<std::vector<unsigned>> behind_;  // for each item those that may lie behind it
     std::vector<std::optional<std::vector<FrontFacingTriangle>>> facing_;
-    std::size_t compared_ = 0;  // pairs of triangles
+    std::size_t compared_ = 0;  // pairs of triangles so far
 };
 
 DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const View& view, TransparencyCache& shapes)
@@ -181,11 +183,11 @@ const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) 
     return *facing_[index];
 }
 
-/// `a` has the lower id.
+/// Returns the order of two items; `a` has the lower id.
 DepthRelation DepthOrderGraph::compare(unsigned a, unsigned b) {
     const TransparentItem &first = transparent_items_[a], &second = transparent_items_[b];
     if (items_[a].geometry == items_[b].geometry && items_[a].view_from_node == items_[b].view_from_node) {
-        // Only where no triangle lies before another are all their depths equal, and the higher id in front.
+        // If no triangle covers another, all depths are equal: the higher id is in front.
         const bool tied = is_flat(a) || compare_triangles(a, b) == DepthRelation::apart;
         return tied ? DepthRelation::second_in_front : DepthRelation::unknown;
     }
@@ -199,7 +201,7 @@ DepthRelation DepthOrderGraph::compare_triangles(unsigned a, unsigned b) {
     const TransparentItem &first = transparent_items_[a], &second = transparent_items_[b];
     const std::size_t size_a = geometry(a).triangles.size(), size_b = geometry(b).triangles.size();
     if (std::max(size_a, size_b) > kMaxOrderedTriangles) return DepthRelation::unknown;
-    // Looking for those that cover each other costs time as well.
+    // The search for triangles that cover each other counts too.
     if ((compared_ += size_a + size_b) > 16 * kMaxComparedPairs) return DepthRelation::unknown;
     const auto mine = covering(a, second), others = covering(b, first);
     const std::size_t pairs = mine.size() * others.size();
@@ -224,7 +226,8 @@ std::vector<FrontFacingTriangle> DepthOrderGraph::covering(unsigned index, const
     return result;
 }
 
-/// Counts pairs that overlap in the width of the screen, which takes far less than to compare them.
+/// Returns false if more than kMaxOverlappingPairs pairs overlap in x. Counting takes much less time than
+/// comparing.
 bool DepthOrderGraph::are_comparable(std::span<const unsigned> from_left) const {
     std::size_t pairs = 0;
     for (std::size_t i = 0; i < from_left.size() && pairs <= kMaxOverlappingPairs; ++i) {
@@ -293,7 +296,7 @@ void DepthOrderGraph::sort_by_distance(std::vector<unsigned>& group) const {
                      [&](unsigned a, unsigned b) { return distance(a) > distance(b); });
 }
 
-/// Puts those of `all` that are in `last` behind the others, in the order of `last`.
+/// Moves the elements of `all` that are in `last` to the end, in the order of `last`.
 void put_last(const std::vector<unsigned>& last, std::span<unsigned> all) {
     std::vector<unsigned> sorted = last;
     std::sort(sorted.begin(), sorted.end());
@@ -304,7 +307,7 @@ void put_last(const std::vector<unsigned>& last, std::span<unsigned> all) {
 }
 
 bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) const {
-    if (is_flattened(item.view_from_node)) return false;  // all of it in one plane
+    if (is_flattened(item.view_from_node)) return false;  // it lies in one plane
     const TriangleOrder& known = shapes_.order(item.geometry, item.cull_mode);
     item.order = known.back_to_front;
     const ColorRange& colors = transparent_items_[index].colors;
@@ -361,7 +364,7 @@ std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items,
 
 void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const DrawItem> others,
                                  const scene::Scene& scene) {
-    // Compared by geometry and matrix: thousands of parts may share a geometry.
+    // Thousands of parts may share a geometry, so they are sorted by geometry and matrix.
     const auto before = [](const DrawItem* a, const DrawItem* b) {
         if (a->geometry != b->geometry) return a->geometry < b->geometry;
         const double *p = glm::value_ptr(a->view_from_node), *q = glm::value_ptr(b->view_from_node);

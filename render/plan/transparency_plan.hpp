@@ -8,19 +8,25 @@
 
 namespace vrut::plan {
 
-/// Transparent items, given by rising id, in groups from far to near as the eye (the origin of their view
-/// space) sees them. What lies before what is told by a plane between two boxes: the one on the eye's side is
-/// in front. Items that no such plane parts, and rings of items, become an exact group if drawing them in the
-/// wrong order could change a colour by more than 1/255; with Transparency::sorted they are drawn by their
-/// distance. Above kMaxOverlappingPairs pairs that overlap in the width of the screen everything is one exact
-/// group, or, where more than kMaxMeanLayers lie over each other on average, drawn by its distance.
+/// Returns the transparent items in groups, sorted from far to near in view space (the eye is the origin).
+/// `items` are sorted by rising id. A plane that separates the bounding boxes of two items decides their
+/// order: the item on the eye's side is in front. Without such a plane their triangles are compared. If that
+/// decides nothing, or items form a cycle, they become an exact group, whose order is found at each pixel. If
+/// the wrong order changes no colour by more than 1/255, or under Transparency::sorted, they are sorted by
+/// the distance of their centres instead. An item that overlaps itself in an unknown order is an exact group
+/// of its own, under the same conditions.
+///
+/// If more than kMaxOverlappingPairs pairs overlap in x on the screen, items are not compared. Then all items
+/// are one exact group. If more than kMaxMeanLayers of them cover a pixel on average, they are sorted by
+/// distance.
 std::vector<TransparentGroup> order_transparent(std::span<const DrawItem> items, const View& view,
                                                 TransparencyCache& shapes);
 
 inline constexpr std::size_t kMaxOverlappingPairs = std::size_t{1} << 20;
 inline constexpr double kMaxMeanLayers = 64;
 
-/// Sets occluded_by_coincident of each of `items`.
+/// Sets occluded_by_coincident of each item for which `others` hold an item of the same geometry and matrix
+/// and of a higher id.
 void mark_occluded_by_coincident(std::vector<DrawItem>& items, std::span<const DrawItem> others,
                                  const scene::Scene& scene);
 

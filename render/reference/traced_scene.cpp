@@ -59,9 +59,10 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
     const scene::Material* const override_material = plan::style_of(view).override_material;
     part.material = override_material ? override_material : &material;
     part.transparent = !override_material && scene.is_transparent(material, data->geometry);
-    const auto& plane = scene.plane(data->geometry);
-    if (!override_material && !part.transparent && material.reflectivity > 0 && plane)
-        part.mirror = math::transformed(matrix, math::Plane{plane->normal, plane->point - center});
+    if (!override_material && scene.is_mirror(material, data->geometry)) {
+        const math::Plane& plane = *scene.plane(data->geometry);
+        part.mirror = math::transformed(matrix, math::Plane{plane.normal, plane.point - center});
+    }
     const bool singular = !(std::abs(determinant) > 1e-12);
     part.two_sided = singular || material.two_sided || part.mirror;
     part.clockwise = part.two_sided || determinant > 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <list>
 
 #include "gl/context.hpp"
@@ -9,6 +10,7 @@
 #include "gl/gpu_scene.hpp"
 #include "gl/passes/drawing.hpp"
 #include "gl/passes/id_pass.hpp"
+#include "gl/resolver.hpp"
 #include "gl/sample_drawing.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/transparency_cache.hpp"
@@ -87,7 +89,7 @@ struct Renderer::Impl {
         staged.reset();
         in_flight.clear();
         targets.reset();
-        pixels = {};
+        resolver->release();
     }
 
     /// What draws the rendering's next sample.
@@ -112,6 +114,9 @@ struct Renderer::Impl {
 
     bool step(plan::RenderJob& job);
     bool draw(plan::RenderJob& job);
+    double time_resolver();
+    double try_resolver(ResolveOn where);
+    void use_resolver(ResolveOn where);
 
     gl::GlContext context;  // first: destroyed after everything below
     std::shared_ptr<gl::GpuScene> scene, staged;
@@ -121,14 +126,14 @@ struct Renderer::Impl {
     std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
     std::unique_ptr<gl::SampleTargets> targets;  // of a sample before, for the next
     gl::IdPass ids{programs};
-    std::vector<std::uint8_t> pixels;  // of a sample
+    std::unique_ptr<gl::Resolver> resolver = gl::make_cpu_resolver();
 };
 
-/// True if a sample is drawn: then `pixels` are its colours.
+/// True if a sample is drawn: then the resolver has read it.
 bool Renderer::Impl::draw(plan::RenderJob& job) {
     const plan::View& view = job.view;
     plan::FrameStats& stats = job.stats;
-    Clock::time_point start = Clock::now();
+    const Clock::time_point start = Clock::now();
     if (view.scene) use_scene(view.scene->scene);
     plan::DrawBudget budget(context.software());
     if (!job.planner) job.planner = std::make_shared<plan::FramePlanner>();
@@ -150,35 +155,71 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;
     if (!drawn) return false;
 
-    start = Clock::now();
-    pixels.resize(job.image.rgba.size());
-    sample.image_target().read(pixels);
+    resolver->read(job, sample.image_target());
     targets = sample.release();
     ++stats.samples;
-    ++stats.readbacks;
-    stats.readback_ms += milliseconds_since(start);
     return true;
 }
 
 bool Renderer::Impl::step(plan::RenderJob& job) {
-    if (job.samples > 0 && job.samples >= job.view.samples) {  // what is asked for was drawn before
-        resolve_samples(job);
-        return true;
-    }
-    bool drawn = false;
-    try {
-        drawn = draw_or_fail([&] { return draw(job); });
-    } catch (...) {
+    if (!resolver->holds(job)) job.samples = 0;
+    if (job.samples == 0 || job.samples < job.view.samples) {
+        bool drawn = false;
+        try {
+            drawn = draw_or_fail([&] { return draw(job); });
+        } catch (...) {
+            forget_sample_of(job);
+            throw;
+        }
+        if (!drawn) return false;
         forget_sample_of(job);
-        throw;
+        resolver->add(job);
+        job.memory_released = false;
+        if (job.samples < job.view.samples) return false;
     }
-    if (!drawn) return false;
-    forget_sample_of(job);
-    const Clock::time_point start = Clock::now();
-    const bool whole = plan::add_sample(job, pixels);
-    if (whole) resolve_samples(job);
-    job.stats.readback_ms += milliseconds_since(start);
-    return whole;
+    return draw_or_fail([&] { return resolver->resolve(job); });
+}
+
+/// Returns milliseconds for an image of one sample and one of four.
+double Renderer::Impl::time_resolver() {
+    constexpr int kWidth = 640, kHeight = 360;
+    plan::View view;
+    view.width = kWidth;
+    view.height = kHeight;
+    gl::Framebuffer target(kWidth, kHeight);
+    double best = std::numeric_limits<double>::infinity();
+    for (int repetition = 0; repetition < 2; ++repetition) {  // the first compiles programs
+        const Clock::time_point start = Clock::now();
+        for (const int samples : {1, 4}) {
+            view.samples = samples;
+            plan::RenderJob job(view);
+            job.output = plan::RenderJob::Output::ycbcr_420;
+            job.planner = std::make_shared<plan::FramePlanner>();
+            while (job.samples < samples) {
+                resolver->read(job, target);
+                resolver->add(job);
+            }
+            while (!resolver->resolve(job)) {
+            }
+        }
+        best = std::min(best, milliseconds_since(start));
+    }
+    return best;
+}
+
+/// As time_resolver(); infinity if it fails.
+double Renderer::Impl::try_resolver(ResolveOn where) {
+    try {
+        use_resolver(where);
+        return draw_or_fail([&] { return time_resolver(); });
+    } catch (const base::OutOfMemory&) {
+    } catch (const base::GlError&) {
+    }
+    return std::numeric_limits<double>::infinity();
+}
+
+void Renderer::Impl::use_resolver(ResolveOn where) {
+    resolver = where == ResolveOn::gpu ? gl::make_gpu_resolver(programs) : gl::make_cpu_resolver();
 }
 
 Renderer::Renderer(std::optional<int> device, bool debug) : impl_(std::make_unique<Impl>(device, debug)) {}
@@ -190,6 +231,14 @@ bool Renderer::software() const { return impl_->context.software(); }
 int Renderer::max_size() const { return impl_->context.max_size(); }
 long Renderer::gl_objects() const { return gl::live_gl_objects(); }
 std::vector<std::string> Renderer::take_messages() { return impl_->context.take_messages(); }
+
+void Renderer::use_resolver(ResolveOn where) { impl_->use_resolver(where); }
+
+ResolverTimes Renderer::choose_resolver() {
+    const ResolverTimes times{impl_->try_resolver(ResolveOn::cpu), impl_->try_resolver(ResolveOn::gpu)};
+    use_resolver(times.faster());
+    return times;
+}
 
 bool Renderer::step(plan::RenderJob& job) {
     try {

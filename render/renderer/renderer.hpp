@@ -13,6 +13,16 @@
 
 namespace vrut::renderer {
 
+/// Where samples are averaged. The images are equal, the times are not.
+enum class ResolveOn { cpu, gpu };
+
+/// Milliseconds for an image of one sample and one of four, of 640x360 pixels, from samples that are drawn
+/// to an image in memory.
+struct ResolverTimes {
+    double cpu_ms = 0, gpu_ms = 0;  ///< infinite if it fails
+    ResolveOn faster() const { return gpu_ms < cpu_ms ? ResolveOn::gpu : ResolveOn::cpu; }
+};
+
 /// Renders a view of a scene. Owns all of EGL and GL: created, used and destroyed on one thread. Drawing
 /// functions throw ContextLost after a driver reset, and the renderer is unusable from then on; they throw
 /// OutOfMemory if an allocation fails, and the renderer stays usable, and GlError if OpenGL reports another
@@ -43,11 +53,17 @@ public:
     /// Calls upload_step() until it returns true.
     void upload(const plan::View& view);
 
+    /// Samples are averaged on the CPU unless this says otherwise. Images that are begun start again.
+    void use_resolver(ResolveOn where);
+    /// Measures both and uses the faster one. Takes about 0.1 s on a CPU that draws. Throws ContextLost.
+    ResolverTimes choose_resolver();
+
     /// Draws the next sample, or the part of it that fits the budget of one step (DrawBudget); the first
     /// steps may only plan, or upload (RenderJob::interactive says what it waits for). Returns true when the
-    /// image is complete. Steps of several RenderJobs may be interleaved. If this throws, completed samples
-    /// are kept and the current one starts again; after ContextLost continue with a new Renderer. The scene
-    /// drawn last stays on the GPU.
+    /// image is complete. Steps of several RenderJobs may be interleaved: while the image is read from the
+    /// GPU the steps return false. If this throws, completed samples are kept and the current one starts
+    /// again; after ContextLost continue with a new Renderer, which draws samples again that lay on the GPU.
+    /// The scene drawn last stays on the GPU.
     bool step(plan::RenderJob& job);
 
     /// Draws the whole view into `image`, resized to fit, and fills `stats`. Blocks until the image is

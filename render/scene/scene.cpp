@@ -192,6 +192,10 @@ bool Scene::is_transparent(const Material& material, Index geometry) const {
     return textured ? is_transparent(material) : material.diffuse.a < 1;
 }
 
+bool Scene::is_mirror(const Material& material, Index geometry) const {
+    return material.reflectivity > 0 && !is_transparent(material, geometry) && plane(geometry);
+}
+
 Index Scene::find_node(Id id) const { return index_of(index_by_id_, id); }
 
 std::uint64_t Scene::triangle_count() const {

@@ -172,6 +172,9 @@ public:
     bool is_transparent(const Material& material) const;
     /// The same on a geometry: without texture coordinates it shows no texture.
     bool is_transparent(const Material& material, Index geometry) const;
+    /// Returns true if a geometry with that material is a planar mirror. Other reflective ones reflect the
+    /// environment map.
+    bool is_mirror(const Material& material, Index geometry) const;
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;

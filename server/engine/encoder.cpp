@@ -59,11 +59,11 @@ bool Encoder::is_free() const {
     return !slot_;
 }
 
-void Encoder::offer(Picture picture, scene::Image image) {
+void Encoder::offer(Picture picture, scene::Image image, scene::PlanarImage planes) {
     {
         const std::lock_guard lock(mutex_);
         assert(!slot_);
-        slot_.emplace(std::move(picture), std::move(image));
+        slot_.emplace(Job{std::move(picture), std::move(image), std::move(planes)});
     }
     condition_.notify_one();
 }
@@ -78,16 +78,19 @@ void Encoder::give_spare(scene::Image image) {
     spare_ = std::move(image);
 }
 
-std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const scene::Image& image) {
+std::shared_ptr<EncodedPicture> Encoder::encode(Job& job) {
+    Picture& picture = job.picture;
     const base::Clock::time_point start = base::Clock::now();
     std::shared_ptr<EncodedPicture> encoded = counted_picture(metrics_);
     const protocol::Quality& quality = picture.header.quality;
     if (picture.format == protocol::ImageFormat::png) {
-        encoded->file = io::encode_png(image);
+        encoded->file = io::encode_png(job.image);
         encoded->header_offset = kPngTextOffset;
     } else {
-        encoded->file = jpeg_.encode(image, quality.jpeg_quality,
-                                     quality.subsampling == protocol::Quality::Subsampling::yuv420);
+        encoded->file = job.planes.bytes.empty()
+                            ? jpeg_.encode(job.image, quality.jpeg_quality,
+                                           quality.subsampling == protocol::Quality::Subsampling::yuv420)
+                            : jpeg_.encode(job.planes, quality.jpeg_quality);
         encoded->header_offset = protocol::comment_offset(encoded->file);
     }
     metrics_.bytes_held += encoded->file.capacity();
@@ -106,7 +109,7 @@ std::shared_ptr<EncodedPicture> Encoder::encode(Picture& picture, const scene::I
 
 void Encoder::run() {
     for (;;) {
-        std::optional<std::pair<Picture, scene::Image>> job;
+        std::optional<Job> job;
         watchdog_.idle();
         {
             std::unique_lock lock(mutex_);
@@ -116,15 +119,14 @@ void Encoder::run() {
         }
         watchdog_.busy();
         on_free_();
-        auto& [picture, image] = *job;
         try {
-            on_encoded_(encode(picture, image));
+            on_encoded_(encode(*job));
         } catch (const std::bad_alloc&) {
-            on_failed_(std::move(picture), "there is no memory to encode it");
+            on_failed_(std::move(job->picture), "there is no memory to encode it");
         } catch (const std::exception& error) {
-            on_failed_(std::move(picture), error.what());
+            on_failed_(std::move(job->picture), error.what());
         }
-        give_spare(std::move(image));
+        give_spare(std::move(job->image));
     }
 }
 

@@ -33,15 +33,20 @@ public:
     bool is_free() const;
     /// How long it has worked at one picture; 0 while it has none. From any thread.
     base::Clock::duration busy_for() const { return watchdog_.busy_for(); }
-    /// Only while is_free().
-    void offer(Picture picture, scene::Image image);
+    /// Only while is_free(). `planes` are encoded if there are any, else the image.
+    void offer(Picture picture, scene::Image image, scene::PlanarImage planes = {});
     /// An image to draw into, used before where possible: its pages are there already.
     scene::Image take_spare();
     void give_spare(scene::Image image);
 
 private:
+    struct Job {
+        Picture picture;
+        scene::Image image;
+        scene::PlanarImage planes;
+    };
     void run();
-    std::shared_ptr<EncodedPicture> encode(Picture& picture, const scene::Image& image);
+    std::shared_ptr<EncodedPicture> encode(Job& job);
 
     observe::Metrics& metrics_;
     std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded_;
@@ -49,7 +54,7 @@ private:
     std::function<void(Picture, std::string)> on_failed_;
     mutable std::mutex mutex_;
     std::condition_variable condition_;
-    std::optional<std::pair<Picture, scene::Image>> slot_;
+    std::optional<Job> slot_;
     scene::Image spare_;
     bool closed_ = false;
     base::Watchdog watchdog_;

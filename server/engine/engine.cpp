@@ -28,11 +28,20 @@ std::optional<base::Clock::time_point> earlier(std::optional<base::Clock::time_p
 }  // namespace
 
 FrameRendererFactory gl_renderer(std::optional<int> device) {
-    return [device] {
+    return [device, resolve_on = std::optional<renderer::ResolveOn>()]() mutable {
         auto renderer = std::make_shared<renderer::Renderer>(device);
         for (const std::string& sentence : renderer->rejected())
             observe::log_warning("device_passed_over", {{"reason", sentence}});
         observe::log_info("drawing", {{"renderer", renderer->description()}});
+        if (resolve_on) {
+            renderer->use_resolver(*resolve_on);
+        } else {
+            const renderer::ResolverTimes times = renderer->choose_resolver();
+            resolve_on = times.faster();
+            observe::log_info("resolver", {{"on", resolve_on == renderer::ResolveOn::gpu ? "gpu" : "cpu"},
+                                           {"cpu_ms", times.cpu_ms},
+                                           {"gpu_ms", times.gpu_ms}});
+        }
         return FrameRenderer{renderer->description(),
                              renderer->software(),
                              renderer->max_size(),

@@ -20,6 +20,13 @@ std::shared_ptr<const scene::Scene> scene_of(const plan::View& view) {
 
 double pixels_of(const PictureSize& size) { return static_cast<double>(size.width) * size.height; }
 
+/// What the JPEG encoder takes.
+plan::RenderJob::Output output_of(const protocol::Quality& quality) {
+    using Output = plan::RenderJob::Output;
+    return quality.subsampling == protocol::Quality::Subsampling::yuv420 ? Output::ycbcr_420
+                                                                         : Output::ycbcr_444;
+}
+
 /// Counts a frame that was drawn, and logs it.
 void count_frame(const protocol::FrameHeader& drawn, observe::Metrics& metrics, observe::LiveStats& stats) {
     const bool still = drawn.quality.level == protocol::Quality::Level::still;
@@ -202,6 +209,7 @@ void Engine::begin_frame(Refinement refinement) {
         frame_.emplace(FrameUnderWay{std::move(picture), visible, view_size, refinement, level,
                                      begin_job(std::move(view), refinement)});
         frame_->job.interactive = !still;
+        frame_->job.output = output_of(quality);
     } catch (const std::bad_alloc&) {
         draw_smaller({visible, view_size}, size, "there is no memory to draw it");
     }
@@ -247,7 +255,7 @@ void Engine::finish_frame() {
                               stats.render_ms + stats.readback_ms});
         if (in_flight_.size() > kFramesRemembered) in_flight_.pop_front();
     }
-    encoder_.offer(std::move(frame.picture), std::move(frame.job.image));
+    encoder_.offer(std::move(frame.picture), std::move(frame.job.image), std::move(frame.job.planes));
     refining_.reset();
     if (frame.job.keep == plan::RenderJob::Keep::samples && frame.refinement != Refinement::sharp &&
         stats.substitutes == 0)
@@ -283,6 +291,8 @@ void Engine::draw_snapshot() {
             plan::View view = snapshot.order.view;
             view.samples = kRefined.samples;
             snapshot.job.emplace(std::move(view), snapshot_encoder_.take_spare());
+            if (snapshot.order.format == protocol::ImageFormat::jpeg)
+                snapshot.job->output = output_of(kRefined);
         }
         drawn = draw(*snapshot.job);
     } catch (const vrut::base::OutOfMemory& error) {
@@ -313,7 +323,8 @@ void Engine::finish_snapshot(Snapshot snapshot) {
     picture.header.frame = next_frame_++;
     picture.format = snapshot.order.format;
     picture.client = snapshot.order.client;
-    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.job->image));
+    snapshot_encoder_.offer(std::move(picture), std::move(snapshot.job->image),
+                            std::move(snapshot.job->planes));
 }
 
 }  // namespace vrut::server::engine

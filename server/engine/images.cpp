@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 #include <system_error>
+#include <variant>
 
 namespace vrut::server::engine {
 
@@ -23,6 +24,8 @@ constexpr int kMaxStripPixels = 1 << 17;
 constexpr int kMaxSide = 65'500;  // libjpeg's JPEG_MAX_DIMENSION
 
 int mcu_side(bool subsampled) { return subsampled ? 16 : 8; }
+
+int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
 /// In pixels, a multiple of the MCU's height.
 int strip_height(int width, bool subsampled) {
@@ -50,16 +53,21 @@ std::span<const std::uint8_t> entropy_coded(std::span<const std::uint8_t> jpeg) 
     return jpeg.subspan(start, jpeg.size() - start - 2);
 }
 
-/// Makes the file of the first strip, without EOI, the beginning of one of `height` rows, whose restart
-/// intervals have `interval` MCUs (ITU-T T.81, B.2.4.4).
-void make_header(Bytes& jpeg, int height, int interval) {
-    const auto two = [](int value) {
-        return std::array{static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value & 0xFF)};
-    };
+std::array<std::uint8_t, 2> two_bytes(int value) {
+    return {static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value & 0xFF)};
+}
+
+/// ITU-T T.81, B.2.2.
+void set_size(Bytes& jpeg, int width, int height) {
     const auto sof = static_cast<std::ptrdiff_t>(find_segment(jpeg, kSof0));
-    std::ranges::copy(two(height), jpeg.begin() + sof + 5);
+    std::ranges::copy(two_bytes(height), jpeg.begin() + sof + 5);
+    std::ranges::copy(two_bytes(width), jpeg.begin() + sof + 7);
+}
+
+/// In MCUs; the file has none yet (B.2.4.4).
+void set_restart_interval(Bytes& jpeg, int interval) {
     const auto sos = static_cast<std::ptrdiff_t>(find_segment(jpeg, kSos));
-    const auto [high, low] = two(interval);
+    const auto [high, low] = two_bytes(interval);
     const std::uint8_t dri[] = {0xFF, kDri, 0, 4, high, low};
     jpeg.insert(jpeg.begin() + sos, std::begin(dri), std::end(dri));
 }
@@ -67,11 +75,13 @@ void make_header(Bytes& jpeg, int height, int interval) {
 }  // namespace
 
 struct JpegEncoder::Job {
-    const scene::Image& image;
+    std::variant<const scene::Image*, const scene::PlanarImage*> image;
+    int width, height;
     int quality;
     bool subsampled;
-    int strip_height;           // of all but the last
-    std::vector<Bytes> strips;  // the first with its headers, the others from the first entropy-coded byte
+    int strip_height = 0;  // of all but the last
+    std::vector<Bytes> strips =
+        {};  // the first with its headers, the others from the first entropy-coded byte
     std::size_t next = 0, in_progress = 0;
     std::exception_ptr error = nullptr;
 };
@@ -86,24 +96,23 @@ public:
     Compressor& operator=(const Compressor&) = delete;
 
     Bytes compress(const Job& job, std::size_t strip) {
-        const scene::Image& image = job.image;
         const int top = static_cast<int>(strip) * job.strip_height;
-        const int height = std::min(job.strip_height, image.height - top);
+        const int height = std::min(job.strip_height, job.height - top);
         const int sampling = job.subsampled ? TJSAMP_420 : TJSAMP_444;
         // What the worst strip needs is many times what most take: it is kept for the next, and the file
         // copied.
-        const unsigned long worst = tjBufSize(image.width, height, sampling);
+        const int side = mcu_side(job.subsampled);
+        const unsigned long worst = tjBufSize(round_up(job.width, side), height, sampling);
         if (scratch_size_ < worst) {
             scratch_ = std::make_unique_for_overwrite<std::uint8_t[]>(worst);
             scratch_size_ = worst;
         }
-        const std::size_t rows_below = static_cast<std::size_t>(image.height - top - height);
-        const std::uint8_t* pixels =
-            image.rgba.data() + rows_below * static_cast<std::size_t>(image.width) * 4;
         unsigned char* out = scratch_.get();
         unsigned long size = scratch_size_;
-        if (tjCompress2(handle_, pixels, image.width, 0, height, TJPF_RGBA, &out, &size, sampling,
-                        job.quality, TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC) != 0)
+        const auto* rgba = std::get_if<const scene::Image*>(&job.image);
+        const int status = rgba ? compress_rgba(job, **rgba, top, height, out, size)
+                                : compress_planes(job, *std::get<1>(job.image), top, height, out, size);
+        if (status != 0)
             throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
                                      tjGetErrorStr2(handle_));
         const std::span<const std::uint8_t> file(out, size), coded = entropy_coded(file);
@@ -111,6 +120,32 @@ public:
     }
 
 private:
+    int compress_rgba(const Job& job, const scene::Image& image, int top, int height, unsigned char* out,
+                      unsigned long& size) {
+        const auto rows_below = static_cast<std::size_t>(image.height - top - height);
+        const std::uint8_t* pixels =
+            image.rgba.data() + rows_below * static_cast<std::size_t>(image.width) * 4;
+        return tjCompress2(handle_, pixels, image.width, 0, height, TJPF_RGBA, &out, &size,
+                           job.subsampled ? TJSAMP_420 : TJSAMP_444, job.quality,
+                           TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC);
+    }
+
+    /// At the padded width: libjpeg would pad chroma in 4:2:0 with the average of the last pixels.
+    int compress_planes(const Job& job, const scene::PlanarImage& image, int top, int height,
+                        unsigned char* out, unsigned long& size) {
+        const int stride = image.stride(), chroma_top = job.subsampled ? top / 2 : top;
+        const auto row = [&](int y) {
+            return image.bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(stride);
+        };
+        const std::uint8_t* cb = row(image.luma_rows() + chroma_top);
+        const std::uint8_t* cr = job.subsampled ? cb + stride / 2 : row(image.luma_rows() * 2 + top);
+        const unsigned char* planes[] = {row(top), cb, cr};
+        const int strides[] = {stride, stride, stride};
+        return tjCompressFromYUVPlanes(handle_, planes, stride, strides, height,
+                                       job.subsampled ? TJSAMP_420 : TJSAMP_444, &out, &size, job.quality,
+                                       TJFLAG_NOREALLOC);
+    }
+
     tjhandle handle_;
     std::unique_ptr<std::uint8_t[]> scratch_;  // of the largest size that was needed
     std::size_t scratch_size_ = 0;
@@ -158,12 +193,20 @@ void JpegEncoder::compress_strips(std::unique_lock<std::mutex>& lock, Compressor
     }
 }
 
-std::vector<std::uint8_t> JpegEncoder::encode(const scene::Image& image, int quality, bool subsampled) {
-    if (std::min(image.width, image.height) < 1 || std::max(image.width, image.height) > kMaxSide)
-        throw std::runtime_error("a picture of " + std::to_string(image.width) + " x " +
-                                 std::to_string(image.height) + " pixels cannot be encoded as JPEG");
-    Job job{image, quality, subsampled, strip_height(image.width, subsampled), {}};
-    job.strips.resize(static_cast<std::size_t>((image.height - 1) / job.strip_height) + 1);
+Bytes JpegEncoder::encode(const scene::Image& image, int quality, bool subsampled) {
+    return encode(Job{&image, image.width, image.height, quality, subsampled});
+}
+
+Bytes JpegEncoder::encode(const scene::PlanarImage& image, int quality) {
+    return encode(Job{&image, image.width, image.height, quality, image.subsampled});
+}
+
+Bytes JpegEncoder::encode(Job job) {
+    if (std::min(job.width, job.height) < 1 || std::max(job.width, job.height) > kMaxSide)
+        throw std::runtime_error("a picture of " + std::to_string(job.width) + " x " +
+                                 std::to_string(job.height) + " pixels cannot be encoded as JPEG");
+    job.strip_height = strip_height(job.width, job.subsampled);
+    job.strips.resize(static_cast<std::size_t>((job.height - 1) / job.strip_height) + 1);
     {
         std::unique_lock lock(mutex_);
         job_ = &job;
@@ -176,9 +219,10 @@ std::vector<std::uint8_t> JpegEncoder::encode(const scene::Image& image, int qua
     if (job.error) std::rethrow_exception(job.error);
 
     Bytes jpeg = std::move(job.strips[0]);
+    set_size(jpeg, job.width, job.height);
     if (job.strips.size() > 1) {
-        const int mcu = mcu_side(subsampled);
-        make_header(jpeg, image.height, ((image.width - 1) / mcu + 1) * (job.strip_height / mcu));
+        const int mcu = mcu_side(job.subsampled);
+        set_restart_interval(jpeg, round_up(job.width, mcu) / mcu * (job.strip_height / mcu));
     }
     std::size_t size = jpeg.size();
     for (const Bytes& strip : job.strips) size += strip.size() + 2;  // the first is empty now

@@ -28,10 +28,14 @@ public:
 
     /// `quality` 1 to 100; 4:2:0 when `subsampled`, else 4:4:4. Throws std::runtime_error.
     std::vector<std::uint8_t> encode(const scene::Image& image, int quality, bool subsampled);
+    /// The same, without the conversion from RGBA.
+    std::vector<std::uint8_t> encode(const scene::PlanarImage& image, int quality);
 
 private:
     class Compressor;
     struct Job;
+
+    std::vector<std::uint8_t> encode(Job job);
 
     void work(const std::stop_token& stop, Compressor& compressor);
     void compress_strips(std::unique_lock<std::mutex>& lock, Compressor& compressor);

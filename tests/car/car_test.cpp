@@ -253,7 +253,7 @@ TEST_CASE("sheets are flat, and so are the mirrors, and nothing else is a mirror
                 CHECK(unevenness(welded({part.geometry})) < 1e-6);
             }
             const auto* data = std::get_if<scene::GeometryData>(&part.node->data);
-            const bool mirror = plan::is_mirror(scene, part.index, data->material);
+            const bool mirror = scene.is_mirror(scene.material(data->material), part.index);
             // A mirror costs a drawing of all that it shows.
             CHECK(mirror == (part.material->reflectivity > 0.5 && part.material->name.starts_with("Mirror")));
             mirrors += mirror;

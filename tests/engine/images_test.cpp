@@ -10,6 +10,7 @@
 #include "base/files.hpp"
 #include "frame_header.hpp"
 #include "io/image_file.hpp"
+#include "planes.hpp"
 
 using namespace vrut;
 using namespace vrut::server::base;
@@ -77,6 +78,28 @@ std::vector<int> restart_markers(const std::vector<std::uint8_t>& jpeg) {
 }
 
 }  // namespace
+
+TEST_CASE("planes become the JPEG that the image in RGBA becomes, but for blocks beyond its right edge") {
+    JpegEncoder encoder;
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(16, 16), glm::ivec2(17, 15),
+                                  glm::ivec2(24, 33), glm::ivec2(46, 33), glm::ivec2(1001, 701)})
+        for (const bool subsampled : {false, true})
+            for (const int quality : {40, 90, 100}) {
+                CAPTURE(size.x);
+                CAPTURE(subsampled);
+                CAPTURE(quality);
+                const scene::Image image = noisy_gradient(size.x, size.y);
+                const auto expected = encoder.encode(image, quality, subsampled),
+                           jpeg = encoder.encode(planes_of(image, subsampled), quality);
+                int width = 0, height = 0, sampling = 0;
+                const auto pixels = decode_jpeg(jpeg, width, height, sampling);
+                CHECK(width == size.x);
+                CHECK(height == size.y);
+                CHECK(sampling == (subsampled ? TJSAMP_420 : TJSAMP_444));
+                CHECK(pixels == decode_jpeg(expected, width, height, sampling));
+                if (size.x % 16 == 0) CHECK(jpeg == expected);
+            }
+}
 
 TEST_CASE("a PNG is exact, opaque and upright") {
     const scene::Image image = two_halves(5, 4);

@@ -8,6 +8,7 @@
 #include <limits>
 #include <thread>
 
+#include "compare/difference.hpp"
 #include "reference/shading.hpp"
 #include "reference/tracer.hpp"
 
@@ -81,13 +82,6 @@ bool is_interior(const SurfaceStack* stack, int width) {
     for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
             if ((dx != 0 || dy != 0) && !same(*stack, stack[dy * width + dx], dx, dy)) return false;
-    return true;
-}
-
-bool is_one_node(const scene::Index* node, int width) {
-    for (int dy = -1; dy <= 1; ++dy)
-        for (int dx = -1; dx <= 1; ++dx)
-            if (node[dy * width + dx] != *node) return false;
     return true;
 }
 
@@ -198,12 +192,12 @@ std::string name_of(PixelClass kind) {
 
 JudgedReference judge_of(const plan::View& view) {
     JudgedReference judge{reference::trace(view), {}, {}, {}};
+    judge.one_node = compare::interior_pixels(judge.picture.node, view.width, view.height);
     const reference::Tracer tracer(view);
     const auto width = static_cast<std::size_t>(view.width), height = static_cast<std::size_t>(view.height);
     std::vector<SurfaceStack> stacks(width * height);
     judge.kind.resize(stacks.size());
     judge.interior.resize(stacks.size());
-    judge.one_node.resize(stacks.size());
     for_each_row(view.height, [&](int y) {
         for (std::size_t x = 0; x < width; ++x) {
             const std::size_t at = static_cast<std::size_t>(y) * width + x;
@@ -216,7 +210,6 @@ JudgedReference judge_of(const plan::View& view) {
         for (std::size_t x = 1; x + 1 < width; ++x) {
             const std::size_t at = y * width + x;
             judge.interior[at] = is_interior(&stacks[at], view.width);
-            judge.one_node[at] = is_one_node(&judge.picture.node[at], view.width);
         }
     return judge;
 }

@@ -1,4 +1,5 @@
-#include "expected_texture.hpp"
+#include "compare/difference.hpp"
+#include "noise.hpp"
 #include "renderer_fixture.hpp"
 
 using namespace vrut;
@@ -33,22 +34,9 @@ std::vector<scene::Image> listed(const std::array<scene::Image, 6>& images) {
     return {images.begin(), images.end()};
 }
 
-TextureMismatch check_picture(const scene::Image& image, const plan::View& view, RendererFixture& studio) {
-    const ExpectedTexture texture(image);
-    const double w = view.width, h = view.height;
-    return deviation(studio.draw(scene_with({image}), before_picture(view)), [&](double x, double y) {
-        return std::optional(texture.at({x / w, 1 - y / h}, {1 / w, 0}, {0, 1 / h}, false));
-    });
-}
-
-TextureMismatch check_environment(const std::array<scene::Image, 6>& images, const plan::View& view,
-                                  RendererFixture& studio) {
-    const ExpectedEnvironment panorama(images);
-    return deviation(studio.draw(scene_with(listed(images)), in_panorama(view)), [&](double x, double y) {
-        const glm::dvec3 ray = ray_through(view, x, y);
-        return std::optional(
-            panorama.at(ray, ray_through(view, x + 1, y) - ray, ray_through(view, x, y - 1) - ray));
-    });
+PictureMismatch check(const std::vector<scene::Image>& images, plan::View view, RendererFixture& studio) {
+    view.scene = scene_with(images);
+    return mismatch(view, studio.draw(view.scene, view));
 }
 
 plan::View looking(const glm::dvec3& direction, const glm::dvec3& up, double fov, int width, int height) {
@@ -85,7 +73,7 @@ TEST_CASE("a background picture is stretched, its edges clamped, and filtered") 
             plan::View view = view_from({1, 2, 3});
             view.width = picture.x;
             view.height = picture.y;
-            const TextureMismatch off = check_picture(noise(size.x, size.y), view, studio);
+            const PictureMismatch off = check({noise(size.x, size.y)}, before_picture(view), studio);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
 }
@@ -93,14 +81,17 @@ TEST_CASE("a background picture is stretched, its edges clamped, and filtered") 
 TEST_CASE("each picture of a panorama is what a camera with 90 degrees sees") {
     RendererFixture studio;
     const std::array<scene::Image, 6> images = six(32);
+    struct CubeFace {
+        glm::dvec3 view, up;
+    };
+    const std::array<CubeFace, 6> faces{CubeFace{{1, 0, 0}, {0, 1, 0}}, CubeFace{{-1, 0, 0}, {0, 1, 0}},
+                                        CubeFace{{0, 1, 0}, {0, 0, 1}}, CubeFace{{0, -1, 0}, {0, 0, -1}},
+                                        CubeFace{{0, 0, 1}, {0, 1, 0}}, CubeFace{{0, 0, -1}, {0, 1, 0}}};
     for (std::size_t i = 0; i < 6; ++i) {
         CAPTURE(i);
-        const auto& [view, up] = ExpectedEnvironment::kFaces[i];
-        const scene::Image found =
-            studio.draw(scene_with(listed(images)), in_panorama(looking(view, up, 90, 32, 32)));
-        CHECK(deviation(found, [&](double x, double y) {
-                  return glm::dvec3(pixel_of(images[i], static_cast<int>(x), static_cast<int>(y))) / 255.0;
-              }).worst <= 1);
+        const scene::Image found = studio.draw(scene_with(listed(images)),
+                                               in_panorama(looking(faces[i].view, faces[i].up, 90, 32, 32)));
+        CHECK(compare::difference(found, images[i]).maximum() <= 1);
     }
 }
 
@@ -116,9 +107,35 @@ TEST_CASE("a panorama is filtered across its edges and corners") {
                     CAPTURE(y);
                     CAPTURE(z);
                     const plan::View view = looking({x, y, z}, {0.1, 1, 0.2}, 40, 48, 48);
-                    const TextureMismatch off = check_environment(six(size), view, studio);
+                    const PictureMismatch off = check(listed(six(size)), in_panorama(view), studio);
                     CHECK_MESSAGE(off.worst <= 2, off.where);
                 }
+}
+
+TEST_CASE("the corner of a cube map is the mean of its three texels") {
+    RendererFixture studio;
+    const std::array<scene::Image, 6> images = six(4);
+    const auto scene = scene_with(listed(images));
+    const auto check_corner = [&](const glm::dvec3& corner, const glm::ivec2& in_x, const glm::ivec2& in_y,
+                                  const glm::ivec2& in_z) {
+        // Column and row from the bottom left, in the pictures that look along x, y and z.
+        const auto texel = [&](int axis, const glm::ivec2& at) {
+            const scene::Image& image = images[static_cast<std::size_t>(2 * axis + (corner[axis] < 0))];
+            return glm::dvec3(pixel_of(image, at.x, image.height - 1 - at.y)) / 255.0;
+        };
+        const plan::View view = in_panorama(looking(corner, {0.1, 1, 0.2}, 1, 1, 1));
+        const glm::ivec3 off = pixel_of(studio.draw(scene, view), 0, 0) -
+                               bytes_of((texel(0, in_x) + texel(1, in_y) + texel(2, in_z)) / 3.0);
+        CHECK(std::max({std::abs(off.r), std::abs(off.g), std::abs(off.b)}) <= 1);
+    };
+    check_corner({1, 1, 1}, {3, 3}, {3, 3}, {0, 3});
+    check_corner({1, 1, -1}, {0, 3}, {3, 0}, {3, 3});
+    check_corner({1, -1, 1}, {3, 0}, {3, 0}, {0, 0});
+    check_corner({1, -1, -1}, {0, 0}, {3, 3}, {3, 0});
+    check_corner({-1, 1, 1}, {0, 3}, {0, 3}, {3, 3});
+    check_corner({-1, 1, -1}, {3, 3}, {0, 0}, {0, 3});
+    check_corner({-1, -1, 1}, {0, 0}, {0, 0}, {3, 0});
+    check_corner({-1, -1, -1}, {3, 0}, {0, 3}, {0, 0});
 }
 
 TEST_CASE("a panorama is minified by the pixel's longer side, in any direction") {
@@ -134,7 +151,7 @@ TEST_CASE("a panorama is minified by the pixel's longer side, in any direction")
                 CAPTURE(fov);
                 CAPTURE(direction.x);
                 const plan::View view = looking(direction, {0.1, 1, 0.2}, fov, 96, 64);
-                const TextureMismatch off = check_environment(six(size), view, studio);
+                const PictureMismatch off = check(listed(six(size)), in_panorama(view), studio);
                 CHECK(off.rms <= 1);
                 CHECK_MESSAGE(off.worst <= 3, off.where);
             }
@@ -149,9 +166,7 @@ TEST_CASE("a panorama is infinitely far away, and comes before a picture") {
     view.camera.focus += glm::dvec3(128, -512, 64);
     view.background.texture = 2;
     const scene::Image elsewhere = studio.draw(scene, view);
-    CHECK(deviation(elsewhere, [&](double x, double y) {
-              return glm::dvec3(pixel_of(at_origin, static_cast<int>(x), static_cast<int>(y))) / 255.0;
-          }).worst <= 1);
+    CHECK(compare::difference(elsewhere, at_origin).maximum() <= 1);
 }
 
 TEST_CASE("the samples of a pixel see the background where they see what stands before it") {
@@ -184,27 +199,15 @@ TEST_CASE("the samples of a pixel see the background where they see what stands 
         view.samples = samples;
         const scene::Image wanted = studio.draw(board, view),
                            found = studio.draw(scene_with({image}), before_picture(view));
-        const TextureMismatch off = deviation(found, [&](double x, double y) -> std::optional<glm::dvec3> {
-            if (x < 2 || x > 94 || y < 2 || y > 62) return std::nullopt;  // clamped there, not repeated
-            return glm::dvec3(pixel_of(wanted, static_cast<int>(x), static_cast<int>(y))) / 255.0;
-        });
-        CHECK_MESSAGE(off.worst <= 1, off.where);
+        std::vector<bool> inner;  // at the edges the background is clamped, the board repeats
+        for (int y = 0; y < view.height; ++y)
+            for (int x = 0; x < view.width; ++x)
+                inner.push_back(x >= 2 && x < view.width - 2 && y >= 2 && y < view.height - 2);
+        CHECK(compare::difference(found, wanted, inner).maximum() <= 1);
     }
-    // A panorama against the same seen with more pixels, each of whose centres is a sample.
     view = in_panorama(looking({1, 0.3, 0.2}, {0, 1, 0}, 80, 32, 32));
-    const auto scene = scene_with(listed(six(16)));
-    plan::View fine = view;
-    fine.width = fine.height = 32 * 8;
-    const scene::Image finer = studio.draw(scene, fine);
     view.samples = 64;
-    const TextureMismatch off = deviation(studio.draw(scene, view), [&](double x, double y) {
-        glm::dvec3 sum(0);
-        for (int dy = 0; dy < 8; ++dy)
-            for (int dx = 0; dx < 8; ++dx)
-                sum +=
-                    glm::dvec3(pixel_of(finer, static_cast<int>(x) * 8 + dx, static_cast<int>(y) * 8 + dy));
-        return std::optional(sum / 64.0 / 255.0);
-    });
+    const PictureMismatch off = check(listed(six(16)), view, studio);
     CHECK_MESSAGE(off.worst <= 3, off.where);
 }
 

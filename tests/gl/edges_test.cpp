@@ -301,7 +301,7 @@ std::shared_ptr<const scene::PlacedScene> shown_parts(const std::shared_ptr<cons
         const auto* data = std::get_if<scene::GeometryData>(&scene->nodes()[i].data);
         if (!data) continue;
         const scene::Material& material = scene->material(data->material);
-        if (plan::is_mirror(*scene, data->geometry, data->material) ||
+        if (scene->is_mirror(material, data->geometry) ||
             (scene->is_transparent(material) && !(windows && material.name.starts_with("Glass"))))
             states[i].active = false;
     }

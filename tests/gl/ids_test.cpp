@@ -22,12 +22,14 @@ long off(RendererFixture& studio, const std::shared_ptr<const scene::PlacedScene
 
 TEST_CASE("the node at each pixel is the reference's") {
     RendererFixture studio;
-    scene::Material glass = material_of({0.1, 0.2, 0.3});
+    scene::Material glass = material_of({0.1, 0.2, 0.3}), clear = glass;
     glass.diffuse.a = 0.5;
+    clear.diffuse.a = 0;
     const std::vector<Part> parts{{70000, sphere(1, 20), material_of({1, 0, 0}), glm::dmat4(1)},
                                   {5, box({0.5, 2, 0.5}), material_of({0, 1, 0}), scaled_by({-1, 1, 1})},
                                   {6, sphere(1, 20), material_of({0, 1, 0}), glm::dmat4(1)},  // a tie
                                   {7, mapped(quad(1.5), 1, {0, 0, 1.5}), glass, turned_by(20, {1, 1, 0})},
+                                  {9, mapped(quad(0.5), 1, {-1.5, 0, 2}), clear, glm::dmat4(1)},
                                   {8, mapped(quad(1.5), 1, {0, 0, 2}), glass, turned_by(180, {0, 1, 0})}};
     plan::View view = view_from({1, 2, 6});
     view.width = 320;
@@ -36,7 +38,7 @@ TEST_CASE("the node at each pixel is the reference's") {
     CHECK(off(studio, scene, view) <= 2);
     view.scene = scene;
     const auto drawn = studio.renderer().node_ids(view);
-    for (const scene::Id id : {scene::Id{70000}, scene::Id{5}, scene::Id{7}})
+    for (const scene::Id id : {scene::Id{70000}, scene::Id{5}, scene::Id{7}, scene::Id{9}})
         CHECK(std::count(drawn.begin(), drawn.end(), scene->scene->find_node(id)) > 100);
     CHECK(std::count(drawn.begin(), drawn.end(), scene->scene->find_node(6)) == 0);
     CHECK(std::count(drawn.begin(), drawn.end(), scene->scene->find_node(8)) == 0);

@@ -131,7 +131,7 @@ TEST_CASE("spots as narrow and as wide as can be") {
     view.camera.eye.x = view.camera.focus.x = 0.0033;
     view.camera.fov = 0.004;
     view.light.angle = 0.1;
-    const ImageMismatch narrow = studio.check(plate(), view);
+    const PictureMismatch narrow = studio.check(plate(), view);
     CHECK(narrow.surfaces == view.width * view.height);
     const scene::Image image = studio.draw(plate(), view);
     int steps = 0;

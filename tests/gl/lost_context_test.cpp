@@ -127,3 +127,28 @@ TEST_CASE("the numbers of nodes that a lost context has drawn are not had") {
     gl_faults::reset_after(1);
     CHECK_THROWS_AS(renderer.node_ids(view), base::ContextLost);
 }
+
+TEST_CASE("samples that lay on the GPU when the driver reset itself are drawn again") {
+    const Healed healed;
+    const plan::View view = view_of(two_parts());
+    scene::Image expected;
+    plan::FrameStats stats;
+    plan::RenderJob job(view);
+    {
+        renderer::Renderer renderer;
+        renderer.render(view, expected, stats);
+        renderer.use_resolver(renderer::ResolveOn::gpu);
+        while (job.samples < 2) CHECK_FALSE(renderer.step(job));
+        gl_faults::reset_after(1);
+        CHECK_THROWS_AS(renderer.step(job), base::ContextLost);
+    }
+    CHECK(gl::live_gl_objects() == 0);
+    for (const renderer::ResolveOn resolve_on : {renderer::ResolveOn::gpu, renderer::ResolveOn::cpu}) {
+        gl_faults::heal();
+        renderer::Renderer renderer;
+        renderer.use_resolver(resolve_on);
+        while (!renderer.step(job)) {
+        }
+        CHECK(job.image.rgba == expected.rgba);
+    }
+}

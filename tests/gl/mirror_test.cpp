@@ -80,6 +80,10 @@ TEST_CASE("a mirror from behind, under a mirroring matrix, and flattened") {
         check_mirror(studio, parts, view);
         CHECK(mirrors_in(parts, view) == 1);
     }
+    // Wound both ways.
+    scene::Geometry wound = quad(1.5);
+    std::swap(wound.triangles[1].y, wound.triangles[1].z);
+    check_mirror(studio, with(things(), {{1, wound, mirror_of(0.7), moved_by({0, 0.8, -1.7})}}), view);
     // A determinant of 0 leaves the plane, or takes it.
     const auto flat = with(things(), {mirror_at(1, moved_by({0, 0.8, -1.7}) * scaled_by({1, 1, 0}))});
     const auto thin = with(things(), {mirror_at(1, moved_by({0, 0.8, -1.7}))});

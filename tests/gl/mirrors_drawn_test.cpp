@@ -2,7 +2,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "compare/difference.hpp"
 #include "mirror_scenes.hpp"
+#include "noise.hpp"
+#include "reference/reference.hpp"
 #include "renderer_fixture.hpp"
 
 using namespace vrut;
@@ -175,8 +178,59 @@ TEST_CASE("a curved reflective part is drawn like one that does not reflect") {
     CHECK(studio.draw(scene_of(ball(1)), view).rgba == studio.draw(scene_of(ball(0)), view).rgba);
 }
 
+TEST_CASE("in a stylized picture mirrors are surfaces like others") {
+    RendererFixture studio;
+    for (const double side : {5.0, -5.0}) {
+        plan::View view = view_from({1, 1, side});
+        view.mode = plan::DrawMode::stylized;
+        const auto plate = [&](double reflectivity) {
+            scene::Material material = mirror_of(reflectivity);
+            material.two_sided = false;
+            return studio.draw(scene_of({{1, quad(1), material, glm::dmat4(1)}}), view).rgba;
+        };
+        CHECK(plate(1) == plate(0));
+    }
+}
+
 TEST_CASE("of a hundred mirrors no more are drawn than a picture may have") {
     RendererFixture studio;
     studio.draw(scene_of(hundred_mirrors()), view_from({0, 0, 12}));
     CHECK(studio.stats.passes <= 1 + 2 * static_cast<int>(plan::kMaxMirrors));
+}
+
+TEST_CASE("the sixteen largest mirrors are drawn as the reference has them, the next reflects the cube map") {
+    RendererFixture studio;
+    std::vector<scene::Texture> sky;
+    for (unsigned i = 0; i < 6; ++i) sky.push_back({"sky.png", cloudy(64, 64, i + 1), false});
+    const auto smallest = static_cast<scene::Id>(plan::kMaxMirrors) + 1;
+    std::vector<Part> parts;
+    for (scene::Id id = 1; id <= smallest; ++id)
+        parts.push_back(
+            {id, quad(id == smallest ? 0.42 : 0.45), mirror_of(0.8),
+             moved_by({static_cast<double>((id - 1) % 6) - 2.5, static_cast<double>((id - 1) / 6) - 1, 0})});
+    const std::vector<Part> mirrors = parts;
+    // Behind the eye, for all of them to reflect.
+    parts.push_back({100, quad(40), paint({0, 1, 0}), moved_by({0, 0, 20})});
+    plan::View view = view_from({0.1, 0.2, 9});
+    view.background.cube_map = {0, 1, 2, 3, 4, 5};
+    const scene::Image drawn = studio.draw(scene_of(parts, sky), view);
+    const auto traced = [&](const std::vector<Part>& shown) {
+        view.scene = scene_of(shown, sky);
+        return reference::trace(view);
+    };
+    const reference::ReferenceImage all = traced(parts), in_sky = traced(mirrors);
+    std::vector<bool> largest, last;
+    for (const scene::Index node : all.node) {
+        last.push_back(node == static_cast<scene::Index>(smallest));
+        largest.push_back(node != scene::kNone && !last.back());
+    }
+    const auto off = [&](const reference::ReferenceImage& expected, const std::vector<bool>& pixels) {
+        const compare::Difference difference =
+            compare::difference(drawn, reference::image_of(expected), pixels);
+        CHECK(difference.count() > 30);
+        return difference;
+    };
+    CHECK(off(all, largest).maximum() <= 2);
+    CHECK(off(in_sky, last).maximum() <= 2);
+    CHECK(off(all, last).share_above(50) > 0.9);
 }

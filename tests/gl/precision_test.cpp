@@ -53,9 +53,9 @@ TEST_CASE("a flattened part of any size is lit") {
     for (const double scale : {1e-9, 1e-6, 1.0, 1e6, 1e9}) {
         CAPTURE(scale);
         plan::View view = moved(view_from({0.5, 0.3, 5}), scale, {0, 0, 0});
-        const ExpectedImage picture(*scene_of({{1, quad(scale), kRed, glm::dmat4(1)}}), view);
-        const ImageMismatch result = difference(
-            picture, studio.draw(scene_of({{1, sideways, kRed, scaled_by({scale, scale, 0})}}), view));
+        view.scene = scene_of({{1, quad(scale), kRed, glm::dmat4(1)}});
+        const PictureMismatch result =
+            mismatch(view, studio.draw(scene_of({{1, sideways, kRed, scaled_by({scale, scale, 0})}}), view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         CHECK(result.surfaces > 300);
     }
@@ -90,7 +90,7 @@ TEST_CASE("near and far cut nothing off") {
     // A wall before the eye and one at the horizon, in one view.
     const auto scene = scene_of({{1, quad(0.002), kRed, moved_by({-0.002, 0, -0.01})},
                                  {2, quad(5000), kGreen, moved_by({0, 0, -5000})}});
-    const ImageMismatch result = studio.check(scene, view_from({0, 0, 0}, {0, 0, -1}));
+    const PictureMismatch result = studio.check(scene, view_from({0, 0, 0}, {0, 0, -1}));
     CHECK(result.surfaces == result.compared);
     // A floor that goes on behind the eye.
     const auto floor = scene_of({{1, quad(100), kRed, turned_by(-90, {1, 0, 0})}});

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "expected_image.hpp"
 #include "gl/handles.hpp"
+#include "picture_check.hpp"
 #include "renderer/renderer.hpp"
 #include "shapes.hpp"
 #include "views.hpp"
@@ -30,9 +30,10 @@ public:
         return image;
     }
 
-    /// Draws and compares with what is computed, at all pixels but those at edges.
-    ImageMismatch check(const std::shared_ptr<const scene::PlacedScene>& scene, const plan::View& view) {
-        ImageMismatch result = difference(ExpectedImage(*scene, view), draw(scene, view));
+    /// Draws, and checks that no pixel but those at edges is a rounded step from the reference's.
+    PictureMismatch check(const std::shared_ptr<const scene::PlacedScene>& scene, plan::View view) {
+        view.scene = scene;
+        PictureMismatch result = mismatch(view, draw(scene, view));
         CHECK_MESSAGE(result.worst <= 1, result.where);
         return result;
     }

@@ -61,12 +61,19 @@ std::shared_ptr<const scene::PlacedScene> hidden_glass() {
 
 TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the next one is whole") {
     const HealedMemory healed;
-    const plan::View view = view_of(everything());
+    plan::View view = view_of(everything());
+    renderer::ResolveOn resolve_on{};
+    SUBCASE("samples are averaged on the CPU") { resolve_on = renderer::ResolveOn::cpu; }
+    SUBCASE("samples are averaged on the GPU") {
+        resolve_on = renderer::ResolveOn::gpu;
+        view.samples = 2;
+    }
     scene::Image expected, image;
     plan::FrameStats stats;
     std::size_t most = 0;
     {
         renderer::Renderer renderer;
+        renderer.use_resolver(resolve_on);
         const std::size_t before = gl_faults::memory_used();
         renderer.render(view, expected, stats);
         REQUIRE(stats.passes >= 5);
@@ -77,6 +84,7 @@ TEST_CASE("whatever does not fit, a picture is whole or told not to be, and the 
     for (std::size_t k = 0; k <= 24; ++k) {
         CAPTURE(k);
         renderer::Renderer renderer;
+        renderer.use_resolver(resolve_on);
         gl_faults::limit_memory(gl_faults::memory_used() + most * k / 24);
         try {
             renderer.render(view, image, stats);

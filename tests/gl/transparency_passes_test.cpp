@@ -6,7 +6,6 @@
 #include <cstring>
 #include <numeric>
 
-#include "expected_image.hpp"
 #include "gl/context.hpp"
 #include "gl/passes/per_pixel_lists_pass.hpp"
 #include "gl/programs.hpp"

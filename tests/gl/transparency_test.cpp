@@ -93,9 +93,12 @@ TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emiss
     material.emission = {0.1, 0.05, 0, 1};
     for (const double alpha : {0.0, 0.02, 0.5, 0.98, 0.9999}) {
         CAPTURE(alpha);
+        plan::View view = odd_view({0, 0, 5});
+        material.diffuse.a = 1;
+        view.scene = scene_of({{1, quad(1), material}});
+        const reference::ReferenceImage opaque = reference::trace(view);
+        const glm::dvec3 own = opaque.color[opaque.color.size() / 2];
         material.diffuse.a = alpha;
-        const plan::View view = odd_view({0, 0, 5});
-        const glm::dvec3 own = phong(material, view.light, view.camera.eye, {0, 0, 0}, {0, 0, 1});
         check_middle(studio.draw(scene_of({{1, quad(1), material}}), view),
                      glm::mix(view.background.color, own, alpha));
         CHECK(studio.stats.passes == 1);
@@ -104,6 +107,10 @@ TEST_CASE("all of a surface's colour is multiplied by alpha, highlight and emiss
     material = glass({3, 0.5, 0}, 0.5);
     check_middle(studio.draw(scene_of({{1, quad(1), material}}), odd_view({0, 0, 5})),
                  glm::mix(plan::kDefaultBackground, glm::dvec3(1, 0.5, 0), 0.5));
+    // And so is the background before glass is blended over it.
+    plan::View bright = odd_view({0, 0, 5});
+    bright.background.color = {4, 0.5, 0};
+    check_middle(studio.draw(scene_of({{1, quad(1), glass({0, 0, 1}, 0.5)}}), bright), {0.5, 0.25, 0.5});
 }
 
 TEST_CASE("glass shows what is behind it and is hidden by what is before it") {

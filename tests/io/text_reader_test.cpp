@@ -241,6 +241,9 @@ TEST_CASE("numbers") {
     CHECK(up_of("-0") == 0);
     CHECK(up_of("4.9406564584124654e-324") == 4.9406564584124654e-324);
     CHECK(up_of("0.30000000000000004") == 0.30000000000000004);
+    // A light may be brighter than 1.
+    const scene::Scene lamp = read_well("vrut-text 1 node 1 \"\" light color 1.5 200 0 1 end");
+    CHECK(data_of<scene::LightData>(lamp, 1).color == glm::dvec4(1.5, 200, 0, 1));
 }
 
 TEST_CASE("lines may end as on Windows, and blocks may stand on one") {
@@ -361,6 +364,8 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
          "diffuse's alpha (a number from 0 to 1), found 'end'"},
         {h + "material 1 \"x\"\nambient 0 -0.1 0 1 end", 3, "ambient"},
         {h + "material 1 \"x\"\nambient 0 0 0 1.1 end", 3, "ambient's alpha"},
+        {h + "material 1 \"x\"\ndiffuse 0 0 0 -0.1 end", 3,
+         "diffuse's alpha (a number from 0 to 1), found '-0.1'"},
         {h + "material 1 \"x\"\nimage plate.png end", 3, "the image's file in quotes, found 'plate.png'"},
         // --- geometries
         {h + "geometry 1\nvertices 4000000000 0 0 0 end", 3, "a count of vertices that fits into the file"},
@@ -389,6 +394,10 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "\nnode 1 \"x\" light\ntype neon\nend", 4, "point, directional or spot, found 'neon'"},
         {h + "node 1 \"x\" light\nattenuation 1 -0.1 0\nend", 3, "attenuation (a number from 0"},
         {h + "node 1 \"x\" light\nangle 181\nend", 3, "angle (a number from 0 to 180), found '181'"},
+        {h + "node 1 \"x\" light\nangle -1\nend", 3, "angle (a number from 0 to 180), found '-1'"},
+        {h + "node 1 \"x\" light\ncolor 1 -0.1 1 1\nend", 3, "color (a number from 0"},
+        {h + "node 1 \"x\" light\ncolor 1 1 1 1.1\nend", 3,
+         "color's alpha (a number from 0 to 1), found '1.1'"},
         {h + "node 1 \"x\" camera\nfov 171\nend", 3, "fov (a number from 1 to 170), found '171'"},
         {h + "node 1 \"x\" camera\nfov 0.5\nend", 3, "fov"},
         {h + "node 1 \"x\" switch\nactive-child -3 end", 3, "active-child"},

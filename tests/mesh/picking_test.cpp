@@ -89,16 +89,18 @@ scene::Geometry sphere(unsigned meridians, unsigned parallels) {
     return geometry_of(std::move(positions), std::move(triangles));
 }
 
-enum MaterialPlace : scene::Index { kPlain = 0, kTwoSided = 1, kGlass = 2, kTwoSidedGlass = 3 };
+enum MaterialPlace : scene::Index { kPlain, kTwoSided, kGlass, kTwoSidedGlass, kClearGlass, kMirror };
 
 /// Scenes of a few nodes: materials as above, nodes hang under the root unless told otherwise.
 struct Builder {
     scene::SceneParts parts;
 
     Builder() {
-        parts.materials.resize(4);
+        parts.materials.resize(6);
         parts.materials[kTwoSided].two_sided = parts.materials[kTwoSidedGlass].two_sided = true;
         parts.materials[kGlass].diffuse.a = parts.materials[kTwoSidedGlass].diffuse.a = 0.99;
+        parts.materials[kClearGlass].diffuse.a = 0;
+        parts.materials[kMirror].reflectivity = 0.01;
     }
 
     scene::Node& add(scene::Id id, scene::NodeType type, scene::Id parent) {
@@ -564,6 +566,24 @@ TEST_CASE("sides are those that are drawn") {
     CHECK(picked_id(builder.placed(), at_front) == 2);
 }
 
+TEST_CASE("mirrors are hit from both sides, as they are drawn, other reflective parts from the front") {
+    const mesh::Ray at_front = down_z(0.25, 0.25), at_back{{0.25, 0.25, -5}, {0, 0, 1}};
+    const auto id = [](const scene::PlacedScene& placed, const mesh::Ray& ray, scene::DrawMode mode) {
+        const auto hit = mesh::pick(placed, ray, false, nullptr, mode);
+        return hit ? placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id : -1;
+    };
+    scene::Geometry curved =
+        geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0.5}}, {{0, 1, 2}, {1, 3, 2}});
+    const scene::PlacedScene mirror = scene_of(corner_triangle(), glm::dmat4(1), kMirror),
+                             chrome = scene_of(curved, glm::dmat4(1), kMirror);
+    for (const scene::DrawMode mode : {scene::DrawMode::realistic, scene::DrawMode::stylized}) {
+        CHECK(id(mirror, at_front, mode) == 1);
+        CHECK(id(mirror, at_back, mode) == (mode == scene::DrawMode::realistic ? 1 : -1));
+        CHECK(id(chrome, at_front, mode) == 1);
+        CHECK(id(chrome, at_back, mode) == -1);
+    }
+}
+
 TEST_CASE("flattened parts are hit from both sides") {
     const scene::PlacedScene flat =
         scene_of(box_of({1, 2, 3}), turned_by(0.5, 0.2) * scaled_by({1, 0, 1}) * turned_by(0.1, 0));
@@ -581,6 +601,12 @@ TEST_CASE("flattened parts are hit from both sides") {
     const mesh::Ray from_below{{0.25, 0.25, -5}, {0, 0, 1}};
     CHECK(picked_id(scene_of(corner_triangle(), scaled_by({1, 1, 1e-9})), from_below) == -1);
     CHECK(picked_id(scene_of(corner_triangle(), scaled_by({1, 1, 0})), from_below) == 1);
+    // A determinant of 1e-12 of the product of the axes' lengths is the limit.
+    const auto skewed = [](double determinant) {
+        return scene_of(corner_triangle(), rows({1, 0, 1, 0}, {0, 1, 0, 0}, {0, 0, determinant, 0}));
+    };
+    CHECK(picked_id(skewed(0.99e-12), from_below) == 1);
+    CHECK(picked_id(skewed(1.01e-12), from_below) == -1);
     // A sheared matrix without volume, of full-length axes.
     CHECK(picked_id(scene_of(corner_triangle(), rows({1, 0, 1, 0}, {0, 1, 1, 0}, {0, 0, 0, 0})),
                     from_below) == 1);
@@ -694,6 +720,19 @@ TEST_CASE("transparent parts are passed where that is asked for") {
     CHECK(picked_id(builder.placed(), down_z(0.25, 0.25), true) == 3);
     CHECK(picked_id(builder.placed(), {{0.25, 0.25, 0.5}, {0, 0, 1}}, false) == 2);
     CHECK(picked_id(builder.placed(), {{0.25, 0.25, 0.5}, {0, 0, 1}}, true) == -1);
+}
+
+TEST_CASE("clear glass, which shows nothing, is passed, but not where all faces are drawn alike") {
+    Builder builder;
+    builder.add(1, corner_triangle(), moved_by({0, 0, 1}), kClearGlass);
+    builder.add_instance(2, 0, glm::dmat4(1), kGlass);
+    const scene::PlacedScene placed = builder.placed();
+    CHECK(picked_id(placed, down_z(0.25, 0.25)) == 2);
+    CHECK(picked_id(placed, down_z(0.25, 0.25, 0.5)) == 2);
+    CHECK(picked_id(placed, down_z(0.25, 0.25), true) == -1);
+    const auto stylized = mesh::pick(placed, down_z(0.25, 0.25), false, nullptr, scene::DrawMode::stylized);
+    REQUIRE(stylized);
+    CHECK(stylized->distance == 4);
 }
 
 TEST_CASE("slivers, and triangles without area") {

@@ -22,6 +22,9 @@ TEST_CASE("curved reflective parts are no mirrors, nor is anything in a stylized
     scene::Geometry bent = quad(1);
     bent.positions[0].z += 0.01;
     CHECK(plan_of({{1, bent, mirror_of(1), glm::dmat4(1)}}, view).scene.mirrors.empty());
+    // Planarity is the geometry's own, whatever its matrix does: what is pressed flat is no mirror.
+    CHECK(plan_of({{1, bent, mirror_of(1), scaled_by({1, 1, 0})}}, view).scene.mirrors.empty());
+    CHECK(plan_of({{1, sphere(1, 8), mirror_of(1), scaled_by({1, 1, 0})}}, view).scene.mirrors.empty());
     view.mode = plan::DrawMode::stylized;
     CHECK(plan_of(ball(1), view).scene.mirrors.empty());
     view.mode = plan::DrawMode::realistic;

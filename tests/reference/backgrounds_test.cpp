@@ -1,5 +1,6 @@
 #include <random>
 
+#include "noise.hpp"
 #include "reference/textures.hpp"
 #include "reference_image.hpp"
 
@@ -7,18 +8,9 @@ using namespace vrut;
 
 namespace {
 
-scene::Texture noise(unsigned seed, int width, int height) {
-    std::mt19937 random(seed);
-    scene::Texture texture;
-    texture.image.resize(width, height);
-    for (std::uint8_t& byte : texture.image.rgba) byte = static_cast<std::uint8_t>(random());
-    for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
-    return texture;
-}
-
 std::vector<scene::Texture> six(int size) {
     std::vector<scene::Texture> textures;
-    for (unsigned i = 0; i < 6; ++i) textures.push_back(noise(i + 1, size, size));
+    for (unsigned i = 0; i < 6; ++i) textures.push_back({"", noise(size, size, i + 1), false});
     return textures;
 }
 
@@ -64,7 +56,7 @@ TEST_CASE("nothing but a background") {
 TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") {
     plan::View view = picture({1, 2, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const scene::Texture texture = noise(3, 4, 3);
+    const scene::Texture texture{"", noise(4, 3, 3), false};
     check_shows(traced(scene_of({}, {texture}), view), texture.image);
 
     scene::Texture two;
@@ -83,7 +75,7 @@ TEST_CASE("a picture fills the view, stretched and upright, its edges clamped") 
 TEST_CASE("a mirror shows the background's picture at the same pixel") {
     plan::View view = picture({0, 3, 5}, {0, 0, 0}, 4, 3);
     view.background.texture = 0;
-    const scene::Texture texture = noise(3, 4, 3);
+    const scene::Texture texture{"", noise(4, 3, 3), false};
     scene::Material mirror = glowing({0, 0, 0});
     mirror.reflectivity = 1;
     const auto shown = traced(scene_of({{1, quad(50), mirror, glm::dmat4(1)}}, {texture}), view);
@@ -136,9 +128,25 @@ TEST_CASE("a cube map is filtered across its edges and at its corners") {
         check_same(cube.sample({x, -1, -1}, kStill),
                    (texel_of(textures, 3, column, 3) + texel_of(textures, 5, column, 0)) / 2.0);
     }
-    check_same(
-        cube.sample({1, 1, 1}, kStill),
-        (texel_of(textures, 0, 3, 3) + texel_of(textures, 4, 0, 3) + texel_of(textures, 2, 3, 3)) / 3.0);
+    // At a corner three texels meet.
+    const auto corner = [&](const glm::dvec3& direction, const glm::ivec2& in_x, const glm::ivec2& in_y,
+                            const glm::ivec2& in_z) {
+        const auto face = [&](int axis) {
+            return static_cast<std::size_t>(2 * axis + (direction[axis] < 0));
+        };
+        check_same(cube.sample(direction, kStill), (texel_of(textures, face(0), in_x.x, in_x.y) +
+                                                    texel_of(textures, face(1), in_y.x, in_y.y) +
+                                                    texel_of(textures, face(2), in_z.x, in_z.y)) /
+                                                       3.0);
+    };
+    corner({1, 1, 1}, {3, 3}, {3, 3}, {0, 3});
+    corner({1, 1, -1}, {0, 3}, {3, 0}, {3, 3});
+    corner({1, -1, 1}, {3, 0}, {3, 0}, {0, 0});
+    corner({1, -1, -1}, {0, 0}, {3, 3}, {3, 0});
+    corner({-1, 1, 1}, {0, 3}, {0, 3}, {3, 3});
+    corner({-1, 1, -1}, {3, 3}, {0, 0}, {0, 3});
+    corner({-1, -1, 1}, {0, 0}, {0, 0}, {3, 0});
+    corner({-1, -1, -1}, {3, 0}, {0, 3}, {0, 0});
     // All edges: no jump.
     std::mt19937 random(1);
     std::uniform_real_distribution<double> across(-1, 1);
@@ -209,4 +217,24 @@ TEST_CASE("what is curved or transparent mixes the cube map along the reflected 
                own * 0.75 + texel_of(textures, 1, 0, 0) * 0.25, 0.02);
     // A mirror alone shows the panorama the other way round.
     check_same(traced(scene_of({plate}, textures), view).color[0], texel_of(textures, 0, 0, 0), 1e-9);
+}
+
+TEST_CASE("curved reflective geometry that its matrix presses flat reflects the cube map") {
+    const auto textures = six(1);
+    scene::Geometry bent = quad(1);
+    bent.positions[2].z = 0.01;
+    bent.bounds.add(bent.positions[2]);
+    scene::Material chrome = glowing({0, 0, 0});
+    chrome.reflectivity = 1;
+    // Seen from (-5, 0, 5), it reflects to (1, 0, 1); the ball stands there.
+    const Part pressed{1, bent, chrome, scaled_by({1, 1, 0})};
+    const Part ball{2, sphere(1, 8), glowing({0.2, 1, 0.4}), moved_by({3, 0.3, 3})};
+    plan::View view = look({-3, 0.3, 3}, {0, 0.3, 0});
+    view.background.cube_map = kSix;
+    const glm::dvec3 between =
+        (texel_of(textures, 0, 0, 0) + texel_of(textures, 4, 0, 0)) / 2.0;  // +x and +z
+    check_same(traced(scene_of({pressed, ball}, textures), view).color[0], between, 1e-9);
+    // A planar one is a mirror.
+    const Part plate{1, quad(1), chrome, scaled_by({1, 1, 0})};
+    check_same(traced(scene_of({plate, ball}, textures), view).color[0], {0.2, 1, 0.4}, 1e-9);
 }

@@ -105,6 +105,21 @@ TEST_CASE("stylized faces are all in one colour, and hide what is behind") {
     CHECK(shown.node == should.node);
 }
 
+TEST_CASE("in a stylized picture mirrors are surfaces like others") {
+    scene::Material mirror = glowing({1, 1, 1});
+    mirror.reflectivity = 1;
+    for (const double side : {5.0, -5.0}) {
+        plan::View view = picture({1, 2, side}, {0, 0, 0});
+        view.mode = plan::DrawMode::stylized;
+        const auto shown = traced(scene_of({{1, quad(1), mirror, glm::dmat4(1)}}), view);
+        view.mode = plan::DrawMode::realistic;
+        const auto should = traced(scene_of({{1, quad(1), scene::stylized_faces(), glm::dmat4(1)}}), view);
+        CHECK(difference_of(shown, should) == 0);
+        CHECK(shown.node == should.node);  // from behind: none
+        CHECK((std::count(shown.node.begin(), shown.node.end(), scene::kNone) < 48 * 32) == (side > 0));
+    }
+}
+
 TEST_CASE("a wireframe has no faces") {
     plan::View view = seen_from(1, {0, 0, 0});
     view.wireframe = true;

@@ -1,3 +1,4 @@
+#include "plan/mirror_plan.hpp"
 #include "reference_image.hpp"
 
 using namespace vrut;
@@ -226,4 +227,25 @@ TEST_CASE("LODs in a mirror are the eye's") {
     // 6 from the ball by air, 8.5 by way of the mirror; then 7.07.
     check_same(traced(placed, look({-3, 0, 3}, {0, 0, 0})).color[0], {1, 0, 0});
     check_same(traced(placed, look({-4, 0, 4}, {0, 0, 0})).color[0], {0, 1, 0});
+}
+
+TEST_CASE("any number of mirrors reflect") {
+    const int count = 3 * static_cast<int>(plan::kMaxMirrors);
+    ReferenceParts parts{
+        {1000, quad(999), glowing({0.2, 1, 0.4}), moved_by({0, 0, 9}) * turned_by(180, {0, 1, 0})}};
+    for (int i = 0; i < count; ++i) parts.push_back({i + 1, quad(0.4), mirror(1), moved_by({i, 0, 0})});
+    const auto scene = scene_of(parts);
+    for (int i = 0; i < count; ++i) {
+        const plan::View view = look({i + 0.1, 0.1, 5}, {i + 0.1, 0.1, 0});
+        check_same(traced(scene, view).color[0], {0.2, 1, 0.4});
+    }
+}
+
+TEST_CASE("a mirror may be wound both ways") {
+    scene::Geometry wound = quad(1);
+    std::swap(wound.triangles[1].y, wound.triangles[1].z);
+    const Part plate{1, wound, mirror(1), glm::dmat4(1)};
+    const Part ball{2, sphere(1, 8), glowing({0.2, 1, 0.4}), moved_by({3, 0, 3})};
+    for (const double x : {-0.5, 0.5})  // on one triangle and on the other
+        check_same(seen({plate, ball}, look({-3 + x, -x, 3}, {x, -x, 0})), {0.2, 1, 0.4});
 }

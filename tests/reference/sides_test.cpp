@@ -47,6 +47,17 @@ TEST_CASE("a flattened part is shown from both sides and lit from both") {
     check_same(seen({flat}, look({0, 0, 5}, {0.1, 0.2, 0})), kLit * (5 / std::sqrt(25.05)));
     check_same(seen({flat}, look({0, 0, -5}, {0.1, 0.2, 0})), kLit * (5 / std::sqrt(25.05)));
     CHECK_FALSE(shows({flat}, {5, 0, 0}));
+    // The limit is a determinant of 1e-12 of the axes' product, which no scaling along the axes changes.
+    const auto skewed = [](double determinant) {
+        glm::dmat4 matrix(1);
+        matrix[2] = {1, 0, determinant, 0};
+        return Part{1, quad(1), kPlain, matrix};
+    };
+    for (const double side : {5.0, -5.0}) {
+        CHECK(shows({skewed(0.99e-12)}, {0, 0, side}));
+        CHECK(shows({skewed(1.01e-12)}, {0, 0, side}) == (side > 0));
+    }
+    CHECK_FALSE(shows({{1, quad(1), kPlain, scaled_by({1, 1, 1e-15})}}, {0, 0, -5}));
 }
 
 TEST_CASE("normals go by the cofactors, are unit at the corners and again at the pixel") {

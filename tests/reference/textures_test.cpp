@@ -1,7 +1,6 @@
 #include "reference/textures.hpp"
 
-#include <random>
-
+#include "noise.hpp"
 #include "plan/frame_plan.hpp"
 #include "reference/shading.hpp"
 #include "reference_image.hpp"
@@ -17,15 +16,6 @@ scene::Image image_of_grays(int width, int height, const std::vector<int>& grays
         for (std::size_t k = 0; k < 3; ++k) image.rgba[4 * i + k] = static_cast<std::uint8_t>(grays[i]);
         image.rgba[4 * i + 3] = 255;
     }
-    return image;
-}
-
-scene::Image noise(int width, int height) {
-    std::mt19937 random(7);
-    scene::Image image;
-    image.resize(width, height);
-    for (std::uint8_t& byte : image.rgba) byte = static_cast<std::uint8_t>(random());
-    for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
     return image;
 }
 

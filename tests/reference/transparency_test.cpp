@@ -22,6 +22,31 @@ TEST_CASE("light is clamped before it is blended, and all of it is multiplied by
     plan::View view = look({0, 0, 5}, {0.1, 0.1, 0});
     view.background.color = {0, 0, 0};
     check_same(seen({{1, quad(1), bright, glm::dmat4(1)}}, view), {0.5, 0.25, 0});
+    // The background too.
+    view.background.color = {4, 0.5, 0};
+    check_same(seen({{1, quad(1), glowing({0, 0, 1}, 0.5), glm::dmat4(1)}}, view), {0.5, 0.25, 0.5});
+    check_same(seen({}, view), {1, 0.5, 0});
+}
+
+TEST_CASE("clear glass is what a pixel shows first, and shows nothing itself") {
+    const Part wall{1, quad(4), glowing({0.2, 0.4, 0.6}), moved_by({0, 0, -3})};
+    const Part clear{2, quad(1), glowing({1, 1, 1}, 0), glm::dmat4(1)};
+    const auto picture = traced(scene_of({wall, clear}), look({0, 0, 5}, {0.1, 0.1, 0}));
+    check_same(picture.color[0], {0.2, 0.4, 0.6});
+    CHECK(picture.node[0] == 2);
+}
+
+TEST_CASE("coincident glass is ordered by id at equal depth only") {
+    // A ray meets the ball twice: each time the higher id is in front.
+    const glm::dvec3 red(1, 0, 0), blue(0, 0, 1);
+    plan::View view = look({0, 0, 5}, {0.1, 0.1, 0});
+    view.background.color = {0, 1, 0};
+    const auto scene =
+        coincident_scene(sphere(1, 12), {two_sided(glowing(red, 0.5)), two_sided(glowing(blue, 0.25))});
+    glm::dvec3 expected = view.background.color;
+    for (int crossing = 0; crossing < 2; ++crossing)
+        expected = glm::mix(glm::mix(expected, red, 0.5), blue, 0.25);
+    check_same(traced(scene, view).color[0], expected);
 }
 
 TEST_CASE("eight panes, given in any order") {

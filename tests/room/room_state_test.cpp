@@ -551,6 +551,42 @@ node 4 "Eye" camera parent 0 eye 0 0 5 focus 0 0 0 end
     CHECK(color() == glm::dvec3(1, 0, 0));
 }
 
+TEST_CASE("of the backgrounds of a switch the one is active that it shows") {
+    Stage stage("a", scene_of(R"(vrut-text 1
+material 1 "First" diffuse 1 0 0 1 end
+material 2 "Second" diffuse 0 1 0 1 end
+node 1 "Which" switch parent 0 active-child 1 end
+node 2 "First" background parent 1 material 1 end
+node 3 "Second" background parent 1 material 2 end
+)",
+                              "backgrounds.vrut"));
+    const auto color = [&] { return stage.room.visible().background.color; };
+    CHECK(color() == glm::dvec3(0, 1, 0));
+    stage.say("a", patch(R"({"backgrounds":{"active":"2"}})"));
+    CHECK(color() == plan::kDefaultBackground);
+}
+
+TEST_CASE("a pick hits what the mode draws") {
+    Stage stage("a", scene_of(R"(vrut-text 1
+material 1 "Clear" diffuse 1 1 1 0 end
+geometry 1
+  vertices 4  -1 -1 0   1 -1 0   1 1 0   -1 1 0
+  triangles 2  0 1 2   0 2 3
+end
+node 1 "Pane" geometry parent 0 geometry 1 material 1  matrix 1 0 0 0  0 1 0 0  0 0 1 1  0 0 0 1 end
+node 2 "Wall" geometry parent 0 geometry 1 end
+node 3 "Eye" camera parent 0 eye 0 0 5 focus 0 0 0 end
+)",
+                              "glass.vrut"));
+    const auto picked = [&] {
+        stage.say("a", R"({"type":"pick","x":640,"y":360,"then":"select"})");
+        return stage.room.state().selection.node;
+    };
+    CHECK(picked() == 2);
+    stage.say("a", patch(R"({"renderer":{"mode":"stylized"}})"));
+    CHECK(picked() == 1);
+}
+
 // --- what the state says may be said back
 
 namespace {

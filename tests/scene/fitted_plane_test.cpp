@@ -80,6 +80,13 @@ TEST_CASE("triangles without area do not count, and a sheet with two faces has a
     CHECK(std::abs(scene::fitted_plane(two_faces)->normal.z) == doctest::Approx(1));
 }
 
+TEST_CASE("vertices that no triangle uses do not count") {
+    const scene::Geometry geometry =
+        geometry_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 0.5}}, {{0, 1, 2}});
+    REQUIRE(scene::fitted_plane(geometry));
+    CHECK(same(scene::fitted_plane(geometry)->normal, {0, 0, 1}));
+}
+
 TEST_CASE("what is no sheet has no plane") {
     CHECK_FALSE(scene::fitted_plane(scene::Geometry()));
     CHECK_FALSE(scene::fitted_plane(geometry_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}})));

@@ -32,8 +32,9 @@ void apply(const PipelineState& state) {
     glDepthRange(0, state.farthest ? 0 : 1);
     glColorMask(state.color_write, state.color_write, state.color_write, state.color_write);
     enable(GL_BLEND, state.blend != PipelineState::Blend::none);
-    glBlendFuncSeparate(state.blend == PipelineState::Blend::alpha ? GL_SRC_ALPHA : GL_ONE,
-                        GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    const GLenum kept = state.blend == PipelineState::Blend::add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA;
+    glBlendFuncSeparate(state.blend == PipelineState::Blend::alpha ? GL_SRC_ALPHA : GL_ONE, kept, GL_ONE,
+                        kept);
     enable(GL_CULL_FACE, state.cull_back);
     glFrontFace(state.clockwise_front ? GL_CW : GL_CCW);
     enable(GL_POLYGON_OFFSET_FILL, state.behind_edges);

@@ -15,6 +15,7 @@ struct PipelineState {
         none,
         premultiplied,  ///< colours that are multiplied by alpha
         alpha,
+        add,
     };
     bool depth_test = true;
     GLenum depth_func = GL_GEQUAL;  ///< depth falls with distance

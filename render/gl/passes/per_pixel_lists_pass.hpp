@@ -11,38 +11,42 @@
 
 namespace vrut::gl {
 
-/// Faces of transparent materials whose order changes from pixel to pixel. Those that the depth lets through
-/// are kept in a list for each pixel, which is then composited from near to far. At equal depth the item that
-/// comes later is in front, and of one item the triangle that comes later in the index buffer: the later one
-/// of the file, unless a level of detail is drawn. The order in which the GPU appends fragments, which OpenGL
-/// does not define, changes nothing. There is room for two layers in each pixel of the picture, but 64 MiB at
-/// most; lists that need more are made for a part of the picture at a time, so that nothing is lost, unless a
-/// single pixel needs more than all of it.
+/// Draws transparent faces whose order differs from pixel to pixel, by per-pixel linked lists. The fragments
+/// that pass the depth test are appended to a list of their pixel. Then each list is composited from near to
+/// far. Source: Yang, Hensley, Grün, Thibieroz, "Real-Time Concurrent Linked List Construction on the GPU",
+/// EGSR 2010.
+///
+/// At equal depth the later item is in front, and within an item the later triangle of the index buffer. The
+/// result does not depend on the order in which the GPU appends fragments, which OpenGL leaves undefined.
+///
+/// The buffer holds 8 fragments for each pixel of the picture, but at most 64 MiB. If the lists need more,
+/// the picture is drawn box by box. Fragments are lost only if a single pixel needs more than the whole
+/// buffer.
 class PerPixelListsPass {
 public:
     explicit PerPixelListsPass(Programs& programs) : programs_(programs) {}
-    /// Begins to draw items within a box of a picture of that size: each is to be collected, and then all
-    /// composited, again and again while it is drawing.
+    /// Begins to draw `items` of a picture of size `picture`, in pixels, within the box `within`. While
+    /// is_drawing(), the caller collects all items and then composites them.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const glm::ivec2& picture, const math::PixelBox& within);
     bool is_drawing() const { return !pending_boxes_.empty(); }
-    /// The part of the picture for which items are collected.
+    /// Returns the box of pixels that is drawn now.
     const math::PixelBox& box() const { return pending_boxes_.back(); }
-    /// Adds items to the lists, of which `first` were added before; adds to the draws and triangles of
-    /// `stats`.
+    /// Appends the fragments of `items` to the lists. `first` items were collected before; 0 clears the
+    /// lists. Adds to the draws and triangles of `stats`.
     void collect(std::span<const plan::DrawItem> items, std::size_t first, GpuScene& scene,
                  SurfacePrograms& programs, plan::FrameStats& stats);
-    /// Draws all that was collected into the bound target, or divides the box where it does not fit; how many
-    /// layers there are.
+    /// Composites the lists into the bound framebuffer. If they did not fit, it draws nothing and splits the
+    /// box instead. Returns the number of fragments of the box.
     std::uint64_t composite(plan::FrameStats& stats);
-    /// Gives up what it is drawing.
+    /// Ends drawing without a result.
     void abandon() { pending_boxes_.clear(); }
-    /// Gives its memory back until it draws again.
+    /// Frees the buffers; begin() makes new ones.
     void release();
 
 private:
     static constexpr std::size_t kFragmentBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
-    /// Two in each pixel, but 64 MiB.
+    /// Returns the number of fragments that the buffer holds, for a picture of so many pixels.
     static constexpr std::size_t max_fragments(std::size_t pixels) {
         return std::min(8 * pixels, (std::size_t{64} << 20) / kFragmentBytes);
     }
@@ -52,7 +56,7 @@ private:
     void clear_lists() const;
     void blend(plan::FrameStats& stats);
 
-    std::vector<math::PixelBox> pending_boxes_;  // the last one first
+    std::vector<math::PixelBox> pending_boxes_;  // the last is drawn first
     std::size_t pixels_ = 0;
     GLuint collected_triangles_ = 0;  ///< since the lists were cleared; modulo 2^32
     GlBuffer fragments_, heads_;

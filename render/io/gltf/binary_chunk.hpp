@@ -11,17 +11,17 @@
 
 namespace vrut::io {
 
-/// The binary chunk of a GLB file: geometries, each once, and pictures behind them; one buffer view for each
-/// array and picture, and one accessor for each array, in the order of the bytes.
+/// The binary chunk of a GLB file: the arrays of the geometries, each geometry once, then the images. Each
+/// array and image has a buffer view, and each array an accessor, in the order of the bytes.
 class GltfBinaryChunk {
 public:
-    /// Places of a geometry's accessors; kNone for arrays that it lacks.
+    /// The accessors' indices of a geometry; kNone for arrays that it lacks.
     struct Accessors {
         int positions = scene::kNone, normals = scene::kNone, texcoords = scene::kNone,
             indices = scene::kNone;
     };
 
-    /// The geometry outlives this. Whether it is new.
+    /// Returns true if the geometry is new. It must outlive this object.
     bool add(const scene::Geometry& geometry);
     void add_image(std::vector<std::uint8_t> png) { pngs_.push_back(std::move(png)); }
 
@@ -29,8 +29,7 @@ public:
     std::size_t image_count() const { return pngs_.size(); }
     std::size_t view_of_image(std::size_t i) const { return static_cast<std::size_t>(accessor_count_) + i; }
 
-    /// Writes members of the document: accessors, buffer views and the buffer. Gives the chunk's size in
-    /// bytes.
+    /// Writes the document's members accessors, bufferViews and buffers. Returns the chunk's size in bytes.
     std::uint64_t describe(JsonWriter& json) const;
     void write(std::ostream& out, const WriteProgress& progress) const;
 

@@ -14,7 +14,7 @@ using Index32 = std::optional<std::uint32_t>;
 
 struct GltfBuffer {
     std::uint64_t length = 0;
-    std::string uri;  // of data, the beginning
+    std::string uri;  // of a data URI the beginning
 };
 
 struct GltfBufferView {
@@ -40,23 +40,23 @@ struct GltfNode {
     Index32 mesh;
 };
 
-/// What of a glTF file is checked.
+/// The members of a glTF file that are checked; names are glTF's.
 struct GltfDocument {
     std::vector<GltfBuffer> buffers;
-    std::vector<std::uint32_t> image_buffer_views;  // the buffer views of pictures
+    std::vector<std::uint32_t> image_buffer_views;  // those of images
     std::vector<GltfBufferView> buffer_views;
     std::vector<GltfAccessor> accessors;
     std::vector<std::vector<GltfPrimitive>> meshes;
     std::vector<GltfNode> nodes;
-    std::vector<std::vector<std::uint32_t>> scenes;  // their roots
+    std::vector<std::vector<std::uint32_t>> scenes;  // root nodes of each
     std::uint32_t scene = 0;
 };
 
-/// Gives a member or an extension, by its name in the head, a name that nobody looks for.
+/// Renames a member or an extension, so that assimp does not find it. `name` points into the head.
 void hide_member(CheckedGltf& gltf, std::string_view name);
 
-/// Reads the head's JSON, which begins at `start`, hides what is not shown anyway, and checks addresses and
-/// kinds of pictures. Names in the document are parts of the head. Throws JsonError.
+/// Returns the document of the head's JSON, which begins at byte `start`. Hides members that are not shown,
+/// and checks URIs and MIME types of images. Names in the document point into the head. Throws JsonError.
 GltfDocument read_gltf(CheckedGltf& gltf, std::size_t start);
 
 }  // namespace vrut::io

@@ -7,7 +7,7 @@
 
 namespace vrut::io {
 
-/// Text of JSON (RFC 8259), value by value; commas are put by itself. Strings are UTF-8.
+/// Writes JSON text (RFC 8259) value by value, and the commas between them. Strings are UTF-8.
 class JsonWriter {
 public:
     JsonWriter& open_object(std::string_view name = {}) { return open(name, "{", '}'); }
@@ -19,7 +19,7 @@ public:
         return *this;
     }
 
-    // A member of the open object; without a name, an element of the open array.
+    // Each writes a member of the open object or, without a name, an element of the open array.
     template <class Number>
     JsonWriter& number(Number value, std::string_view name = {}) {
         char digits[40];
@@ -37,7 +37,7 @@ public:
         quote(value);
         return *this;
     }
-    /// `count` numbers, one after the other.
+    /// Writes an array of `count` numbers.
     template <class Number>
     JsonWriter& numbers(const Number* values, std::size_t count, std::string_view name = {}) {
         open_array(name);
@@ -45,7 +45,7 @@ public:
         return close();
     }
 
-    /// A value that is text of JSON already.
+    /// Writes a value that is JSON text already.
     JsonWriter& raw(std::string_view json, std::string_view name) {
         begin(name);
         text_ += json;

@@ -7,22 +7,22 @@
 
 namespace vrut::io {
 
-/// Factors of a glTF material, linear.
+/// The factors of a glTF material; colours are linear, 0 to 1.
 struct GltfMaterial {
     glm::dvec3 base{1}, emission{0};
     double alpha = 1;
     bool blend = false;  ///< alphaMode BLEND, else OPAQUE
     double metallic = 0, roughness = 1;
-    /// The specular factor of KHR_materials_pbrSpecularGlossiness, with 1 - roughness as its glossiness:
-    /// where no metal has such a highlight.
+    /// The specularFactor of KHR_materials_pbrSpecularGlossiness, whose glossinessFactor is 1 - roughness.
+    /// Set if no metallic-roughness material has that highlight.
     std::optional<glm::dvec3> specular;
 };
 
-/// Light that a display is sent this colour for, each from 0 to 1 (IEC 61966-2-1).
+/// Returns the linear colour of an sRGB colour, both 0 to 1 (IEC 61966-2-1).
 glm::dvec3 linear_from_srgb(const glm::dvec3& displayed);
 
-/// The material that the reader's rule (assimp_scene.hpp) turns into this one, or the nearest to it; what
-/// differs is told. Under a picture the base colour is white.
+/// Returns the glTF material that the reader's rule (assimp_scene.hpp) turns into `material`, or the nearest
+/// one; what differs is added to `warnings`. With a texture the base colour factor is white.
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,
                            ConversionWarnings& warnings);
 

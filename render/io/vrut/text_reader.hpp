@@ -6,20 +6,20 @@
 
 namespace vrut::io {
 
-/// Reads scene text, `vrut-text 1`. `file` names the text in errors ("FILE:LINE: expected …") and notices.
-/// The sentence is about the first fault of the text. No word, number or string may be longer than
-/// kMaxTokenBytes. Memory: at most 100 bytes for each of the text, that of nodes without content, and 20 MB;
-/// of geometry hardly more than its arrays. Nodes of type assembly and geometry may have a hinge: `hinge X Y
-/// Z DEGREES`, see Hinge. So many threads split the text into its tokens, 0: as many as there are, up to a
-/// few; what is read, and what is refused in which sentence, depends on none of this.
+/// Returns the scene of a text in the format `vrut-text 1`, or a sentence about the text's first error:
+/// "FILE:LINE: expected …". `file` is the name in errors and notices. A word, number or string longer than
+/// kMaxTokenBytes is an error. Nodes of type assembly and geometry may have a hinge: `hinge X Y Z DEGREES`,
+/// see Hinge. `threads` threads tokenize the text; 0 uses all of the processor's, up to a few. The result
+/// does not depend on their number. Memory: at most 100 bytes for each byte of text, which empty nodes need,
+/// and 20 MB. Geometry needs hardly more than its arrays.
 PartsResult read_vrut_parts(std::string_view text, const std::string& file, const ReadProgress& progress = {},
                             unsigned threads = 0);
 
-/// The same from a file, of which no more than some megabytes are held at a time, with the pictures that it
-/// names.
+/// Returns the same of a file, with the images that it names. No more than a few megabytes of the text are in
+/// memory at a time.
 PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-/// The same, as a scene without the pictures that it names.
+/// Returns the same as a built scene, without the images that the text names.
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
 
 }  // namespace vrut::io

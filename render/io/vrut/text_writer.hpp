@@ -7,11 +7,11 @@
 
 namespace vrut::io {
 
-/// Writes a scene as text, `vrut-text 1`, from which read_vrut_text() makes the same scene: every number in
-/// the fewest digits that give it back. Pictures stay files of their own, and notices are left out. A line
-/// break in a name, which the text cannot hold and no reading of it gives, becomes a space. `comment`, when
-/// given, is put at the top, line by line; `pictures`, when given, are named instead of the scene's textures,
-/// by their index.
+/// Writes a scene in the format `vrut-text 1`. read_vrut_text() reads the same scene back: each number is
+/// written in the fewest digits that round-trip. Images are named, not written; notices are left out. A line
+/// break in a name becomes a space, since the format has none in strings. `comment` is put at the top, line
+/// by line. `pictures`, if not empty, holds file names by texture index, which are written instead of those
+/// of the scene's textures.
 void write_vrut_text(const scene::Scene& scene, std::ostream& out, const std::string& comment = {},
                      const std::vector<std::string>& pictures = {});
 

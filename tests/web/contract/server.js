@@ -59,9 +59,12 @@ export class Server {
     });
   }
 
-  /** HTTP; `route` without the leading slash. */
+  /**
+   * HTTP; `route` without the leading slash. Each request has a connection of its own: the server may close an idle
+   * one at the moment in which fetch() would use it again.
+   */
   get(route, headers = this.headers) {
-    return fetch(this.url + route, { headers });
+    return fetch(this.url + route, { headers: { ...headers, connection: 'close' } });
   }
 
   /** @returns {Promise<number | null>} the exit status */
