@@ -1,5 +1,6 @@
 #include "gl/gpu_scene.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -11,28 +12,74 @@ namespace vrut::gl {
 
 namespace {
 
-/// Of a geometry's vertices.
-GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices) {
+void add_attribute(const GlVertexArray& vertex_array, GLuint location, GLuint binding, GLint components,
+                   std::size_t offset) {
+    const GLuint array = vertex_array.get();
+    glEnableVertexArrayAttrib(array, location);
+    glVertexArrayAttribFormat(array, location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+    glVertexArrayAttribBinding(array, location, binding);
+}
+
+/// Until a draw binds its instances, a buffer that no program reads stands in their place, since each
+/// attribute must have one.
+void add_instances(const GlVertexArray& vertex_array, const GlBuffer& placeholder) {
+    const GLuint array = vertex_array.get();
+    glVertexArrayVertexBuffer(array, kInstanceBinding, placeholder.get(), 0, 0);
+    glVertexArrayBindingDivisor(array, kInstanceBinding, 1);
+    const auto add = [&](GLuint location, GLint components, std::size_t offset) {
+        add_attribute(vertex_array, location, kInstanceBinding, components, offset);
+    };
+    for (GLuint column = 0; column < 4; ++column)
+        add(3 + column, 4, offsetof(GpuInstance, view_from_local) + column * sizeof(glm::vec4));
+    for (GLuint column = 0; column < 3; ++column)
+        add(7 + column, 3, offsetof(GpuInstance, normal_matrix) + column * sizeof(glm::vec4));
+    add(10, 4, offsetof(GpuInstance, base_sides));
+    add(11, 4, offsetof(GpuInstance, diffuse_reflectivity));
+    add(12, 4, offsetof(GpuInstance, specular_shininess));
+    add(13, 4, offsetof(GpuInstance, clip_plane));
+}
+
+/// Of buffers from `first_vertex` on, with these indices.
+GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex, const GlBuffer& indices) {
     GlVertexArray result = make_vertex_array();
     const GLuint array = result.get();
-    glVertexArrayElementBuffer(array, indices.get());
-    const auto attribute = [&](GLuint location, GLint size, GLuint binding, std::size_t offset) {
-        glEnableVertexArrayAttrib(array, location);
-        glVertexArrayAttribFormat(array, location, size, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-        glVertexArrayAttribBinding(array, location, binding);
+    const auto bind = [&](GLuint binding, const GlBuffer& buffer, GLsizei stride) {
+        glVertexArrayVertexBuffer(array, binding, buffer.get(), GLintptr{first_vertex} * stride, stride);
     };
-    glVertexArrayVertexBuffer(array, 0, geometry.vertices.get(), 0, sizeof(GpuVertex));
-    attribute(0, 3, 0, offsetof(GpuVertex, position));
-    attribute(1, 3, 0, offsetof(GpuVertex, normal));
-    if (geometry.texcoords) {
-        glVertexArrayVertexBuffer(array, 1, geometry.texcoords.get(), 0, sizeof(glm::vec2));
-        attribute(2, 2, 1, 0);
+    glVertexArrayElementBuffer(array, indices.get());
+    bind(0, buffers.vertices, sizeof(GpuVertex));
+    add_attribute(result, 0, 0, 3, offsetof(GpuVertex, position));
+    add_attribute(result, 1, 0, 3, offsetof(GpuVertex, normal));
+    if (buffers.texcoords) {
+        bind(1, buffers.texcoords, sizeof(glm::vec2));
+        add_attribute(result, 2, 1, 2, 0);
     }
-    if (geometry.is_double_single()) {
-        glVertexArrayVertexBuffer(array, 2, geometry.low_positions.get(), 0, sizeof(glm::vec3));
-        attribute(3, 3, 2, 0);
+    if (buffers.low_positions) {
+        bind(2, buffers.low_positions, sizeof(glm::vec3));
+        add_attribute(result, 3, 2, 3, 0);
     }
     return result;
+}
+
+struct BufferSizes {
+    std::size_t vertices, indices;
+    bool texcoords = false, low_positions = false;
+};
+
+/// Without contents.
+std::shared_ptr<const GeometryBuffers> make_geometry_buffers(const BufferSizes& sizes, bool shared) {
+    const auto buffers = std::make_shared<GeometryBuffers>();
+    buffers->shared = shared;
+    buffers->vertices = make_dynamic_buffer("vertices", sizes.vertices * sizeof(GpuVertex));
+    buffers->indices = make_dynamic_buffer("triangles", sizes.indices * sizeof(unsigned));
+    if (sizes.texcoords)
+        buffers->texcoords = make_dynamic_buffer("texture coordinates", sizes.vertices * sizeof(glm::vec2));
+    if (sizes.low_positions)
+        buffers->low_positions =
+            make_dynamic_buffer("low parts of positions", sizes.vertices * sizeof(glm::vec3));
+    buffers->vertex_array = vertex_array_of(*buffers, 0, buffers->indices);
+    if (shared) add_instances(buffers->vertex_array, buffers->vertices);
+    return buffers;
 }
 
 /// Of a geometry of the scene, whose triangles need no copy; else with its triangles.
@@ -59,14 +106,6 @@ PreparedData edges_data(const scene::Geometry& geometry) {
     return data;
 }
 
-/// Without contents; those are for `upload` to copy.
-template <class Element>
-GlBuffer create_buffer(const char* what, const std::vector<Element>& elements, Upload& upload) {
-    GlBuffer buffer = make_dynamic_buffer(what, elements.size() * sizeof(Element));
-    upload.add(buffer, elements);
-    return buffer;
-}
-
 int limit_of(GLenum name) {
     GLint limit = 0;
     glGetIntegerv(name, &limit);
@@ -91,7 +130,7 @@ bool GpuScene::is_resident(const ResourceKey& key) const {
     const auto index = static_cast<std::size_t>(key.indices[0]);
     switch (key.kind) {
         case Kind::geometry:
-            return bool(geometries_[index].vertex_array);
+            return bool(geometries_[index].buffers);
         case Kind::level:
             return levels_.contains({key.indices[0], key.indices[1]});
         case Kind::edges:
@@ -196,26 +235,50 @@ bool GpuScene::request_shown(const plan::View& view) {
 
 // --- uploads
 
+/// Takes room in the buffers that small geometries share.
+std::shared_ptr<const GeometryBuffers> GpuScene::share_buffers(GpuGeometry& geometry, std::size_t vertices,
+                                                               std::size_t indices, bool texcoords) {
+    SharedBuffers& shared = shared_[texcoords ? 1 : 0];
+    std::shared_ptr<const GeometryBuffers> buffers = shared.buffers.lock();
+    if (!buffers || shared.vertices + vertices > shared.capacity ||
+        shared.indices + indices > 3 * shared.capacity) {
+        const std::size_t capacity = std::min(2 * shared.capacity, SharedBuffers::kMostVertices);
+        buffers = make_geometry_buffers({capacity, 3 * capacity, texcoords}, true);
+        shared = {buffers, capacity};
+    }
+    geometry.first_vertex = static_cast<GLint>(shared.vertices);
+    geometry.first_index = static_cast<GLuint>(shared.indices);
+    shared.vertices += vertices;
+    shared.indices += indices;
+    return buffers;
+}
+
 void GpuScene::create_geometry(Arrival& arrival) {
     const PreparedData& data = arrival.result.data;
     const scene::Geometry& read = read_geometry(arrival.result.key.indices[0]);
     GpuGeometry& geometry = arrival.geometry;
     geometry.origin = read.bounds.center();
     const std::vector<glm::uvec3>& triangles = triangles_of(data.arrays, read);
-    geometry.vertices = create_buffer("vertices", data.arrays.vertices, arrival.upload);
-    geometry.indices = create_buffer("triangles", triangles, arrival.upload);
-    geometry.index_count = static_cast<GLsizei>(triangles.size() * 3);
-    if (!data.low_positions.empty())
-        geometry.low_positions = create_buffer("low parts of positions", data.low_positions, arrival.upload);
+    const std::size_t vertices = data.arrays.vertices.size(), indices = triangles.size() * 3;
+    const bool small = triangles.size() <= plan::kMostTrianglesOfSmall &&
+                       vertices <= SharedBuffers::kMostVerticesOfSmall && data.low_positions.empty();
+    geometry.index_count = static_cast<GLsizei>(indices);
+    const BufferSizes sizes{vertices, indices, !data.texcoords.empty(), !data.low_positions.empty()};
+    geometry.buffers = small ? share_buffers(geometry, vertices, indices, sizes.texcoords)
+                             : make_geometry_buffers(sizes, false);
+    const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
+    arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
+    arrival.upload.add(geometry.buffers->indices, triangles, geometry.first_index / 3);
     if (!data.texcoords.empty())
-        geometry.texcoords = create_buffer("texture coordinates", data.texcoords, arrival.upload);
-    geometry.vertex_array = vertex_array_of(geometry, geometry.indices);
+        arrival.upload.add(geometry.buffers->texcoords, data.texcoords, first_vertex);
+    if (sizes.low_positions) arrival.upload.add(geometry.buffers->low_positions, data.low_positions);
 }
 
 void GpuScene::create_edges(Arrival& arrival) {
     const std::vector<glm::uvec2>& edges = arrival.result.data.edges;
     if (edges.empty()) return;
-    arrival.edges.indices = create_buffer("edges", edges, arrival.upload);
+    arrival.edges.indices = make_dynamic_buffer("edges", edges.size() * sizeof(glm::uvec2));
+    arrival.upload.add(arrival.edges.indices, edges);
     arrival.edges.index_count = static_cast<GLsizei>(edges.size() * 2);
 }
 
@@ -248,8 +311,11 @@ void GpuScene::finish(Arrival& arrival) {
                 geometries_[at] = {};
             break;
         case Kind::edges:
-            if (arrival.edges.indices)
-                arrival.edges.vertex_array = vertex_array_of(geometry(index), arrival.edges.indices);
+            if (arrival.edges.indices) {
+                const GpuGeometry& uploaded = geometry(index);
+                arrival.edges.vertex_array =
+                    vertex_array_of(*uploaded.buffers, uploaded.first_vertex, arrival.edges.indices);
+            }
             edges_[at] = std::move(arrival.edges);
             break;
         case Kind::texture:
@@ -369,7 +435,7 @@ GpuTriangles GpuScene::upload_sorted(const plan::DrawItem& item) {
     GpuTriangles result{item.geometry, item.order, {}, {}, static_cast<GLsizei>(triangles.size() * 3)};
     result.indices =
         make_buffer("ordered triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
-    result.vertex_array = vertex_array_of(uploaded, result.indices);
+    result.vertex_array = vertex_array_of(*uploaded.buffers, uploaded.first_vertex, result.indices);
     ++uploads_;
     return result;
 }

@@ -14,22 +14,46 @@
 #include "gl/handles.hpp"
 #include "gl/preparation.hpp"
 #include "gl/upload.hpp"
+#include "plan/draw_groups.hpp"
 #include "plan/frame_plan.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::gl {
 
+/// The attributes of an instance, which surfaces of an instanced program (is_instanced()) have in the place
+/// of uniforms.
+struct GpuInstance {
+    glm::mat4 view_from_local;
+    glm::mat3x4 normal_matrix;
+    glm::vec4 base_sides;            ///< w: 1 if two-sided, else 0
+    glm::vec4 diffuse_reflectivity;  ///< w: the reflectivity
+    glm::vec4 specular_shininess;    ///< w: the shininess
+    glm::vec4 clip_plane;            ///< in local space
+};
+/// The binding of a vertex array to whose buffer a draw has to bind its instances.
+inline constexpr GLuint kInstanceBinding = 2;
+
+/// The buffers of a large geometry, or of many small ones, which one draw call can draw then.
+struct GeometryBuffers {
+    GlBuffer vertices, indices;
+    /// For each vertex, if the geometries have any; moved by whole numbers to lie around 0.
+    GlBuffer texcoords;
+    GlBuffer low_positions;  ///< what float leaves of positions that are double-single
+    GlVertexArray vertex_array;
+    bool shared = false;
+};
+
 /// A geometry on the GPU. Positions are float, relative to `origin` (in the geometry's own space), so that a
 /// scene far from the world's origin keeps its precision.
 struct GpuGeometry {
-    GlBuffer vertices, indices;
-    GlBuffer low_positions;  ///< what float leaves of each vertex's position, if Scene::needs_double_single()
-    GlBuffer texcoords;  ///< for each vertex, if the geometry has any; moved by whole numbers to lie around 0
-    GlVertexArray vertex_array;
+    std::shared_ptr<const GeometryBuffers> buffers;
+    GLuint first_index = 0;
+    GLint first_vertex = 0;  ///< what the indices count from
     GLsizei index_count = 0;
     glm::dvec3 origin{0};
 
-    bool is_double_single() const { return bool(low_positions); }
+    /// Scene::needs_double_single()
+    bool is_double_single() const { return bool(buffers->low_positions); }
 };
 
 /// The edges of a geometry's triangles, as lines between its vertices: each once, however many triangles
@@ -117,7 +141,19 @@ private:
     const scene::Geometry& read_geometry(scene::Index index) const {
         return scene_->geometries()[static_cast<std::size_t>(index)];
     }
+    /// Buffers that small geometries share. They are freed with the last geometry in them.
+    struct SharedBuffers {
+        /// Of a small geometry. Buffers hold twice as many as those before them, up to kMostVertices, and
+        /// three indices for each vertex.
+        static constexpr std::size_t kMostVerticesOfSmall = 3 * plan::kMostTrianglesOfSmall,
+                                     kMostVertices = std::size_t{1} << 15;
+        std::weak_ptr<const GeometryBuffers> buffers;
+        std::size_t capacity = kMostVerticesOfSmall;  ///< in vertices
+        std::size_t vertices = 0, indices = 0;        ///< that are taken, from the beginning
+    };
     void create_storage(Arrival& arrival);
+    std::shared_ptr<const GeometryBuffers> share_buffers(GpuGeometry& geometry, std::size_t vertices,
+                                                         std::size_t indices, bool texcoords);
     void create_geometry(Arrival& arrival);
     void create_edges(Arrival& arrival);
     bool proceed(Arrival& arrival, plan::DrawBudget& budget);
@@ -140,6 +176,8 @@ private:
     std::map<scene::Index, std::vector<glm::uvec3>> uploaded_triangles_;  // of those with sorted triangles
     std::vector<GlTexture> textures_;
     std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
+    std::array<SharedBuffers, 2>
+        shared_;  // those that are being filled: without and with texture coordinates
     int uploads_ = 0;
 
     Preparation preparation_;

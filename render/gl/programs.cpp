@@ -6,6 +6,7 @@
 
 #include "gl/shader_program.hpp"
 #include "gl/shader_sources.hpp"
+#include "plan/draw_groups.hpp"
 
 namespace vrut::gl {
 
@@ -60,6 +61,7 @@ bool is_reachable(const SurfaceVariant& variant) {
     if (variant.kind == Kind::edges && (variant.textured || !plain)) return false;
     if (variant.kind == Kind::mirror && !plain) return false;
     if (variant.anisotropic && !variant.textured) return false;
+    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single)) return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
 
@@ -71,7 +73,7 @@ bool has_double_single(const scene::Scene& scene) {
 
 /// What a scene's surfaces and lights may ask of programs.
 struct SceneFeatures {
-    bool double_single = false;
+    bool small_geometries = false, double_single = false;
     bool texcoords = false, planes = false, environment_map = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
@@ -90,6 +92,7 @@ SceneFeatures features_of(const scene::Scene& scene) {
     SceneFeatures features;
     features.double_single = has_double_single(scene);
     for (std::size_t i = 0; i < scene.geometries().size(); ++i) {
+        features.small_geometries |= scene.geometries()[i].triangles.size() <= plan::kMostTrianglesOfSmall;
         features.texcoords |= !scene.geometries()[i].texcoords.empty();
         features.planes |= scene.plane(static_cast<scene::Index>(i)).has_value();
     }
@@ -112,6 +115,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     const bool reflective = is_glass ? features.reflective_glass : features.reflective;
     if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
     if (variant.double_single && !features.double_single) return false;
+    if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
     if (variant.kind == Kind::mirror && !features.mirrors()) return false;
     if (variant.textured && !(textured && features.texcoords)) return false;
@@ -141,10 +145,10 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 32; ++bits) {
+                for (int bits = 0; bits < 64; ++bits) {
                     const SurfaceVariant variant{
-                        kind,   light,           (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0,
-                        lit_at, (bits & 8) != 0, (bits & 16) != 0};
+                        kind,   light,           (bits & 1) != 0,  (bits & 2) != 0, (bits & 4) != 0,
+                        lit_at, (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -175,6 +179,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
         if (wanted) defines.push_back(name);
     };
     define(true, kLights[static_cast<std::size_t>(variant.light)]);
+    define(variant.instanced, "INSTANCED");
     define(variant.kind == Kind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.environment, "ENVIRONMENT");

@@ -51,11 +51,13 @@ struct SurfaceVariant {
     plan::Methods::Lighting lit_at = plan::Methods::Lighting::pixel;
     bool double_single = false;  ///< GpuGeometry::is_double_single()
     bool anisotropic = false;    ///< filter of its texture
+    /// Faces whose matrices and material are attributes of instances (GpuInstance) instead of uniforms.
+    bool instanced = false;
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic);
+                            v.anisotropic, v.instanced);
         };
         return key(*this) < key(other);
     }

@@ -185,7 +185,7 @@ void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const
     Passes& passes = step.passes;
     switch (command.kind) {
         case Kind::opaque:
-            return passes.opaque.draw(items, *step.scene, step.style, passes.programs, step.stats);
+            return passes.opaque.draw(items, step.style, passes.programs, step.stats);
         case Kind::sorted_glass:
             return passes.transparent.draw(items, *step.scene, passes.programs, step.stats);
         case Kind::edges:

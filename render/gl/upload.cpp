@@ -13,14 +13,14 @@ constexpr std::size_t kPiece = std::size_t{256} << 10;  // bytes
 void Upload::add(const GlTexture& texture, const TextureImage& image) {
     parts_.push_back({texture.get(), std::as_bytes(std::span(image.image->rgba)).data(),
                       static_cast<std::size_t>(image.image->width) * 4,
-                      static_cast<std::size_t>(image.image->height), image});
+                      static_cast<std::size_t>(image.image->height), 0, image});
 }
 
 void Upload::copy(const Part& part, std::size_t first, std::size_t count) {
     const std::byte* data = part.data + first * part.row_bytes;
     if (!part.image.image)
-        return glNamedBufferSubData(part.name, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(count),
-                                    data);
+        return glNamedBufferSubData(part.name, static_cast<GLintptr>(part.offset + first),
+                                    static_cast<GLsizeiptr>(count), data);
     const auto y = static_cast<GLint>(first);
     const auto height = static_cast<GLsizei>(count);
     const GLsizei width = part.image.image->width;

@@ -13,10 +13,11 @@ namespace vrut::gl {
 /// Copies from memory to buffers and textures, piece by piece. Both ends must live until it is done.
 class Upload {
 public:
+    /// The first element becomes number `first` of the buffer.
     template <class Element>
-    void add(const GlBuffer& buffer, const std::vector<Element>& elements) {
+    void add(const GlBuffer& buffer, const std::vector<Element>& elements, std::size_t first = 0) {
         const std::span bytes = std::as_bytes(std::span(elements));
-        parts_.push_back({buffer.get(), bytes.data(), 1, bytes.size(), {}});
+        parts_.push_back({buffer.get(), bytes.data(), 1, bytes.size(), first * sizeof(Element), {}});
     }
     void add(const GlTexture& texture, const TextureImage& image);
     /// Goes on until `budget` is spent: that, and a piece of 256 KiB or a row of texels more. True once all
@@ -28,6 +29,7 @@ private:
         GLuint name = 0;
         const std::byte* data = nullptr;
         std::size_t row_bytes = 1, rows = 0;  ///< of a buffer single bytes
+        std::size_t offset = 0;               ///< into a buffer, in bytes
         TextureImage image;                   ///< none for a buffer
     };
     static void copy(const Part& part, std::size_t first, std::size_t count);

@@ -49,7 +49,7 @@ struct MirrorItem;
 
 /// Faces that are drawn with one set of camera matrices, in this order.
 struct DrawLists {
-    std::vector<DrawItem> opaque;               ///< by rising id, or as group_by_material() leaves them
+    std::vector<DrawItem> opaque;               ///< by rising id, or as group_for_draws() leaves them
     std::vector<MirrorItem> mirrors;            ///< by rising id
     std::vector<TransparentGroup> transparent;  ///< back to front
 };

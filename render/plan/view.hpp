@@ -95,7 +95,7 @@ inline scene::Style style_of(const View& view) { return scene::style_of(view.mod
 /// Costs of an image.
 struct FrameStats {
     int passes = 0;
-    int draws = 0;
+    int draws = 0;  ///< of items, of which one draw call may draw several, and of the passes over all pixels
     int samples = 0;    ///< drawn
     int readbacks = 0;  ///< of pixels, from the GPU into memory
     std::uint64_t triangles = 0;

@@ -20,7 +20,7 @@ constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
 
 std::atomic<int> draws_left{std::numeric_limits<int>::max()}, refused_contexts{0}, refused_threads{0};
 std::atomic<bool> lost{false}, told{false}, queries_withheld{false};
-std::atomic<int> stalls{0};
+std::atomic<int> stalls{0}, calls{0};
 std::atomic<std::size_t> copied{0};
 
 std::mutex mutex;  // of what follows
@@ -51,11 +51,24 @@ void give_back(std::map<GLuint, std::size_t>& objects, GLsizei count, const GLui
         if (const auto object = objects.extract(names[i])) used -= object.mapped();
 }
 
+/// Unless the context is lost by now, or the draw is to fail.
+template <class Draw>
+void draw_or_fail(Draw draw) {
+    ++calls;
+    if (draws_left-- == 0) lost = true;
+    const std::unique_lock lock(mutex);
+    if (const GLenum failure = std::exchange(draw_error, GL_NO_ERROR); failure != GL_NO_ERROR)
+        error = failure;
+    else if (!lost)
+        draw();
+}
+
 }  // namespace
 
 namespace vrut::gl_faults {
 
 void reset_after(int draws) { draws_left = draws; }
+int draw_calls() { return calls; }
 void refuse_contexts(int count) { refused_contexts = count; }
 std::size_t memory_used() {
     const std::lock_guard lock(mutex);
@@ -117,12 +130,19 @@ GLenum APIENTRY glGetGraphicsResetStatus() {
 
 void APIENTRY glDrawElements(GLenum mode, GLsizei count, GLenum type, const void* indices) {
     static auto* const draw = real<decltype(glDrawElements)>("glDrawElements");
-    if (draws_left-- == 0) lost = true;
-    const std::unique_lock lock(mutex);
-    if (const GLenum failure = std::exchange(draw_error, GL_NO_ERROR); failure != GL_NO_ERROR)
-        error = failure;
-    else if (!lost)
-        draw(mode, count, type, indices);
+    draw_or_fail([&] { draw(mode, count, type, indices); });
+}
+
+void APIENTRY glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, const void* indices,
+                                       GLint first_vertex) {
+    static auto* const draw = real<decltype(glDrawElementsBaseVertex)>("glDrawElementsBaseVertex");
+    draw_or_fail([&] { draw(mode, count, type, indices, first_vertex); });
+}
+
+void APIENTRY glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* draws, GLsizei count,
+                                          GLsizei stride) {
+    static auto* const draw = real<decltype(glMultiDrawElementsIndirect)>("glMultiDrawElementsIndirect");
+    draw_or_fail([&] { draw(mode, type, draws, count, stride); });
 }
 
 void APIENTRY glReadPixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,

@@ -6,9 +6,11 @@
 /// through it: it does what is said here, and leaves the rest to the driver.
 namespace vrut::gl_faults {
 
-/// The driver resets itself after so many draws: what is drawn and read then changes nothing, and it tells of
-/// the reset once, until another context is made.
+/// The driver resets itself after so many draw calls: what is drawn and read then changes nothing, and it
+/// tells of the reset once, until another context is made.
 void reset_after(int draws);
+/// Draw calls so far.
+int draw_calls();
 /// The next contexts that are asked for cannot be made.
 void refuse_contexts(int count);
 /// What buffers and textures hold now, in bytes.

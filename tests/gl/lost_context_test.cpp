@@ -10,10 +10,12 @@ struct Healed {
     ~Healed() { gl_faults::heal(); }
 };
 
+/// Of which one is two-sided, so that no draw call draws both.
 std::shared_ptr<const scene::PlacedScene> two_parts() {
-    const scene::Material paint = material_of({0.7, 0.5, 0.3});
+    scene::Material paint = material_of({0.7, 0.5, 0.3}), two_sided = paint;
+    two_sided.two_sided = true;
     return scene_of(
-        {{1, sphere(1, 8), paint, moved_by({-1, 0, 0})}, {2, box({1, 1, 1}), paint, moved_by({1, 0, 0})}});
+        {{1, sphere(1, 8), paint, moved_by({-1, 0, 0})}, {2, quad(1), two_sided, moved_by({1, 0, 0})}});
 }
 
 plan::View view_of(const std::shared_ptr<const scene::PlacedScene>& scene) {

@@ -322,10 +322,13 @@ TEST_CASE("the same view gives the same bytes, whatever was drawn before") {
 TEST_CASE("scenes come and go without leaving anything on the GPU") {
     RendererFixture studio;
     const plan::View view = view_from({1, 2, 5});
-    studio.draw(scene_of(some_parts()), view);
+    std::vector<Part> parts = some_parts();
+    for (int i = 0; i < 4; ++i)  // too large to share buffers
+        parts.push_back({100 + i, sphere(0.5, 40), kPaint, moved_by({i, 0, 0})});
+    studio.draw(scene_of(parts), view);
     const long before = gl::live_gl_objects();
     CHECK(before > 12);
-    for (int i = 0; i < 20; ++i) studio.draw(scene_of(some_parts()), view);
+    for (int i = 0; i < 20; ++i) studio.draw(scene_of(parts), view);
     CHECK(gl::live_gl_objects() == before);
     studio.draw(scene_of({}), view);
     CHECK(gl::live_gl_objects() < before - 12);

@@ -21,7 +21,8 @@ std::string name_of(const gl::SurfaceVariant& variant) {
            std::to_string(static_cast<int>(variant.light)) + (variant.textured ? "-textured" : "") +
            (variant.environment ? "-environment" : "") + (variant.clipped ? "-clipped" : "") +
            (variant.lit_at == plan::Methods::Lighting::vertex ? "-vertex" : "") +
-           (variant.double_single ? "-double-single" : "") + (variant.anisotropic ? "-anisotropic" : "");
+           (variant.double_single ? "-double-single" : "") + (variant.anisotropic ? "-anisotropic" : "") +
+           (variant.instanced ? "-instanced" : "");
 }
 
 /// Files of a folder, written as they are named, for glslangValidator.

@@ -1,6 +1,8 @@
 #include "gl/passes/drawing.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 namespace vrut::gl {
 
@@ -8,11 +10,9 @@ namespace {
 
 void enable(GLenum capability, bool enabled) { enabled ? glEnable(capability) : glDisable(capability); }
 
-void draw_indices(const GlVertexArray& vertex_array, GLsizei count, plan::FrameStats& stats) {
-    glBindVertexArray(vertex_array.get());
-    glDrawElements(GL_TRIANGLES, count, GL_UNSIGNED_INT, nullptr);
+void count_draw(GLsizei indices, plan::FrameStats& stats) {
     ++stats.draws;
-    stats.triangles += static_cast<std::uint64_t>(count) / 3;
+    stats.triangles += static_cast<std::uint64_t>(indices) / 3;
 }
 
 }  // namespace
@@ -56,11 +56,17 @@ void set_scissor(const std::optional<math::PixelBox>& box) {
 }
 
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats) {
-    draw_indices(geometry.vertex_array, geometry.index_count, stats);
+    glBindVertexArray(geometry.buffers->vertex_array.get());
+    const std::uintptr_t offset = std::uintptr_t{geometry.first_index} * sizeof(unsigned);
+    glDrawElementsBaseVertex(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT,
+                             std::bit_cast<const void*>(offset), geometry.first_vertex);
+    count_draw(geometry.index_count, stats);
 }
 
 void draw_triangles(const GpuTriangles& triangles, plan::FrameStats& stats) {
-    draw_indices(triangles.vertex_array, triangles.index_count, stats);
+    glBindVertexArray(triangles.vertex_array.get());
+    glDrawElements(GL_TRIANGLES, triangles.index_count, GL_UNSIGNED_INT, nullptr);
+    count_draw(triangles.index_count, stats);
 }
 
 }  // namespace vrut::gl

@@ -28,17 +28,18 @@ void EdgePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, cons
         const GpuEdges* edges = scene.edges(item.geometry);
         stats.substitutes += edges == nullptr;
         if (!edges && style.edge_color) continue;  // its faces are drawn
+        if (!edges) {
+            programs.draw_faces({&item, 1}, state, nullptr, stats);
+            continue;
+        }
         const GpuGeometry& geometry = scene.geometry(item);
         if (solid)
             solid->use(item, geometry);
         else
-            programs.use(edges ? SurfacePrograms::SurfaceKind::edges : SurfacePrograms::SurfaceKind::faces,
-                         item, geometry, scene.scene()->material(item.material));
-        apply(edges ? state : state.for_item(item));
-        if (edges)
-            draw_lines(*edges, stats);
-        else
-            draw_triangles(geometry, stats);
+            programs.use(SurfacePrograms::SurfaceKind::edges, item, geometry,
+                         scene.scene()->material(item.material));
+        apply(state);
+        draw_lines(*edges, stats);
     }
 }
 

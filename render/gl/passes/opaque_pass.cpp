@@ -4,18 +4,11 @@
 
 namespace vrut::gl {
 
-void OpaquePass::draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
+void OpaquePass::draw(std::span<const plan::DrawItem> items, const scene::Style& style,
                       SurfacePrograms& programs, plan::FrameStats& stats) {
     PipelineState state;
     state.behind_edges = style.edges;
-    for (const plan::DrawItem& item : items) {
-        const GpuGeometry& geometry = scene.geometry(item);
-        programs.use(
-            SurfacePrograms::SurfaceKind::faces, item, geometry,
-            style.override_material ? *style.override_material : scene.scene()->material(item.material));
-        apply(state.for_item(item));
-        draw_triangles(geometry, stats);
-    }
+    programs.draw_faces(items, state, style.override_material ? &*style.override_material : nullptr, stats);
 }
 
 void OpaquePass::reset_depth(std::span<const plan::DrawItem> items, GpuScene& scene,

@@ -12,8 +12,8 @@ class OpaquePass {
 public:
     explicit OpaquePass(Programs& programs) : programs_(programs) {}
     /// Draws into the bound framebuffer; adds its draws and triangles to `stats`.
-    void draw(std::span<const plan::DrawItem> items, GpuScene& scene, const scene::Style& style,
-              SurfacePrograms& programs, plan::FrameStats& stats);
+    void draw(std::span<const plan::DrawItem> items, const scene::Style& style, SurfacePrograms& programs,
+              plan::FrameStats& stats);
     /// What was drawn before is behind these items from here on, wherever they cover it.
     void reset_depth(std::span<const plan::DrawItem> items, GpuScene& scene, const glm::dmat4& clip_from_view,
                      plan::FrameStats& stats);

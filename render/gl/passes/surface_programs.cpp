@@ -1,7 +1,10 @@
 #include "gl/passes/surface_programs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/type_ptr.hpp>
+
+#include "plan/draw_groups.hpp"
 
 namespace vrut::gl {
 
@@ -96,22 +99,31 @@ glm::vec3 local_origin(const plan::DrawItem& item, const GpuGeometry& geometry) 
                                        : glm::vec3(0);
 }
 
+/// `local` is local_origin().
+glm::mat4 view_from_local(const plan::DrawItem& item, const GpuGeometry& geometry, const glm::vec3& local) {
+    glm::dmat4 matrix = item.view_from_node;
+    matrix[3] = item.view_from_node * glm::dvec4(geometry.origin + glm::dvec3(local), 1);
+    return glm::mat4(matrix);
+}
+
 /// Of the current program, where the next draw lies.
 void set_transform(const plan::DrawItem& item, const GpuGeometry& geometry) {
     const glm::vec3 origin = local_origin(item, geometry);
-    glm::dmat4 view_from_local = item.view_from_node;
-    view_from_local[3] = item.view_from_node * glm::dvec4(geometry.origin + glm::dvec3(origin), 1);
-    const glm::mat4 view(view_from_local);
-    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(view));
+    const glm::mat4 matrix = view_from_local(item, geometry, origin);
+    glUniformMatrix4fv(view_from_local_at, 1, GL_FALSE, glm::value_ptr(matrix));
     if (geometry.is_double_single()) set(origin_at, origin);
 }
 
-void set_clip_plane(const plan::DrawItem& item, const GpuGeometry& geometry) {
-    if (!item.clip_plane) return;
+/// Of an item that has one.
+glm::vec4 clip_plane_of(const plan::DrawItem& item, const GpuGeometry& geometry) {
     const glm::dvec3 origin = geometry.origin + glm::dvec3(local_origin(item, geometry));
-    const glm::vec4 clip_plane(glm::dvec3(*item.clip_plane),
-                               glm::dot(*item.clip_plane, glm::dvec4(origin, 1)));
-    glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane));
+    return {glm::dvec3(*item.clip_plane), glm::dot(*item.clip_plane, glm::dvec4(origin, 1))};
+}
+
+bool is_two_sided(const plan::DrawItem& item) { return item.cull_mode != plan::CullMode::back; }
+
+glm::vec3 base_of(const scene::Material& material) {
+    return glm::vec3(material.emission) + glm::vec3(material.ambient);
 }
 
 SurfaceVariant::Light kind_of(const scene::Light& light, const CameraMatrices& camera) {
@@ -134,36 +146,118 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
     glBindBufferBase(GL_UNIFORM_BUFFER, kViewUniformsBinding, view_uniforms_.get());
 }
 
+SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawItem& item,
+                                           const GpuGeometry& geometry) const {
+    const bool textured = item.texture != scene::kNone;
+    SurfaceVariant variant{kind, light_, textured, item.environment, item.clip_plane.has_value()};
+    variant.lit_at = methods_.light;
+    variant.double_single = geometry.is_double_single();
+    variant.anisotropic = textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic;
+    return variant;
+}
+
+void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
+    if (item.texture != scene::kNone) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (item.environment) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
+}
+
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
                           const scene::Material& material) {
-    const bool textured = item.texture != scene::kNone;
-    const SurfaceVariant variant{
-        kind,
-        light_,
-        textured,
-        item.environment,
-        item.clip_plane.has_value(),
-        methods_.light,
-        geometry.is_double_single(),
-        textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic};
-    programs_.use(variant);
+    programs_.use(variant_of(kind, item, geometry));
     set_transform(item, geometry);
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
-    if (variant.textured) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
-    if (variant.environment) {
-        glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
-        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
-    }
-    set(base_at, glm::vec3(material.emission) + glm::vec3(material.ambient));
+    bind_textures(item);
+    set(base_at, base_of(material));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
-    glUniform1i(two_sided_at, item.cull_mode != plan::CullMode::back || kind == SurfaceKind::edges);
+    glUniform1f(two_sided_at, is_two_sided(item) || kind == SurfaceKind::edges ? 1.0F : 0.0F);
     if (kind == SurfaceKind::glass || kind == SurfaceKind::per_pixel_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
-    if (kind == SurfaceKind::mirror) glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
-    set_clip_plane(item, geometry);
+    if (item.environment || kind == SurfaceKind::mirror)
+        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
+}
+
+void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
+                                   const scene::Material& material) {
+    GpuInstance& instance = instances_.emplace_back();
+    instance.view_from_local = view_from_local(item, geometry, glm::vec3(0));
+    instance.normal_matrix = glm::mat3x4(normal_matrix(glm::dmat3(item.view_from_node), item.mirrored));
+    instance.base_sides = {base_of(material), is_two_sided(item) ? 1 : 0};
+    instance.diffuse_reflectivity = {glm::vec3(material.diffuse), material.reflectivity};
+    instance.specular_shininess = {glm::vec3(material.specular), material.shininess};
+    if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
+    draws_.push_back({static_cast<GLuint>(geometry.index_count), 1, geometry.first_index,
+                      geometry.first_vertex, static_cast<GLuint>(draws_.size())});
+}
+
+void SurfacePrograms::write_instances() {
+    if (!draw_buffer_) {
+        instance_buffer_ = make_dynamic_buffer("instances", kMostInstances * sizeof(GpuInstance));
+        draw_buffer_ = make_dynamic_buffer("draws", kMostInstances * sizeof(IndirectDraw));
+    }
+    const auto write = [](const GlBuffer& buffer, const auto& elements) {
+        const std::span bytes = std::as_bytes(std::span(elements));
+        glNamedBufferSubData(buffer.get(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
+    };
+    write(instance_buffer_, instances_);
+    write(draw_buffer_, draws_);
+}
+
+/// The number of the first items that one draw call draws. Their buffers are shared.
+std::size_t SurfacePrograms::run_length(std::span<const plan::DrawItem> items) {
+    const GeometryBuffers* buffers = scene_->geometry(items.front()).buffers.get();
+    std::size_t length = 1;
+    while (length < std::min(items.size(), kMostInstances) &&
+           plan::share_draw(items.front(), items[length]) &&
+           scene_->geometry(items[length]).buffers.get() == buffers)
+        ++length;
+    return length;
+}
+
+/// By one draw call.
+void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const PipelineState& state,
+                               const scene::Material* material, plan::FrameStats& stats) {
+    const plan::DrawItem& first = items.front();
+    instances_.clear();
+    draws_.clear();
+    for (const plan::DrawItem& item : items)
+        add_instance(item, scene_->geometry(item),
+                     material ? *material : scene_->scene()->material(item.material));
+    write_instances();
+    SurfaceVariant variant = variant_of(SurfaceKind::faces, first, scene_->geometry(first));
+    variant.instanced = true;
+    programs_.use(variant);
+    bind_textures(first);
+    apply(state.for_item(first));
+    glBindVertexArray(scene_->geometry(first).buffers->vertex_array.get());
+    glBindVertexBuffer(kInstanceBinding, instance_buffer_.get(), 0, sizeof(GpuInstance));
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_buffer_.get());
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, nullptr, static_cast<GLsizei>(draws_.size()),
+                                0);
+    stats.draws += static_cast<int>(draws_.size());
+    for (const IndirectDraw& draw : draws_) stats.triangles += draw.index_count / 3;
+}
+
+void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
+                                 const scene::Material* material, plan::FrameStats& stats) {
+    while (!items.empty()) {
+        const plan::DrawItem& first = items.front();
+        const GpuGeometry& geometry = scene_->geometry(first);
+        std::size_t length = 1;
+        if (geometry.buffers->shared) {
+            length = run_length(items);
+            draw_run(items.first(length), state, material, stats);
+        } else {
+            use(SurfaceKind::faces, first, geometry,
+                material ? *material : scene_->scene()->material(first.material));
+            apply(state.for_item(first));
+            draw_triangles(geometry, stats);
+        }
+        items = items.subspan(length);
+    }
 }
 
 void SolidColorProgram::use(const plan::DrawItem& item, const GpuGeometry& geometry) {

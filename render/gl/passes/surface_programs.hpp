@@ -2,8 +2,11 @@
 
 #include <array>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "gl/gpu_scene.hpp"
+#include "gl/passes/drawing.hpp"
 #include "gl/programs.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
@@ -30,14 +33,39 @@ public:
     /// Makes the program for this item the current one and gives it all that it needs.
     void use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
              const scene::Material& material);
+    /// Draws the faces of items in their order, with `state` and the sides that show. One draw call draws up
+    /// to kMostInstances consecutive items of small geometries that share buffers and plan::share_draw().
+    /// `material`: of all items; null: each has its own.
+    void draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
+                    const scene::Material* material, plan::FrameStats& stats);
+    static constexpr std::size_t kMostInstances = 256;
 
 private:
+    /// As glMultiDrawElementsIndirect() reads it.
+    struct IndirectDraw {
+        GLuint index_count, instance_count, first_index;
+        GLint first_vertex;
+        GLuint first_instance;
+    };
+    SurfaceVariant variant_of(SurfaceKind kind, const plan::DrawItem& item,
+                              const GpuGeometry& geometry) const;
+    void bind_textures(const plan::DrawItem& item);
+    std::size_t run_length(std::span<const plan::DrawItem> items);
+    void add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
+                      const scene::Material& material);
+    void write_instances();
+    void draw_run(std::span<const plan::DrawItem> items, const PipelineState& state,
+                  const scene::Material* material, plan::FrameStats& stats);
+
     Programs& programs_;
     SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
     plan::Methods methods_;
     GlBuffer view_uniforms_;
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
+    std::vector<GpuInstance> instances_;  // of the draw call to come
+    std::vector<IndirectDraw> draws_;
+    GlBuffer instance_buffer_, draw_buffer_;
 };
 
 /// The program of one colour everywhere, in both precisions. No other may be used before the last item.

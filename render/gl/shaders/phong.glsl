@@ -1,6 +1,5 @@
 // Phong's equation, for the stage that evaluates it. The eye is the origin. After view_uniforms.glsl; the light is a
 // HEADLIGHT, a POINT, DIRECTIONAL or a SPOT.
-layout(location = 8) uniform float shininess;
 
 float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
 
@@ -13,7 +12,7 @@ float in_cone(vec3 from_light) {
 }
 
 // How much light the matte and the shiny part of a surface send to the eye, which is at a distance d.
-vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d) {
+vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d, float shininess) {
 #if defined(HEADLIGHT)
     vec3 to_light = to_eye;
     float intensity = attenuated(d);

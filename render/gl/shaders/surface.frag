@@ -18,11 +18,18 @@ void append_fragment(vec4 own, uint order) {
         Fragment(next, order, gl_FragCoord.z, packUnorm2x16(own.rg), packUnorm2x16(own.ba));
 }
 #endif
+#ifdef INSTANCED
+flat in vec3 base, diffuse, specular;
+flat in float two_sided, reflectivity, shininess;
+#else
 layout(location = 5) uniform vec3 base;
 layout(location = 6) uniform vec3 diffuse;
 layout(location = 7) uniform vec3 specular;
-#ifdef MIRROR
+layout(location = 8) uniform float shininess;
+layout(location = 9) uniform float two_sided;
 layout(location = 10) uniform float reflectivity;
+#endif
+#ifdef MIRROR
 layout(binding = 2) uniform sampler2D reflection;
 #endif
 #ifdef GLASS
@@ -38,7 +45,6 @@ out vec4 color;
 in vec2 light;
 #endif
 #ifdef NEEDS_NORMAL
-layout(location = 9) uniform bool two_sided;
 in vec3 view_position;
 in vec3 view_normal;
 #endif
@@ -47,7 +53,6 @@ layout(binding = 0) uniform sampler2D image;
 in vec2 uv;
 #endif
 #ifdef ENVIRONMENT
-layout(location = 10) uniform float reflectivity;
 layout(binding = 1) uniform samplerCube environment_map;
 #endif
 
@@ -62,7 +67,7 @@ vec3 normal_to(vec3 to_eye) {
     if (dot(n, n) < 1e-12) n = cross(normalize(across), normalize(upwards));
 #endif
     n = normalize(n);
-    return two_sided && dot(n, to_eye) < 0 ? -n : n;
+    return two_sided != 0 && dot(n, to_eye) < 0 ? -n : n;
 }
 #endif
 
@@ -73,7 +78,7 @@ void main() {
     vec3 n = normal_to(to_eye);
 #endif
 #ifndef LIT_AT_VERTEX
-    vec2 light = phong(view_position, n, to_eye, d);
+    vec2 light = phong(view_position, n, to_eye, d, shininess);
 #endif
 #ifdef TEXTURED
     vec4 texel = sample_filtered(image, uv);

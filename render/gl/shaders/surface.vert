@@ -4,15 +4,29 @@
 #ifdef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
+layout(location = 1) in vec3 normal;
+#ifdef INSTANCED
+layout(location = 3) in mat4 view_from_local;
+layout(location = 7) in mat3 normal_matrix;
+layout(location = 10) in vec4 base_sides;  // w: 1 if two-sided
+layout(location = 11) in vec4 diffuse_reflectivity;
+layout(location = 12) in vec4 specular_shininess;
+layout(location = 13) in vec4 clip_plane;
+flat out vec3 base, diffuse, specular;
+flat out float two_sided, reflectivity, shininess;
+#else
 layout(location = 1) uniform mat4 view_from_local;
 layout(location = 2) uniform mat3 normal_matrix;
-#ifdef CLIPPED
 layout(location = 13) uniform vec4 clip_plane;
+#ifdef LIT_AT_VERTEX
+layout(location = 8) uniform float shininess;
+layout(location = 9) uniform float two_sided;
+#endif
+#endif
+#ifdef CLIPPED
 out float gl_ClipDistance[1];
 #endif
-layout(location = 1) in vec3 normal;
 #ifdef LIT_AT_VERTEX
-layout(location = 9) uniform bool two_sided;
 out vec2 light;
 #endif
 #ifdef NEEDS_NORMAL
@@ -27,6 +41,14 @@ out vec2 uv;
 
 void main() {
     vec3 local = local_position();
+#ifdef INSTANCED
+    base = base_sides.xyz;
+    diffuse = diffuse_reflectivity.xyz;
+    specular = specular_shininess.xyz;
+    two_sided = base_sides.w;
+    reflectivity = diffuse_reflectivity.w;
+    shininess = specular_shininess.w;
+#endif
 #ifdef CLIPPED
     gl_ClipDistance[0] = dot(clip_plane, vec4(local, 1));
 #endif
@@ -45,7 +67,7 @@ void main() {
     float d = max(length(p.xyz), 1e-30);
     vec3 to_eye = -p.xyz / d;
     if (size == 0) n = to_eye;  // a vertex knows no face
-    light = phong(p.xyz, two_sided && dot(n, to_eye) < 0 ? -n : n, to_eye, d);
+    light = phong(p.xyz, two_sided != 0 && dot(n, to_eye) < 0 ? -n : n, to_eye, d, shininess);
 #endif
     gl_Position = clip_from_view * p;
 }

@@ -1,4 +1,4 @@
-#include "plan/material_groups.hpp"
+#include "plan/draw_groups.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,13 +11,13 @@ using namespace vrut;
 
 namespace {
 
-/// Boxes of half a unit, in materials that take turns.
+/// Boxes of half a unit, with textures that take turns.
 struct Boxes {
     std::shared_ptr<const scene::PlacedScene> scene;
     std::vector<plan::DrawItem> items;
 };
 
-Boxes boxes_at(const std::vector<glm::dvec3>& places, int materials) {
+Boxes boxes_at(const std::vector<glm::dvec3>& places, int textures) {
     std::vector<Part> parts;
     for (std::size_t i = 0; i < places.size(); ++i)
         parts.push_back({static_cast<scene::Id>(i + 1), box(glm::dvec3(0.5)), material_of(glm::dvec3(0.5)),
@@ -26,7 +26,7 @@ Boxes boxes_at(const std::vector<glm::dvec3>& places, int materials) {
     for (std::size_t i = 0; i < places.size(); ++i) {
         plan::DrawItem item;
         item.node = item.geometry = static_cast<scene::Index>(i);
-        item.material = static_cast<scene::Index>(i) % materials;
+        item.texture = static_cast<scene::Index>(i) % textures;
         item.view_from_node = moved_by(places[i]);
         result.items.push_back(item);
     }
@@ -34,7 +34,7 @@ Boxes boxes_at(const std::vector<glm::dvec3>& places, int materials) {
 }
 
 std::vector<scene::Index> order_of(Boxes boxes) {
-    plan::group_by_material(boxes.items, *boxes.scene->scene);
+    plan::group_for_draws(boxes.items, *boxes.scene->scene);
     std::vector<scene::Index> order;
     for (const plan::DrawItem& item : boxes.items) order.push_back(item.node);
     return order;
@@ -42,12 +42,12 @@ std::vector<scene::Index> order_of(Boxes boxes) {
 
 }  // namespace
 
-TEST_CASE("items that are apart are grouped by material, each group by rising id") {
+TEST_CASE("items that are apart are grouped by what one draw call can draw, each group by rising id") {
     const Boxes boxes = boxes_at({{0, 0, -9}, {2, 0, -9}, {4, 0, -9}, {6, 0, -9}, {8, 0, -9}}, 2);
     CHECK(order_of(boxes) == std::vector<scene::Index>{0, 2, 4, 1, 3});
 }
 
-TEST_CASE("an item stays behind one of another material that touches it") {
+TEST_CASE("an item stays behind one of another texture that touches it") {
     CHECK(order_of(boxes_at({{0, 0, -9}, {1, 0, -9}, {2, 0, -9}}, 2)) == std::vector<scene::Index>{0, 1, 2});
     CHECK(order_of(boxes_at({{0, 0, -9}, {1.0005, 0, -9}, {2.001, 0, -9}}, 2)) ==
           std::vector<scene::Index>{0, 1, 2});
@@ -74,4 +74,22 @@ TEST_CASE("of any two items that overlap the one with the lower id stays first")
         }
     CHECK(turned > 1000);
     CHECK(wrong == 0);
+}
+
+TEST_CASE("what one draw call can draw") {
+    plan::DrawItem item, other;
+    other.geometry = other.material = other.node = 1;
+    other.view_from_node = moved_by({1, 2, 3});
+    CHECK(plan::share_draw(item, other));
+    const auto shares = [&](auto change) {
+        plan::DrawItem changed = other;
+        change(changed);
+        return plan::share_draw(item, changed);
+    };
+    CHECK(shares([](plan::DrawItem& changed) { changed.cull_mode = plan::CullMode::hidden_back; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.cull_mode = plan::CullMode::none; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.texture = 0; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.environment = true; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.mirrored = true; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.clip_plane = {0, 0, 1, 0}; }));
 }

@@ -1,7 +1,9 @@
-#include "plan/material_groups.hpp"
+#include "plan/draw_groups.hpp"
 
 #include <algorithm>
 #include <utility>
+
+#include "mesh/simplification.hpp"
 
 namespace vrut::plan {
 
@@ -25,11 +27,23 @@ math::Bounds box_of(const DrawItem& item, const scene::Scene& scene) {
     return box;
 }
 
-/// Items of one material, in runs whose boxes are tested first.
+bool is_small(const DrawItem& item, const scene::Scene& scene) {
+    const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
+    return (item.level ? item.level->triangles : geometry.triangles).size() <= kMostTrianglesOfSmall;
+}
+
+/// Whether they are drawn faster one after the other.
+bool belong_together(const DrawItem& a, const DrawItem& b, const scene::Scene& scene) {
+    const bool small = is_small(a, scene);
+    return small == is_small(b, scene) && (small || a.material == b.material) && share_draw(a, b);
+}
+
+/// Items that belong together, in runs whose boxes are tested first.
 class Group {
 public:
-    explicit Group(scene::Index material) : material_(material) {}
-    scene::Index material() const { return material_; }
+    /// `first` must outlive it.
+    explicit Group(const DrawItem& first) : first_(first) {}
+    const DrawItem& first() const { return first_; }
 
     void add(std::size_t item, const math::Bounds& box) {
         if (items_.size() % kRunLength == 0) runs_.emplace_back();
@@ -52,17 +66,18 @@ public:
     const std::vector<std::size_t>& items() const { return items_; }
 
 private:
-    scene::Index material_;
+    const DrawItem& first_;
     std::vector<std::size_t> items_;
     std::vector<math::Bounds> boxes_, runs_;
 };
 
-/// The last group of the item's material behind which nothing overlaps the item; null: there is none.
-Group* group_for(std::vector<Group>& groups, scene::Index material, const math::Bounds& box) {
+/// The last group that the item belongs to and behind which nothing overlaps it; null: there is none.
+Group* group_for(std::vector<Group>& groups, const DrawItem& item, const math::Bounds& box,
+                 const scene::Scene& scene) {
     std::size_t tests = kMostTests;
     for (std::size_t k = groups.size(); k > 0; --k) {
         Group& group = groups[k - 1];
-        if (group.material() == material) return &group;
+        if (belong_together(group.first(), item, scene)) return &group;
         if (group.may_overlap(box, tests)) return nullptr;
     }
     return nullptr;
@@ -70,12 +85,20 @@ Group* group_for(std::vector<Group>& groups, scene::Index material, const math::
 
 }  // namespace
 
-void group_by_material(std::vector<DrawItem>& items, const scene::Scene& scene) {
+bool share_draw(const DrawItem& a, const DrawItem& b) {
+    return a.texture == b.texture && a.environment == b.environment && a.mirrored == b.mirrored &&
+           (a.cull_mode == CullMode::none) == (b.cull_mode == CullMode::none) &&
+           a.clip_plane.has_value() == b.clip_plane.has_value();
+}
+
+void group_for_draws(std::vector<DrawItem>& items, const scene::Scene& scene) {
+    const auto differs = [&](const DrawItem& item) { return !belong_together(items.front(), item, scene); };
+    if (std::ranges::none_of(items, differs)) return;
     std::vector<Group> groups;
     for (std::size_t i = 0; i < items.size(); ++i) {
         const math::Bounds box = box_of(items[i], scene);
-        Group* group = group_for(groups, items[i].material, box);
-        if (!group) group = &groups.emplace_back(items[i].material);
+        Group* group = group_for(groups, items[i], box, scene);
+        if (!group) group = &groups.emplace_back(items[i]);
         group->add(i, box);
     }
     std::vector<DrawItem> grouped;
