@@ -62,7 +62,7 @@ GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex
 }
 
 struct BufferSizes {
-    std::size_t vertices, indices;
+    std::size_t vertices = 0, indices = 0;
     bool texcoords = false, low_positions = false;
 };
 
