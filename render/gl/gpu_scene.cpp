@@ -12,76 +12,6 @@ namespace vrut::gl {
 
 namespace {
 
-void add_attribute(const GlVertexArray& vertex_array, GLuint location, GLuint binding, GLint components,
-                   std::size_t offset) {
-    const GLuint array = vertex_array.get();
-    glEnableVertexArrayAttrib(array, location);
-    glVertexArrayAttribFormat(array, location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
-    glVertexArrayAttribBinding(array, location, binding);
-}
-
-/// Until a draw binds its instances, a buffer that no program reads stands in their place, since each
-/// attribute must have one.
-void add_instances(const GlVertexArray& vertex_array, const GlBuffer& placeholder) {
-    const GLuint array = vertex_array.get();
-    glVertexArrayVertexBuffer(array, kInstanceBinding, placeholder.get(), 0, 0);
-    glVertexArrayBindingDivisor(array, kInstanceBinding, 1);
-    const auto add = [&](GLuint location, GLint components, std::size_t offset) {
-        add_attribute(vertex_array, location, kInstanceBinding, components, offset);
-    };
-    for (GLuint column = 0; column < 4; ++column)
-        add(3 + column, 4, offsetof(GpuInstance, view_from_local) + column * sizeof(glm::vec4));
-    for (GLuint column = 0; column < 3; ++column)
-        add(7 + column, 3, offsetof(GpuInstance, normal_matrix) + column * sizeof(glm::vec4));
-    add(10, 4, offsetof(GpuInstance, base_sides));
-    add(11, 4, offsetof(GpuInstance, diffuse_reflectivity));
-    add(12, 4, offsetof(GpuInstance, specular_shininess));
-    add(13, 4, offsetof(GpuInstance, clip_plane));
-}
-
-/// Of buffers from `first_vertex` on, with these indices.
-GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex, const GlBuffer& indices) {
-    GlVertexArray result = make_vertex_array();
-    const GLuint array = result.get();
-    const auto bind = [&](GLuint binding, const GlBuffer& buffer, GLsizei stride) {
-        glVertexArrayVertexBuffer(array, binding, buffer.get(), GLintptr{first_vertex} * stride, stride);
-    };
-    glVertexArrayElementBuffer(array, indices.get());
-    bind(0, buffers.vertices, sizeof(GpuVertex));
-    add_attribute(result, 0, 0, 3, offsetof(GpuVertex, position));
-    add_attribute(result, 1, 0, 3, offsetof(GpuVertex, normal));
-    if (buffers.texcoords) {
-        bind(1, buffers.texcoords, sizeof(glm::vec2));
-        add_attribute(result, 2, 1, 2, 0);
-    }
-    if (buffers.low_positions) {
-        bind(2, buffers.low_positions, sizeof(glm::vec3));
-        add_attribute(result, 3, 2, 3, 0);
-    }
-    return result;
-}
-
-struct BufferSizes {
-    std::size_t vertices = 0, indices = 0;
-    bool texcoords = false, low_positions = false;
-};
-
-/// Without contents.
-std::shared_ptr<const GeometryBuffers> make_geometry_buffers(const BufferSizes& sizes, bool shared) {
-    const auto buffers = std::make_shared<GeometryBuffers>();
-    buffers->shared = shared;
-    buffers->vertices = make_dynamic_buffer("vertices", sizes.vertices * sizeof(GpuVertex));
-    buffers->indices = make_dynamic_buffer("triangles", sizes.indices * sizeof(unsigned));
-    if (sizes.texcoords)
-        buffers->texcoords = make_dynamic_buffer("texture coordinates", sizes.vertices * sizeof(glm::vec2));
-    if (sizes.low_positions)
-        buffers->low_positions =
-            make_dynamic_buffer("low parts of positions", sizes.vertices * sizeof(glm::vec3));
-    buffers->vertex_array = vertex_array_of(*buffers, 0, buffers->indices);
-    if (shared) add_instances(buffers->vertex_array, buffers->vertices);
-    return buffers;
-}
-
 /// Of a geometry of the scene, whose triangles need no copy; else with its triangles.
 PreparedData geometry_data(const scene::Geometry& geometry, bool double_single) {
     PreparedData data;
@@ -235,43 +165,20 @@ bool GpuScene::request_shown(const plan::View& view) {
 
 // --- uploads
 
-/// Takes room in the buffers that small geometries share.
-std::shared_ptr<const GeometryBuffers> GpuScene::share_buffers(GpuGeometry& geometry, std::size_t vertices,
-                                                               std::size_t indices, bool texcoords) {
-    SharedBuffers& shared = shared_[texcoords ? 1 : 0];
-    std::shared_ptr<const GeometryBuffers> buffers = shared.buffers.lock();
-    if (!buffers || shared.vertices + vertices > shared.capacity ||
-        shared.indices + indices > 3 * shared.capacity) {
-        const std::size_t capacity = std::min(2 * shared.capacity, SharedBuffers::kMostVertices);
-        buffers = make_geometry_buffers({capacity, 3 * capacity, texcoords}, true);
-        shared = {buffers, capacity};
-    }
-    geometry.first_vertex = static_cast<GLint>(shared.vertices);
-    geometry.first_index = static_cast<GLuint>(shared.indices);
-    shared.vertices += vertices;
-    shared.indices += indices;
-    return buffers;
-}
-
 void GpuScene::create_geometry(Arrival& arrival) {
     const PreparedData& data = arrival.result.data;
     const scene::Geometry& read = read_geometry(arrival.result.key.indices[0]);
-    GpuGeometry& geometry = arrival.geometry;
-    geometry.origin = read.bounds.center();
     const std::vector<glm::uvec3>& triangles = triangles_of(data.arrays, read);
-    const std::size_t vertices = data.arrays.vertices.size(), indices = triangles.size() * 3;
-    const bool small = triangles.size() <= plan::kMostTrianglesOfSmall &&
-                       vertices <= SharedBuffers::kMostVerticesOfSmall && data.low_positions.empty();
-    geometry.index_count = static_cast<GLsizei>(indices);
-    const BufferSizes sizes{vertices, indices, !data.texcoords.empty(), !data.low_positions.empty()};
-    geometry.buffers = small ? share_buffers(geometry, vertices, indices, sizes.texcoords)
-                             : make_geometry_buffers(sizes, false);
+    GpuGeometry& geometry = arrival.geometry;
+    geometry = buffer_pool_.allocate({data.arrays.vertices.size(), triangles.size(), !data.texcoords.empty(),
+                                      !data.low_positions.empty()});
+    geometry.origin = read.bounds.center();
     const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
     arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
     arrival.upload.add(geometry.buffers->indices, triangles, geometry.first_index / 3);
     if (!data.texcoords.empty())
         arrival.upload.add(geometry.buffers->texcoords, data.texcoords, first_vertex);
-    if (sizes.low_positions) arrival.upload.add(geometry.buffers->low_positions, data.low_positions);
+    if (!data.low_positions.empty()) arrival.upload.add(geometry.buffers->low_positions, data.low_positions);
 }
 
 void GpuScene::create_edges(Arrival& arrival) {
@@ -311,11 +218,8 @@ void GpuScene::finish(Arrival& arrival) {
                 geometries_[at] = {};
             break;
         case Kind::edges:
-            if (arrival.edges.indices) {
-                const GpuGeometry& uploaded = geometry(index);
-                arrival.edges.vertex_array =
-                    vertex_array_of(*uploaded.buffers, uploaded.first_vertex, arrival.edges.indices);
-            }
+            if (arrival.edges.indices)
+                arrival.edges.vertex_array = vertex_array_of(geometry(index), arrival.edges.indices);
             edges_[at] = std::move(arrival.edges);
             break;
         case Kind::texture:
@@ -435,7 +339,7 @@ GpuTriangles GpuScene::upload_sorted(const plan::DrawItem& item) {
     GpuTriangles result{item.geometry, item.order, {}, {}, static_cast<GLsizei>(triangles.size() * 3)};
     result.indices =
         make_buffer("ordered triangles", triangles.data(), triangles.size() * sizeof(glm::uvec3));
-    result.vertex_array = vertex_array_of(*uploaded.buffers, uploaded.first_vertex, result.indices);
+    result.vertex_array = vertex_array_of(uploaded, result.indices);
     ++uploads_;
     return result;
 }

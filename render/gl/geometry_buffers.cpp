@@ -1,0 +1,110 @@
+#include "gl/geometry_buffers.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "gl/vertex_arrays.hpp"
+
+namespace vrut::gl {
+
+namespace {
+
+void add_attribute(const GlVertexArray& vertex_array, GLuint location, GLuint binding, GLint components,
+                   std::size_t offset) {
+    const GLuint array = vertex_array.get();
+    glEnableVertexArrayAttrib(array, location);
+    glVertexArrayAttribFormat(array, location, components, GL_FLOAT, GL_FALSE, static_cast<GLuint>(offset));
+    glVertexArrayAttribBinding(array, location, binding);
+}
+
+/// Until a draw binds its instances, a buffer that no program reads stands in their place, since each
+/// attribute must have one.
+void add_instances(const GlVertexArray& vertex_array, const GlBuffer& placeholder) {
+    const GLuint array = vertex_array.get();
+    glVertexArrayVertexBuffer(array, kInstanceBinding, placeholder.get(), 0, 0);
+    glVertexArrayBindingDivisor(array, kInstanceBinding, 1);
+    const auto add = [&](GLuint location, GLint components, std::size_t offset) {
+        add_attribute(vertex_array, location, kInstanceBinding, components, offset);
+    };
+    for (GLuint column = 0; column < 4; ++column)
+        add(3 + column, 4, offsetof(GpuInstance, view_from_local) + column * sizeof(glm::vec4));
+    for (GLuint column = 0; column < 3; ++column)
+        add(7 + column, 3, offsetof(GpuInstance, normal_matrix) + column * sizeof(glm::vec4));
+    add(10, 4, offsetof(GpuInstance, base_sides));
+    add(11, 4, offsetof(GpuInstance, diffuse_reflectivity));
+    add(12, 4, offsetof(GpuInstance, specular_shininess));
+    add(13, 4, offsetof(GpuInstance, clip_plane));
+}
+
+/// Of vertices from `first_vertex` on.
+GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex, const GlBuffer& indices) {
+    GlVertexArray result = make_vertex_array();
+    const GLuint array = result.get();
+    const auto bind = [&](GLuint binding, const GlBuffer& buffer, GLsizei stride) {
+        glVertexArrayVertexBuffer(array, binding, buffer.get(), GLintptr{first_vertex} * stride, stride);
+    };
+    glVertexArrayElementBuffer(array, indices.get());
+    bind(0, buffers.vertices, sizeof(GpuVertex));
+    add_attribute(result, 0, 0, 3, offsetof(GpuVertex, position));
+    add_attribute(result, 1, 0, 3, offsetof(GpuVertex, normal));
+    if (buffers.texcoords) {
+        bind(1, buffers.texcoords, sizeof(glm::vec2));
+        add_attribute(result, 2, 1, 2, 0);
+    }
+    if (buffers.low_positions) {
+        bind(2, buffers.low_positions, sizeof(glm::vec3));
+        add_attribute(result, 3, 2, 3, 0);
+    }
+    return result;
+}
+
+std::shared_ptr<const GeometryBuffers> make_geometry_buffers(const GeometrySizes& sizes, bool shared) {
+    const auto buffers = std::make_shared<GeometryBuffers>();
+    buffers->shared = shared;
+    buffers->vertices = make_dynamic_buffer("vertices", sizes.vertices * sizeof(GpuVertex));
+    buffers->indices = make_dynamic_buffer("triangles", sizes.triangles * sizeof(glm::uvec3));
+    if (sizes.texcoords)
+        buffers->texcoords = make_dynamic_buffer("texture coordinates", sizes.vertices * sizeof(glm::vec2));
+    if (sizes.low_positions)
+        buffers->low_positions =
+            make_dynamic_buffer("low parts of positions", sizes.vertices * sizeof(glm::vec3));
+    buffers->vertex_array = vertex_array_of(*buffers, 0, buffers->indices);
+    if (shared) add_instances(buffers->vertex_array, buffers->vertices);
+    return buffers;
+}
+
+}  // namespace
+
+GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices) {
+    return vertex_array_of(*geometry.buffers, geometry.first_vertex, indices);
+}
+
+GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
+    GpuGeometry geometry;
+    geometry.index_count = static_cast<GLsizei>(sizes.triangles * 3);
+    const bool is_small = sizes.triangles <= plan::kMostTrianglesOfSmall &&
+                          sizes.vertices <= SharedBuffers::kMostVerticesOfSmall && !sizes.low_positions;
+    if (is_small)
+        share(sizes, geometry);
+    else
+        geometry.buffers = make_geometry_buffers(sizes, false);
+    return geometry;
+}
+
+void GeometryBufferPool::share(const GeometrySizes& sizes, GpuGeometry& geometry) {
+    SharedBuffers& shared = shared_[sizes.texcoords ? 1 : 0];
+    const std::size_t indices = sizes.triangles * 3;
+    geometry.buffers = shared.buffers.lock();
+    if (!geometry.buffers || shared.vertices + sizes.vertices > shared.capacity ||
+        shared.indices + indices > 3 * shared.capacity) {
+        const std::size_t capacity = std::min(2 * shared.capacity, SharedBuffers::kMostVertices);
+        geometry.buffers = make_geometry_buffers({capacity, capacity, sizes.texcoords}, true);
+        shared = {geometry.buffers, capacity};
+    }
+    geometry.first_vertex = static_cast<GLint>(shared.vertices);
+    geometry.first_index = static_cast<GLuint>(shared.indices);
+    shared.vertices += sizes.vertices;
+    shared.indices += indices;
+}
+
+}  // namespace vrut::gl

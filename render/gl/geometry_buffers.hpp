@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <glm/glm.hpp>
+#include <memory>
+
+#include "gl/handles.hpp"
+#include "plan/draw_groups.hpp"
+
+namespace vrut::gl {
+
+/// The attributes of one instance. Programs with SurfaceVariant::instanced read them instead of uniforms.
+struct GpuInstance {
+    glm::mat4 view_from_local;
+    glm::mat3x4 normal_matrix;
+    glm::vec4 base_sides;            ///< w: 1 if two-sided, else 0
+    glm::vec4 diffuse_reflectivity;  ///< w: the reflectivity
+    glm::vec4 specular_shininess;    ///< w: the shininess
+    glm::vec4 clip_plane;            ///< in local space
+};
+/// The vertex buffer binding to which a draw binds its instances.
+inline constexpr GLuint kInstanceBinding = 3;
+
+/// The buffers of one large geometry, or of many small ones. One draw call can draw all that share buffers.
+struct GeometryBuffers {
+    GlBuffer vertices, indices;
+    /// One for each vertex. Whole numbers are subtracted, so that they lie around 0. Null: the geometries
+    /// have none.
+    GlBuffer texcoords;
+    /// The rest of each position that float rounds away. Null: positions are single floats.
+    GlBuffer low_positions;
+    GlVertexArray vertex_array;
+    bool shared = false;
+};
+
+/// A geometry on the GPU. Positions are floats relative to `origin` (in the geometry's own space): a scene
+/// far from the world's origin keeps its precision.
+struct GpuGeometry {
+    std::shared_ptr<const GeometryBuffers> buffers;
+    GLuint first_index = 0;
+    GLint first_vertex = 0;  ///< added to each index
+    GLsizei index_count = 0;
+    glm::dvec3 origin{0};
+
+    /// Scene::needs_double_single()
+    bool is_double_single() const { return bool(buffers->low_positions); }
+};
+
+struct GeometrySizes {
+    std::size_t vertices = 0, triangles = 0;
+    bool texcoords = false, low_positions = false;
+};
+
+/// Returns a vertex array of a geometry's vertices with these indices.
+GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices);
+
+/// Allocates the buffers of geometries. Small geometries share buffers, which are freed with the last of
+/// them.
+class GeometryBufferPool {
+public:
+    /// Returns a geometry of these sizes, without contents. Throws OutOfMemory.
+    GpuGeometry allocate(const GeometrySizes& sizes);
+
+private:
+    /// Buffers that are being filled.
+    struct SharedBuffers {
+        static constexpr std::size_t kMostVerticesOfSmall = 3 * plan::kMostTrianglesOfSmall,
+                                     kMostVertices = std::size_t{1} << 15;
+        std::weak_ptr<const GeometryBuffers> buffers;
+        /// In vertices. The next buffers hold twice as many, up to kMostVertices. There are three indices for
+        /// each vertex.
+        std::size_t capacity = kMostVerticesOfSmall;
+        std::size_t vertices = 0, indices = 0;  ///< in use, from the beginning
+    };
+    void share(const GeometrySizes& sizes, GpuGeometry& geometry);
+
+    std::array<SharedBuffers, 2> shared_;  // without and with texture coordinates
+};
+
+}  // namespace vrut::gl
