@@ -204,7 +204,7 @@ std::shared_ptr<const nlohmann::json> document_of(const State& state);
 /// `starting` with what clients may change, and who steers, from a whole document (StateDocument::json()).
 tl::expected<State, Error> restored(const State& starting, const nlohmann::json& document);
 
-/// Whether the patch names no other sections than these.
+/// Returns true if the patch names no other sections than these.
 bool names_only(const nlohmann::json& patch, std::initializer_list<std::string_view> sections);
 
 /// Which members of `camera` a patch names; null names all.

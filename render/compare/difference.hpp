@@ -20,7 +20,7 @@ struct Difference {
     int maximum() const;
     /// Root of the mean square over channels and pixels; 0 without pixels.
     double rms() const;
-    /// Peak signal-to-noise ratio in dB, 20 log10(255 / rms()); infinite for equal pictures.
+    /// Peak signal-to-noise ratio in dB, 20 log10(255 / rms()); infinite for equal images.
     double psnr() const;
     /// Part of the pixels, 0 to 1, with a channel off by more than `steps`.
     double share_above(int steps) const;

@@ -83,9 +83,9 @@ FeatureFilter feature_filter() {
     return filter;
 }
 
-// --- one channel of some rows of a picture
+// --- one channel of some rows of an image
 
-/// Rows of a picture and, above and below them, as many as a filter reaches beyond.
+/// Rows of an image and, above and below them, as many as a filter reaches beyond.
 struct Channel {
     std::size_t width, height;
     std::vector<float> values = std::vector<float>(width * height);
@@ -94,7 +94,7 @@ struct Channel {
     const float* row(std::size_t y) const { return values.data() + y * width; }
 };
 
-/// What lies beyond the picture's left and right edges is as these edges are.
+/// What lies beyond the image's left and right edges is as these edges are.
 Channel filter_across(const Channel& in, const Kernel& kernel) {
     const std::size_t radius = kernel.size() / 2;
     Channel out{in.width, in.height};
@@ -178,15 +178,15 @@ struct PerceivedRows {
 
 class Viewer {
 public:
-    /// Rows from `first` on. The rows beyond the picture's edges are as these edges are.
+    /// Rows from `first` on. The rows beyond the image's edges are as these edges are.
     PerceivedRows see(const scene::Image& image, std::size_t first, std::size_t rows) const {
         const std::array<Channel, 3> opponent = opponent_channels(image, first, rows);
-        PerceivedRows sight{filtered_colors(opponent), {0, 0}, {0, 0}};
+        PerceivedRows perceived{filtered_colors(opponent), {0, 0}, {0, 0}};
         Channel grey = opponent[0];
         for (float& value : grey.values) value = (value + 16) / 116;
-        sight.edges = gradient(grey, features_.slope);
-        sight.points = gradient(grey, features_.bend);
-        return sight;
+        perceived.edges = gradient(grey, features_.slope);
+        perceived.points = gradient(grey, features_.bend);
+        return perceived;
     }
 
 private:
@@ -252,8 +252,9 @@ private:
 
 /// Colour difference, raised where features differ (sections 4.2 and 4.3).
 double flip_error(const PerceivedRows& a, const PerceivedRows& b, std::size_t i) {
-    const auto color = [&](const PerceivedRows& sight) {
-        return glm::dvec3(sight.color[0].values[i], sight.color[1].values[i], sight.color[2].values[i]);
+    const auto color = [&](const PerceivedRows& perceived) {
+        return glm::dvec3(perceived.color[0].values[i], perceived.color[1].values[i],
+                          perceived.color[2].values[i]);
     };
     const double color_error = error_of_distance(distance(color(a), color(b)));
     const double edges = std::abs(a.edges.values[i] - b.edges.values[i]);

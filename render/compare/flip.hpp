@@ -6,13 +6,13 @@
 
 namespace vrut::compare {
 
-/// The difference that eyes see when two pictures alternate: LDR-FLIP as published by Andersson et al.,
+/// The difference that eyes see when two images alternate: LDR-FLIP as published by Andersson et al.,
 /// "FLIP: A Difference Evaluator for Alternating Images", Proc. ACM Comput. Graph. Interact. Tech. 3(2),
-/// 2020, with the errata of its reference implementation (NVlabs, version 1.6). Pictures are taken as sRGB,
+/// 2020, with the errata of its reference implementation (NVlabs, version 1.6). Images are taken as sRGB,
 /// alpha is not compared; the viewer sees them on a screen 0.7 m wide with 3840 pixels, from 0.7 m: 67 pixels
 /// per degree.
 
-/// For each pixel, as the pictures' rows go, 0 (no difference) to 1. Symmetric in its pictures. Throws
+/// For each pixel, as the images' rows go, 0 (no difference) to 1. Symmetric in its images. Throws
 /// std::invalid_argument where sizes differ.
 std::vector<float> flip(const scene::Image& a, const scene::Image& b);
 

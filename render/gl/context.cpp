@@ -116,7 +116,7 @@ EGLContext create_context(EGLDisplay display, bool debug) {
     return context;
 }
 
-/// Draws a triangle over the left half of a small picture and looks at both halves.
+/// Draws a triangle over the left half of a small image and looks at both halves.
 void check_drawing() {
     constexpr int kSize = 16;
     Framebuffer framebuffer(kSize, kSize);

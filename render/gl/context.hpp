@@ -14,7 +14,7 @@ struct GlOptions {
 
 /// An OpenGL 4.5 core context without any window, current on the thread that made it until it is destroyed
 /// there. Devices are tried in EGL's order, those that draw in software after the others, Mesa's surfaceless
-/// platform last; each must draw a picture and read it back right.
+/// platform last; each must draw an image and read it back right.
 class GlContext {
 public:
     /// Throws std::runtime_error with one sentence where no device passes.

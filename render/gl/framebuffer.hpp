@@ -8,7 +8,7 @@
 
 namespace vrut::gl {
 
-/// A colour target (RGBA8; `deep`: RGBA16, in which many layers can be blended before rounding shows) with
+/// A colour target (RGBA8; `rgba16`: RGBA16, in which many layers can be blended before rounding shows) with
 /// depth (32-bit float).
 class Framebuffer {
 public:

@@ -10,7 +10,7 @@
 
 namespace vrut::gl {
 
-/// What fills a level of a texture, or of one of a cube map's faces.
+/// The image of one mip level, of a texture or of one face of a cube map.
 struct TextureImage {
     const scene::Image* image = nullptr;
     GLint level = 0;
@@ -20,19 +20,19 @@ struct TextureImage {
 /// A texture in memory, with all its mip levels.
 struct TextureData {
     std::vector<TextureImage> images;
-    std::deque<scene::Image> made;  ///< of the images those that are not the scene's
+    std::deque<scene::Image> made;  ///< owns the images that the scene does not own
 };
 
-/// An image and its mip levels, down from the first with no side longer than `largest`. No GL; the image must
-/// live as long.
+/// Returns an image and its mip levels, from the first one whose sides are at most `largest`. The image must
+/// outlive the result. Calls no GL.
 TextureData texture_data(const scene::Image& image, int largest);
 
-/// A panorama of six squares of one size, px nx py ny pz nz, each what a camera with 90° at the world's
-/// origin sees: px nx pz nz with +y up, py with +z up, ny with -z up. GL's cubes are left-handed: a world
-/// direction (x, y, z) is looked up as (x, y, -z). Otherwise as texture_data().
+/// Returns the same of an environment map: six squares of one size in the order px nx py ny pz nz. Each is
+/// what a camera with a field of view of 90° at the world's origin sees: px nx pz nz with +y up, py with +z
+/// up, ny with -z up. GL's cube maps are left-handed: (x, y, -z) looks up the world direction (x, y, z).
 TextureData cube_map_data(const std::array<const scene::Image*, 6>& images, int largest);
 
-/// For such data, a texture or a cube map without contents. Throws OutOfMemory.
+/// Returns a texture or a cube map for such data, without contents. Throws OutOfMemory.
 GlTexture make_texture_for(const TextureData& data);
 
 }  // namespace vrut::gl

@@ -77,7 +77,7 @@ GlBuffer make_dynamic_buffer(const char* what, std::size_t bytes);
 GlBuffer make_readback_buffer(const char* what, std::size_t bytes);
 GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
-/// Two dimensions, one level, read texel by texel: a picture's own.
+/// Two dimensions, one level, read texel by texel: an image's own.
 GlTexture make_texture(GLenum format, int width, int height);
 /// RGBA8 with that many levels, read bilinearly from one of them, repeated in both directions; `target` is
 /// GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP.

@@ -16,11 +16,11 @@
 
 namespace vrut::gl {
 
-/// Names what a scene has on the GPU.
+/// Identifies a resource of a scene on the GPU.
 struct ResourceKey {
     enum class Kind { geometry, level, edges, texture, cube_map };
     Kind kind = Kind::geometry;
-    /// The geometry, and the number of its level; or the texture; or the six of a cube map.
+    /// The geometry and the number of its level; or the texture; or the six textures of a cube map.
     std::array<scene::Index, 6> indices{};
 
     bool operator<(const ResourceKey& other) const {
@@ -28,8 +28,8 @@ struct ResourceKey {
     }
 };
 
-/// A resource in memory, as the GPU takes it: of a geometry or a level its arrays, the low parts of its
-/// positions and its texture coordinates, or the others.
+/// A resource in memory, in the layout of the GPU. A geometry or a level fills the first three members,
+/// another kind of resource one of the others.
 struct PreparedData {
     VertexArrays arrays;
     std::vector<glm::vec3> low_positions;
@@ -40,22 +40,22 @@ struct PreparedData {
     std::size_t bytes() const;
 };
 
-/// Whether a picture waits for a resource, or is drawn without it.
+/// An image waits for a resource that it needs now. It is drawn without one that is needed soon.
 enum class Need { now, soon };
 
-/// Makes the data of resources on two threads of its own, one for each Need, in the order in which they are
-/// asked for. The threads pause while kMostBytes of data wait to be taken.
+/// Prepares the data of resources on two threads, one for each Need, in the order of the requests. The
+/// threads pause while kMostBytes of data wait to be taken.
 class Preparation {
 public:
     static constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
     Preparation();
-    /// Drops what is not begun, and waits for nothing: a thread that makes something ends by itself after it.
+    /// Drops what is not begun, and does not wait. A thread ends after what it is making.
     ~Preparation();
     Preparation(const Preparation&) = delete;
     Preparation& operator=(const Preparation&) = delete;
 
-    /// `make` owns all that it uses. Where no thread can be had, it is called at once.
+    /// `make` owns all that it uses. It is called at once if no thread can be started.
     void post(const ResourceKey& key, Need need, std::function<PreparedData()> make);
 
     struct Result {
@@ -63,9 +63,9 @@ public:
         PreparedData data;
         std::exception_ptr error;  ///< what `make` threw; null: nothing
     };
-    /// The next that is made; none if there is none yet.
+    /// Returns the next result, or none if there is none yet.
     std::optional<Result> take();
-    /// Until there is one to be taken, or `patience` has passed.
+    /// Returns once there is a result, or after `patience`.
     void wait(std::chrono::milliseconds patience) const;
 
 private:

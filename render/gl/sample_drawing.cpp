@@ -258,7 +258,7 @@ bool SampleDrawing::draw_per_pixel_lists(const plan::DrawCommand& command, StepC
     if (!pass.is_drawing())
         pass.begin(command.items, *step.scene, camera_.clip_from_view, full_viewport().high,
                    command.mirror ? command.mirror->box : full_viewport());
-    if (!pass.is_drawing()) return true;  // outside the picture
+    if (!pass.is_drawing()) return true;  // outside the image
     const std::span<const plan::DrawItem> items = next_batch(command, pass.box(), step);
     pass.collect(items, item_, *step.scene, step.passes.programs, step.stats);
     step.bound.reset();

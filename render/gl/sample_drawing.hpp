@@ -20,7 +20,7 @@
 
 namespace vrut::gl {
 
-/// Passes that hold nothing of a sample that is not whole.
+/// Passes without state between the steps of a sample.
 struct Passes {
     explicit Passes(Programs& compiled)
         : programs(compiled), background(compiled), opaque(compiled), edges(compiled), markers(compiled) {}
@@ -32,7 +32,7 @@ struct Passes {
     MarkerPass markers;
 };
 
-/// What holds a sample until it is whole.
+/// Targets and passes that hold a sample between its steps.
 struct SampleTargets {
     explicit SampleTargets(Programs& programs)
         : mirrors(programs), per_pixel_lists(programs), outline(programs) {}
@@ -40,41 +40,40 @@ struct SampleTargets {
     MirrorPass mirrors;
     PerPixelListsPass per_pixel_lists;
     OutlinePass outline;
-    int images_without_lists = 0;  ///< since the last with them
+    int images_without_lists = 0;  ///< since the last one with per-pixel lists
 };
 
-/// The next sample of a rendering, which may take several steps. Others may be drawn between them.
+/// Draws the next sample of a job, in several steps if need be. Other samples may be drawn between them.
 class SampleDrawing {
 public:
-    /// `scene` is the rendering's; null where it has none.
+    /// `scene` is the job's; null if it has none.
     SampleDrawing(const plan::RenderJob& job, std::shared_ptr<GpuScene> scene,
                   std::unique_ptr<SampleTargets> targets);
 
     bool belongs_to(const plan::RenderJob& job) const { return planner_.lock() == job.planner; }
-    /// Whether nobody has the rendering any more.
+    /// Returns true if the job no longer exists.
     bool abandoned() const { return planner_.expired(); }
-    /// Kept until the sample is drawn, though others are drawn between its steps.
+    /// It stays on the GPU until the sample is drawn, even if samples of another scene are drawn between.
     const std::shared_ptr<GpuScene>& scene() const { return scene_; }
 
-    /// Draws on, until `work` is spent. True if the sample is drawn: then the picture's target holds it.
-    /// Until all that it takes is on the GPU it draws nothing, but uploads as much as
-    /// DrawBudget::kMostUpload.
+    /// Draws until `budget` is spent. Returns true if the sample is complete: image_target() then holds it.
+    /// While a resource that it needs is not resident, it uploads up to DrawBudget::kMostUpload instead.
     bool draw(plan::RenderJob& job, Passes& passes, plan::DrawBudget& budget);
 
     Framebuffer& image_target() { return *targets_->image_target; }
-    /// For another sample, whether this one is drawn or not.
+    /// Returns the targets for another sample, whether this one is complete or not.
     std::unique_ptr<SampleTargets> release() {
         targets_->per_pixel_lists.abandon();
         return std::move(targets_);
     }
 
 private:
-    struct StepContext;  ///< what drawing is given, and what is bound meanwhile
+    struct StepContext;  ///< the arguments of a step, and the target that is bound
     void use_target(const plan::View& view, bool rgba16);
     bool request_all(const plan::RenderJob& job) const;
     bool upload(const plan::RenderJob& job, plan::DrawBudget& budget) const;
     void bind_target(const plan::MirrorItem* mirror, StepContext& step);
-    /// True if the command is done.
+    /// Returns true if the command is done.
     bool execute_if_seen(const plan::DrawCommand& command, StepContext& step);
     bool execute(const plan::DrawCommand& command, StepContext& step);
     void draw_once(const plan::DrawCommand& command, StepContext& step);
@@ -85,8 +84,8 @@ private:
     void find_mirrors(const plan::DrawCommand& command, StepContext& step);
     void open(const plan::MirrorItem& mirror, StepContext& step);
     std::size_t index_of(const plan::MirrorItem& mirror) const;
-    /// True if the mirror is known not to be seen. What was drawn of it before that was known, which the GPU
-    /// has discarded, is taken out of the counts.
+    /// Returns true if the mirror is known to be hidden. Draws of it that the GPU has discarded by then are
+    /// subtracted from the statistics.
     bool is_hidden(const plan::MirrorItem& mirror, StepContext& step);
     std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const math::PixelBox& box,
                                                StepContext& step) const;

@@ -10,7 +10,7 @@
 
 namespace vrut::gl {
 
-/// Copies from memory to buffers and textures, piece by piece. Both ends must live until it is done.
+/// Copies from memory to buffers and textures, piece by piece. Source and destination must outlive it.
 class Upload {
 public:
     /// The first element becomes number `first` of the buffer.
@@ -20,7 +20,7 @@ public:
         parts_.push_back({buffer.get(), bytes.data(), 1, bytes.size(), first * sizeof(Element), {}});
     }
     void add(const GlTexture& texture, const TextureImage& image);
-    /// Goes on until `budget` is spent: that, and a piece of 256 KiB or a row of texels more. True once all
+    /// Copies until `budget` is spent; it may exceed it by 256 KiB or a row of texels. Returns true when all
     /// is copied.
     bool step(plan::DrawBudget& budget);
 

@@ -14,25 +14,26 @@ struct GpuVertex {
 
 struct VertexArrays {
     std::vector<GpuVertex> vertices;
-    std::vector<unsigned> corners;      ///< for each vertex the geometry's of which it is made
+    std::vector<unsigned> corners;      ///< for each vertex its index in the geometry
     std::vector<glm::uvec3> triangles;  ///< empty: the geometry's
 };
 
-/// Corners whose normal is missing or zero get the face normal and a vertex of their own, so that the shader
-/// needs no special case. Most geometries have none of them and keep their index buffer.
+/// Returns positions relative to `origin`. A corner whose normal is missing or zero becomes a vertex of its
+/// own with the face normal: the shader needs no special case. A geometry without such corners keeps its
+/// indices.
 VertexArrays make_arrays(const scene::Geometry& geometry, const glm::dvec3& origin);
 
 const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const scene::Geometry& geometry);
 
-/// Subtracts an integer offset, which repeating textures do not show, so that float keeps more digits of the
-/// interpolated coordinates.
+/// Returns texture coordinates minus an integer offset, which a repeating texture does not show: float keeps
+/// more digits of the interpolated coordinates.
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry);
 
-/// What rounding leaves of each vertex's position relative to `origin`.
+/// Returns for each vertex its position relative to `origin` minus that position as float.
 std::vector<glm::vec3> low_positions_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry,
                                         const glm::dvec3& origin);
 
-/// Pairs of vertices. An edge takes the normals of the first triangle that it belongs to.
+/// Returns pairs of vertices. An edge has the normals of its first triangle.
 std::vector<glm::uvec2> unique_edges(const scene::Geometry& geometry,
                                      const std::vector<glm::uvec3>& vertices);
 

@@ -18,7 +18,7 @@ namespace {
 
 using Result = tl::expected<scene::Image, std::string>;
 
-// What the largest picture takes uncompressed: 16 bits RGBA.
+// What the largest image takes uncompressed: 16 bits RGBA.
 constexpr std::uintmax_t kMaxFileBytes = kMaxImagePixels * 8 + (std::uintmax_t{1} << 20);
 
 std::optional<std::string> size_fault(std::uint32_t width, std::uint32_t height, std::uint64_t max_pixels) {
@@ -121,7 +121,7 @@ Result decode_jpeg(std::string_view bytes, std::uint64_t max_pixels) {
         return tl::unexpected(*std::move(why));
     scene::Image image;
     image.resize(width, height);
-    // The limit is for progressive files: each of thousands of scans costs as much as the whole picture.
+    // The limit is for progressive files: each of thousands of scans costs as much as the whole image.
     constexpr int kFlags = TJFLAG_BOTTOMUP | TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
     if (tjDecompress2(decoder.get(), data, bytes.size(), image.rgba.data(), width, 0, height, TJPF_RGBA,
                       kFlags) != 0)

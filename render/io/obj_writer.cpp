@@ -46,9 +46,9 @@ public:
         flush();
     }
 
-    /// `picture` is empty for none; with holes, it is that of the opacity as well.
-    void write_material(const scene::Material& material, const std::string& name, const std::string& picture,
-                        bool holes) {
+    /// `texture_file` is empty for none; with holes, it is that of the opacity as well.
+    void write_material(const scene::Material& material, const std::string& name,
+                        const std::string& texture_file, bool holes) {
         text("newmtl ").text(name).text("\nillum 2\n");
         vector("Ka", glm::dvec3(material.ambient));
         vector("Kd", glm::dvec3(material.diffuse));
@@ -56,8 +56,8 @@ public:
         vector("Ke", glm::dvec3(material.emission));
         vector("Ns", glm::dvec1(material.shininess));
         vector("d", glm::dvec1(material.diffuse.a));
-        if (!picture.empty()) text("map_Kd ").text(picture).text("\n");
-        if (holes) text("map_d ").text(picture).text("\n");
+        if (!texture_file.empty()) text("map_Kd ").text(texture_file).text("\n");
+        if (holes) text("map_d ").text(texture_file).text("\n");
         flush();
     }
 
@@ -186,7 +186,7 @@ void write_obj(const scene::Scene& scene, const std::filesystem::path& path, bas
     report_lost_tree(scene, warnings);
     report_lost_materials(scene, materials, warnings);
     report_lost_geometry(shapes, warnings);
-    const auto pictures = write_textures(scene, path, files);
+    const auto texture_files = write_textures(scene, path, files);
     const std::string library = plain_name(path.stem().string()) + ".mtl";
     files.write(path.parent_path() / library, [&](std::ostream& out) {
         for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -195,7 +195,7 @@ void write_obj(const scene::Scene& scene, const std::filesystem::path& path, bas
                 scene.material(i + 1 < materials.size() ? static_cast<scene::Index>(i) : scene::kNone);
             const auto texture = static_cast<std::size_t>(material.texture);
             const bool pictured = material.texture != scene::kNone;
-            ObjWriter(out).write_material(material, materials[i], pictured ? pictures[texture] : "",
+            ObjWriter(out).write_material(material, materials[i], pictured ? texture_files[texture] : "",
                                           pictured && scene.textures()[texture].transparent);
         }
     });

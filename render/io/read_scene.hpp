@@ -24,16 +24,16 @@ ReadResult build_scene(scene::SceneParts parts, const std::string& file);
 /// The file's ending with its dot, a to z in lower case.
 std::string lower_extension(const std::filesystem::path& path);
 
-/// Whether the file's ending is that of a known format.
+/// Returns true if the file's ending is that of a known format.
 bool has_reader(const std::filesystem::path& path);
 
-/// Whether a foreign library reads this ending: one that may crash, or take whatever memory there is.
+/// Returns true if a foreign library reads this ending: one that may crash, or take whatever memory there is.
 bool has_foreign_reader(const std::filesystem::path& path);
 
 /// What read_scene() reads, before Scene::build.
 PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-/// Reads a scene file in any known format, chosen by the file's ending, and the pictures that it names
+/// Reads a scene file in any known format, chosen by the file's ending, and the images that it names
 /// (read_textures()).
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 

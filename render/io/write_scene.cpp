@@ -16,8 +16,8 @@ namespace {
 
 void write_vrut_file(const scene::Scene& scene, const std::filesystem::path& path, base::OutputFiles& files,
                      ConversionWarnings&, const WriteProgress&) {
-    const auto pictures = write_textures(scene, path, files);
-    files.write(path, [&](std::ostream& out) { write_vrut_text(scene, out, {}, pictures); });
+    const auto texture_files = write_textures(scene, path, files);
+    files.write(path, [&](std::ostream& out) { write_vrut_text(scene, out, {}, texture_files); });
 }
 
 struct WriterEntry {

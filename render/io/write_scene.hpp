@@ -17,12 +17,12 @@ using WriteProgress = std::function<void(double)>;
 /// nothing was written.
 using WriteResult = tl::expected<std::vector<std::string>, std::string>;
 
-/// Whether the file's ending is that of a format that can be written.
+/// Returns true if the file's ending is that of a format that can be written.
 bool has_writer(const std::filesystem::path& path);
 /// These endings: ".vrut, …".
 std::string written_extensions();
 
-/// Writes a scene in the format that the file's ending names, and its pictures: inside a GLB file, elsewhere
+/// Writes a scene in the format that the file's ending names, and its images: inside a GLB file, elsewhere
 /// as PNG files in the folder STEM.textures beside it. Files get their names when all are whole: a failure
 /// leaves what was there before; so does one of `kept` in the place of a file, such as what the scene is read
 /// from.

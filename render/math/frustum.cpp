@@ -8,7 +8,7 @@ constexpr double kFloatError = 1e-6;
 }  // namespace
 
 Frustum frustum_of(const Projection& projection) {
-    // Planes through the eye and a side of the picture at z = -1.
+    // Planes through the eye and a side of the image at z = -1.
     return {{glm::normalize(glm::dvec3(1, 0, projection.left)),
              glm::normalize(glm::dvec3(-1, 0, -projection.right)),
              glm::normalize(glm::dvec3(0, 1, projection.bottom)),

@@ -14,7 +14,7 @@ struct PixelBox {
 };
 PixelBox intersection(const PixelBox& a, const PixelBox& b);
 
-/// All that something within `bounds` can cover of a picture, whose clip space is a reversed one; what lies
+/// All that something within `bounds` can cover of an image, whose clip space is a reversed one; what lies
 /// before the near plane counts for nothing.
 PixelBox pixel_box(const Bounds& bounds, const glm::dmat4& clip_from_node, const glm::ivec2& viewport);
 

@@ -80,7 +80,7 @@ SurfaceDeviation::SurfaceDeviation(std::span<const glm::vec3> positions,
         }
 }
 
-/// Whether a triangle runs from one vertex to the other.
+/// Returns true if a triangle runs from one vertex to the other.
 bool SurfaceDeviation::has_edge(const MeasuredSurface& surface, unsigned from, unsigned to) {
     return std::ranges::any_of(surface.adjacency.of(from), [&](unsigned number) {
         const glm::uvec3& t = surface.triangles[number];

@@ -48,14 +48,15 @@ Triangle triangle_of(std::span<const glm::dvec3> positions, const glm::uvec3& t)
     return triangle;
 }
 
-/// Whether a segment goes from one side of a triangle to the other. Both ends in its plane are on one side.
+/// Returns true if a segment goes from one side of a triangle to the other. Both ends in its plane are on one
+/// side.
 bool pierces(const glm::dvec3& p, const glm::dvec3& q, const Triangle& triangle, double touching) {
     const double at_p = triangle.distance(p), at_q = triangle.distance(q);
     if ((at_p >= -touching) == (at_q >= -touching)) return false;
     return triangle.holds(glm::mix(p, q, std::clamp(at_p / (at_p - at_q), 0.0, 1.0)), touching);
 }
 
-/// Whether two triangles in one plane share more than their border (separating axes).
+/// Returns true if two triangles in one plane share more than their border (separating axes).
 bool overlap_in_plane(const Triangle& a, const Triangle& b, double touching) {
     for (const glm::dvec3& corner : b.corners)
         if (std::abs(a.distance(corner)) > touching) return false;

@@ -18,7 +18,7 @@ constexpr float kCoarsest = 0.1F;    ///< quadric error, of the extent
 
 // Between the points that are measured the surface may lie further away than at any of them.
 constexpr float kBetweenSamples = 1.25F;
-// Of the radius: a fiftieth of a pixel where the geometry fills a picture of 4000, and beyond float's
+// Of the radius: a fiftieth of a pixel where the geometry fills an image of 4000, and beyond float's
 // rounding.
 constexpr float kNegligible = 1e-5F;
 

@@ -169,7 +169,7 @@ scene::Camera Gestures::dragged(const NavigationContext& context) const {
     if (touching.size() == 1) return rotate_by(start_, touching[0]->now - touching[0]->start, context);
     if (touching.size() == 2) {
         const Pressed &a = *touching[0], &b = *touching[1];
-        // The pan comes second, so that it is measured in the picture as the fingers leave it.
+        // The pan comes second, so that it is measured in the image as the fingers leave it.
         const scene::Camera pinched = zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), context);
         return pan_by(pinched, (a.now + b.now - a.start - b.start) * 0.5, context);
     }

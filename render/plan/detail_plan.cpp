@@ -27,7 +27,7 @@ double max_scale(const glm::dmat3& m) {
 
 class LevelSelector {
 public:
-    /// Levels that are made meanwhile wait for the next picture: all of a geometry's items see the same.
+    /// Levels that are made meanwhile wait for the next image: all of a geometry's items see the same.
     LevelSelector(FramePlan& plan, const View& view, const IsResident& is_resident)
         : plan_(plan), view_(view), scene_(*view.scene->scene), is_resident_(is_resident) {
         for (std::size_t i = 0; i < scene_.geometries().size(); ++i)
@@ -103,7 +103,7 @@ private:
     std::vector<std::span<const mesh::DetailLevel>> levels_;
 };
 
-/// Whether nothing in the box is cut by the near plane or reaches around the eye.
+/// Returns true if nothing in the box is cut by the near plane or reaches around the eye.
 bool is_beyond_near_plane(const math::Bounds& in_view, const View& view) {
     const double near = near_distance(view) * (1 + kNearMargin);
     if (-in_view.max.z > near) return true;

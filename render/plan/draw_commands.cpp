@@ -13,7 +13,7 @@ void add(Commands& commands, Kind kind, const MirrorItem* mirror, std::span<cons
 
 void add_draw_lists(Commands& commands, const DrawLists& lists, const MirrorItem* mirror) {
     add(commands, Kind::opaque, mirror, lists.opaque);
-    // What a mirror shows costs as much as the picture: it is drawn only where the mirror can be seen.
+    // What a mirror shows costs as much as the image: it is drawn only where the mirror can be seen.
     if (!lists.mirrors.empty()) commands.push_back({Kind::find_mirrors, mirror, {}, lists.mirrors});
     for (const MirrorItem& within : lists.mirrors) {
         commands.push_back({Kind::open_mirror, &within});

@@ -32,7 +32,7 @@ bool is_small(const DrawItem& item, const scene::Scene& scene) {
     return (item.level ? item.level->triangles : geometry.triangles).size() <= kMostTrianglesOfSmall;
 }
 
-/// Whether they are drawn faster one after the other.
+/// Returns true if they are drawn faster one after the other.
 bool belong_together(const DrawItem& a, const DrawItem& b, const scene::Scene& scene) {
     const bool small = is_small(a, scene);
     return small == is_small(b, scene) && (small || a.material == b.material) && share_draw(a, b);

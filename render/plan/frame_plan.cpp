@@ -103,7 +103,7 @@ DrawLists draw_lists_in_mirror(std::vector<DrawItem> items, const View& view, Tr
 }
 
 /// Of items by rising id. What mirrors show is taken from `all`; those that show none of it reflect the
-/// panorama, where there is one.
+/// environment map, where there is one.
 DrawLists draw_lists_of(std::vector<DrawItem> items, const std::vector<DrawItem>& all, const View& view,
                         TransparencyCache& shapes) {
     DrawLists lists = draw_lists_in_mirror(std::move(items), view, shapes);
@@ -142,7 +142,7 @@ void cull_frustum(std::vector<DrawItem>& items, const View& view) {
     });
 }
 
-/// Those before the eye whose sign reaches into the picture.
+/// Those before the eye whose sign reaches into the image.
 std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matrix) {
     std::vector<glm::dvec3> markers;
     if (!view.markers) return markers;

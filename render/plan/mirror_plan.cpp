@@ -57,7 +57,7 @@ Polygon slice(const math::Plane& plane, const math::Bounds& bounds) {
     return polygon;
 }
 
-/// Pixels of the picture, and of half a pixel around it, that a polygon of clip space covers.
+/// Pixels of the image, and of half a pixel around it, that a polygon of clip space covers.
 double covered_area(Polygon polygon, const glm::dvec2& viewport) {
     const glm::dvec2 edge = 1.0 + 1.0 / viewport;
     for (const glm::dvec4& inside : {glm::dvec4(0, 0, -1, 1),

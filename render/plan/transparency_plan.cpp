@@ -157,7 +157,7 @@ private:
     std::span<const DrawItem> items_;
     const scene::Scene& scene_;
     TransparencyCache& shapes_;
-    glm::dvec2 image_corner_;  ///< the picture's upper right corner on the plane z = -1
+    glm::dvec2 image_corner_;  ///< the image's upper right corner on the plane z = -1
     std::vector<TransparentItem> transparent_items_;
     std::vector<std::vector<unsigned>> behind_;  // for each item those that may lie behind it
     std::vector<std::optional<std::vector<FrontFacingTriangle>>> facing_;

@@ -34,7 +34,7 @@ std::array<glm::dvec3, 3> corners_of(const scene::Geometry& geometry, std::size_
     return {geometry.positions[triangle.x], geometry.positions[triangle.y], geometry.positions[triangle.z]};
 }
 
-/// Whether a ray can meet `a` from its front and then `b` from its front.
+/// Returns true if a ray can meet `a` from its front and then `b` from its front.
 bool can_occlude(const TriangleFace& a, const TriangleFace& b, double tolerance) {
     const auto behind_a = [&](const glm::dvec3& corner) { return a.distance(corner) < -tolerance; };
     const auto before_b = [&](const glm::dvec3& corner) { return b.distance(corner) > tolerance; };
@@ -64,7 +64,7 @@ bool overlap(const FrontFacingTriangle& a, const FrontFacingTriangle& b, double 
     return !separated_by_edge(a, b, tolerance) && !separated_by_edge(b, a, tolerance);
 }
 
-/// Whether the plane of `a` has `b` behind it.
+/// Returns true if the plane of `a` has `b` behind it.
 bool all_behind(const FrontFacingTriangle& a, const FrontFacingTriangle& b, double tolerance) {
     return std::all_of(b.corners.begin(), b.corners.end(), [&](const glm::dvec3& corner) {
         return glm::dot(a.normal, corner - a.corners[0]) <= tolerance;

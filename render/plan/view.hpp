@@ -81,7 +81,7 @@ struct View {
     bool operator==(const View&) const = default;
 };
 
-/// What the view's camera sees in its picture.
+/// What the view's camera sees in its image.
 inline math::Projection projection_of(const View& view) {
     return scene::projection_of(view.camera, static_cast<double>(view.width) / view.height);
 }

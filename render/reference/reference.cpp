@@ -45,13 +45,13 @@ ReferenceImage trace(const plan::View& view) {
     return image;
 }
 
-scene::Image image_of(const ReferenceImage& picture) {
+scene::Image image_of(const ReferenceImage& reference) {
     scene::Image image;
-    image.resize(picture.width, picture.height);
-    for (std::size_t i = 0; i < picture.color.size(); ++i) {
+    image.resize(reference.width, reference.height);
+    for (std::size_t i = 0; i < reference.color.size(); ++i) {
         for (int k = 0; k < 3; ++k)
             image.rgba[4 * i + static_cast<std::size_t>(k)] =
-                static_cast<std::uint8_t>(std::floor(255 * picture.color[i][k] + 0.5));
+                static_cast<std::uint8_t>(std::floor(255 * reference.color[i][k] + 0.5));
         image.rgba[4 * i + 3] = 255;
     }
     return image;

@@ -16,12 +16,12 @@ struct ReferenceImage {
     std::vector<scene::Index> node;
 };
 
-/// The picture as the rules of the scene format have it, ray by ray in double: slow, simple, and the judge of
+/// The image as the rules of the scene format have it, ray by ray in double: slow, simple, and the judge of
 /// what the GPU draws. It leaves out edges, outlines and markers: of a wireframe it draws the background
 /// alone. Uses all of the processor's cores.
 ReferenceImage trace(const plan::View& view);
 
 /// Rounded to bytes: floor(255 x + 0.5).
-scene::Image image_of(const ReferenceImage& picture);
+scene::Image image_of(const ReferenceImage& reference);
 
 }  // namespace vrut::reference

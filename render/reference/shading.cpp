@@ -40,7 +40,7 @@ struct TriangleVertices {
     glm::dvec3 face{0};                 ///< normal of the plane
 };
 
-/// How the weights of the corners change where the point moves by `move` on their plane.
+/// How the barycentrics change where the point moves by `move` on their plane.
 glm::dvec3 dbarycentrics(const TriangleVertices& corners, const glm::dvec3& move) {
     const glm::dvec3 area = glm::cross(corners.edges[0], corners.edges[1]);
     const double doubled = glm::dot(area, corners.face);

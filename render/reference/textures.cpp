@@ -77,7 +77,7 @@ std::size_t face_of(const glm::dvec3& direction) {
     return 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
 }
 
-/// On the face's picture, (0, 0) its bottom left and (1, 1) its top right.
+/// On the face's image, (0, 0) its bottom left and (1, 1) its top right.
 glm::dvec2 uv_on(const CubeFace& face, const glm::dvec3& direction) {
     return glm::dvec2(glm::dot(direction, face.right), glm::dot(direction, face.up)) /
                (2 * glm::dot(direction, face.forward)) +

@@ -8,10 +8,10 @@
 
 namespace vrut::reference {
 
-/// What is beside a picture.
+/// What is beside an image.
 enum class Wrap { repeat, clamp };
 
-/// A picture and its halves, each made from the one before by a box filter weighted by area: floor(n / 2)
+/// An image and its halves, each made from the one before by a box filter weighted by area: floor(n / 2)
 /// texels a side, 1 at least.
 class MipMap {
 public:
@@ -37,7 +37,7 @@ private:
     std::vector<MipLevel> levels_;
 };
 
-/// Six square pictures of one size, each what a camera at the world's origin with 90° sees that looks along
+/// Six square images of one size, each what a camera at the world's origin with 90° sees that looks along
 /// +x, -x, +y, -y, +z, -z; its top is +y, but +z for +y and -z for -y.
 class CubeMap {
 public:

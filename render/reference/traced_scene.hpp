@@ -35,7 +35,8 @@ struct TracedInstance {
 };
 
 /// Where a ray goes through a triangle. One exactly through an edge or a corner meets one of the triangles
-/// around it that turn the same way, so that a pane of glass is met once and a closed surface has no gaps.
+/// around it that turn the same way, so that a ray meets a pane of glass once and a closed surface has no
+/// gaps.
 struct TriangleHit {
     std::uint32_t part = 0, triangle = 0;
     double distance = 0;         ///< along the ray, above 0, in the scene's unit
@@ -52,11 +53,11 @@ public:
     const std::vector<TracedInstance>& parts() const { return parts_; }  ///< by rising id
 
     static constexpr std::uint32_t kNoInstance = 0xffffffff;
-    /// The first opaque surface along the ray; the part `without` and its twins are passed.
+    /// The first opaque surface along the ray; the part `without` and what coincides with it are passed.
     std::optional<TriangleHit> closest_opaque_hit(const RayDifferential& ray,
                                                   std::uint32_t excluded = kNoInstance) const;
     /// All transparent surfaces before `end` (all along the ray, where it is none), nearest first; `without`
-    /// and its twins are passed.
+    /// and what coincides with it are passed.
     std::vector<TriangleHit> transparent_hits_before(const RayDifferential& ray,
                                                      const std::optional<TriangleHit>& end,
                                                      std::uint32_t excluded = kNoInstance) const;

@@ -15,7 +15,7 @@ class Tracer {
 public:
     explicit Tracer(const plan::View& view);
 
-    /// `place` is in pixels from the picture's top left.
+    /// `place` is in pixels from the image's top left.
     glm::dvec3 color_at(const glm::dvec2& raster) const;
     scene::Index node_at(const glm::dvec2& raster) const;
 
@@ -35,7 +35,7 @@ private:
         glm::dvec3 color{0};
         double alpha = 1;
     };
-    /// A sight, the place of the picture that it belongs to, and the mirror that it comes from.
+    /// A ray, its pixel position in the image, and the mirror that it comes from.
     struct PathRay {
         RayDifferential ray;
         glm::dvec2 raster;

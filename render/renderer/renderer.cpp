@@ -245,7 +245,7 @@ bool Renderer::step(plan::RenderJob& job) {
         return impl_->step(job);
     } catch (const base::OutOfMemory&) {
         if (job.memory_released) throw;
-        // Much may be there of pictures before: levels of detail, edges, the targets of larger ones.
+        // Much may be there of images before: levels of detail, edges, the targets of larger ones.
         impl_->release();
         job.memory_released = true;
         return false;

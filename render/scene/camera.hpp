@@ -48,7 +48,7 @@ ClipRange fit_clip_range(const Camera& camera, const math::Bounds& bounds);
 
 /// Right-handed, view along −z.
 glm::dmat4 view_from_world(const Camera& camera);
-/// What the camera sees in a picture of `aspect`, its width / height.
+/// What the camera sees in an image of `aspect`, its width / height.
 math::Projection projection_of(const Camera& camera, double aspect);
 
 /// Unit direction from the eye, in world space, through a point of a view of `aspect`: x and y from −1 (left,

@@ -27,8 +27,8 @@ glm::dmat3 wide_edges(const Geometry& geometry) {
     return edges;
 }
 
-/// Whether four corners alone lie in no plane, however it is fitted. Between two planes that are 2 `limit`
-/// apart, edges a, b and c span a volume of at most 2 `limit` (|a| |b| + |b| |c| + |c| |a|).
+/// Returns true if four corners alone lie in no plane, however it is fitted. Between two planes that are 2
+/// `limit` apart, edges a, b and c span a volume of at most 2 `limit` (|a| |b| + |b| |c| + |c| |a|).
 bool is_solid(const Geometry& geometry, double limit) {
     if (geometry.triangles.empty()) return false;
     const glm::dmat3 edges = wide_edges(geometry);

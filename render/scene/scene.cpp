@@ -262,7 +262,7 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<Nod
 
 namespace {
 
-/// Whether a LOD or switch at `index` lets its child number `place` show.
+/// Returns true if a LOD or switch at `index` lets its child number `place` show.
 bool chooses(const PlacedScene& placed, std::size_t index, std::size_t place,
              const std::optional<glm::dvec3>& eye) {
     const Node& node = placed.scene->nodes()[index];

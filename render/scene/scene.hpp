@@ -26,7 +26,7 @@ inline constexpr Id kMaxId = (Id{1} << 53) - 1;
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
 
-/// A picture file that materials and backgrounds show.
+/// An image file that materials and backgrounds show.
 struct Texture {
     std::string file;  ///< relative to the scene's
     Image image;
@@ -168,14 +168,15 @@ public:
     const std::optional<math::Plane>& plane(Index geometry) const {
         return planes_[static_cast<std::size_t>(geometry)];
     }
-    /// Whether float positions round what a viewer may see: some instance is longer than 256 m where the file
-    /// places it, so that they are wrong by 8 µm at its ends. They are then sums of two floats (double-single
-    /// arithmetic; Cozzi and Ring 2011, 3D Engine Design for Virtual Globes, 5.4).
+    /// Returns true if float positions round what a viewer may see: some instance is longer than 256 m where
+    /// the file places it, so that they are wrong by 8 µm at its ends. They are then sums of two floats
+    /// (double-single arithmetic; Cozzi and Ring 2011, 3D Engine Design for Virtual Globes, 5.4).
     bool needs_double_single(Index geometry) const {
         constexpr double kLongestInFloat = 256;
         return extents_[static_cast<std::size_t>(geometry)] > kLongestInFloat;
     }
-    /// Whether something can be seen through it: its diffuse alpha or one of its texture's is below 1.
+    /// Returns true if something can be seen through it: its diffuse alpha or one of its texture's is
+    /// below 1.
     bool is_transparent(const Material& material) const;
     /// The same on a geometry: without texture coordinates it shows no texture.
     bool is_transparent(const Material& material, Index geometry) const;

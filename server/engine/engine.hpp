@@ -97,7 +97,7 @@ public:
                  {"encode", encoder_.busy_for()},
                  {"snapshot encode", snapshot_encoder_.busy_for()}}};
     }
-    /// Whether what draws can draw. From any thread.
+    /// Returns true if what draws can draw. From any thread.
     bool draws() const { return draws_; }
 
 private:

@@ -51,8 +51,8 @@ bool Engine::shows_present() const {
            room_->view_size() == newest_.view_size;
 }
 
-/// Whether a client may be sent more frames than there are for it. One from before its last grant will do for
-/// it while that shows what is to be seen.
+/// Returns true if a client may be sent more frames than there are for it. One from before its last grant
+/// will do for it while that shows what is to be seen.
 bool Engine::wants_newer(const Client& client) const {
     const auto will_do = [&](std::int64_t frame) {
         return frame > client.wanted.newer_than &&
@@ -93,7 +93,7 @@ bool Engine::thin_lines() const {
            (state.renderer.show_selection && state.selection.node);
 }
 
-/// Whether a sharp frame is long on its way to who steers.
+/// Returns true if a sharp frame is long on its way to who steers.
 bool Engine::has_slow_link() const { return refined_delivery(holders_link()) > base::Clock::duration{}; }
 
 /// With the error that the table has for such a picture.

@@ -19,7 +19,7 @@ struct PictureSize {
     bool operator==(const PictureSize&) const = default;
 };
 
-/// Whether a picture of this size can be drawn.
+/// Returns true if a picture of this size can be drawn.
 inline bool fits(std::int64_t width, std::int64_t height, const PictureLimits& limits) {
     return width <= limits.max_side && height <= limits.max_side && width * height <= limits.max_pixels;
 }

@@ -97,7 +97,7 @@ std::string size_text(int width, int height) {
     return std::to_string(width) + " x " + std::to_string(height);
 }
 
-/// Whether the server's table is of pictures of another size than the rows of chart "modes".
+/// Returns true if the server's table is of pictures of another size than the rows of chart "modes".
 bool is_of_other_size(const SceneRows& scene) {
     const std::vector<Row> rows = rows_for(scene.rows, "modes");
     return scene.stored && !rows.empty() &&
@@ -208,7 +208,7 @@ std::string texture_filter_label(const Row& row) {
     return row.setting.methods.texture_filter == TextureFilter::trilinear ? "trilinear" : "anisotropic";
 }
 
-/// Whether another picture than that of the most accurate setting judges a chart's.
+/// Returns true if another picture than that of the most accurate setting judges a chart's.
 bool is_judged_from_outside(const SceneRows& scene, std::string_view chart) {
     return scene.traced || chart == "antialiasing" || chart == "texture-filter";
 }
@@ -286,7 +286,7 @@ std::string judge_sentence(const SceneRows& scene, const std::string& chart) {
            "encoded.";
 }
 
-/// Whether the setting is what others are judged by, so that no error of its own is known.
+/// Returns true if the setting is what others are judged by, so that no error of its own is known.
 bool is_judge(const SceneRows& scene, const Row& row) {
     const Setting& setting = row.setting;
     return !is_judged_from_outside(scene, row.chart) && setting.samples == 1 && setting.detail == 0 &&

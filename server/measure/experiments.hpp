@@ -32,7 +32,7 @@ plan::View in_mode(plan::View view, const Mode& mode);
 /// True if quality_of() of engine/frame_quality.hpp always sends this mode in 4:4:4.
 bool has_thin_lines(const Mode& mode);
 
-/// Whether pictures of the same samples are judged by the reference in double precision.
+/// Returns true if pictures of the same samples are judged by the reference in double precision.
 bool is_traced(const Subject& subject);
 
 /// What to measure, and into which rows.
@@ -76,7 +76,7 @@ public:
           version_(std::move(version)),
           machine_(std::move(machine)) {}
 
-    /// Whether nothing of it is left to do.
+    /// Returns true if nothing of it is left to do.
     bool is_done(const Experiment& experiment) const;
     /// Measures what is not in the rows yet.
     void run(const Experiment& experiment, const PartDone& done);

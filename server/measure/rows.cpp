@@ -99,7 +99,7 @@ public:
         for (double* value : {&spread.mean, &spread.median, &spread.p5, &spread.p95}) *value = take();
         return spread;
     }
-    /// Whether the next is empty.
+    /// Returns true if the next is empty.
     bool empty() const { return fields_[next_].empty(); }
     void skip(std::size_t count = 1) { next_ += count; }
     bool good() const { return good_; }

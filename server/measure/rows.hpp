@@ -26,7 +26,8 @@ struct Row {
     std::optional<double> wrong;  ///< part of the answers, 0 to 1, that are
 };
 
-/// Whether it has what its chart shows: errors, of picking the part that is wrong, of times alone neither.
+/// Returns true if it has what its chart shows: errors, of picking the part that is wrong, of times alone
+/// neither.
 bool is_whole(const Row& row);
 
 /// Fields of a line of comma-separated values (RFC 4180, without line ends in fields); none where a quote is
@@ -46,7 +47,7 @@ public:
     /// Throws std::runtime_error where the file cannot be written, or holds something else.
     explicit Rows(const std::filesystem::path& path);
 
-    /// Whether what `row` would measure has been.
+    /// Returns true if what `row` would measure has been.
     bool has(const Row& row) const { return find(row) != nullptr; }
     /// What it was measured to be, or null; until the next add().
     const Row* find(const Row& row) const;

@@ -32,7 +32,7 @@ plan::View view_with(plan::View view, const Setting& setting);
 /// The levels of detail of a scene, all of them made: takes seconds where it has many triangles.
 std::shared_ptr<const mesh::DetailLevels> detail_levels_of(
     const std::shared_ptr<const scene::PlacedScene>& scene);
-/// Whether any geometry has a coarser surface: else `detail` changes nothing.
+/// Returns true if any geometry has a coarser surface: else `detail` changes nothing.
 bool has_levels(const plan::View& view);
 
 /// Scale, samples, detail and JPEG together, as far as they make pictures for a view that moves, then each

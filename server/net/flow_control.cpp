@@ -157,7 +157,7 @@ FlowControl::Clock::time_point FlowControl::frame_passed_at(Clock::time_point no
     return frames_.back().sent_at + passing(frames_.back().bytes, now);
 }
 
-/// Whether a second frame would wait behind one like the newest.
+/// Returns true if a second frame would wait behind one like the newest.
 bool FlowControl::is_slow(Clock::time_point now) const {
     if (!link(now) || frames_.empty()) return !counts_grants_;
     return passing(frames_.back().bytes, now) > kQueue;

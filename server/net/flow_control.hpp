@@ -32,8 +32,8 @@ public:
     /// Anything else was.
     void sent(std::size_t bytes, Clock::time_point now);
 
-    /// Whether a ping is to follow what was sent: the first before anything else, then one behind every
-    /// frame, and behind other messages where none is under way.
+    /// Returns true if a ping is to follow what was sent: the first before anything else, then one behind
+    /// every frame, and behind other messages where none is under way.
     bool wants_ping() const;
     /// A ping was handed to the socket; its number, which the pong brings back.
     std::uint64_t sent_ping(Clock::time_point now);

@@ -41,7 +41,7 @@ std::optional<tl::expected<ReadRequest, HttpRejection>> read_request(std::string
 /// A name or number, IPv6 in brackets, and a port: what can stand in a Content-Security-Policy.
 bool is_host(std::string_view text);
 
-/// Whether the value of an If-None-Match field names `tag`.
+/// Returns true if the value of an If-None-Match field names `tag`.
 bool names_tag(std::string_view if_none_match, std::string_view tag);
 
 }  // namespace vrut::server::net

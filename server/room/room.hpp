@@ -175,9 +175,9 @@ private:
     void reject(const Received& received, const char* code, const std::string& sentence);
 
     // --- who steers
-    /// Whether its client's role is one of these; else it is rejected.
+    /// Returns true if its client's role is one of these; else it is rejected.
     bool may_send(const Received& received, protocol::Senders senders);
-    /// Whether this message may steer; else it is rejected.
+    /// Returns true if this message may steer; else it is rejected.
     bool may_steer(const Received& received);
     /// The message steers: its client holds control.
     void steer(const Received& received);

@@ -20,7 +20,8 @@ public:
     Steering(std::optional<std::string> holder, bool kept, SessionTime now)
         : holder_(std::move(holder)), kept_(kept), last_(now) {}
 
-    /// Whether `client` may steer at `now`: it holds control, or nobody does, or the holder gives way.
+    /// Returns true if `client` may steer at `now`: it holds control, or nobody does, or the holder gives
+    /// way.
     bool may_steer(const std::string& client, SessionTime now, bool holder_presses) const;
     /// `client`, who may, steers: it holds control from now on.
     void steer(const std::string& client, SessionTime now);

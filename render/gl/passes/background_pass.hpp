@@ -4,15 +4,15 @@
 
 namespace vrut::gl {
 
-/// A picture or a panorama behind everything; a plain colour needs no pass.
+/// An image or an environment map behind everything; a plain colour needs no pass.
 class BackgroundPass {
 public:
     explicit BackgroundPass(Programs& programs) : programs_(programs) {}
     static bool is_needed(const plan::View& view) {
         return view.scene && (view.background.cube_map || view.background.texture != scene::kNone);
     }
-    /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. A picture is stretched
-    /// over the view; of a panorama each pixel shows what lies in the direction of its ray.
+    /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. An image is stretched
+    /// over the view; of an environment map each pixel shows what lies in the direction of its ray.
     void draw(const CameraMatrices& camera, const plan::View& view, GpuScene& scene, plan::FrameStats& stats);
 
 private:

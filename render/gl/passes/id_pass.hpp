@@ -7,7 +7,7 @@
 
 namespace vrut::gl {
 
-/// Which node each pixel shows, for a judge of pictures: all surfaces as if they were opaque.
+/// Which node each pixel shows, for a judge of images: all surfaces as if they were opaque.
 class IdPass {
 public:
     explicit IdPass(Programs& programs) : programs_(programs) {}

@@ -8,7 +8,7 @@
 
 namespace vrut::gl {
 
-/// Round signs of constant size in pixels over the picture, each around its point: full where the point is
+/// Round signs of constant size in pixels over the image, each around its point: full where the point is
 /// seen, and the fainter the more of its surroundings is hidden.
 class MarkerPass {
 public:

@@ -32,11 +32,12 @@ std::optional<bool> MirrorPass::seen(std::size_t index) const {
 }
 
 void MirrorPass::open(const plan::MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
-                      const glm::dvec3& background, const Framebuffer& picture, plan::FrameStats& stats) {
-    if (!target_ || target_->width() != picture.width() || target_->height() != picture.height() ||
-        target_->rgba16() != picture.rgba16()) {
+                      const glm::dvec3& background, const Framebuffer& image_target,
+                      plan::FrameStats& stats) {
+    if (!target_ || target_->width() != image_target.width() || target_->height() != image_target.height() ||
+        target_->rgba16() != image_target.rgba16()) {
         target_.reset();
-        target_.emplace(picture.width(), picture.height(), picture.rgba16());
+        target_.emplace(image_target.width(), image_target.height(), image_target.rgba16());
     }
     bind(mirror);
     // Nothing comes before what is nearest; but at the mirror's pixels everything does.
@@ -56,9 +57,9 @@ void MirrorPass::bind(const plan::MirrorItem& mirror) const {
     set_scissor(mirror.box);
 }
 
-void MirrorPass::close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+void MirrorPass::close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& image_target,
                        SurfacePrograms& programs, plan::FrameStats& stats) {
-    picture.bind();
+    image_target.bind();
     set_scissor({});
     PipelineState state;
     state.depth_func = mirror.surface.occluded_by_coincident ? GL_GREATER : GL_GEQUAL;

@@ -22,7 +22,7 @@ public:
 };
 
 /// Flat mirrors. What is seen in one is drawn from the same eye with the scene reflected about its plane,
-/// into a target like the picture's own, where it keeps its pixels; the surface then takes each pixel from
+/// into a target like the image's, where it keeps its pixels; the surface then takes each pixel from
 /// there. One target serves all mirrors in turn.
 class MirrorPass {
 public:
@@ -31,19 +31,19 @@ public:
     /// has been drawn there. The answers replace those of the query before.
     void query(std::span<const plan::MirrorItem> mirrors, GpuScene& scene, const glm::dmat4& clip_from_view,
                plan::FrameStats& stats);
-    /// Whether mirror number `index` of the last query is seen; none while the GPU has not answered. Does not
-    /// wait.
+    /// Returns true if mirror number `index` of the last query is seen; none while the GPU has not answered.
+    /// Does not wait.
     std::optional<bool> seen(std::size_t index) const;
     /// While it lives, the GPU discards what is drawn if that mirror is not seen.
     ConditionalRendering while_seen(std::size_t index) const { return ConditionalRendering(queries_[index]); }
     /// Makes the target that a mirror's reflection is drawn into the current one, empty before `background`
     /// and open only at the pixels that the mirror can be seen at.
     void open(const plan::MirrorItem& mirror, GpuScene& scene, const glm::dmat4& clip_from_view,
-              const glm::dvec3& background, const Framebuffer& picture, plan::FrameStats& stats);
+              const glm::dvec3& background, const Framebuffer& image_target, plan::FrameStats& stats);
     /// Makes that target the current one again.
     void bind(const plan::MirrorItem& mirror) const;
-    /// Draws the surface, with what was drawn since, into `picture`, which is bound afterwards.
-    void close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& picture,
+    /// Draws the surface, with what was drawn since, into `image_target`, which is bound afterwards.
+    void close(const plan::MirrorItem& mirror, GpuScene& scene, const Framebuffer& image_target,
                SurfacePrograms& programs, plan::FrameStats& stats);
     /// Gives back what the driver holds for mirrors.
     void release() {

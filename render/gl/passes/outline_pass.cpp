@@ -35,9 +35,9 @@ void use(Programs& programs, FixedProgram program, int width, const math::PixelB
 }
 
 math::PixelBox box_of(const plan::DrawItem& item, const GpuScene& scene, const glm::dmat4& clip_from_view,
-                      const glm::ivec2& picture) {
+                      const glm::ivec2& image_size) {
     const math::Bounds& bounds = scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-    return math::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+    return math::pixel_box(bounds, clip_from_view * item.view_from_node, image_size);
 }
 
 }  // namespace
@@ -63,14 +63,14 @@ void OutlinePass::prepare(const Framebuffer& target) {
 void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
                         const glm::dmat4& clip_from_view, const Framebuffer& target) {
     prepare(target);
-    const glm::ivec2 picture{target.width(), target.height()};
+    const glm::ivec2 image_size{target.width(), target.height()};
     const int width = outline_width(target.height());
-    box_ = {picture, {0, 0}};
+    box_ = {image_size, {0, 0}};
     for (const plan::DrawItem& item : items) {
-        const math::PixelBox box = box_of(item, scene, clip_from_view, picture);
+        const math::PixelBox box = box_of(item, scene, clip_from_view, image_size);
         box_ = {glm::min(box_.low, box.low - width), glm::max(box_.high, box.high + width)};
     }
-    box_ = {glm::max(box_.low, 0), glm::min(box_.high, picture)};
+    box_ = {glm::max(box_.low, 0), glm::min(box_.high, image_size)};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     set_scissor(box_);
     apply(PipelineState());
@@ -80,7 +80,7 @@ void OutlinePass::begin(std::span<const plan::DrawItem> items, const GpuScene& s
 
 void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& scene,
                             const glm::dmat4& clip_from_view, plan::FrameStats& stats) {
-    const glm::ivec2 picture{mask_->width, mask_->height};
+    const glm::ivec2 image_size{mask_->width, mask_->height};
     glBindFramebuffer(GL_FRAMEBUFFER, mask_->covered_target.get());
     apply(over_everything());
     set_scissor(box_);
@@ -91,7 +91,7 @@ void OutlinePass::draw_mask(std::span<const plan::DrawItem> items, GpuScene& sce
         program.use(item, geometry);
         draw_triangles(geometry, stats);
         // So small that it may miss all centres of pixels: it is found all the same.
-        const math::PixelBox box = box_of(item, scene, clip_from_view, picture);
+        const math::PixelBox box = box_of(item, scene, clip_from_view, image_size);
         if (box.size().x > 2 || box.size().y > 2) continue;
         set_scissor(box);
         glClear(GL_COLOR_BUFFER_BIT);

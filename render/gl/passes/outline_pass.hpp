@@ -16,7 +16,7 @@ namespace vrut::gl {
 class OutlinePass {
 public:
     explicit OutlinePass(Programs& programs) : programs_(programs) {}
-    /// Begins an outline around items in a picture like `target`: each is to be covered before it is drawn.
+    /// Begins an outline around items in an image like `target`: each is to be covered before it is drawn.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
                const Framebuffer& target);
     /// Draws items into the mask, which is bound afterwards; adds to the draws and triangles of `stats`.
@@ -40,7 +40,7 @@ private:
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
 
-/// Width of an outline in a picture of that height: 2 pixels at 1 megapixel (1152 x 864).
+/// Width of an outline in an image of that height: 2 pixels at 1 megapixel (1152 x 864).
 int outline_width(int picture_height);
 
 }  // namespace vrut::gl

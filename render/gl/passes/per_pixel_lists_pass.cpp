@@ -40,18 +40,18 @@ void PerPixelListsPass::release() {
 }
 
 void PerPixelListsPass::begin(std::span<const plan::DrawItem> items, const GpuScene& scene,
-                              const glm::dmat4& clip_from_view, const glm::ivec2& picture,
+                              const glm::dmat4& clip_from_view, const glm::ivec2& image_size,
                               const math::PixelBox& within) {
-    math::PixelBox all{picture, {0, 0}};
+    math::PixelBox all{image_size, {0, 0}};
     for (const plan::DrawItem& item : items) {
         const math::Bounds& bounds =
             scene.scene()->geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-        const math::PixelBox box = math::pixel_box(bounds, clip_from_view * item.view_from_node, picture);
+        const math::PixelBox box = math::pixel_box(bounds, clip_from_view * item.view_from_node, image_size);
         all = {glm::min(all.low, box.low), glm::max(all.high, box.high)};
     }
     all = math::intersection(all, within);
     if (all.empty()) return;
-    prepare(static_cast<std::size_t>(picture.x) * static_cast<std::size_t>(picture.y));
+    prepare(static_cast<std::size_t>(image_size.x) * static_cast<std::size_t>(image_size.y));
     pending_boxes_.push_back(all);
 }
 

@@ -19,16 +19,16 @@ namespace vrut::gl {
 /// At equal depth the later item is in front, and within an item the later triangle of the index buffer. The
 /// result does not depend on the order in which the GPU appends fragments, which OpenGL leaves undefined.
 ///
-/// The buffer holds 8 fragments for each pixel of the picture, but at most 64 MiB. If the lists need more,
-/// the picture is drawn box by box. Fragments are lost only if a single pixel needs more than the whole
+/// The buffer holds 8 fragments for each pixel of the image, but at most 64 MiB. If the lists need more,
+/// the image is drawn box by box. Fragments are lost only if a single pixel needs more than the whole
 /// buffer.
 class PerPixelListsPass {
 public:
     explicit PerPixelListsPass(Programs& programs) : programs_(programs) {}
-    /// Begins to draw `items` of a picture of size `picture`, in pixels, within the box `within`. While
+    /// Begins to draw `items` of an image of size `image_size`, in pixels, within the box `within`. While
     /// is_drawing(), the caller collects all items and then composites them.
     void begin(std::span<const plan::DrawItem> items, const GpuScene& scene, const glm::dmat4& clip_from_view,
-               const glm::ivec2& picture, const math::PixelBox& within);
+               const glm::ivec2& image_size, const math::PixelBox& within);
     bool is_drawing() const { return !pending_boxes_.empty(); }
     /// Returns the box of pixels that is drawn now.
     const math::PixelBox& box() const { return pending_boxes_.back(); }
@@ -46,7 +46,7 @@ public:
 
 private:
     static constexpr std::size_t kFragmentBytes = 5 * sizeof(GLuint), kHeadBytes = 16;
-    /// Returns the number of fragments that the buffer holds, for a picture of so many pixels.
+    /// Returns the number of fragments that the buffer holds, for an image of so many pixels.
     static constexpr std::size_t max_fragments(std::size_t pixels) {
         return std::min(8 * pixels, (std::size_t{64} << 20) / kFragmentBytes);
     }

@@ -148,14 +148,15 @@ private:
         }
     }
 
-    /// Whether assimp added this root to hold what the file has.
+    /// Returns true if assimp added this root to hold what the file has.
     bool is_made_up(const aiNode& root, const glm::dmat4& matrix) const {
         return root.mNumMeshes == 0 && matrix == glm::dmat4(1) && cameras_.count(root.mName.C_Str()) == 0 &&
                lights_.count(root.mName.C_Str()) == 0 &&
                (format_ != AssimpFormat::gltf || text_of(root.mName) == "ROOT");
     }
 
-    /// Whether it is one of the many that assimp makes of a single node's turns, pivots and shifts in FBX.
+    /// Returns true if it is one of the many that assimp makes of a single node's turns, pivots and shifts in
+    /// FBX.
     bool is_step(const aiNode& node) const {
         return format_ == AssimpFormat::fbx &&
                std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos;

@@ -7,7 +7,7 @@
 
 namespace vrut::io {
 
-/// Reads a scene in one of the formats that assimp knows, with its pictures, material libraries and buffers,
+/// Reads a scene in one of the formats that assimp knows, with its images, material libraries and buffers,
 /// which lie in its folder or below it or inside it. Its nodes become assemblies and geometry nodes, numbered
 /// from the root downwards as they stand in the file; a mesh that several nodes show is one geometry. What of
 /// the file does not come into the scene is told by notices.
@@ -20,19 +20,19 @@ namespace vrut::io {
 ///     specular  (1 - r) (0.22 + (c - 0.22) m): 0.22 is how 4 %, what most surfaces reflect, displays
 ///     shininess (1 / r^4 - 1) / 2, from 1 to 10,000: Phong's exponent that is about as sharp as roughness r
 ///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
-///     emission  the emissive factor's c, or black where there is an emissive picture
-/// two-sided as the file says, and the base colour's picture as the image, whose alpha counts only where
+///     emission  the emissive factor's c, or black where there is an emissive texture
+/// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
 /// alphaMode is not OPAQUE.
 ///
 /// Wavefront OBJ with its MTL, STL, PLY, Collada and FBX, text or binary where there are both. Their
 /// materials are Phong's already, and their colours as displayed:
-///     diffuse   the diffuse colour, with the opacity as alpha unless that is a picture
+///     diffuse   the diffuse colour, with the opacity as alpha unless that is a texture
 ///     ambient   the diffuse colour / 10: their own is to be multiplied by a light that the files do not tell
 ///     specular  the specular colour times its factor, or black where there is no exponent
 ///     shininess the exponent, from 1 to 10,000
-///     emission  the emissive colour, or black where there is an emissive picture
-/// and the diffuse picture as the image, whose alpha counts only where it is the picture of the opacity too.
-/// STL and PLY without colours take the default material's. Pictures that are not where the file says are
+///     emission  the emissive colour, or black where there is an emissive texture
+/// and the diffuse texture as the image, whose alpha counts only where it is the opacity texture too.
+/// STL and PLY without colours take the default material's. Images that are not where the file says are
 /// looked for beside it. Which sides of a surface are seen these formats do not tell: materials are
 /// two-sided, but for those that are opaque and on parts only that are closed and wound outwards
 /// (is_watertight()), which look the same from one side. What is wound inwards may be a room or a mistake:

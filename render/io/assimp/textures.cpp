@@ -22,12 +22,12 @@ std::string texture_name(const aiMaterial& material, aiTextureType type) {
     return material.Get(AI_MATKEY_TEXTURE(type, 0), name) == aiReturn_SUCCESS ? text_of(name) : "";
 }
 
-/// The picture of the colour; of some materials it is called another thing than of most.
+/// The texture of the colour; of some materials it is called another thing than of most.
 aiTextureType color_texture_type(const aiMaterial& material) {
     return has_texture(material, aiTextureType_DIFFUSE) ? aiTextureType_DIFFUSE : aiTextureType_BASE_COLOR;
 }
 
-/// As assimp looks for it: a picture inside the file may be meant by its number or by its name.
+/// As assimp looks for it: a texture inside the file may be meant by its number or by its name.
 std::string name_of(const std::string& address, const aiScene& scene, const std::filesystem::path& folder,
                     AssimpFormat format) {
     if (format == AssimpFormat::gltf) return file_name_of_uri(folder, address);
@@ -38,16 +38,15 @@ std::string name_of(const std::string& address, const aiScene& scene, const std:
 void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, ConversionWarnings& warnings) {
     int set = 0, wrap = aiTextureMapMode_Wrap;
     if (from.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS && set != 0)
-        warnings.add(
-            "a picture is laid by the first texture coordinates, and not by others as the file says");
+        warnings.add("a texture uses the first texture coordinates, not others as the file says");
     for (const char* key : {"$tex.mapmodeu", "$tex.mapmodev"})
         if (from.Get(key, type, 0, wrap) == aiReturn_SUCCESS && wrap != aiTextureMapMode_Wrap)
-            warnings.add("a picture is repeated where the file clamps or mirrors it");
+            warnings.add("a texture repeats where the file clamps or mirrors it");
     aiUVTransform shift;
     if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), shift) == aiReturn_SUCCESS &&
         (shift.mTranslation != aiVector2D(0, 0) || shift.mScaling != aiVector2D(1, 1) ||
          shift.mRotation != 0))
-        warnings.add("a picture is neither shifted nor scaled nor turned as the file says");
+        warnings.add("a texture is drawn without the offset, scale and rotation of the file");
     if (from.GetTextureCount(type) > 1) warnings.add("only the first of several layered textures is shown");
 }
 
@@ -150,7 +149,7 @@ void make_textures_opaque(std::vector<scene::Material>& materials, const std::ve
     for (std::size_t i = 0; i < materials.size(); ++i)
         if (materials[i].texture != scene::kNone && !ignore_alpha[i])
             keeps_alpha[static_cast<std::size_t>(materials[i].texture)] = true;
-    std::map<scene::Index, scene::Index> opaque;  // by the picture that it was made from
+    std::map<scene::Index, scene::Index> opaque;  // by the texture that it was made from
     for (std::size_t i = 0; i < materials.size(); ++i) {
         const scene::Index from = materials[i].texture;
         if (from == scene::kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)

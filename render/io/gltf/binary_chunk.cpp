@@ -109,7 +109,7 @@ bool GltfBinaryChunk::add(const scene::Geometry& geometry) {
 }
 
 std::uint64_t GltfBinaryChunk::describe(JsonWriter& json) const {
-    if (geometries_.empty()) return 0;  // then there are no pictures either
+    if (geometries_.empty()) return 0;  // then there are no images either
     Description description(json);
     for (const scene::Geometry* const geometry : geometries_) description.add(*geometry);
     for (const auto& png : pngs_) description.open_view(png.size()).close();

@@ -178,7 +178,7 @@ private:
         });
     }
 
-    /// assimp looks for what comes after the `/` of a picture's kind.
+    /// assimp looks for what comes after the `/` of an image's kind.
     static void require_mime_type(std::string_view kind) {
         if (kind.substr(0, kind.find('\0')).find('/') == std::string_view::npos)
             fail("an image's mimeType is invalid");

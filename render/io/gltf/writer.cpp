@@ -26,7 +26,7 @@ glm::dmat4 frame_of(const scene::CameraData& camera) {
     return frame;
 }
 
-/// Whether the matrix turns, scales and moves, as glTF asks for, and neither shears nor flattens.
+/// Returns true if the matrix turns, scales and moves, as glTF asks for, and neither shears nor flattens.
 bool keeps_right_angles(const glm::dmat4& matrix) {
     return std::abs(std::abs(scene::relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
 }

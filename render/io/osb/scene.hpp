@@ -17,13 +17,13 @@ namespace vrut::io {
 ///     ambient   0.2 ambient: what OpenGL's light of 0.2 from everywhere makes of it
 ///     diffuse, specular, emission and shininess as they are, with alpha 1 - transparency or the diffuse
 ///     one's without light: emission is the diffuse colour, and all others are black
-/// two-sided unless a PolygonChunk culls back faces, and the picture of its SimpleTexturedMaterial or its
+/// two-sided unless a PolygonChunk culls back faces, and the image of its SimpleTexturedMaterial or its
 /// TextureChunk as the image: one without compression inside the file, or a file in its folder or below.
 ///
 /// Errors say "FILE: at byte N: expected …, found …". Takes at most 200 times the file's memory.
 PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
-/// The same from memory, without the pictures that lie outside; `file` names it in errors and notices.
+/// The same from memory, without the images that lie outside; `file` names it in errors and notices.
 PartsResult read_osb_parts(std::string_view bytes, const std::string& file,
                            const ReadProgress& progress = {});
 

@@ -121,7 +121,7 @@ private:
         return end;
     }
 
-    /// Whether what reaches this far may be cut off there.
+    /// Returns true if what reaches this far may be cut off there.
     bool goes_on(const char* end) const { return end == end_ && open_; }
 
     [[gnu::always_inline]] bool add(Token::Kind kind, const char* end, double number = 0) {

@@ -21,8 +21,8 @@ bool is_identity(const glm::dmat4& matrix) {
 
 class VrutTextWriter {
 public:
-    VrutTextWriter(std::ostream& out, const std::vector<std::string>& pictures)
-        : out_(out), pictures_(pictures) {}
+    VrutTextWriter(std::ostream& out, const std::vector<std::string>& texture_files)
+        : out_(out), texture_files_(texture_files) {}
 
     void write(const scene::Scene& scene, const std::string& comment) {
         text("vrut-text 1\n");
@@ -96,7 +96,7 @@ private:
         text("\n  shininess").number(material.shininess);
         text("  reflectivity").number(material.reflectivity);
         text("  two-sided").number(material.two_sided ? 1 : 0);
-        if (const std::string& image = picture(material.texture, material.image); !image.empty())
+        if (const std::string& image = texture_file(material.texture, material.image); !image.empty())
             text("\n  image").string(image);
         text("\nend\n");
     }
@@ -108,9 +108,10 @@ private:
         for (const auto& row : rows) text("\n ").numbers(row);
     }
 
-    const std::string& picture(scene::Index texture, const std::string& own) const {
-        return texture == scene::kNone || pictures_.empty() ? own
-                                                            : pictures_[static_cast<std::size_t>(texture)];
+    const std::string& texture_file(scene::Index texture, const std::string& own) const {
+        return texture == scene::kNone || texture_files_.empty()
+                   ? own
+                   : texture_files_[static_cast<std::size_t>(texture)];
     }
 
     void write_geometry(const scene::Geometry& geometry) {
@@ -179,20 +180,20 @@ private:
         if (!background.cube_map) return;
         text("  cube-map");
         for (std::size_t i = 0; i < 6; ++i)
-            string(picture(background.cube_textures ? (*background.cube_textures)[i] : scene::kNone,
-                           (*background.cube_map)[i]));
+            string(texture_file(background.cube_textures ? (*background.cube_textures)[i] : scene::kNone,
+                                (*background.cube_map)[i]));
     }
 
     std::ostream& out_;
-    const std::vector<std::string>& pictures_;
+    const std::vector<std::string>& texture_files_;
     std::string buffer_;
 };
 
 }  // namespace
 
 void write_vrut_text(const scene::Scene& scene, std::ostream& out, const std::string& comment,
-                     const std::vector<std::string>& pictures) {
-    VrutTextWriter(out, pictures).write(scene, comment);
+                     const std::vector<std::string>& texture_files) {
+    VrutTextWriter(out, texture_files).write(scene, comment);
 }
 
 }  // namespace vrut::io
