@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <string>
+#include <utility>
 
 #include "base/drawing_errors.hpp"
 
@@ -13,6 +14,12 @@ namespace {
 void round_to_bytes(std::span<const std::uint16_t> rgba16, std::span<std::uint8_t> bytes) {
     for (std::size_t k = 0; k < bytes.size(); ++k)
         bytes[k] = static_cast<std::uint8_t>((rgba16[k] * 255U + 32895U) >> 16);
+}
+
+void wait_for(GLsync fence) {
+    // One wait may end early; the flush is needed with the first only.
+    while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000) == GL_TIMEOUT_EXPIRED) {
+    }
 }
 
 }  // namespace
@@ -55,10 +62,17 @@ void Framebuffer::read(std::span<std::uint8_t> pixels) {
 
 void wait_for_gl() {
     const GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    // One wait may end early; the flush is needed with the first only.
-    while (glClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, 1'000'000'000) == GL_TIMEOUT_EXPIRED) {
-    }
+    wait_for(fence);
     glDeleteSync(fence);
+}
+
+SubmittedWork::~SubmittedWork() { glDeleteSync(last_); }
+
+void SubmittedWork::submit() {
+    const GLsync before = std::exchange(last_, glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
+    glFlush();
+    if (before) wait_for(before);
+    glDeleteSync(before);
 }
 
 }  // namespace vrut::gl

@@ -37,4 +37,19 @@ private:
 /// Waits until everything submitted so far is drawn.
 void wait_for_gl();
 
+/// Bounds what is submitted and not drawn yet, without a moment in which nothing is submitted.
+class SubmittedWork {
+public:
+    SubmittedWork() = default;
+    ~SubmittedWork();
+    SubmittedWork(const SubmittedWork&) = delete;
+    SubmittedWork& operator=(const SubmittedWork&) = delete;
+
+    /// Submits the commands so far, and waits until those of the call before are drawn.
+    void submit();
+
+private:
+    GLsync last_ = nullptr;
+};
+
 }  // namespace vrut::gl

@@ -119,6 +119,7 @@ struct Renderer::Impl {
     void use_resolver(ResolveOn where);
 
     gl::GlContext context;  // first: destroyed after everything below
+    gl::SubmittedWork submitted;
     std::shared_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
     gl::Programs programs;
@@ -149,7 +150,7 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     const int uploads_before = scene ? scene->uploads() : 0, programs_before = programs.compiled();
     gl::SampleDrawing& sample = sample_of(job);
     const bool drawn = sample.draw(job, passes, budget);
-    gl::wait_for_gl();
+    drawn ? gl::wait_for_gl() : submitted.submit();
     stats.render_ms += milliseconds_since(start);
     stats.programs += programs.compiled() - programs_before;
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;

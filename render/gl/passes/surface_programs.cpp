@@ -10,6 +10,9 @@ namespace vrut::gl {
 
 namespace {
 
+/// A CPU that draws then rasterizes what is flushed while the next vertices are processed (bench_bare_gl).
+constexpr std::uint64_t kFlushedTriangles = 50'000;
+
 enum SurfaceUniform : GLint {
     clip_from_view_at = 0,  // of programs of one colour; surfaces find it in the view's block
     view_from_local_at = 1,
@@ -243,6 +246,7 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
 
 void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
                                  const scene::Material* material, plan::FrameStats& stats) {
+    std::uint64_t flushed = stats.triangles;
     while (!items.empty()) {
         const plan::DrawItem& first = items.front();
         const GpuGeometry& geometry = scene_->geometry(first);
@@ -257,6 +261,9 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
             draw_triangles(geometry, stats);
         }
         items = items.subspan(length);
+        if (stats.triangles - flushed < kFlushedTriangles) continue;
+        glFlush();
+        flushed = stats.triangles;
     }
 }
 
