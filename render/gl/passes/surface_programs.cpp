@@ -10,8 +10,9 @@ namespace vrut::gl {
 
 namespace {
 
-/// A CPU that draws then rasterizes what is flushed while the next vertices are processed (bench_bare_gl).
-constexpr std::uint64_t kFlushedTriangles = 50'000;
+/// A CPU that draws rasterizes what is flushed while it processes the next vertices; a graphics card takes
+/// some time for each flush. Measured by bench_bare_gl.
+constexpr std::uint64_t kFlushedTriangles = 7'000, kMostFlushes = 64;
 
 enum SurfaceUniform : GLint {
     clip_from_view_at = 0,  // of programs of one colour; surfaces find it in the view's block
@@ -246,6 +247,10 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
 
 void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
                                  const scene::Material* material, plan::FrameStats& stats) {
+    std::uint64_t triangles = 0;
+    for (const plan::DrawItem& item : items)
+        triangles += static_cast<std::uint64_t>(scene_->geometry(item).index_count) / 3;
+    const std::uint64_t flushed_at_once = std::max(kFlushedTriangles, triangles / kMostFlushes);
     std::uint64_t flushed = stats.triangles;
     while (!items.empty()) {
         const plan::DrawItem& first = items.front();
@@ -261,7 +266,7 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
             draw_triangles(geometry, stats);
         }
         items = items.subspan(length);
-        if (stats.triangles - flushed < kFlushedTriangles) continue;
+        if (stats.triangles - flushed < flushed_at_once) continue;
         glFlush();
         flushed = stats.triangles;
     }
