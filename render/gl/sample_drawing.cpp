@@ -18,6 +18,10 @@ constexpr int kKeepListsFor = 100;  // images
 /// In units of DrawBudget; a full-screen pass takes these for each pixel, a layer is looked at a few times.
 constexpr std::int64_t kScreenPixelCost = 1, kFragmentCost = 8;
 
+/// Boxes are queried in batches; each box takes these.
+constexpr std::size_t kMostBoxesOfBatch = 32;
+constexpr std::int64_t kBoxCost = 1000;
+
 glm::dmat4 clip_of(const plan::RenderJob& job) {
     const plan::View& view = job.view;
     const glm::dvec2 offset = math::sample_offset(static_cast<std::uint32_t>(job.samples));  // pixels, y down
@@ -40,15 +44,18 @@ struct SampleDrawing::StepContext {
 };
 
 SampleDrawing::SampleDrawing(const plan::RenderJob& job, std::shared_ptr<GpuScene> scene,
+                             std::shared_ptr<plan::OcclusionHistory> history,
                              std::unique_ptr<SampleTargets> targets)
     : planner_(job.planner),
       scene_(std::move(scene)),
+      history_(std::move(history)),
       targets_(std::move(targets)),
       camera_{clip_of(job), scene::view_from_world(job.view.camera)},
       commands_(plan::draw_commands(job.planner->plan(), job.view)) {
     const plan::FramePlan& plan = job.planner->plan();
     use_target(job.view, plan::has_transparent(plan.scene) || plan::has_transparent(plan.overlay));
     if (plan.scene.mirrors.empty() && plan.overlay.mirrors.empty()) targets_->mirrors.release();
+    cull_occluded(job);
     if (job.samples > 0) return;
     // While the camera moves, per-pixel lists are needed in some images and not in others: keep their memory
     // for a while.
@@ -103,7 +110,7 @@ bool SampleDrawing::draw(plan::RenderJob& job, Passes& passes, plan::DrawBudget&
         ++command_;
         item_ = 0;
     }
-    return command_ == commands_.size();
+    return command_ == commands_.size() && finish_occlusion(job);
 }
 
 bool SampleDrawing::execute_if_seen(const plan::DrawCommand& command, StepContext& step) {
@@ -158,6 +165,7 @@ bool SampleDrawing::execute(const plan::DrawCommand& command, StepContext& step)
     bind_target(plan::is_reflected(command) && command.kind != Kind::open_mirror ? command.mirror : nullptr,
                 step);
     if (command.kind == Kind::per_pixel_glass) return draw_per_pixel_lists(command, step);
+    if (command.kind == Kind::query_boxes) return query_boxes(step);
     if (command.items.empty() || command.kind == Kind::outline) {
         draw_once(command, step);
         return true;
@@ -186,6 +194,8 @@ void SampleDrawing::draw_items(const plan::DrawCommand& command, std::span<const
     switch (command.kind) {
         case Kind::opaque:
             return passes.opaque.draw(items, step.style, passes.programs, step.stats);
+        case Kind::revealed:
+            return targets_->occlusion.draw_revealed(items, *step.scene, clip, passes.programs, step.stats);
         case Kind::sorted_glass:
             return passes.transparent.draw(items, *step.scene, passes.programs, step.stats);
         case Kind::edges:
@@ -227,6 +237,60 @@ void SampleDrawing::draw_once(const plan::DrawCommand& command, StepContext& ste
         default:
             return;
     }
+}
+
+void SampleDrawing::cull_occluded(const plan::RenderJob& job) {
+    const std::vector<plan::DrawItem>& opaque = job.planner->plan().scene.opaque;
+    if (opaque.empty() || !plan::culls_occluded(job.view)) return;
+    occlusion_ = plan::plan_occlusion(opaque, job.view, camera_.clip_from_view, *history_);
+    if (occlusion_.boxes.empty()) return;
+    targets_->occlusion.begin();
+    const auto of_image = [&](const plan::DrawCommand& command) {
+        return command.kind == Kind::opaque && command.items.data() == opaque.data();
+    };
+    const auto command = std::ranges::find_if(commands_, of_image);
+    if (!occlusion_.culled.empty()) command->items = occlusion_.drawn;
+    commands_.insert(command + 1, {{Kind::query_boxes}, {Kind::revealed, nullptr, occlusion_.culled}});
+}
+
+/// Returns true if all boxes are queried: then the culled items that are visible are known.
+bool SampleDrawing::query_boxes(StepContext& step) {
+    const std::span<const plan::OcclusionBox> boxes(occlusion_.boxes);
+    const std::size_t end = std::min(item_ + kMostBoxesOfBatch, boxes.size());
+    targets_->occlusion.query(boxes.subspan(item_, end - item_), camera_.clip_from_view);
+    step.budget.spend(kBoxCost * static_cast<std::int64_t>(end - item_));
+    item_ = end;
+    if (item_ < boxes.size()) return false;
+    glFlush();
+    // A graphics card stands still from its last query to the next command: it is waited for once, and only
+    // where items would be drawn needlessly. The other results are read when the sample is complete.
+    const std::vector<plan::DrawItem>& culled = occlusion_.culled;
+    record(0, culled.size());
+    for (const plan::DrawItem& item : culled)
+        if (!history_->is_occluded(item.node)) revealed_.push_back(item);
+    commands_[command_ + 1].items = revealed_;
+    return true;
+}
+
+void SampleDrawing::record(std::size_t first_box, std::size_t end) {
+    for (std::size_t i = first_box; i < end; ++i)
+        history_->set_occluded(occlusion_.boxes[i].node, !targets_->occlusion.passed(i));
+}
+
+/// Returns false if a revealed item had a depth in common with others. There the later one in the plan's
+/// order is in front, so the sample begins again, in that order.
+bool SampleDrawing::finish_occlusion(const plan::RenderJob& job) {
+    const OcclusionPass& pass = targets_->occlusion;
+    const std::size_t boxes = occlusion_.boxes.size();
+    record(occlusion_.culled.size(), boxes);
+    bool tied = false;
+    for (std::size_t i = 0; i < revealed_.size(); ++i) tied = pass.passed(boxes + i) || tied;
+    occlusion_ = {};
+    revealed_.clear();
+    if (!tied) return true;
+    commands_ = plan::draw_commands(job.planner->plan(), job.view);
+    command_ = 0;
+    return false;
 }
 
 void SampleDrawing::clear(StepContext& step) {

@@ -10,12 +10,14 @@
 #include "gl/passes/edge_pass.hpp"
 #include "gl/passes/marker_pass.hpp"
 #include "gl/passes/mirror_pass.hpp"
+#include "gl/passes/occlusion_pass.hpp"
 #include "gl/passes/opaque_pass.hpp"
 #include "gl/passes/outline_pass.hpp"
 #include "gl/passes/per_pixel_lists_pass.hpp"
 #include "gl/passes/transparent_pass.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/draw_commands.hpp"
+#include "plan/occlusion_culling.hpp"
 #include "plan/render_job.hpp"
 
 namespace vrut::gl {
@@ -35,8 +37,9 @@ struct Passes {
 /// Targets and passes that hold a sample between its steps.
 struct SampleTargets {
     explicit SampleTargets(Programs& programs)
-        : mirrors(programs), per_pixel_lists(programs), outline(programs) {}
+        : occlusion(programs), mirrors(programs), per_pixel_lists(programs), outline(programs) {}
     std::optional<Framebuffer> image_target;
+    OcclusionPass occlusion;
     MirrorPass mirrors;
     PerPixelListsPass per_pixel_lists;
     OutlinePass outline;
@@ -46,9 +49,9 @@ struct SampleTargets {
 /// Draws the next sample of a job, in several steps if need be. Other samples may be drawn between them.
 class SampleDrawing {
 public:
-    /// `scene` is the job's; null if it has none.
+    /// `scene` is the job's, and `history` that of its nodes; null if it has none.
     SampleDrawing(const plan::RenderJob& job, std::shared_ptr<GpuScene> scene,
-                  std::unique_ptr<SampleTargets> targets);
+                  std::shared_ptr<plan::OcclusionHistory> history, std::unique_ptr<SampleTargets> targets);
 
     bool belongs_to(const plan::RenderJob& job) const { return planner_.lock() == job.planner; }
     /// Returns true if the job no longer exists.
@@ -80,6 +83,10 @@ private:
     void draw_items(const plan::DrawCommand& command, std::span<const plan::DrawItem> items,
                     StepContext& step);
     bool draw_per_pixel_lists(const plan::DrawCommand& command, StepContext& step);
+    void cull_occluded(const plan::RenderJob& job);
+    bool query_boxes(StepContext& step);
+    void record(std::size_t first_box, std::size_t end);
+    bool finish_occlusion(const plan::RenderJob& job);
     void clear(StepContext& step);
     void find_mirrors(const plan::DrawCommand& command, StepContext& step);
     void open(const plan::MirrorItem& mirror, StepContext& step);
@@ -94,9 +101,12 @@ private:
 
     std::weak_ptr<const plan::FramePlanner> planner_;
     std::shared_ptr<GpuScene> scene_;
+    std::shared_ptr<plan::OcclusionHistory> history_;
     std::unique_ptr<SampleTargets> targets_;
     CameraMatrices camera_;
     std::vector<plan::DrawCommand> commands_;
+    plan::OcclusionPlan occlusion_;
+    std::vector<plan::DrawItem> revealed_;       // the culled items that are visible
     std::size_t command_ = 0, item_ = 0;         // the next
     std::span<const plan::MirrorItem> queried_;  // the mirrors of the last find_mirrors
     std::vector<std::optional<bool>> seen_;      // of each; none while the GPU has not answered

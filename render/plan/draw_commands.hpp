@@ -13,6 +13,8 @@ struct DrawCommand {
     enum class Kind {
         clear,            ///< clears the image, and draws its background
         opaque,           ///< faces
+        query_boxes,      ///< begins occlusion queries of opaque items, culled or not
+        revealed,         ///< faces of culled items that are visible
         find_mirrors,     ///< begins occlusion queries of `mirrors`; commands of hidden ones are skipped
         open_mirror,      ///< clears the target of `mirror`, and draws its background
         close_mirror,     ///< draws its surface

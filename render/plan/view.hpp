@@ -51,9 +51,14 @@ struct Methods {
         per_pixel_lists,  ///< sorted at each pixel everywhere
     };
     enum class TextureFilter { trilinear, anisotropic };  ///< of materials' textures
+    enum class Culling {
+        frustum,    ///< items outside of the frustum
+        occlusion,  ///< opaque items behind others, too
+    };
     Lighting light = Lighting::pixel;
     Transparency transparency = Transparency::exact;
     TextureFilter texture_filter = TextureFilter::trilinear;
+    Culling culling = Culling::occlusion;
 
     bool operator==(const Methods&) const = default;
 };

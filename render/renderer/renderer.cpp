@@ -13,6 +13,7 @@
 #include "gl/resolver.hpp"
 #include "gl/sample_drawing.hpp"
 #include "plan/frame_plan.hpp"
+#include "plan/occlusion_culling.hpp"
 #include "plan/transparency_cache.hpp"
 
 namespace vrut::renderer {
@@ -63,6 +64,7 @@ struct Renderer::Impl {
         if (!scene) scene = std::make_shared<gl::GpuScene>(wanted);
         staged.reset();
         shapes.emplace(*wanted);
+        occlusion = std::make_shared<plan::OcclusionHistory>(wanted->nodes().size());
     }
 
     bool upload_step(const plan::View& view) {
@@ -99,7 +101,7 @@ struct Renderer::Impl {
             return *found;
         forget_abandoned_samples();
         if (!targets) targets = std::make_unique<gl::SampleTargets>(programs);
-        return in_flight.emplace_back(job, job.view.scene ? scene : nullptr, std::move(targets));
+        return in_flight.emplace_back(job, job.view.scene ? scene : nullptr, occlusion, std::move(targets));
     }
 
     void forget_abandoned_samples() {
@@ -122,6 +124,7 @@ struct Renderer::Impl {
     gl::SubmittedWork submitted;
     std::shared_ptr<gl::GpuScene> scene, staged;
     std::optional<plan::TransparencyCache> shapes;
+    std::shared_ptr<plan::OcclusionHistory> occlusion;  // of the scene's nodes
     gl::Programs programs;
     gl::Passes passes{programs};
     std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
