@@ -1,8 +1,8 @@
 // The program's frames beside a bare GL loop over the same triangles, which is the least that they can take;
 // in turns in one run, since machines drift. Prints medians, the ratio to the row that is the limit, and
-// whether it meets what we want. Textures, glass and reflections are taken out of the scenes: all parts are
-// opaque.
-//   bench_bare_gl [FILE...]    scenes; then scenes of many parts
+// whether it meets what we want. Then views that are close to each other, with occlusion culling and without.
+// Textures, glass and reflections are taken out of the scenes: all parts are opaque.
+//   bench_bare_gl [FILE...]    scenes; then scenes of many parts, and of hidden ones
 // Of a file that is not there it says so: `ninja car_levels` makes the cars. Without any it exits with 77.
 #include <algorithm>
 #include <array>
@@ -25,18 +25,22 @@
 #include "io/read_scene.hpp"
 #include "mesh/detail_levels.hpp"
 #include "renderer/renderer.hpp"
+#include "shapes.hpp"
 
 using namespace vrut;
 using bench::BareMethod;
+using Culling = plan::Methods::Culling;
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr int kWidth = 1280, kHeight = 720, kRounds = 7, kSkipped = 77;
+constexpr double kSmallStep = 0.05;  ///< of a large one
 constexpr double kMovingScale = 0.5, kMovingDetail = 1, kHalfPixel = 0.5;
 constexpr double kMostOverBare = 1.10;     ///< the program at every triangle, of the bare loop
 constexpr double kMostOverFewParts = 1.5;  ///< 20,000 parts, of the same triangles in 200
+constexpr double kMostWithHidden = 0.5;    ///< of the time without occlusion culling
 constexpr double kLeastPsnr = 40;          ///< dB, of the bare loop's picture and the program's
 
 double median(std::vector<double> values) {
@@ -108,6 +112,31 @@ ScenePointer cubes(unsigned count, unsigned parts) {
     return opaque_scene(std::move(result), "cubes");
 }
 
+/// A ball of 200,000 triangles around 160 parts of 5,000 each.
+ScenePointer body_around_parts() {
+    constexpr unsigned kParts = 160, kSide = 6;
+    scene::SceneParts result;
+    result.materials.resize(2);
+    for (unsigned i = 0; i < 2; ++i) {
+        result.materials[i].id = i + 1;
+        result.materials[i].diffuse = glm::dvec4(0.3 + 0.4 * i, 0.5, 0.6, 1);
+    }
+    const auto add = [&](scene::Geometry geometry, scene::Index material) {
+        scene::Node node;
+        node.id = static_cast<scene::Id>(result.nodes.size() + 1);
+        node.type = scene::NodeType::geometry;
+        node.data = scene::GeometryData{static_cast<scene::Index>(result.geometries.size()), material};
+        result.geometries.push_back(std::move(geometry));
+        result.nodes.push_back({std::move(node), 0});
+    };
+    add(sphere(12, 224), 0);
+    for (unsigned part = 0; part < kParts; ++part) {
+        const glm::dvec3 place(part % kSide, part / kSide % kSide, part / kSide / kSide);
+        add(mapped(sphere(0.9, 36), 1, 2.2 * (place - glm::dvec3(2.5, 2.5, 2))), 1);
+    }
+    return opaque_scene(std::move(result), "a body around parts");
+}
+
 /// Milliseconds for each step, and those of the processor, of all threads.
 struct Times {
     std::vector<double> ms, cpu_ms;
@@ -147,12 +176,15 @@ public:
     int steps() const { return steps_; }
 
     Row program(const std::string& name, double detail, double scale, std::size_t limit) {
-        return {name,
-                [=, this](int step, scene::Image& image) {
-                    plan::FrameStats stats;
-                    renderer_.render(view(step, detail, scale), image, stats);
-                },
-                limit};
+        return program(name, limit, [=, this](int step) { return view(step, detail, scale); });
+    }
+    /// From places that lie close together, as while a view moves.
+    Row moving(const std::string& name, double detail, std::size_t limit, Culling culling) {
+        return program(name, limit, [=, this](int step) {
+            plan::View shown = view(kSmallStep * step, detail, 1);
+            shown.methods.culling = culling;
+            return shown;
+        });
     }
     Row bare_materials(const std::string& name, BareMethod method) {
         return bare(name, materials_, method, 0);
@@ -187,6 +219,14 @@ public:
     }
 
 private:
+    Row program(const std::string& name, std::size_t limit, const std::function<plan::View(int)>& view_at) {
+        return {name,
+                [=, this](int step, scene::Image& image) {
+                    plan::FrameStats stats;
+                    renderer_.render(view_at(step), image, stats);
+                },
+                limit};
+    }
     Row bare(const std::string& name, const std::vector<bench::BareDraw>& draws, BareMethod method,
              std::size_t limit) {
         return {name,
@@ -197,9 +237,9 @@ private:
     }
 
     /// From all around, at a distance from which the picture holds the scene.
-    plan::View view(int step, double detail, double scale) const {
+    plan::View view(double step, double detail, double scale) const {
         constexpr double kRise = 18 * scene::kRadiansPerDegree;
-        const double turn = (0.1 + static_cast<double>(step) / steps_) * 2 * std::numbers::pi;
+        const double turn = (0.1 + step / steps_) * 2 * std::numbers::pi;
         plan::View view;
         view.scene = scene_;
         view.levels = levels_;
@@ -244,9 +284,9 @@ void measure(Subject& subject, std::vector<Row>& rows) {
 }
 
 void print(const std::string& title, const std::vector<Row>& rows) {
-    std::printf("%s\n%-36s %9s %9s %9s %7s  %s\n", title.c_str(), "", "ms", "least", "CPU ms", "ratio", "to");
+    std::printf("%s\n%-45s %9s %9s %9s %7s  %s\n", title.c_str(), "", "ms", "least", "CPU ms", "ratio", "to");
     for (const Row& row : rows) {
-        std::printf("%-36s %9.2f %9.2f %9.2f %7.2f  %s", row.name.c_str(), median(row.ms),
+        std::printf("%-45s %9.2f %9.2f %9.2f %7.2f  %s", row.name.c_str(), median(row.ms),
                     std::ranges::min(row.ms), median(row.cpu_ms), median(row.ratios),
                     rows[row.limit].name.c_str());
         if (row.most < std::numeric_limits<double>::infinity())
@@ -282,6 +322,14 @@ void measure_file(renderer::Renderer& renderer, const bench::SecondContext& cont
               " parts; PSNR of bare and program " + std::to_string(psnr) + " dB",
           rows);
     if (psnr < kLeastPsnr) throw std::runtime_error("the bare loop draws another picture");
+    std::vector<Row> moving{
+        subject.moving("program, every triangle, frustum culling only", 0, 0, Culling::frustum),
+        subject.moving("program, every triangle", 0, 0, Culling::occlusion),
+        subject.moving("program, 1/2 pixel, frustum culling only", kHalfPixel, 2, Culling::frustum),
+        subject.moving("program, 1/2 pixel", kHalfPixel, 2, Culling::occlusion),
+    };
+    measure(subject, moving);
+    print("the same in small steps", moving);
 }
 
 void measure_many_parts(renderer::Renderer& renderer, const bench::SecondContext& contexts) {
@@ -296,6 +344,16 @@ void measure_many_parts(renderer::Renderer& renderer, const bench::SecondContext
     rows[1].most = kMostOverFewParts;
     measure(few, rows);
     print("240,000 triangles in many parts", rows);
+}
+
+void measure_hidden_parts(renderer::Renderer& renderer, const bench::SecondContext& contexts) {
+    constexpr int kSteps = 6;
+    Subject subject(renderer, contexts, body_around_parts(), kSteps);
+    std::vector<Row> rows{subject.moving("program, frustum culling only", 0, 0, Culling::frustum),
+                          subject.moving("program", 0, 0, Culling::occlusion)};
+    rows[1].most = kMostWithHidden;
+    measure(subject, rows);
+    print("1,000,000 triangles, 80 % of them hidden", rows);
 }
 
 }  // namespace
@@ -316,6 +374,7 @@ int main(int count, char** arguments) {
                     kHeight, kRounds);
         for (const std::string& file : files) measure_file(renderer, contexts, file);
         measure_many_parts(renderer, contexts);
+        measure_hidden_parts(renderer, contexts);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "bench_bare_gl: %s\n", error.what());
         return 1;
