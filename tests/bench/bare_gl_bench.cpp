@@ -189,6 +189,10 @@ public:
     Row bare_materials(const std::string& name, BareMethod method) {
         return bare(name, materials_, method, 0);
     }
+    /// In small steps.
+    Row bare_moving(const std::string& name) {
+        return bare(name, materials_, BareMethod::plain, 0, kSmallStep);
+    }
     Row bare_parts(const std::string& name, BareMethod method, std::size_t limit) {
         return bare(name, parts_, method, limit);
     }
@@ -228,10 +232,10 @@ private:
                 limit};
     }
     Row bare(const std::string& name, const std::vector<bench::BareDraw>& draws, BareMethod method,
-             std::size_t limit) {
+             std::size_t limit, double step_size = 1) {
         return {name,
                 [=, this, &draws](int step, scene::Image& image) {
-                    full_->draw(draws, view(step, 0, 1), method, image);
+                    full_->draw(draws, view(step_size * step, 0, 1), method, image);
                 },
                 limit};
     }
@@ -323,11 +327,13 @@ void measure_file(renderer::Renderer& renderer, const bench::SecondContext& cont
           rows);
     if (psnr < kLeastPsnr) throw std::runtime_error("the bare loop draws another picture");
     std::vector<Row> moving{
+        subject.bare_moving("bare, a draw a material"),
         subject.moving("program, every triangle, frustum culling only", 0, 0, Culling::frustum),
         subject.moving("program, every triangle", 0, 0, Culling::occlusion),
-        subject.moving("program, 1/2 pixel, frustum culling only", kHalfPixel, 2, Culling::frustum),
-        subject.moving("program, 1/2 pixel", kHalfPixel, 2, Culling::occlusion),
+        subject.moving("program, 1/2 pixel, frustum culling only", kHalfPixel, 3, Culling::frustum),
+        subject.moving("program, 1/2 pixel", kHalfPixel, 3, Culling::occlusion),
     };
+    moving[2].most = kMostOverBare;
     measure(subject, moving);
     print("the same in small steps", moving);
 }
