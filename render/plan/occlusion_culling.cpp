@@ -101,8 +101,8 @@ std::optional<OcclusionBox> occlusion_box(const DrawItem& item, const View& view
 }
 
 bool culls_occluded(const View& view) {
-    return view.methods.culling == Methods::Culling::occlusion && view.mode == DrawMode::realistic &&
-           !view.wireframe;
+    const scene::Style style = style_of(view);
+    return view.methods.culling == Methods::Culling::occlusion && style.faces && !style.edges;
 }
 
 OcclusionPlan plan_occlusion(std::span<const DrawItem> opaque, const View& view,

@@ -157,7 +157,7 @@ private:
     std::span<const DrawItem> items_;
     const scene::Scene& scene_;
     TransparencyCache& shapes_;
-    glm::dvec2 image_corner_;  ///< the image's upper right corner on the plane z = -1
+    math::Projection projection_;
     std::vector<TransparentItem> transparent_items_;
     std::vector<std::vector<unsigned>> behind_;  // for each item those that may lie behind it
     std::vector<std::optional<std::vector<FrontFacingTriangle>>> facing_;
@@ -168,8 +168,7 @@ DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const View& vi
     : items_(items),
       scene_(*view.scene->scene),
       shapes_(shapes),
-      image_corner_(std::tan(view.camera.fov * scene::kRadiansPerDegree / 2) *
-                    glm::dvec2(static_cast<double>(view.width) / view.height, 1)),
+      projection_(projection_of(view)),
       behind_(items.size()),
       facing_(items.size()) {
     for (const DrawItem& item : items)
@@ -268,11 +267,12 @@ double DepthOrderGraph::depth() const {
     const auto area = [](const glm::dvec2& low, const glm::dvec2& high) {
         return (high.x - low.x) * (high.y - low.y);
     };
+    const glm::dvec2 image_low = projection_.at({-1, -1}), image_high = projection_.at({1, 1});
     double sum = 0;
     glm::dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
     for (const TransparentItem& transparent : transparent_items_) {
-        const glm::dvec2 item_low = glm::clamp(transparent.low, -image_corner_, image_corner_);
-        const glm::dvec2 item_high = glm::clamp(transparent.high, -image_corner_, image_corner_);
+        const glm::dvec2 item_low = glm::clamp(transparent.low, image_low, image_high);
+        const glm::dvec2 item_high = glm::clamp(transparent.high, image_low, image_high);
         sum += area(item_low, item_high);
         low = glm::min(low, item_low);
         high = glm::max(high, item_high);
