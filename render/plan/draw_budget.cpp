@@ -1,17 +1,13 @@
 #include "plan/draw_budget.hpp"
 
-#include "mesh/simplification.hpp"
-
 namespace vrut::plan {
 
 namespace {
 
 constexpr std::int64_t kDraw = 150, kTriangle = 3;
 
-std::int64_t cost_of(const DrawItem& item, const scene::Geometry& geometry) {
-    const auto triangles =
-        static_cast<std::int64_t>((item.level ? item.level->triangles : geometry.triangles).size());
-    return kDraw + kTriangle * triangles;
+std::int64_t cost_of(const DrawItem& item, const scene::Scene& scene) {
+    return kDraw + kTriangle * static_cast<std::int64_t>(triangle_count(item, scene));
 }
 
 }  // namespace
@@ -26,7 +22,7 @@ std::span<const DrawItem> DrawBudget::next_batch(std::span<const DrawItem> items
         const math::PixelBox covered = math::intersection(
             pixel_box(geometry.bounds, clip_from_view * item.view_from_node, viewport), box);
         if (!covered.empty()) spend_pixels(std::int64_t{covered.size().x} * covered.size().y);
-        spend(cost_of(item, geometry));
+        spend(cost_of(item, scene));
     }
     return items.first(count);
 }

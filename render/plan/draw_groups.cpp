@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "mesh/simplification.hpp"
-
 namespace vrut::plan {
 
 namespace {
@@ -28,8 +26,7 @@ math::Bounds box_of(const DrawItem& item, const scene::Scene& scene) {
 }
 
 bool is_small(const DrawItem& item, const scene::Scene& scene) {
-    const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
-    return (item.level ? item.level->triangles : geometry.triangles).size() <= kMostTrianglesOfSmall;
+    return triangle_count(item, scene) <= kMostTrianglesOfSmall;
 }
 
 /// Returns true if they are drawn faster one after the other.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "math/frustum.hpp"
+#include "mesh/simplification.hpp"
 #include "plan/detail_plan.hpp"
 #include "plan/draw_budget.hpp"
 #include "plan/draw_groups.hpp"
@@ -171,6 +172,11 @@ std::vector<DrawItem> visible_items(const View& view) {
     sort_by_id(items, *placed.scene);
     if (style.faces && !style.override_material) assign_textures(items, view);
     return items;
+}
+
+std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene) {
+    return item.level ? item.level->triangles.size()
+                      : scene.geometries()[static_cast<std::size_t>(item.geometry)].triangles.size();
 }
 
 double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }

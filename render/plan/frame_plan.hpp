@@ -38,6 +38,9 @@ struct DrawItem {
     const mesh::DetailLevel* level = nullptr;
 };
 
+/// Returns how many triangles the item draws: those of its level, if it has one.
+std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene);
+
 /// Transparent items that are drawn together. Items of a sorted group are ordered back to front; items of an
 /// exact group, whose order differs from pixel to pixel, by rising id.
 struct TransparentGroup {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "mesh/simplification.hpp"
-
 namespace vrut::plan {
 
 namespace {
@@ -29,10 +27,6 @@ const scene::Geometry& geometry_of(const DrawItem& item, const View& view) {
     return view.scene->scene->geometries()[static_cast<std::size_t>(item.geometry)];
 }
 
-std::size_t triangle_count(const DrawItem& item, const View& view) {
-    return (item.level ? item.level->triangles : geometry_of(item, view).triangles).size();
-}
-
 /// Orthonormal and right-handed: along the longest edge, and in its plane with another one if there is one.
 glm::dmat3 axes_along(const glm::dmat3& edges) {
     const auto longer = [](const glm::dvec3& a, const glm::dvec3& b) {
@@ -54,7 +48,7 @@ glm::dmat3 axes_along(const glm::dmat3& edges) {
 
 /// Returns true if a query takes little time beside the item's triangles.
 bool is_candidate(const DrawItem& item, const View& view, const glm::dmat4& clip_from_view) {
-    const double most = kMostShareOfQuery * static_cast<double>(triangle_count(item, view));
+    const double most = kMostShareOfQuery * static_cast<double>(triangle_count(item, *view.scene->scene));
     if (most < kTrianglesOfQuery) return false;
     const glm::dvec2 size(math::pixel_box(geometry_of(item, view).bounds,
                                           clip_from_view * item.view_from_node, {view.width, view.height})
@@ -111,6 +105,7 @@ OcclusionPlan plan_occlusion(std::span<const DrawItem> opaque, const View& view,
         std::size_t item;
         OcclusionBox box;
     };
+    const scene::Scene& scene = *view.scene->scene;
     const math::Bounds& bounds = view.scene->bounds;
     history.begin_image(view.camera.eye, kMostMove * std::max(glm::distance(view.camera.eye, bounds.center()),
                                                               bounds.radius()));
@@ -118,7 +113,8 @@ OcclusionPlan plan_occlusion(std::span<const DrawItem> opaque, const View& view,
     std::size_t triangles = 0, occluded_triangles = 0;
     for (std::size_t i = 0; i < opaque.size(); ++i) {
         const DrawItem& item = opaque[i];
-        triangles += triangle_count(item, view);
+        const std::size_t own_triangles = triangle_count(item, scene);
+        triangles += own_triangles;
         const bool expected = history.is_occluded(item.node);
         if (!expected && !history.is_query_due(item.node)) continue;
         if (!is_candidate(item, view, clip_from_view)) continue;
@@ -127,7 +123,7 @@ OcclusionPlan plan_occlusion(std::span<const DrawItem> opaque, const View& view,
         if (history.is_query_due(item.node)) others.push_back({i, *box});
         if (!expected) continue;
         occluded.push_back({i, *box});
-        occluded_triangles += triangle_count(item, view);
+        occluded_triangles += own_triangles;
     }
     OcclusionPlan plan;
     const bool pays =

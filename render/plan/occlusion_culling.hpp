@@ -18,9 +18,9 @@ class OcclusionHistory {
 public:
     /// Of a scene with so many nodes.
     explicit OcclusionHistory(std::size_t nodes) : nodes_(nodes) {}
-    /// Begins an image that is seen from `eye` (world space). If that is farther than `most_move` from the
-    /// eye of the image before, or there is none, all nodes are visible, and are queried from the next image
-    /// on.
+    /// Begins an image, or another sample of one, that is seen from `eye` (world space). If that is farther
+    /// than `most_move` from the eye of the image before, or there is none, all nodes are visible, and are
+    /// queried from the next image on.
     void begin_image(const glm::dvec3& eye, double most_move);
     bool is_occluded(scene::Index node) const { return at(node).occluded; }
     /// Returns true if a node that is drawn is to be queried in the present image. While its results stay the

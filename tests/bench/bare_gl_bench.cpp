@@ -5,7 +5,6 @@
 //   bench_bare_gl [FILE...]    scenes; then scenes of many parts, and of hidden ones
 // Of a file that is not there it says so: `ninja car_levels` makes the cars. Without any it exits with 77.
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -78,27 +77,17 @@ ScenePointer cubes(unsigned count, unsigned parts) {
         material.diffuse = glm::dvec4(0.2 + 0.03 * i, 0.5, 0.8 - 0.03 * i, 1);
         result.materials.push_back(material);
     }
-    const std::array<glm::uvec3, 12> triangles{{{0, 2, 1},
-                                                {1, 2, 3},
-                                                {4, 5, 6},
-                                                {5, 7, 6},
-                                                {0, 1, 4},
-                                                {1, 5, 4},
-                                                {2, 6, 3},
-                                                {3, 6, 7},
-                                                {0, 4, 2},
-                                                {2, 4, 6},
-                                                {1, 3, 5},
-                                                {3, 7, 5}}};
+    const scene::Geometry cube_around_0 = box(glm::dvec3(0.3));
     const unsigned cubes_each = count / parts;
     for (unsigned part = 0; part < parts; ++part) {
         scene::Geometry geometry;
         for (unsigned cube = part * cubes_each; cube < (part + 1) * cubes_each; ++cube) {
             const auto first = static_cast<unsigned>(geometry.positions.size());
             const glm::dvec3 at(cube % kSide, cube / kSide % kSide, cube / kSide / kSide);
-            for (unsigned k = 0; k < 8; ++k)
-                geometry.positions.push_back(at + 0.6 * glm::dvec3(k & 1, k >> 1 & 1, k >> 2));
-            for (const glm::uvec3& triangle : triangles) geometry.triangles.push_back(first + triangle);
+            for (const glm::dvec3& corner : cube_around_0.positions)
+                geometry.positions.push_back(at + corner);
+            for (const glm::uvec3& triangle : cube_around_0.triangles)
+                geometry.triangles.push_back(first + triangle);
         }
         for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
         result.geometries.push_back(std::move(geometry));

@@ -1,4 +1,4 @@
-// Hidden parts are left out, and no byte of an image changes.
+// Occluded parts are culled, and no byte of an image changes.
 #include <algorithm>
 #include <array>
 
@@ -207,7 +207,7 @@ TEST_CASE("parts that are seen again keep their order, and that of their triangl
     CHECK(comparison.stats().draws == 1);
     view.scene = with_node(*scene, 3, false);
     comparison.check(view);
-    // Each is asked about by a draw of its own, and none is drawn again.
+    // Each is queried by a draw of its own, and none is drawn again.
     CHECK(comparison.stats().draws == 4);
 }
 

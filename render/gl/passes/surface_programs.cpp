@@ -248,8 +248,7 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
 void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const PipelineState& state,
                                  const scene::Material* material, plan::FrameStats& stats) {
     std::uint64_t triangles = 0;
-    for (const plan::DrawItem& item : items)
-        triangles += static_cast<std::uint64_t>(scene_->geometry(item).index_count) / 3;
+    for (const plan::DrawItem& item : items) triangles += plan::triangle_count(item, *scene_->scene());
     const std::uint64_t flushed_at_once = std::max(kFlushedTriangles, triangles / kMostFlushes);
     std::uint64_t flushed = stats.triangles;
     while (!items.empty()) {
