@@ -12,21 +12,21 @@ export function connectionSection({ change, ask, report, meter, state, header })
   return {
     ...others,
     name: 'connection',
-    title: say('Connection', 'Spojení'),
+    title: say('connection.title'),
     ...joined([steering(tell), pictures(change, meter), files(tell, state, header), others]),
   };
 }
 
 function steering(tell) {
   const about = facts({
-    holder: say('In control', 'Řídí'),
-    clients: say('Clients', 'Klienti'),
-    watchers: say('Of these only watching', 'Z toho jen sleduje'),
+    holder: say('control.holder'),
+    clients: say('connection.clients'),
+    watchers: say('connection.watchers'),
   });
   const control = (action) => () => tell({ type: 'control', action });
-  const take = button(say('Take and keep', 'Převzít a podržet'), control('take'), { icon: 'hand' });
-  const release = button(say('Release', 'Uvolnit řízení'), control('release'));
-  const heading = element('h3', {}, say('Walls', 'Stěny'));
+  const take = button(say('control.take'), control('take'), { icon: 'hand' });
+  const release = button(say('control.release'), control('release'));
+  const heading = element('h3', {}, say('connection.walls'));
   const walls = element('dl', { className: 'facts' });
   return {
     content: [about.element, element('div', { className: 'buttons' }, take, release), heading, walls],
@@ -45,12 +45,12 @@ function steering(tell) {
 
 function pictures(change, meter) {
   const about = facts({
-    latency: say('Response (median, 95 %)', 'Odezva (medián, 95 %)'),
-    frames: say('Pictures', 'Obrazy'),
-    data: say('Data', 'Data'),
+    latency: say('connection.latency'),
+    frames: say('connection.frames'),
+    data: say('connection.data'),
   });
-  const accuracy = (value) => say(`${written(100 * value)} % accuracy`, `přesnost ${written(100 * value)} %`);
-  const preferred = range(say('Speed or accuracy', 'Rychlost, nebo přesnost'),
+  const accuracy = (value) => say('quality.accuracy', { percent: 100 * value });
+  const preferred = range(say('quality.preference'),
     { min: 0, max: 1, step: 0.05, say: accuracy }, (preference) => change({ quality: { preference } }));
   const level = element('p', { className: 'note', data: { fact: 'level' } });
   let timer;
@@ -59,7 +59,7 @@ function pictures(change, meter) {
     const { p50, p95, framesPerSecond, bytesPerSecond } = meter.read(performance.now());
     about.show({
       latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
-      frames: `${written(framesPerSecond, 1)} / s`,
+      frames: written(framesPerSecond, 1),
       data: `${bytesWords(bytesPerSecond)} / s`,
     });
     // Nobody tells when pictures cease.
@@ -76,7 +76,7 @@ function pictures(change, meter) {
 }
 
 function files(tell, present, drawn) {
-  const about = facts({ recording: say('Recording', 'Nahrává se') });
+  const about = facts({ recording: say('recording.name') });
   const record = button('', () => tell({ type: 'record', action: present().recording ? 'stop' : 'start' }),
     { icon: 'record' });
   const snapshot = button('', async () => {
@@ -89,14 +89,14 @@ function files(tell, present, drawn) {
   // Not disabled, which would take the focus from it.
   const setBusy = (busy) => {
     snapshot.ariaBusy = busy;
-    snapshot.lastChild.data = busy ? say('Drawing…', 'Kreslí se…') : say('Save picture', 'Uložit obraz');
+    snapshot.lastChild.data = busy ? say('snapshot.drawing') : say('snapshot.save');
   };
   setBusy(false);
   return {
     content: [element('div', { className: 'buttons' }, snapshot, record), about.element],
     show({ state: { recording }, header }) {
       snapshot.disabled = !header;
-      record.lastChild.data = recording ? say('Stop recording', 'Ukončit nahrávání') : say('Record', 'Nahrávat');
+      record.lastChild.data = recording ? say('recording.stop') : say('recording.start');
       about.element.hidden = !recording;
       about.show({ recording: recording?.name });
     },
@@ -106,11 +106,10 @@ function files(tell, present, drawn) {
 function scenes(tell) {
   let askedBy;
   const select = element('select');
-  const label = element('label', { className: 'control' }, say('Another scene', 'Jiná scéna'), select);
-  const open = button(say('Open', 'Otevřít'), () => tell({ type: 'open', scene: select.value }), { icon: 'open' });
+  const label = element('label', { className: 'control' }, say('scenes.label'), select);
+  const open = button(say('scenes.open'), () => tell({ type: 'open', scene: select.value }), { icon: 'open' });
   const row = element('div', { className: 'entry', hidden: true }, label, open);
-  const none = element('p', { className: 'note', hidden: true },
-    say('The server has no other scenes to offer.', 'Server nenabízí další scény.'));
+  const none = element('p', { className: 'note', hidden: true }, say('scenes.none'));
   const unfolded = async () => {
     const answer = askedBy && await tell({ type: 'scenes' });
     if (!answer) return;
@@ -131,33 +130,31 @@ function scenes(tell) {
 
 /** Who steers, by `control` of the state, for the page of `client`. */
 export function holderWords({ holder, name, kept } = {}, client) {
-  if (!holder) return say('Nobody', 'Nikdo');
+  if (!holder) return say('control.nobody');
   if (holder !== client) return name || clientWords(holder);
-  return kept ? say('You, until you release it', 'Vy, dokud řízení neuvolníte') : say('You', 'Vy');
+  return kept ? say('control.youKept') : say('control.you');
 }
 
 function clientWords(id) {
-  return say(`Client ${id}`, `Klient ${id}`);
+  return say('connection.client', { id });
 }
 
 /** How far a host is behind. */
 export function hostWords({ revision: shown, lagMs }, revision) {
-  const count = written(revision - shown);
-  const words = shown < revision ? say(`${count} behind`, `pozadu o ${count}`) : say('up to date', 'aktuální');
+  const words = shown < revision ? say('connection.behind', { count: revision - shown }) : say('connection.upToDate');
   return lagMs === undefined ? words : `${words} · ${written(lagMs)} ms`;
 }
 
 /** By a header's `quality`. */
 export function qualityWords({ level, scale, samples, detail, jpegQuality, error }) {
-  const [percent, pixels] = [written(100 * scale), written(detail, 2)];
   const flip = error > 0 && error < 1e-3 ? `< ${written(1e-3, 3)}` : written(error, 3);
   return [
-    level === 'still' ? say('Still', 'V klidu') : say('Moving', 'V pohybu'),
-    samples > 1 && say(`${samples} samples`, `vzorků: ${samples}`),
-    scale < 1 ? say(`${percent} % size`, `velikost ${percent} %`) : say('full size', 'plná velikost'),
-    detail > 0 && say(`detail ${pixels} px`, `detaily ${pixels} px`),
+    level === 'still' ? say('quality.still') : say('quality.moving'),
+    samples > 1 && say('quality.samples', { count: samples }),
+    scale < 1 ? say('quality.scale', { percent: 100 * scale }) : say('quality.fullSize'),
+    detail > 0 && say('quality.detail', { pixels: written(detail, 2) }),
     `JPEG ${jpegQuality}`,
-    error >= 0 && say(`error ${flip}`, `chyba ${flip}`),
+    error >= 0 && say('quality.error', { flip }),
   ].filter(Boolean).join(' · ');
 }
 

@@ -53,24 +53,18 @@ export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPict
   const seconds = Math.round(retryMs / 1000);
   switch (name) {
     case 'starting':
-      return say('Connecting…', 'Připojování…');
+      return say('phase.connecting');
     case 'open':
-      return hasPicture ? '' : say('Waiting for the picture…', 'Čeká se na obraz…');
+      return hasPicture ? '' : say('view.waiting');
     case 'waiting':
       return [
-        whole(reason || (hadOpened
-          ? say('The connection to the server is lost.', 'Spojení se serverem bylo přerušeno.')
-          : say('The server does not answer.', 'Server neodpovídá.'))),
-        hadOpened || seconds === 0
-          ? say('Trying again…', 'Zkouší se znovu…')
-          : say(`Trying again in ${seconds} s.`, `Znovu za ${seconds} s.`),
+        whole(reason || say(hadOpened ? 'phase.lost' : 'phase.noAnswer')),
+        hadOpened || seconds === 0 ? say('phase.retry') : say('phase.retryIn', { seconds }),
       ].join(' ');
     case 'refused':
       return [
-        whole(reason || (hasToken
-          ? say('The server does not accept the token in this address.', 'Server nepřijímá klíč v této adrese.')
-          : say('The server asks for a token.', 'Server žádá klíč.'))),
-        say('Open the address that the server printed.', 'Otevřete adresu, kterou server vypsal.'),
+        whole(reason || say(hasToken ? 'phase.tokenWrong' : 'phase.tokenMissing')),
+        say('phase.openAddress'),
       ].join(' ');
     default:
       return null;

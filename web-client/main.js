@@ -67,9 +67,7 @@ const connection = new Connection({
 
     async frame(frame) {
       const outcome = await picture.show(frame);
-      if (outcome === 'failed') {
-        lines.pass(say('A picture from the server could not be read.', 'Obraz ze serveru nelze přečíst.'));
-      }
+      if (outcome === 'failed') lines.pass(say('view.unreadable'));
       if (outcome !== 'drawn' || phase.name !== 'open') return;
       // In the same task, so that nothing jumps.
       prediction.drawn(picture.header);
@@ -108,7 +106,7 @@ const connection = new Connection({
         show();
       } else if (message.type === 'loading') {
         const { scene, fraction, done, refused } = message;
-        lines.hold('loading', done || refused ? '' : say(`Loading ${scene}…`, `Načítá se ${scene}…`), fraction);
+        lines.hold('loading', done || refused ? '' : say('view.loading', { scene }), fraction);
         if (refused) lines.pass(refused);
       }
     },
@@ -198,7 +196,7 @@ function showPhase() {
 function speak(code) {
   setLanguage(code);
   document.documentElement.lang = language();
-  canvas.ariaLabel = say('The scene, as the server draws it', 'Scéna, jak ji kreslí server');
+  canvas.ariaLabel = say('view.label');
   menu.rebuild();
   showPhase();
   show();

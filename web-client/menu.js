@@ -67,14 +67,14 @@ export class Menu {
   /** Makes everything anew, in the language in force. */
   rebuild() {
     this.#sections = this.#build();
-    this.#button.title = say('Menu', 'Nabídka');
+    this.#button.title = say('menu.title');
     this.#panel.ariaLabel = this.#button.title;
     const other = language() === 'en' ? 'cs' : 'en';
-    const turn = button(say('Čeština', 'English'), () => this.#setLanguage(other), { quiet: true });
+    const turn = button(say('menu.otherLanguage'), () => this.#setLanguage(other), { quiet: true });
     turn.lang = other;
-    const close = tool('close', say('Close the menu', 'Zavřít nabídku'), () => this.close());
+    const close = tool('close', say('menu.close'), () => this.close());
     close.classList.add('close');
-    const full = tool('full', say('Full screen', 'Celá obrazovka'), turnFullScreen);
+    const full = tool('full', say('menu.fullScreen'), turnFullScreen);
     const head = element('div', { className: 'head' }, turn, ...(document.fullscreenEnabled ? [full] : []), close);
     this.#panel.replaceChildren(head, ...this.#sections.map(foldable));
     if (this.isOpen) turn.focus({ preventScroll: true });

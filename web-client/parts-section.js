@@ -14,10 +14,10 @@ export function partsSection({ ask, change, report, state }) {
   /** What shows a part of the state, and how it is brought up to date. */
   const followers = new Map();
 
-  const all = say('All parts', 'Všechny díly');
+  const all = say('parts.all');
   const choices = element('div', { className: 'choices' });
   const tree = element('div');
-  const asInFile = button(say('As in the file', 'Jako v souboru'), async () => {
+  const asInFile = button(say('parts.asInFile'), async () => {
     swings.clear();
     await change({}); // by itself, or what waits with it would take its place
     ask({ type: 'patch', patch: { nodes: null } }).catch(report);
@@ -68,10 +68,10 @@ export function partsSection({ ask, change, report, state }) {
     }
     if (query.search) {
       const count = `${rows.childElementCount}${after === undefined ? '' : '+'}`;
-      found.textContent = say(`Found: ${count}`, `Nalezeno: ${count}`);
+      found.textContent = say('parts.found', { count });
     }
     if (after === undefined) return;
-    const more = element('li', { className: 'buttons' }, button(say('More', 'Další'), () => {
+    const more = element('li', { className: 'buttons' }, button(say('parts.more'), () => {
       more.previousElementSibling.querySelector('[aria-pressed]').focus();
       more.remove();
       fill(rows, { ...query, after });
@@ -86,8 +86,7 @@ export function partsSection({ ask, change, report, state }) {
     const choose = button(name, () => change({ selection: { node: state().selection.node === id ? null : id } }),
       { quiet: true });
     const see = tool('seen', '', () => change({ nodes: { [id]: { active: !active } } }));
-    const fit = tool('fit', say(`Fit the view to ${name}`, `Přiblížit: ${name}`),
-      () => ask({ type: 'fit', node: id }).catch(report));
+    const fit = tool('fit', say('parts.fit', { name }), () => ask({ type: 'fit', node: id }).catch(report));
     const line = element('div', { className: 'row' }, choose, see, fit);
     const item = element('li', {}, line);
     if (node.children > 0) line.prepend(unfolder(item, id, name));
@@ -104,13 +103,13 @@ export function partsSection({ ask, change, report, state }) {
       choose.ariaPressed = selected === id;
       item.classList.toggle('off', !active);
       see.querySelector('use').setAttribute('href', active ? '#icon-seen' : '#icon-hidden');
-      see.title = active ? say(`Hide ${name}`, `Skrýt: ${name}`) : say(`Show ${name}`, `Zobrazit: ${name}`);
+      see.title = active ? say('parts.hide', { name }) : say('parts.show', { name });
       see.ariaLabel = see.title;
     });
   }
 
   function unfolder(item, id, name) {
-    const label = say(`What ${name} is made of`, `Z čeho je ${name}`);
+    const label = say('parts.unfold', { name });
     const unfold = tool('open', label, () => {
       const below = item.querySelector('ul');
       unfold.ariaExpanded = !below;
@@ -123,7 +122,7 @@ export function partsSection({ ask, change, report, state }) {
 
   let timer;
   const field = element('input', {
-    type: 'search', placeholder: say('Search', 'Hledat'), ariaLabel: say('Search', 'Hledat'),
+    type: 'search', placeholder: say('parts.search'), ariaLabel: say('parts.search'),
     autocomplete: 'off',
     oninput() {
       clearTimeout(timer);
@@ -136,7 +135,7 @@ export function partsSection({ ask, change, report, state }) {
     },
   });
   const box = element('div', { className: 'entry' }, field,
-    tool('close', say('Clear the search', 'Zrušit hledání'), clear));
+    tool('close', say('parts.clearSearch'), clear));
   const found = element('p', { className: 'note', role: 'status' });
 
   function clear() {
@@ -162,8 +161,8 @@ export function partsSection({ ask, change, report, state }) {
       const switches = await allOf(ask, { only: 'switches' });
       const doors = await allOf(ask, { only: 'hinges' });
       if (asked !== scene) return;
-      addChoices(say('Variants', 'Varianty'), variants(switches).map(variant));
-      addChoices(say('Doors', 'Dveře'), doors.map(door));
+      addChoices(say('parts.variants'), variants(switches).map(variant));
+      addChoices(say('parts.doors'), doors.map(door));
       refresh();
     } catch (error) {
       report(error);
@@ -178,8 +177,8 @@ export function partsSection({ ask, change, report, state }) {
     const present = () => switches.map(({ id, activeChild }) => state().nodes[id]?.activeChild ?? activeChild);
     const used = [...present(), ...switches.map(({ activeChild }) => activeChild)];
     const options = switches[0].choices.map((name, i) => [String(i), name || i + 1]);
-    if (used.includes(-1)) options.push(['-1', say('None', 'Nic')]);
-    if (used.includes(-2)) options.push(['-2', say('All', 'Vše')]);
+    if (used.includes(-1)) options.push(['-1', say('parts.chooseNone')]);
+    if (used.includes(-2)) options.push(['-2', say('parts.chooseAll')]);
     const set = async (value) => {
       for (let i = 0; i < switches.length; i += MOST_SWITCHED) {
         const some = switches.slice(i, i + MOST_SWITCHED);
@@ -220,7 +219,7 @@ export function partsSection({ ask, change, report, state }) {
 
   return {
     name: 'parts',
-    title: say('Parts', 'Díly'),
+    title: say('parts.title'),
     content: [choices, element('div', { className: 'control' }, element('h3', {}, all), asInFile), box, found, tree],
     unfolded: look,
     show(now) {
@@ -265,7 +264,7 @@ export function variants(switches) {
 function titleOf(group) {
   const name = nameOf(group[0]);
   if (group.every((node) => nameOf(node) === name)) return name;
-  return say(`${group.length} parts`, `Dílů: ${group.length}`);
+  return say('parts.count', { count: group.length });
 }
 
 /** The matrix of a node with that hinge, opened by a part from 0 to 1: closed · rotation, 16 numbers, row by row. */

@@ -1,20 +1,20 @@
-import { texts } from './texts.js';
+import { say } from './texts.js';
 
-const word = texts({
-  open: ['Connected', 'Připojeno'],
-  starting: ['Connecting', 'Připojování'],
-  connecting: ['Connecting', 'Připojování'],
-  waiting: ['Not connected', 'Nepřipojeno'],
-  refused: ['Refused', 'Odmítnuto'],
-  steering: ['Steering', 'Řídíte'],
-  kept: ['Steering, kept', 'Řídíte trvale'],
-  watching: ['Watching', 'Sledujete'],
-  free: ['Nobody steers', 'Nikdo neřídí'],
-  moving: ['Moving', 'V pohybu'],
-  still: ['Still', 'V klidu'],
-});
+const TEXTS = {
+  open: 'presence.connected',
+  starting: 'presence.connecting',
+  connecting: 'presence.connecting',
+  waiting: 'presence.notConnected',
+  refused: 'presence.refused',
+  steering: 'presence.steering',
+  kept: 'presence.kept',
+  watching: 'presence.watching',
+  free: 'presence.free',
+  moving: 'quality.moving',
+  still: 'quality.still',
+};
 
-/** What is always to be seen, as keys of words: the connection, who steers, and the picture's kind. */
+/** What is always to be seen, as keys of TEXTS: the connection, who steers, and the picture's kind. */
 export function presence({ phase, role, client, state, header }) {
   if (phase.name !== 'open') return { connection: phase.name };
   const { holder, kept } = state?.control ?? {};
@@ -33,7 +33,7 @@ export class Presence {
 
   show(page) {
     const { connection, steering = '', level = '' } = presence(page);
-    const text = [connection, steering, level].filter(Boolean).map((key) => word(key)).join(' · ');
+    const text = [connection, steering, level].filter(Boolean).map((key) => say(TEXTS[key])).join(' · ');
     if (text === this.#element.textContent) return;
     Object.assign(this.#element.dataset, { connection, steering, level });
     this.#element.textContent = text;

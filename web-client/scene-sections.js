@@ -20,33 +20,30 @@ function section(name, title, ...bound) {
   };
 }
 
-const nameWord = () => say('Name', 'Název');
-const colorWord = () => say('Color', 'Barva');
-
 function scene() {
   const about = facts({
-    name: nameWord(),
-    nodes: say('Nodes', 'Uzly'),
-    materials: say('Materials', 'Materiály'),
-    geometries: say('Geometries', 'Geometrie'),
+    name: say('fact.name'),
+    nodes: say('scene.nodes'),
+    materials: say('scene.materials'),
+    geometries: say('scene.geometries'),
   });
-  return section('scene', say('Scene', 'Scéna'), [about, (state) => [state.scene]]);
+  return section('scene', say('scene.title'), [about, (state) => [state.scene]]);
 }
 
 function renderer(change) {
   const set = (member) => (value) => change({ renderer: { [member]: value } });
   const get = (member) => (state) => [state.renderer[member]];
-  const modes = [['realistic', say('Realistic', 'Realistické')], ['stylized', say('Stylized', 'Stylizované')]];
+  const modes = [['realistic', say('renderer.realistic')], ['stylized', say('renderer.stylized')]];
   const about = facts({
-    solid: say('Opaque', 'Neprůhledné'),
-    transparent: say('Transparent', 'Průhledné'),
-    reflective: say('Reflective', 'Zrcadlící'),
-    time: say('Time to draw (mean of 100)', 'Doba vykreslení (průměr 100)'),
+    solid: say('renderer.opaque'),
+    transparent: say('renderer.transparent'),
+    reflective: say('renderer.reflective'),
+    time: say('renderer.time'),
   });
-  return section('renderer', say('Renderer', 'Vykreslení'),
-    [choice(say('Drawing', 'Zobrazení'), modes, set('mode')), get('mode')],
-    [toggle(say('Wireframe', 'Drátový model'), set('wireframe')), get('wireframe')],
-    [toggle(say('Show selection', 'Zvýraznit výběr'), set('showSelection')), get('showSelection')],
+  return section('renderer', say('renderer.title'),
+    [choice(say('renderer.mode'), modes, set('mode')), get('mode')],
+    [toggle(say('renderer.wireframe'), set('wireframe')), get('wireframe')],
+    [toggle(say('renderer.showSelection'), set('showSelection')), get('showSelection')],
     [about, (state, { stats }) => {
       const mean = stats?.renderer?.meanRenderMs;
       return [{ ...state.renderer, time: mean && `${written(mean, 1)} ms` }];
@@ -57,25 +54,25 @@ function camera(change) {
   const set = (member) => (value) => change({ navigation: { [member]: value } });
   const get = (member) => (state) => [state.navigation[member]];
   const about = facts({
-    name: nameWord(),
-    id: 'Id',
-    near: say('Near', 'Blízká rovina'),
-    far: say('Far', 'Vzdálená rovina'),
-    plane: say('Plane size', 'Rozměr roviny'),
+    name: say('fact.name'),
+    id: say('fact.id'),
+    near: say('camera.near'),
+    far: say('camera.far'),
+    plane: say('camera.plane'),
   });
   const degrees = { min: 1, max: 170, say: (value) => `${written(value, 1)}°` };
-  const fov = range(say('Field of view', 'Zorný úhel'), degrees, (value) => change({ camera: { fov: value } }));
+  const fov = range(say('camera.fov'), degrees, (value) => change({ camera: { fov: value } }));
   const factor = { min: 0.01, max: 100, logarithmic: true, step: 0.05, say: (value) => `${written(value, 2)} ×` };
   const speed = (label, member) => [range(label, factor, set(member)), get(member)];
-  return section('camera', say('Camera', 'Kamera'),
+  return section('camera', say('camera.title'),
     [about, ({ camera: now }, { header }) =>
-      [{ name: say('Free', 'Volná'), ...now, id: now.node?.toString(), plane: planeSize(now, header?.view) }]],
+      [{ name: say('camera.free'), ...now, id: now.node?.toString(), plane: planeSize(now, header?.view) }]],
     [fov, (state) => [state.camera.fov]],
-    speed(say('Turn speed', 'Rychlost otáčení'), 'rotateSpeed'),
-    speed(say('Move speed', 'Rychlost posunu'), 'panSpeed'),
-    speed(say('Zoom speed', 'Rychlost přiblížení'), 'zoomSpeed'),
-    [toggle(say('Keep upright', 'Držet svisle'), set('keepUpright')), get('keepUpright')],
-    [selection(say('Mouse style', 'Ovládání myší'), set('style')), (state) => [state.navigation.style, STYLES]]);
+    speed(say('camera.rotateSpeed'), 'rotateSpeed'),
+    speed(say('camera.panSpeed'), 'panSpeed'),
+    speed(say('camera.zoomSpeed'), 'zoomSpeed'),
+    [toggle(say('camera.keepUpright'), set('keepUpright')), get('keepUpright')],
+    [selection(say('camera.style'), set('style')), (state) => [state.navigation.style, STYLES]]);
 }
 
 /** Of the near plane, in the scene's unit. */
@@ -87,39 +84,41 @@ function planeSize({ fov, near }, view) {
 
 function light(change, present) {
   const types = {
-    headlight: say('Headlight', 'Čelní světlo'),
-    point: say('Point', 'Bodové'),
-    spot: say('Spot', 'Reflektor'),
-    directional: say('Directional', 'Směrové'),
+    headlight: say('light.headlight'),
+    point: say('light.point'),
+    spot: say('light.spot'),
+    directional: say('light.directional'),
   };
   const set = (member) => (value) => change({ lights: { items: { [present().lights.active]: { [member]: value } } } });
   const get = (member) => ({ lights }) => [lights.items[lights.active][member]];
-  const parts = [say('Constant', 'Konstantní'), say('Linear', 'Lineární'), say('Quadratic', 'Kvadratický')];
-  return section('light', say('Light', 'Světlo'),
-    [selection(say('Active light', 'Aktivní světlo'), (active) => change({ lights: { active } })),
+  const parts = [say('light.constant'), say('light.linear'), say('light.quadratic')];
+  return section('light', say('light.title'),
+    [selection(say('light.active'), (active) => change({ lights: { active } })),
       ({ lights: { active, items: { headlight, ...others } } }) =>
         [active, [['headlight', types.headlight], ...options(others)]]],
-    [facts({ name: nameWord(), id: 'Id', type: say('Type', 'Typ') }), ({ lights: { active, items } }) => {
-      const { name, type } = items[active];
-      const named = active === 'headlight' ? { name: types.headlight } : { name, id: active };
-      return [{ ...named, type: types[type] }];
-    }],
-    [color(colorWord(), set('color')), get('color')],
-    [numbers(say('Attenuation', 'Útlum'), parts, set('attenuation')), get('attenuation')]);
+    [facts({ name: say('fact.name'), id: say('fact.id'), type: say('fact.type') }),
+      ({ lights: { active, items } }) => {
+        const { name, type } = items[active];
+        const named = active === 'headlight' ? { name: types.headlight } : { name, id: active };
+        return [{ ...named, type: types[type] }];
+      }],
+    [color(say('fact.color'), set('color')), get('color')],
+    [numbers(say('light.attenuation'), parts, set('attenuation')), get('attenuation')]);
 }
 
 function background(change, present) {
-  const plain = say('Plain color', 'Jednobarevné');
+  const plain = say('background.plain');
   const setColor = (value) => {
     const { active } = present().backgrounds;
     return change({ backgrounds: active === 'color' ? { color: value } : { items: { [active]: { color: value } } } });
   };
-  return section('background', say('Background', 'Pozadí'),
-    [selection(say('Active background', 'Aktivní pozadí'), (active) => change({ backgrounds: { active } })),
+  return section('background', say('background.title'),
+    [selection(say('background.active'), (active) => change({ backgrounds: { active } })),
       ({ backgrounds: { active, items } }) => [active, [['color', plain], ...options(items)]]],
-    [facts({ name: nameWord(), id: 'Id', texture: say('Texture', 'Textura') }), ({ backgrounds: { active, items } }) =>
-      [active === 'color' ? { name: plain } : { ...items[active], id: active }]],
-    [color(colorWord(), setColor), ({ backgrounds: all }) => [(all.items[all.active] ?? all).color]]);
+    [facts({ name: say('fact.name'), id: say('fact.id'), texture: say('background.texture') }),
+      ({ backgrounds: { active, items } }) =>
+        [active === 'color' ? { name: plain } : { ...items[active], id: active }]],
+    [color(say('fact.color'), setColor), ({ backgrounds: all }) => [(all.items[all.active] ?? all).color]]);
 }
 
 function options(items) {

@@ -1,3 +1,8 @@
+import { cs } from './texts/cs.js';
+import { en } from './texts/en.js';
+
+const TABLES = { cs, en };
+
 let current = 'en';
 
 /** The language in force: 'en' or 'cs'. */
@@ -10,14 +15,14 @@ export function setLanguage(code) {
   current = code === 'cs' ? 'cs' : 'en';
 }
 
-/** That of the two which is in the language in force. */
-export function say(english, czech) {
-  return current === 'cs' ? czech : english;
-}
-
-/** Says words by their key in a table of [English, Czech]. */
-export function texts(table) {
-  return (key) => say(...table[key]);
+/** The text of a key, with its values; numbers are written as the language does, `count` chooses the plural form. */
+export function say(key, values = {}) {
+  const entry = TABLES[current][key];
+  const text = typeof entry === 'string' ? entry : entry[new Intl.PluralRules(current).select(values.count)];
+  return text.replace(/\{(\w+)\}/g, (_, name) => {
+    const value = values[name];
+    return typeof value === 'number' ? written(value) : value;
+  });
 }
 
 /** A number as the language writes it; `digits` behind the decimal sign, at most. */

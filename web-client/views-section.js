@@ -10,28 +10,27 @@ export function viewsSection(page) {
   const tell = (message) => ask(message).catch(report);
   const fly = (camera) => tell({ type: 'fly', keyframes: [{ at: FLIGHT_MS, camera }] });
   const parts = joined([savedViews, cameras, markers].map((part) => part({ ...page, tell, fly })));
-  const home = button(say('Home', 'Výchozí pohled'), () => fly(state().views.home), { icon: 'home' });
+  const home = button(say('views.home'), () => fly(state().views.home), { icon: 'home' });
   const fit = button('', () => tell({ type: 'fit', node: state().selection.node }), { icon: 'fit' });
   return {
     name: 'views',
-    title: say('Views', 'Pohledy'),
+    title: say('views.title'),
     content: [element('div', { className: 'buttons' }, home, fit), ...parts.content],
     show(now) {
       fit.lastChild.data = now.state.selection.node === undefined
-        ? say('Fit the scene', 'Celá scéna') : say('Fit the part', 'Celý díl');
+        ? say('views.fitScene') : say('views.fitPart');
       parts.show(now);
     },
   };
 }
 
 function savedViews({ tell, fly, change, report, state }) {
-  const list = places(say('Saved views', 'Uložené pohledy'),
-    say('No view is saved yet.', 'Zatím není uložen žádný pohled.'),
+  const list = places(say('views.saved'), say('views.none'),
     (name) => fly(state().views[name]), (name) => change({ views: { [name]: null } }));
-  const entry = field(say('Name of the view', 'Název pohledu'), say('Save view', 'Uložit pohled'), (name) => {
+  const entry = field(say('views.name'), say('views.save'), (name) => {
     // What is there would stay as it is.
     if (Object.hasOwn(state().views, name)) {
-      return report(new Error(say(`There is a view “${name}” already.`, `Pohled „${name}“ už existuje.`)));
+      return report(new Error(say('views.nameTaken', { name })));
     }
     return tell({ type: 'patch', patch: { views: { [name]: {} } } });
   });
@@ -40,14 +39,14 @@ function savedViews({ tell, fly, change, report, state }) {
     show({ state: { views } }) {
       const names = Object.keys(views).filter((name) => name !== 'home');
       list.show(names.map((name) => [name, { text: name }]));
-      entry.show(unusedName(say('View', 'Pohled'), names));
+      entry.show(unusedName(say('views.newName'), names));
     },
   };
 }
 
 function cameras({ change }) {
-  const list = places(say('Cameras of the scene', 'Kamery scény'),
-    say('The scene has no cameras.', 'Scéna nemá kamery.'), (id) => change({ camera: { node: Number(id) } }));
+  const list = places(say('views.cameras'), say('views.noCameras'),
+    (id) => change({ camera: { node: Number(id) } }));
   return {
     ...list,
     show({ state: { cameras: all, camera } }) {
@@ -58,26 +57,24 @@ function cameras({ change }) {
 }
 
 function markers({ tell, fly, change, report, state, header }) {
-  const list = places(say('Markers', 'Značky'), say('There is no marker yet.', 'Zatím tu není žádná značka.'),
+  const list = places(say('markers.title'), say('markers.none'),
     (name) => fly(lookingAt(state().camera, header().markers[name])), (name) => change({ markers: { [name]: null } }));
   const mark = async (text) => {
     const { frame, view } = header() ?? {};
     const picked = view && await tell({ type: 'pick', x: view.width / 2, y: view.height / 2, frame });
     if (!picked) return false;
-    if (!picked.point) {
-      return report(new Error(say('There is no part in the middle of the view.', 'Uprostřed pohledu není žádný díl.')));
-    }
+    if (!picked.point) return report(new Error(say('markers.noPart')));
     const name = unusedName('marker', Object.keys(state().markers));
     return tell({ type: 'patch', patch: { markers: { [name]: { ...placeOf(picked), text } } } });
   };
-  const entry = field(say('Text of the marker', 'Text značky'), say('Mark the middle', 'Označit střed'), mark);
+  const entry = field(say('markers.text'), say('markers.add'), mark);
   return {
     content: [...list.content, entry.element],
     show({ state: { markers: all }, header: drawn }) {
       const entries = Object.entries(all)
         .map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.markers?.[name] }]);
       list.show(entries);
-      entry.show(unusedName(say('Marker', 'Značka'), entries.map(([, { text }]) => text)));
+      entry.show(unusedName(say('markers.newText'), entries.map(([, { text }]) => text)));
     },
   };
 }
@@ -90,7 +87,7 @@ function places(title, none, go, remove) {
     const show = ({ text, used, lost = false }) => {
       there.lastChild.data = text;
       Object.assign(there, { ariaPressed: used, disabled: lost });
-      away.ariaLabel = away.title = say(`Delete ${text}`, `Smazat ${text}`);
+      away.ariaLabel = away.title = say('views.delete', { text });
     };
     return { children: remove ? [there, away] : [there], show };
   });

@@ -127,10 +127,11 @@ describe('of the connection', () => {
     assert.equal(say({ name: 'refused' }, { hasToken: true }), `The server does not accept the token in this address. ${remedy}`);
     assert.equal(say({ name: 'refused', reason: 'The token is wrong' }), `The token is wrong. ${remedy}`);
   });
+
   test('in Czech, too', () => {
     setLanguage('cs');
     try {
-      assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Znovu za 2 s.');
+      assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Nový pokus za 2 s.');
     } finally {
       setLanguage('en');
     }

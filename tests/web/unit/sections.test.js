@@ -39,12 +39,15 @@ describe('connection', () => {
     assert.equal(holderWords({ holder: 'c2' }, 'c1'), 'Client c2');
     setLanguage('cs');
     assert.equal(holderWords({ holder: 'c2' }, 'c1'), 'Klient c2');
+    assert.equal(holderWords({ holder: 'c1', kept: false }, 'c1'), 'vy');
   });
 
   test('how far behind a wall is', () => {
     assert.equal(hostWords({ revision: 9, lagMs: 12.4 }, 9), 'up to date · 12 ms');
     assert.equal(hostWords({ revision: 5 }, 9), '4 behind');
     assert.equal(hostWords({ revision: 10 }, 9), 'up to date');
+    setLanguage('cs');
+    assert.equal(hostWords({ revision: 5 }, 9), 'pozadu o 4 změny');
   });
 
   test('which kind of picture it is', () => {
@@ -55,8 +58,8 @@ describe('connection', () => {
     const moving = { level: 'moving', scale: 0.67, samples: 1, detail: 0.5, jpegQuality: 70, error: 0.0314 };
     assert.equal(qualityWords(moving), 'Moving · 67 % size · detail 0.5 px · JPEG 70 · error 0.031');
     setLanguage('cs');
-    assert.equal(qualityWords(still), 'V klidu · vzorků: 16 · plná velikost · JPEG 95');
-    assert.equal(qualityWords(moving), 'V pohybu · velikost 67 % · detaily 0,5 px · JPEG 70 · chyba 0,031');
+    assert.equal(qualityWords(still), 'V klidu · 16 vzorků · plná velikost · JPEG 95');
+    assert.equal(qualityWords(moving), 'V pohybu · velikost 67 % · detaily od 0,5 px · JPEG 70 · chyba 0,031');
   });
 
   test('a picture to keep has all pixels of the view, as far as the server draws them', () => {

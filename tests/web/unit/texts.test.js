@@ -1,39 +1,49 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { afterEach, test } from 'node:test';
-import { language, say, setLanguage, texts, written } from '../../../web-client/texts.js';
+import { language, say, setLanguage, written } from '../../../web-client/texts.js';
+import { cs } from '../../../web-client/texts/cs.js';
+import { en } from '../../../web-client/texts/en.js';
 
-const FOLDER = new URL('../../../web-client/', import.meta.url);
+const read = (path) => readFileSync(new URL(path, new URL('../../../', import.meta.url)), 'utf8');
+const tables = Object.entries({ en, cs });
+const modules = readdirSync(new URL('../../../web-client/', import.meta.url)).filter((name) => name.endsWith('.js'))
+  .map((name) => ({ name, source: read(`web-client/${name}`) }));
+
+const keysOf = (table) => Object.keys(table).sort();
+const forms = (entry) => (typeof entry === 'string' ? [entry] : Object.values(entry));
+const sorted = (words) => [...new Set(words)].sort();
+const placeholders = (text) => sorted([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name));
+
+/** Each key stands in a module as a literal, in a call or in a table; nothing else there looks like one. */
+const used = modules.flatMap(({ name, source }) =>
+  [...source.matchAll(/'([a-z]+(?:\.[\w-]+)+)'/g)].map(([, key]) => ({ name, key })));
+/** The calls with values, as {name, key, values: their names}. */
+const calls = modules.flatMap(({ name, source }) =>
+  [...source.matchAll(/\bsay\('([^']+)', \{([^}]*)\}\)/g)].map(([, key, literal]) =>
+    ({ name, key, values: sorted([...literal.matchAll(/(?:^|,)\s*([a-z]\w*)/g)].map(([, value]) => value)) })));
 
 afterEach(() => setLanguage('en'));
 
-const modules = readdirSync(FOLDER).filter((name) => name.endsWith('.js') && name !== 'texts.js')
-  .map((name) => ({ name, source: readFileSync(new URL(name, FOLDER), 'utf8') }));
-const importing = (word) => modules.filter(({ source }) =>
-  new RegExp(`import \\{[^}]*\\b${word}\\b[^}]*\\} from './texts\\.js'`).test(source));
-
-/** The tables of words: each is one literal behind `texts(`. */
-const tables = modules.flatMap(({ name, source }) =>
-  [...source.matchAll(/\btexts\((\{.*?^\})\)/gms)].map(([, literal]) => [name, new Function(`return ${literal}`)()]));
-
-const LITERAL = /('(?:[^'\\\n]|\\.)*'|`(?:[^`\\]|\\.)*`)/.source;
-/** Words that are said where they stand, as pairs of literals. */
-const PAIR = new RegExp(`\\bsay\\(\\s*${LITERAL},\\s*${LITERAL},?\\s*\\)`, 'g');
-
-test('words are said in the language in force', () => {
-  const word = texts({ hello: ['Hello', 'Ahoj'] });
-  assert.equal(word('hello'), 'Hello');
+test('a text is in the language in force', () => {
+  assert.equal(say('parts.all'), 'All parts');
   setLanguage('cs');
   assert.equal(language(), 'cs');
-  assert.equal(word('hello'), 'Ahoj');
+  assert.equal(say('parts.all'), 'Všechny díly');
   setLanguage('de');
   assert.equal(language(), 'en');
 });
 
-test('words stand where they are said, too', () => {
-  assert.equal(say('Hello', 'Ahoj'), 'Hello');
+test('a text holds its values: words as they are, numbers as the language writes them', () => {
+  assert.equal(say('views.nameTaken', { name: '{name} $& 1000' }), 'There is a view “{name} $& 1000” already.');
+  assert.equal(say('connection.behind', { count: 1234 }), '1,234 behind');
+});
+
+test('a count has the plural form of the language', () => {
+  const said = () => [0, 1, 2, 5].map((count) => say('parts.count', { count }));
+  assert.deepEqual(said(), ['0 parts', '1 part', '2 parts', '5 parts']);
   setLanguage('cs');
-  assert.equal(say('Hello', 'Ahoj'), 'Ahoj');
+  assert.deepEqual(said(), ['0 dílů', '1 díl', '2 díly', '5 dílů']);
 });
 
 test('numbers are written as the language does', () => {
@@ -43,36 +53,51 @@ test('numbers are written as the language does', () => {
   assert.equal(written(1234.567, 1), '1\u00a0234,6');
 });
 
-test('every module with words was found', () => {
-  assert.deepEqual([...new Set(tables.map(([name]) => name))], importing('texts').map(({ name }) => name));
-  assert.ok(importing('texts').length + importing('say').length >= 5);
+test('each language has the keys of the others', () => {
+  for (const [, table] of tables) assert.deepEqual(keysOf(table), keysOf(en));
 });
 
-const sorted = (parts) => [...new Set(parts)].sort();
-const values = (literal) => sorted(literal.match(/\$\{[^}]*\}/g) ?? []);
+test('each key that a module uses exists', () => {
+  assert.ok(used.length > 100 && sorted(used.map(({ name }) => name)).length >= 8);
+  for (const { name, key } of used) assert.ok(Object.hasOwn(en, key), `${name}: ${key}`);
+});
 
-for (const { name, source } of importing('say')) {
-  test(`${name} says all in both languages`, () => {
-    const pairs = [...source.matchAll(PAIR)];
-    assert.ok(pairs.length > 0);
-    assert.equal(pairs.length, source.match(/\bsay\(/g).length, 'each is a pair of literals');
-    for (const [, ...literals] of pairs) {
-      for (const literal of literals) assert.match(literal, /^.\S(.*\S)?.$/s);
-      assert.deepEqual(values(literals[0]), values(literals[1]), literals[0]);
+test('each key is used', () => {
+  const known = new Set(used.map(({ key }) => key));
+  assert.deepEqual(keysOf(en).filter((key) => !known.has(key)), []);
+});
+
+test('each text has all its values, the same in each language', () => {
+  const given = new Map(calls.map(({ key, values }) => [key, values]));
+  for (const key of keysOf(en)) {
+    for (const [name, table] of tables) {
+      for (const text of forms(table[key])) assert.deepEqual(placeholders(text), given.get(key) ?? [], `${name}: ${key}`);
     }
-  });
-}
+  }
+  for (const { name, key, values } of calls) assert.deepEqual(values, given.get(key), `${name}: ${key}`);
+});
 
-for (const [module, table] of tables) {
-  test(`${module} has all its words in both languages`, () => {
-    for (const [key, words] of Object.entries(table)) {
-      assert.equal(words.length, 2, key);
-      for (const text of words) assert.ok(typeof text === 'string' && text.trim() === text && text !== '', `${key}: '${text}'`);
+test('plural forms are those of the language', () => {
+  for (const [name, table] of tables) {
+    const categories = new Intl.PluralRules(name).resolvedOptions().pluralCategories;
+    for (const [key, entry] of Object.entries(table)) {
+      if (typeof entry === 'object') assert.deepEqual(Object.keys(entry).sort(), [...categories].sort(), `${name}: ${key}`);
     }
-  });
+  }
+});
 
-  test(`${module} says only words that it has`, () => {
-    const { source } = modules.find(({ name }) => name === module);
-    for (const [, key] of source.matchAll(/\bword\('(\w+)'/g)) assert.ok(key in table, `word('${key}')`);
-  });
-}
+test('each text is a text', () => {
+  for (const [name, table] of tables) {
+    for (const [key, entry] of Object.entries(table)) {
+      for (const text of forms(entry)) assert.ok(text !== '' && text.trim() === text, `${name}: ${key}`);
+    }
+  }
+});
+
+test('the modules hold no texts of their own', () => {
+  for (const { name, source } of modules) {
+    const code = source.replace(/\/\*[^]*?\*\/|(?<=^|\s)\/\/.*/gm, '');
+    assert.doesNotMatch(code, /(['"`])\p{Lu}\p{Ll}+ \p{Ll}[^\n]*\1/u, name);
+    assert.doesNotMatch(code, /(?=\P{ASCII})\p{L}/u, name);
+  }
+});
