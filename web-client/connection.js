@@ -14,10 +14,10 @@ const ASKS_AFTER_MS = 5000;
 const SILENT_AFTER_MS = 10_000;
 
 /**
- * Where the connection stands; `reason`: why the server refused it, in its words.
+ * Where the connection stands; `reason`: why the server refused it.
  *
  * @typedef {{name: 'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
- *   reason?: string}} Phase
+ *   reason?: {code?: string, message: string}}} Phase
  */
 
 /** Connects, says hello, keeps the state document, grants frames, and begins anew when the connection is lost. */
@@ -42,7 +42,8 @@ export class Connection {
   /** The id under which this page kept control until it lost the connection. */
   #keptAs;
   #retries = 0;
-  #refusal = '';
+  /** The error that came before the welcome. */
+  #refusal;
   #timer;
 
   /**
@@ -62,7 +63,7 @@ export class Connection {
 
   start() {
     this.#setPhase({ name: 'connecting' });
-    this.#refusal = '';
+    this.#refusal = undefined;
     const socket = new WebSocket(this.#url, SUBPROTOCOL);
     this.#socket = socket;
     socket.binaryType = 'arraybuffer';
@@ -98,7 +99,10 @@ export class Connection {
     return this.#lastId;
   }
 
-  /** Sends a message and promises its answer, of a `snapshot` the frame. An error without a message: it got lost. */
+  /**
+   * Sends a message and promises its answer, of a `snapshot` the frame. An error of the server's has its `code`; one
+   * without a message: it got lost.
+   */
   ask(message) {
     const id = this.send(message);
     return new Promise((resolve, reject) => {
@@ -139,7 +143,7 @@ export class Connection {
     this.#asked.clear();
 
     if (code === POLICY_VIOLATION) {
-      this.#setPhase({ name: 'refused', reason: this.#refusal || reason });
+      this.#setPhase({ name: 'refused', reason: this.#refusal ?? (reason ? { message: reason } : undefined) });
       return;
     }
     const longest = Math.min(LAST_RETRY_MS, FIRST_RETRY_MS * 2 ** this.#retries);
@@ -165,7 +169,7 @@ export class Connection {
         this.#on.state(this.state);
         break;
       case 'error':
-        if (!isOpen) this.#refusal = message.message;
+        if (!isOpen) this.#refusal = message;
         else if (!this.#settle(message.id, message)) this.#on.error(message);
         break;
       case undefined: // no message at all
@@ -178,7 +182,7 @@ export class Connection {
   /** Whether somebody has waited for the answer. */
   #settle(id, answer) {
     const asked = this.#asked.get(id);
-    if (answer.type === 'error') asked?.reject(new Error(answer.message));
+    if (answer.type === 'error') asked?.reject(Object.assign(new Error(answer.message), { code: answer.code }));
     else asked?.resolve(answer);
     return this.#asked.delete(id);
   }

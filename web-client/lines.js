@@ -1,5 +1,5 @@
 import { element } from './controls.js';
-import { say } from './texts.js';
+import { errorSentence, say } from './texts.js';
 
 const MOST_LINES = 3;
 const PASSES_AFTER_MS = 6000;
@@ -58,12 +58,14 @@ export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPict
       return hasPicture ? '' : say('view.waiting');
     case 'waiting':
       return [
-        whole(reason || say(hadOpened ? 'phase.lost' : 'phase.noAnswer')),
+        reason ? whole(errorSentence(reason)) : say(hadOpened ? 'phase.lost' : 'phase.noAnswer'),
         hadOpened || seconds === 0 ? say('phase.retry') : say('phase.retryIn', { seconds }),
       ].join(' ');
     case 'refused':
+      // What is not allowed in a hello is its token.
       return [
-        whole(reason || say(hasToken ? 'phase.tokenWrong' : 'phase.tokenMissing')),
+        reason && reason.code !== 'not-allowed'
+          ? whole(errorSentence(reason)) : say(hasToken ? 'phase.tokenWrong' : 'phase.tokenMissing'),
         say('phase.openAddress'),
       ].join(' ');
     default:

@@ -15,7 +15,7 @@ import { Picture } from './picture.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
 import { sceneSections } from './scene-sections.js';
-import { language, say, setLanguage } from './texts.js';
+import { errorSentence, language, say, setLanguage } from './texts.js';
 import { Token } from './token.js';
 import { watchViewSize } from './view-size.js';
 import { viewsSection } from './views-section.js';
@@ -94,9 +94,9 @@ const connection = new Connection({
       show();
     },
 
-    error({ code, message }) {
-      if (code === 'not-in-control') prediction.forget();
-      lines.pass(message);
+    error(error) {
+      if (error.code === 'not-in-control') prediction.forget();
+      lines.pass(errorSentence(error));
       show();
     },
 
@@ -157,7 +157,7 @@ function follow() {
 
 /** Says why something was refused, and shows what is so instead. */
 function report(error) {
-  if (error.message) lines.pass(error.message);
+  if (error.message) lines.pass(errorSentence(error));
   show();
 }
 

@@ -25,6 +25,12 @@ export function say(key, values = {}) {
   });
 }
 
+/** The sentence for an error: by its code, or the server's own where the language has none for that. */
+export function errorSentence({ code, message }) {
+  const key = `error.${code}`;
+  return key in TABLES[current] ? say(key, { message }) : message;
+}
+
 /** A number as the language writes it; `digits` behind the decimal sign, at most. */
 export function written(value, digits = 0) {
   return new Intl.NumberFormat(current, { maximumFractionDigits: digits }).format(value);

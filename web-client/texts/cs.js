@@ -1,4 +1,4 @@
-/** What the page says in Czech, as en.js. */
+/** What the page says in Czech, as en.js; and a sentence for each code of the server's errors. */
 export const cs = {
   'menu.title': 'Nabídka',
   'menu.close': 'Zavřít nabídku',
@@ -153,4 +153,18 @@ export const cs = {
   'background.active': 'Aktivní pozadí',
   'background.plain': 'Jednobarevné',
   'background.texture': 'Textura',
+
+  'error.bad-message': 'Server stránce nerozuměl ({message}).',
+  'error.out-of-range': 'Zadaná hodnota není přípustná ({message}).',
+  'error.unknown-member': 'Takové nastavení server nezná ({message}).',
+  'error.read-only': 'Toto nastavení nelze měnit ({message}).',
+  'error.unknown-node': 'Tento prvek ve scéně není ({message}).',
+  'error.unknown-frame': 'Tento snímek už server nemá v paměti.',
+  'error.stale-revision': 'Scéna se mezitím změnila.',
+  'error.not-in-control': 'Scénu právě řídí někdo jiný.',
+  'error.not-allowed': 'Tato akce zde není povolena ({message}).',
+  'error.refused-scene': 'Scénu nelze otevřít ({message}).',
+  'error.busy': 'Server je právě zaneprázdněn ({message}).',
+  'error.too-many': 'Nejvyšší povolený počet je překročen ({message}).',
+  'error.failed': 'Akce se nezdařila ({message}).',
 };

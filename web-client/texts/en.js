@@ -1,4 +1,7 @@
-/** What the page says in English: a text by key, with {values}, or its plural forms by Intl's category of `count`. */
+/**
+ * What the page says in English: a text by key, with {values}, or its plural forms by Intl's category of `count`.
+ * Errors are missing: the server's own sentences are English.
+ */
 export const en = {
   'menu.title': 'Menu',
   'menu.close': 'Close the menu',

@@ -342,11 +342,11 @@ describe('a question', () => {
     assert.deepEqual(page.messages, []);
   });
 
-  test('is refused in the words of the server', async () => {
+  test('is refused with the error of the server', async () => {
     const page = setUpOpen();
     const asked = page.connection.ask({ type: 'patch', patch: {} });
     page.socket.says({ type: 'error', id: 1, code: 'not-in-control', message: 'Another steers.' });
-    await assert.rejects(asked, { message: 'Another steers.' });
+    await assert.rejects(asked, { code: 'not-in-control', message: 'Another steers.' });
     assert.deepEqual(page.errors, []);
   });
 
@@ -424,15 +424,23 @@ describe('control', () => {
 });
 
 describe('a refusal', () => {
-  test('of the token is final, and told in the words of the server', () => {
+  test('of the token is final, and told with the error of the server', () => {
     const page = setUp();
     page.connection.start();
     page.socket.opens();
-    page.socket.says({ type: 'error', code: 'not-allowed', message: 'The token is wrong.' });
+    const error = { type: 'error', code: 'not-allowed', message: 'The token is wrong.' };
+    page.socket.says(error);
     page.socket.ends(1008, 'policy');
-    assert.deepEqual(page.phase, { name: 'refused', reason: 'The token is wrong.' });
+    assert.deepEqual(page.phase, { name: 'refused', reason: error });
     assert.equal(page.clock.next, undefined);
     assert.deepEqual(page.errors, []);
+  });
+
+  test('without an error is told by the reason of the close', () => {
+    const page = setUp();
+    page.connection.start();
+    page.socket.ends(1008, 'policy');
+    assert.deepEqual(page.phase, { name: 'refused', reason: { message: 'policy' } });
   });
 
   test('is tried again only when the page is seen again', () => {
@@ -450,7 +458,7 @@ describe('a refusal', () => {
     page.socket.says({ type: 'error', code: 'too-many', message: 'The server has no room.' });
     page.socket.ends(1013);
     assert.equal(page.phase.name, 'waiting');
-    assert.equal(page.phase.reason, 'The server has no room.');
+    assert.equal(page.phase.reason.message, 'The server has no room.');
     assert.equal(page.clock.next, 250);
   });
 });

@@ -118,20 +118,26 @@ describe('of the connection', () => {
     assert.equal(say({ name: 'waiting', retryMs: 250, hadOpened: true }), 'The connection to the server is lost. Trying again…');
     assert.equal(say({ name: 'waiting', retryMs: 250 }), 'The server does not answer. Trying again…');
     assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'The server does not answer. Trying again in 2 s.');
-    assert.equal(say({ name: 'waiting', retryMs: 4000, reason: 'The server has no room' }), 'The server has no room. Trying again in 4 s.');
+    assert.equal(say({ name: 'waiting', retryMs: 4000, reason: { code: 'too-many', message: 'the server has no room' } }),
+      'The server has no room. Trying again in 4 s.');
   });
 
   test('a refusal, and what to do', () => {
     const remedy = 'Open the address that the server printed.';
     assert.equal(say({ name: 'refused' }), `The server asks for a token. ${remedy}`);
     assert.equal(say({ name: 'refused' }, { hasToken: true }), `The server does not accept the token in this address. ${remedy}`);
-    assert.equal(say({ name: 'refused', reason: 'The token is wrong' }), `The token is wrong. ${remedy}`);
+    assert.equal(say({ name: 'refused', reason: { message: 'closed by a proxy' } }), `Closed by a proxy. ${remedy}`);
+    const refused = { name: 'refused', reason: { code: 'not-allowed', message: 'the token is wrong' } };
+    assert.equal(say(refused, { hasToken: true }), `The server does not accept the token in this address. ${remedy}`);
+    assert.equal(say(refused), `The server asks for a token. ${remedy}`);
   });
 
   test('in Czech, too', () => {
     setLanguage('cs');
     try {
       assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Nový pokus za 2 s.');
+      assert.equal(say({ name: 'waiting', retryMs: 0, reason: { code: 'too-many', message: 'the server is full' } }),
+        'Nejvyšší povolený počet je překročen (the server is full). Nový pokus…');
     } finally {
       setLanguage('en');
     }

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { afterEach, test } from 'node:test';
-import { language, say, setLanguage, written } from '../../../web-client/texts.js';
+import { errorSentence, language, say, setLanguage, written } from '../../../web-client/texts.js';
 import { cs } from '../../../web-client/texts/cs.js';
 import { en } from '../../../web-client/texts/en.js';
 
@@ -9,8 +9,10 @@ const read = (path) => readFileSync(new URL(path, new URL('../../../', import.me
 const tables = Object.entries({ en, cs });
 const modules = readdirSync(new URL('../../../web-client/', import.meta.url)).filter((name) => name.endsWith('.js'))
   .map((name) => ({ name, source: read(`web-client/${name}`) }));
+const codes = JSON.parse(read('protocol/protocol.schema.json')).$defs.serverError.properties.code.enum;
 
-const keysOf = (table) => Object.keys(table).sort();
+const isError = (key) => key.startsWith('error.');
+const keysOf = (table) => Object.keys(table).filter((key) => !isError(key)).sort();
 const forms = (entry) => (typeof entry === 'string' ? [entry] : Object.values(entry));
 const sorted = (words) => [...new Set(words)].sort();
 const placeholders = (text) => sorted([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name));
@@ -44,6 +46,16 @@ test('a count has the plural form of the language', () => {
   assert.deepEqual(said(), ['0 parts', '1 part', '2 parts', '5 parts']);
   setLanguage('cs');
   assert.deepEqual(said(), ['0 dílů', '1 díl', '2 díly', '5 dílů']);
+});
+
+test('an error is told by its code, in English by the server', () => {
+  const error = { code: 'failed', message: 'nothing is being recorded' };
+  assert.equal(errorSentence(error), 'nothing is being recorded');
+  setLanguage('cs');
+  assert.equal(errorSentence(error), 'Akce se nezdařila (nothing is being recorded).');
+  assert.equal(errorSentence({ code: 'not-in-control', message: 'another client is in control' }), 'Scénu právě řídí někdo jiný.');
+  assert.equal(errorSentence({ code: 'of-a-later-version', message: 'something new' }), 'something new');
+  assert.equal(errorSentence(new Error('Pohled „A“ už existuje.')), 'Pohled „A“ už existuje.');
 });
 
 test('numbers are written as the language does', () => {
@@ -90,6 +102,18 @@ test('each text is a text', () => {
   for (const [name, table] of tables) {
     for (const [key, entry] of Object.entries(table)) {
       for (const text of forms(entry)) assert.ok(text !== '' && text.trim() === text, `${name}: ${key}`);
+    }
+  }
+});
+
+test('each code of an error has a sentence, but in English, which the server speaks', () => {
+  assert.ok(codes.length > 10);
+  for (const [name, table] of tables) {
+    const sentences = Object.entries(table).filter(([key]) => isError(key));
+    assert.deepEqual(sentences.map(([key]) => key).sort(), name === 'en' ? [] : codes.map((code) => `error.${code}`).sort());
+    for (const [key, text] of sentences) {
+      assert.match(text, /^\p{Lu}.*\.$/u, `${name}: ${key}`);
+      assert.ok(['', 'message'].includes(placeholders(text).join()), `${name}: ${key}`);
     }
   }
 });
