@@ -15,7 +15,7 @@ import { Picture } from './picture.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
 import { sceneSections } from './scene-sections.js';
-import { errorSentence, language, say, setLanguage } from './texts.js';
+import { errorSentence, language, preferredLanguage, say, setLanguage } from './texts.js';
 import { Token } from './token.js';
 import { watchViewSize } from './view-size.js';
 import { viewsSection } from './views-section.js';
@@ -215,5 +215,5 @@ window.addEventListener('online', () => connection.wake());
 // Another token: another start.
 window.addEventListener('hashchange', () => location.reload());
 
-speak(recall('language'));
+speak(recall('language') ?? preferredLanguage(navigator.languages));
 connection.start();

@@ -2,6 +2,8 @@ import { cs } from './texts/cs.js';
 import { en } from './texts/en.js';
 
 const TABLES = { cs, en };
+/** By a browser's language; who reads Slovak reads Czech. */
+const KNOWN = { cs: 'cs', sk: 'cs', en: 'en' };
 
 let current = 'en';
 
@@ -13,6 +15,11 @@ export function language() {
 /** Others than those known are English. */
 export function setLanguage(code) {
   current = code === 'cs' ? 'cs' : 'en';
+}
+
+/** The first known of a browser's languages ('cs-CZ'), or else English. */
+export function preferredLanguage(tags) {
+  return tags.map((tag) => KNOWN[tag.split('-')[0]]).find(Boolean) ?? 'en';
 }
 
 /** The text of a key, with its values; numbers are written as the language does, `count` chooses the plural form. */

@@ -322,3 +322,21 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
     });
   });
 }
+
+test('a Czech browser gets Czech, the errors of the server too', { skip: browserIsMissing }, async () => {
+  const server = await Server.start();
+  const { page, wire } = await Tablet.open(browser, server.address, PHONE, { locale: 'cs-CZ' });
+  const colleague = await Colleague.join(server.address);
+  try {
+    await wire.still();
+    await page.locator('html[lang="cs"]').waitFor();
+    await colleague.ask({ type: 'control', action: 'take' });
+    await page.getByRole('button', { name: 'Nabídka' }).tap();
+    await page.locator('[data-section="renderer"]').getByText('Drátový model').tap();
+    await page.locator('#lines').getByText('Scénu právě řídí někdo jiný.').waitFor();
+  } finally {
+    await colleague.leave();
+    await page.context().close();
+    await server.stop();
+  }
+});

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { afterEach, test } from 'node:test';
-import { errorSentence, language, say, setLanguage, written } from '../../../web-client/texts.js';
+import { errorSentence, language, preferredLanguage, say, setLanguage, written } from '../../../web-client/texts.js';
 import { cs } from '../../../web-client/texts/cs.js';
 import { en } from '../../../web-client/texts/en.js';
 
@@ -46,6 +46,15 @@ test('a count has the plural form of the language', () => {
   assert.deepEqual(said(), ['0 parts', '1 part', '2 parts', '5 parts']);
   setLanguage('cs');
   assert.deepEqual(said(), ['0 dílů', '1 díl', '2 díly', '5 dílů']);
+});
+
+test('the language is the first known of the browser\'s', () => {
+  assert.equal(preferredLanguage(['cs']), 'cs');
+  assert.equal(preferredLanguage(['de-AT', 'cs-CZ', 'en']), 'cs');
+  assert.equal(preferredLanguage(['en-US', 'cs']), 'en');
+  assert.equal(preferredLanguage(['sk-SK', 'en']), 'cs');
+  assert.equal(preferredLanguage(['de']), 'en');
+  assert.equal(preferredLanguage([]), 'en');
 });
 
 test('an error is told by its code, in English by the server', () => {
