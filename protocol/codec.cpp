@@ -24,6 +24,13 @@ Record checked(Record record) {
     return record;
 }
 
+Control checked(Control control) {
+    using Action = Control::Action;
+    if ((control.action == Action::give || control.action == Action::decline) && !control.client)
+        throw BadJson{error_code::bad_message, "member 'client' is missing"};
+    return control;
+}
+
 template <class Message>
 Message checked(Message message) {
     return message;

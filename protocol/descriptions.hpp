@@ -48,6 +48,7 @@ void describe(V& v, const Hello*) {
     v.required("role", &Hello::role, kRole);
     v.optional("name", &Hello::name, kClientName);
     v.optional("token", &Hello::token, Text{1000});
+    v.optional("resume", &Hello::resume, Text{100});
 }
 
 template <class V>
@@ -193,7 +194,8 @@ void describe(V& v, const Record*) {
 
 template <class V>
 void describe(V& v, const Control*) {
-    v.required("action", &Control::action, word("take", "release"));
+    v.required("action", &Control::action, word("take", "release", "ask", "cancel", "give", "decline"));
+    v.optional("client", &Control::client, Text{100});
 }
 
 template <class V>
@@ -457,10 +459,18 @@ void describe(V& v, const QualityState*) {
 }
 
 template <class V>
+void describe(V& v, const ControlState::Asking*) {
+    v.fixed("client", &ControlState::Asking::client, kName);
+    v.fixed("name", &ControlState::Asking::name, kName);
+}
+
+template <class V>
 void describe(V& v, const ControlState*) {
     v.fixed("holder", &ControlState::holder, kName);
     v.fixed("name", &ControlState::name, kName);
     v.fixed("kept", &ControlState::kept, Flag{});
+    v.fixed("absent", &ControlState::absent, Flag{});
+    v.fixed("asking", &ControlState::asking, List<Object<ControlState::Asking>>{{}, 0, kMaxInteger});
 }
 
 template <class V>

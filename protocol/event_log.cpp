@@ -94,13 +94,15 @@ ClientMessage read_client_message(const Json& json) {
 }
 
 decltype(LogLine::what) read_event(const Json& json) {
-    constexpr auto kEvents = word("connected", "disconnected", "opened", "drawn");
+    constexpr auto kEvents = word("connected", "disconnected", "control", "opened", "drawn");
     switch (kEvents.read(member(json, "event"), "event")) {
         case 0:
             return LogLine::Connected{read_role(member(json, "role")), read_client_name(json)};
         case 1:
             return LogLine::Disconnected{};
         case 2:
+            return LogLine::ControlPassed{};
+        case 3:
             return LogLine::Opened{read_string(member(json, "scene"), "scene", 1000),
                                    read_string(member(json, "sceneSha256"), "sceneSha256", 100)};
         default:
@@ -127,6 +129,7 @@ struct WriteWhat {
         write_client_name(connected.name, json);
     }
     void operator()(const LogLine::Disconnected&) { json["event"] = "disconnected"; }
+    void operator()(const LogLine::ControlPassed&) { json["event"] = "control"; }
     void operator()(const LogLine::Opened& opened) {
         json["event"] = "opened";
         json["scene"] = opened.scene;
@@ -180,7 +183,8 @@ tl::expected<LogLine, Error> decode_log_line(std::string_view text) {
             line.what = read_client_message(json["message"]);
         else
             line.what = read_event(json);
-        const bool of_nobody = std::holds_alternative<LogLine::Opened>(line.what) ||
+        const bool of_nobody = std::holds_alternative<LogLine::ControlPassed>(line.what) ||
+                               std::holds_alternative<LogLine::Opened>(line.what) ||
                                std::holds_alternative<LogLine::Drawn>(line.what);
         if (line.client.empty() && !of_nobody)
             throw BadJson{error_code::bad_message, "member 'client' is missing"};

@@ -59,6 +59,8 @@ struct LogLine {
         std::string name = {};  ///< empty: none
     };
     struct Disconnected {};
+    /// From here on this line's client holds control, or nobody where it has none.
+    struct ControlPassed {};
     /// A scene that was being loaded is shown from here on.
     struct Opened {
         std::string scene, sha256;
@@ -69,7 +71,7 @@ struct LogLine {
     };
     LogTime at{0};
     std::string client;  ///< empty where it was none's doing
-    std::variant<ClientMessage, Connected, Disconnected, Opened, Drawn> what;
+    std::variant<ClientMessage, Connected, Disconnected, ControlPassed, Opened, Drawn> what;
 };
 
 /// Without the line's end.

@@ -36,6 +36,8 @@ enum class ImageFormat { jpeg, png };
 struct Hello {
     Role role = Role::view;
     std::string name, token;
+    std::string
+        resume;  ///< the client's secret: with the same one the holder of control comes back; empty: none
 };
 
 struct Resize {
@@ -99,8 +101,10 @@ struct Fit {
 };
 
 struct Control {
-    enum class Action { take, release };  ///< take, and keep
+    /// `ask` and `cancel` are another client's; `release`, `give` and `decline` the holder's.
+    enum class Action { take, release, ask, cancel, give, decline };
     Action action = Action::take;
+    std::optional<std::string> client;  ///< to whom control is given, or who is declined
 };
 
 /// What is under a point of the view, now or as a frame showed it.

@@ -83,6 +83,12 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
                 state.control.holder = kName.read((*control)["holder"], "holder");
             if (control->contains("name")) state.control.name = kName.read((*control)["name"], "name");
             state.control.kept = control->contains("kept") && Flag{}.read((*control)["kept"], "kept");
+            for (const Json& one : control->value("asking", Json::array())) {
+                const Json& asking = read_object(one, "asking");
+                ControlState::Asking& added = state.control.asking.emplace_back();
+                added.client = kName.read(asking.value("client", Json()), "client");
+                if (asking.contains("name")) added.name = kName.read(asking["name"], "name");
+            }
         }
         return state;
     });

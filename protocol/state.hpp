@@ -151,9 +151,17 @@ struct QualityState {
 };
 
 struct ControlState {  // r
+    /// A control client that asks the holder for control.
+    struct Asking {
+        std::string client;
+        std::optional<std::string> name;
+        bool operator==(const Asking&) const = default;
+    };
     std::optional<std::string> holder;
     std::optional<std::string> name;  ///< that the holder gave in its `hello`
-    bool kept = false;
+    bool kept = false;                ///< always true while there is a holder
+    bool absent = false;              ///< the holder has lost its connection, and may come back
+    std::vector<Asking> asking = {};  ///< the first one first
     bool operator==(const ControlState&) const = default;
 };
 

@@ -1,3 +1,4 @@
+import { clientName, holderName } from './control.js';
 import { button, element, fact, facts, joined, range } from './controls.js';
 import { say, written } from './texts.js';
 
@@ -33,10 +34,10 @@ function steering(tell) {
     show({ state, stats, client, steers, revision }) {
       const { hosts = {}, ...counts } = stats ?? {};
       about.show({ ...counts, holder: holderWords(state.control, client) });
-      take.ariaDisabled = steers && state.control.kept;
+      take.ariaDisabled = steers;
       release.ariaDisabled = !steers;
       const lines = Object.entries(hosts).map(([id, host]) =>
-        fact(host.name || clientWords(id), element('dd', {}, hostWords(host, revision))));
+        fact(clientName({ client: id, name: host.name }), element('dd', {}, hostWords(host, revision))));
       heading.hidden = lines.length === 0;
       walls.replaceChildren(...lines);
     },
@@ -128,15 +129,10 @@ function scenes(tell) {
   };
 }
 
-/** Who steers, by `control` of the state, for the page of `client`. */
-export function holderWords({ holder, name, kept } = {}, client) {
-  if (!holder) return say('control.nobody');
-  if (holder !== client) return name || clientWords(holder);
-  return kept ? say('control.youKept') : say('control.you');
-}
-
-function clientWords(id) {
-  return say('connection.client', { id });
+/** Who is in control, by `control` of the state, for the page of `client`. */
+export function holderWords(control, client) {
+  if (!control?.holder) return say('control.nobody');
+  return control.holder === client ? say('control.you') : holderName(control);
 }
 
 /** How far a host is behind. */

@@ -39,8 +39,6 @@ export class Connection {
   #lastId = 0;
   /** How to settle what is not answered yet, by id. */
   #asked = new Map();
-  /** The id under which this page kept control until it lost the connection. */
-  #keptAs;
   #retries = 0;
   /** The error that came before the welcome. */
   #refusal;
@@ -136,7 +134,6 @@ export class Connection {
     this.#socket = null;
     clearTimeout(this.#timer);
     const hadOpened = this.#phase === 'open';
-    if (hadOpened) this.#keptAs = this.steers && this.state.control.kept ? this.client : undefined;
     this.role = undefined;
     this.client = undefined;
     for (const { reject } of this.#asked.values()) reject(new Error());
@@ -192,13 +189,6 @@ export class Connection {
     this.#listen();
     this.#setPhase({ name: 'open' });
     if (this.#size) this.send({ type: 'resize', ...this.#size });
-    // The view has its holder's size. Where there is none, a change of nothing makes this page the holder, unless
-    // somebody else is faster, which is nobody's concern.
-    const holder = this.state.control?.holder;
-    // The server may not have noticed yet that the former connection is dead.
-    if (this.role === 'control' && (!holder || holder === this.#keptAs)) {
-      this.ask(this.#keptAs ? { type: 'control', action: 'take' } : { type: 'patch', patch: {} }).catch(() => {});
-    }
     for (let i = 0; i < GRANTS; i += 1) this.#post({ type: 'frame' });
   }
 

@@ -2,12 +2,13 @@ import { Awake } from './awake.js';
 import { Changes } from './changes.js';
 import { connectionSection } from './connection-section.js';
 import { Connection, roleFrom, socketAddress } from './connection.js';
+import { ControlBar } from './control.js';
 import { element } from './controls.js';
 import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
 import { Labels } from './labels.js';
 import { Lines, connectionSentence } from './lines.js';
-import { recall, remember } from './memory.js';
+import { recall, remember, resumeKey } from './memory.js';
 import { Menu } from './menu.js';
 import { Meter } from './meter.js';
 import { partsSection } from './parts-section.js';
@@ -23,7 +24,6 @@ import { viewsSection } from './views-section.js';
 const find = (id) => document.getElementById(id);
 const canvas = find('view');
 const lines = new Lines(find('lines'));
-const corner = new Presence(find('presence'));
 const picture = new Picture(canvas);
 const prediction = new Prediction();
 const labels = new Labels(find('labels'));
@@ -44,6 +44,7 @@ const connection = new Connection({
     name: /iPhone|Android|Windows|Mac|Linux(?!; A)/.exec(navigator.userAgent)?.[0]
       .replace('Mac', navigator.maxTouchPoints > 1 ? 'iPad' : 'Mac'),
     token: token.value,
+    resume: resumeKey(),
   },
   on: {
     phase(now) {
@@ -51,7 +52,8 @@ const connection = new Connection({
       hasPicture = false;
       stats = null;
       const controls = connection.role === 'control';
-      input.enabled = awake.wanted = controls;
+      awake.wanted = controls;
+      input.enabled = connection.steers;
       meter.forgetSent();
       prediction.forget();
       lines.hold('loading', '');
@@ -86,6 +88,7 @@ const connection = new Connection({
     },
 
     state(state) {
+      input.enabled = connection.steers;
       prediction.follow(state, connection.steers);
       for (const notice of [state.scene?.notices ?? [], state.notices ?? []].flat()) {
         if (!noticesSeen.has(notice)) lines.pass(notice);
@@ -126,8 +129,22 @@ const input = new Input(canvas, {
   marks: new FingerMarks(find('finger-marks')),
 });
 
-// Who touches the picture means it with the keys, too.
-canvas.addEventListener('pointerdown', () => canvas.focus({ preventScroll: true }));
+const sendControl = (message) => ask(message).catch(report);
+const corner = new Presence(find('presence'), {
+  ask: () => sendControl({ type: 'control', action: 'ask' }),
+  take: () => sendControl({ type: 'control', action: 'take' }),
+});
+const controlBar = new ControlBar(find('control'), {
+  send: sendControl,
+  declined: (name) => lines.pass(say('control.declined', { name })),
+});
+
+canvas.addEventListener('pointerdown', () => {
+  // Who touches the picture means it with the keys, too.
+  canvas.classList.add('by-pointer');
+  canvas.focus({ preventScroll: true });
+  if (!connection.steers) controlBar.offer();
+});
 
 /** For the menu's sections. */
 const page = {
@@ -170,6 +187,7 @@ function show() {
     const { state, revision, role, client, steers } = connection;
     const { header } = picture;
     corner.show({ phase, role, client, state, header: hasPicture ? header : null });
+    controlBar.show({ role, client, control: state?.control });
     showPart(state?.selection ?? {});
     follow();
     menu.show({ state, revision, header, stats, client, steers });
@@ -208,6 +226,7 @@ watchViewSize(canvas, (size) => {
   show();
 });
 
+document.addEventListener('keydown', () => canvas.classList.remove('by-pointer'), { capture: true });
 document.addEventListener('visibilitychange', () => {
   if (!document.hidden) connection.wake();
 });

@@ -1,39 +1,80 @@
+import { holderName } from './control.js';
 import { say } from './texts.js';
 
-const TEXTS = {
+const CONNECTION = {
   open: 'presence.connected',
   starting: 'presence.connecting',
   connecting: 'presence.connecting',
   waiting: 'presence.notConnected',
   refused: 'presence.refused',
-  steering: 'presence.steering',
-  kept: 'presence.kept',
-  watching: 'presence.watching',
-  free: 'presence.free',
-  moving: 'quality.moving',
-  still: 'quality.still',
 };
+const LEVEL = { moving: 'quality.moving', still: 'quality.still' };
+/** So long the pill is held to take control. */
+const HOLD_MS = 800;
 
-/** What is always to be seen, as keys of TEXTS: the connection, who steers, and the picture's kind. */
-export function presence({ phase, role, client, state, header }) {
+/**
+ * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), and the
+ * picture's kind.
+ */
+export function presence({ phase, client, state, header }) {
   if (phase.name !== 'open') return { connection: phase.name };
-  const { holder, kept } = state?.control ?? {};
-  const others = !holder && role === 'control' ? 'free' : 'watching';
-  const own = kept ? 'kept' : 'steering';
-  return { connection: 'open', steering: holder === client ? own : others, level: header?.quality?.level };
+  const { holder, absent } = state?.control ?? {};
+  const others = absent ? 'absent' : 'other';
+  const held = holder === client ? 'own' : others;
+  return { connection: 'open', steering: holder ? held : 'nobody', level: header?.quality?.level };
 }
 
-/** Says it, and tells the style sheet. */
+/** Who is in control, in words. */
+function holderWords(steering, { control } = {}) {
+  if (steering === 'own') return say('presence.own');
+  if (steering === 'nobody') return say('presence.nobody');
+  const name = holderName(control);
+  return steering === 'absent' ? say('presence.absent', { name }) : say('presence.other', { name });
+}
+
+/** The pill in the corner. A tap asks for control, holding it takes control. */
 export class Presence {
   #element;
+  #timer;
+  #may = false;
 
-  constructor(element) {
+  /** `on`: `ask` and `take`. */
+  constructor(element, on) {
     this.#element = element;
+    element.ariaDisabled = true;
+    let taken = false;
+    element.onpointerdown = () => {
+      taken = false;
+      if (!this.#may) return;
+      element.classList.add('held');
+      this.#timer = setTimeout(() => {
+        taken = true;
+        release();
+        on.take();
+      }, HOLD_MS);
+    };
+    const release = () => {
+      clearTimeout(this.#timer);
+      element.classList.remove('held');
+    };
+    element.onpointerup = element.onpointerleave = element.onpointercancel = release;
+    // Of a long press.
+    element.oncontextmenu = (event) => event.preventDefault();
+    element.onclick = () => {
+      if (this.#may && !taken) on.ask();
+    };
   }
 
   show(page) {
     const { connection, steering = '', level = '' } = presence(page);
-    const text = [connection, steering, level].filter(Boolean).map((key) => say(TEXTS[key])).join(' · ');
+    this.#may = page.role === 'control' && ['other', 'absent'].includes(steering);
+    const text = [
+      say(CONNECTION[connection]),
+      steering && holderWords(steering, page.state),
+      level && say(LEVEL[level]),
+    ].filter(Boolean).join(' · ');
+    const title = this.#may ? say('presence.hint') : '';
+    if (this.#element.title !== title) Object.assign(this.#element, { title, ariaDisabled: !this.#may });
     if (text === this.#element.textContent) return;
     Object.assign(this.#element.dataset, { connection, steering, level });
     this.#element.textContent = text;

@@ -79,6 +79,8 @@ async def main():
             raise SystemExit(f"door.py: '{options.door}' has no hinge")
         hinge = door["hinge"]
         angle = hinge["degrees"] if options.angle is None else options.angle
+        # Whoever holds control now has it again when this ends.
+        await ask(server, {"type": "control", "action": "take"})
         steps = 25
         matrices = [turned(hinge["closed"], hinge["axis"], angle * step / steps) for step in range(1, steps + 1)]
         for matrix in matrices + [None]:  # None: as the file has it

@@ -54,6 +54,8 @@ async def main():
     options.out.mkdir(parents=True, exist_ok=True)
     async with websockets.connect(address, subprotocols=["vrut-preview.v1"], max_size=None) as server:
         await server.send(json.dumps({"type": "hello", "role": "control", "token": token}))
+        # Whoever holds control now has it again when this ends.
+        await server.send(json.dumps({"type": "control", "action": "take"}))
         await server.send(json.dumps({"type": "resize", "width": width, "height": height, "pixelRatio": 1}))
         shown = {}
         for step in range(options.steps):

@@ -184,6 +184,7 @@ void Engine::run() {
 void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(earlier(until, stats_.due()), files_due());
     if (room_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
+    if (const auto deadline = room_->deadline()) until = earlier(until, start_ + *deadline);
     if (!waiting_.empty() || (arrived_ && !renewal_)) until = base::Clock::now();
     watchdog_.idle();
     std::vector<EngineEvent> events = mailbox_.wait(until);
@@ -199,7 +200,7 @@ void Engine::apply() {
         pixel_budget_ = limits_;
         failed_.reset();
     }
-    fly();
+    advance_room();
     if (frame_ && is_outdated(*frame_)) give_up_frame();
 }
 
@@ -241,10 +242,10 @@ std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& st
     return base::Clock::now();
 }
 
-void Engine::fly() {
-    if (!room_->flies()) return;
-    last_change_ = base::Clock::now();
-    room_->advance(time_of(last_change_));
+void Engine::advance_room() {
+    const base::Clock::time_point now = base::Clock::now();
+    if (room_->flies()) last_change_ = now;
+    room_->advance(time_of(now));
 }
 
 // --- events
@@ -261,7 +262,7 @@ void Engine::handle_waiting() {
 void Engine::handle(const ClientJoined& joined) {
     clients_[joined.client].handled = joined.id;
     const base::Clock::time_point now = base::Clock::now();
-    room_->join(joined.client, joined.role, time_of(now), joined.name);
+    room_->join(joined.client, joined.role, time_of(now), joined.name, joined.resume_key);
     stats_.joined(joined.client, joined.role, joined.name, now);
 }
 

@@ -184,7 +184,7 @@ private:
     std::optional<Link> holders_link() const;
     bool thin_lines() const;
     bool is_outdated(const FrameUnderWay& frame) const;
-    void fly();
+    void advance_room();
     PictureSize present_size() const;
     void broadcast(const protocol::Loading& loading);
     std::map<std::string, Applied> applied() const;

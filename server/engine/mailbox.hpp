@@ -20,7 +20,8 @@ struct ClientJoined {
     std::string client;
     protocol::Role role = protocol::Role::view;
     std::string name;
-    std::int64_t id = 0;  ///< of its `hello`; 0: it had none
+    std::int64_t id = 0;          ///< of its `hello`; 0: it had none
+    std::string resume_key = {};  ///< see room::Steering::join
 };
 
 struct ClientLeft {

@@ -7,7 +7,6 @@
 
 #include "event_log.hpp"
 #include "messages.hpp"
-#include "room/steering.hpp"
 
 namespace vrut::server::room {
 
@@ -35,8 +34,7 @@ struct Recording {
     protocol::LogTime since{0};  ///< when it began
     std::string name = {};       ///< empty: it is not open yet
     AnsweredLater start;
-    std::optional<AnsweredLater> stop = {};     ///< no more lines come
-    std::optional<Steering> took_control = {};  ///< who steered from then on, where that was another before
+    std::optional<AnsweredLater> stop = {};  ///< no more lines come
 };
 
 }  // namespace vrut::server::room

@@ -54,6 +54,10 @@ struct Player {
         room.leave(line.client, line.at);
         return std::nullopt;
     }
+    std::optional<std::string> operator()(const protocol::LogLine::ControlPassed&) const {
+        room.pass_control(line.client, line.at);
+        return std::nullopt;
+    }
     std::optional<std::string> operator()(const protocol::LogLine::Opened& opened) const {
         auto scene = find_scene(opened.scene, opened.sha256);
         if (!scene) return scene.error();

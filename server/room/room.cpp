@@ -32,11 +32,18 @@ Room::Room(scenes::LoadedScene scene, RoomOptions options)
       at_home_(!state_.camera.node),
       visible_(view_of(state_, scene_)) {}
 
-void Room::join(const std::string& client, Role role, SessionTime at, const std::string& name) {
+void Room::join(const std::string& client, Role role, SessionTime at, const std::string& name,
+                const std::string& resume_key) {
     advance(at);
+    document();
+    changing_.clear();  // who holds control is the server's doing
     clients_[client].role = role;
     clients_[client].name = name;
     record(client, protocol::LogLine::Connected{role, name});
+    if (role != Role::control || options_.replaying) return;
+    steering_.join(client, resume_key);
+    show_holder();
+    record_holder();
 }
 
 void Room::leave(const std::string& client, SessionTime at) {
@@ -44,11 +51,24 @@ void Room::leave(const std::string& client, SessionTime at) {
     document();  // what was before is others' doing, or the client's own
     changing_.clear();
     record(client, protocol::LogLine::Disconnected{});
-    clients_.erase(client);
     gestures_.lift(client, camera());
     clicks_.lift(client);
-    release(client);
+    if (steering_.holds(client)) end_flight(false);
+    if (steering_.holds(client)) recorded_holder_ = {client, true};
+    steering_.leave(client, time_, options_.replaying);
+    clients_.erase(client);
+    show_holder();
+    record_holder();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
+}
+
+void Room::pass_control(const std::string& client, SessionTime at) {
+    advance(at);
+    if (client.empty())
+        steering_.clear_holder();
+    else if (clients_.contains(client))
+        steering_.take(client);
+    show_holder();
 }
 
 bool Room::handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at) {
@@ -86,6 +106,7 @@ bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     update_visible();
     if (accepted_ && recorded && received.traits.recorded) record(received.client, received.message);
+    record_holder();
     return accepted_;
 }
 
@@ -108,7 +129,7 @@ void Room::load_answered(std::int64_t request, const std::optional<protocol::Err
     handle(received, at, [&] {
         if (rejection) return reject(received, rejection->code.c_str(), rejection->message);
         // Whether it may be opened was judged when it was asked for; by now another may hold control.
-        const bool steers = steering_.may_steer(received.client, time_, gestures_.any_pressed());
+        const bool steers = steering_.holds(received.client);
         if (steers) steer(received);
         answer(received);
         accepted_ = steers;  // what stands in a log steers
@@ -122,6 +143,13 @@ void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
 
 void Room::advance(SessionTime at) {
     time_ = std::max(time_, at);
+    if (deadline() && !options_.replaying && *deadline() <= time_) {
+        document();
+        changing_.clear();
+        steering_.advance(time_);
+        show_holder();
+        record_holder();
+    }
     if (!flight_) return;
     if (!changing_.empty()) document();
     changing_.clear();  // what flies is nobody's doing
@@ -197,12 +225,45 @@ void Room::apply(const Received& received, const protocol::Resize& resize) {
 }
 
 void Room::apply(const Received& received, const protocol::Control& control) {
-    if (control.action == protocol::Control::Action::take) {
-        steering_.take(received.client, time_);
-        hold(received.client);
-    } else {
-        release(received.client);
+    using Action = protocol::Control::Action;
+    const std::string& client = received.client;
+    const bool holds = steering_.holds(client) || options_.replaying;
+    if ((control.action == Action::give || control.action == Action::decline) && !holds)
+        return reject_not_in_control(received);
+    if (control.action == Action::give && !options_.replaying &&
+        !steering_.is_here(control.client.value_or("")))
+        return reject(received, code::out_of_range,
+                      "'client': there is no control client '" + control.client->substr(0, 40) + "' here");
+    switch (control.action) {
+        case Action::take:
+            steering_.take(client);
+            break;
+        case Action::release:
+            if (!steering_.holds(client)) break;
+            end_flight(false);
+            gestures_.lift(client, camera());
+            clicks_.lift(client);
+            recorded_holder_ = {};  // until a line of its own says who does
+            if (options_.replaying)
+                steering_.clear_holder();
+            else
+                steering_.release();
+            break;
+        case Action::ask:
+            steering_.ask(client);
+            break;
+        case Action::cancel:
+            steering_.decline(client);
+            break;
+        case Action::give:
+            end_flight(false);
+            steering_.take(*control.client);
+            break;
+        case Action::decline:
+            steering_.decline(*control.client);
+            break;
     }
+    show_holder();
     answer(received);
 }
 
@@ -242,42 +303,60 @@ bool Room::may_send(const Received& received, Senders senders) {
 }
 
 bool Room::may_steer(const Received& received) {
-    if (steering_.may_steer(received.client, time_, gestures_.any_pressed())) return true;
-    if (!received.is_input()) reject(received, code::not_in_control, "another client is in control");
+    const bool may = clients_[received.client].role == Role::host
+                         ? steering_.is_quiet(time_) && !gestures_.any_pressed()
+                         : steering_.holds(received.client);
+    if (may || options_.replaying) return true;
+    if (!received.is_input()) reject_not_in_control(received);
     return false;
+}
+
+void Room::reject_not_in_control(const Received& received) {
+    const auto& [holder, name] = std::tie(state_.control.holder, state_.control.name);
+    reject(received, code::not_in_control,
+           "'" + name.value_or(holder.value_or("nobody")) +
+               "' is in control; 'control' with the action 'ask' asks for it");
 }
 
 void Room::steer(const Received& received) {
     accepted_ = true;
     const auto& payload = received.message.payload;
     if (!std::holds_alternative<protocol::Record>(payload)) end_flight(false);
-    steering_.steer(received.client, time_);
-    if (std::holds_alternative<protocol::Pointer>(payload) && state_.control.holder != received.client)
+    if (clients_[received.client].role == Role::host) return;
+    steering_.steer(time_);
+    if (!options_.replaying) return;
+    if (std::holds_alternative<protocol::Pointer>(payload) && !steering_.holds(received.client))
         size_waits_ = true;
-    hold(received.client);
+    steering_.take(received.client);
+    show_holder();
 }
 
-/// Whoever holds control and lets go of it stops what moves; nobody inherits.
-void Room::release(const std::string& client) {
-    if (!steering_.release(client)) return;
-    end_flight(false);
-    hold(std::nullopt);
-}
-
-/// Brings the state in line with who steers now.
-void Room::hold(const std::optional<std::string>& holder) {
+void Room::show_holder() {
     protocol::ControlState& control = state_.control;
-    if (control.holder != holder) {
+    const auto name_of = [&](const std::string& client) -> std::optional<std::string> {
+        const auto found = clients_.find(client);
+        if (found == clients_.end() || found->second.name.empty()) return std::nullopt;
+        return found->second.name;
+    };
+    if (control.holder != steering_.holder()) {
         if (control.holder) {
             gestures_.lift(*control.holder, camera());
             clicks_.lift(*control.holder);
         }
-        control.holder = holder;
-        control.name.reset();
-        if (holder && !clients_.at(*holder).name.empty()) control.name = clients_.at(*holder).name;
+        control.holder = steering_.holder();
+        control.name = control.holder ? name_of(*control.holder) : std::nullopt;
         if (!size_waits_) use_holders_size();
     }
-    control.kept = steering_.kept();
+    control.kept = control.holder.has_value();
+    control.absent = steering_.is_absent();
+    control.asking.clear();
+    for (const std::string& client : steering_.asking()) control.asking.push_back({client, name_of(client)});
+}
+
+void Room::record_holder() {
+    const std::pair now(state_.control.holder, state_.control.absent);
+    if (std::exchange(recorded_holder_, now) == now) return;
+    if (!options_.replaying) record(state_.control.holder.value_or(""), protocol::LogLine::ControlPassed{});
 }
 
 void Room::use_holders_size() {

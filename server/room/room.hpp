@@ -50,7 +50,8 @@ struct RoomOptions {
     std::function<void(std::int64_t request, const std::string& name)> load = {};
     /// Looks up the scenes that can be loaded; Room::scenes_listed() takes them.
     std::function<void(std::int64_t request)> scenes = {};
-    /// What is said was accepted before: it is not judged again by revisions, nor recorded.
+    /// What is said was accepted before: it is not judged again by revisions or by who holds control, nor
+    /// recorded. Control passes on as the log says.
     bool replaying = false;
 };
 
@@ -62,14 +63,19 @@ public:
     explicit Room(scenes::LoadedScene scene, RoomOptions options = {});
 
     // What happens. Times never fall: an earlier one counts as the latest before.
-    /// `name`: as the client calls itself; empty: it does not.
-    void join(const std::string& client, protocol::Role role, SessionTime at, const std::string& name = {});
+    /// `name`: as the client calls itself; empty: it does not. `resume_key`: see Steering::join.
+    void join(const std::string& client, protocol::Role role, SessionTime at, const std::string& name = {},
+              const std::string& resume_key = {});
     void leave(const std::string& client, SessionTime at);
     /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
     /// rejected changes nothing, and not who steers either; then false comes back.
     bool handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at);
-    /// A flight goes on to where it is then.
+    /// A flight goes on to where it is then; control passes on from who has been gone too long.
     void advance(SessionTime at);
+    /// When advance() has to be called at the latest, but for flights; none: never.
+    std::optional<SessionTime> deadline() const { return steering_.deadline(); }
+    /// For replays: `client` holds control from then on; empty: nobody.
+    void pass_control(const std::string& client, SessionTime at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
     void show(scenes::LoadedScene scene, SessionTime at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
@@ -96,7 +102,7 @@ public:
     /// What is to be seen, but for size and samples.
     const plan::View& visible() const { return visible_; }
     bool flies() const { return flight_.has_value(); }
-    std::optional<std::string> holder() const { return steering_.holder(); }
+    const std::optional<std::string>& holder() const { return steering_.holder(); }
     const std::string& scene_name() const { return loaded_.name; }
 
     /// The document of the present state. Changes since the last call become one revision, made by
@@ -179,10 +185,13 @@ private:
     bool may_send(const Received& received, protocol::Senders senders);
     /// Returns true if this message may steer; else it is rejected.
     bool may_steer(const Received& received);
-    /// The message steers: its client holds control.
+    void reject_not_in_control(const Received& received);
+    /// The message steers. In a replay its client holds control: in logs of before, who steered took it.
     void steer(const Received& received);
-    void release(const std::string& client);
-    void hold(const std::optional<std::string>& holder);
+    /// Brings the state in line with who holds control now.
+    void show_holder();
+    /// A line for the log, where who holds control has changed since the last one.
+    void record_holder();
     void use_holders_size();
 
     // --- pointing at things
@@ -245,8 +254,10 @@ private:
     std::optional<InFlight> flight_;
     SessionTime time_{0};    ///< of what happens now
     bool accepted_ = false;  ///< the message in hand
-    bool size_waits_ =
-        false;  ///< for the press that took control to end: it is measured in the view that it began in
+    /// Who holds control by the lines of a log up to here, and whether that client is absent.
+    std::pair<std::optional<std::string>, bool> recorded_holder_;
+    /// In a replay: for the press that took control to end. It is measured in the view that it began in.
+    bool size_waits_ = false;
     bool at_home_ = false;  ///< nobody has moved the camera since loading: it follows the view's size
     plan::View visible_;
     protocol::SharedMap<protocol::Marker> shown_markers_;  ///< whose marks are in visible_

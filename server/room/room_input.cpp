@@ -33,7 +33,7 @@ navigation::PointerInput input_of(const std::string& client, const protocol::Poi
 }  // namespace
 
 void Room::apply(const Received& received, const protocol::Pointer& pointer) {
-    // Only a press asks for control; what follows belongs to it, and hovering does nothing.
+    // Hovering does nothing.
     const bool press = pointer.event == protocol::Pointer::Event::down;
     // A third finger drags nothing, but its release counts.
     const bool known = press || gestures_.is_pressed(received.client, pointer.pointer_id) ||
@@ -62,7 +62,7 @@ void Room::apply(const Received& received, const protocol::Key& key) {
     using Kind = navigation::KeyOperation::Kind;
     const navigation::KeyInput input{key.key, key.modifiers.shift, key.code};
     if (!key.down) {
-        accepted_ = steering_.holder() == received.client;
+        accepted_ = steering_.holds(received.client);
         return gestures_.key_up(received.client, input);
     }
     const bool flew = flies();

@@ -30,13 +30,10 @@ void Room::start_recording(const Received& received, const std::string& name) {
         return reject(received, code::busy,
                       active->name.empty() ? "a recording is being begun already"
                                            : "a recording is going on: '" + active->name + "'");
-    const bool takes_control = steering_.holder() != received.client;
     steer(received);
-    if (size_waits_) use_holders_size();
     options_.recordings->begin(++newest_recording_, name, log_header());
-    Recording& recording = recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
+    recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
     press_anew(received.client);
-    if (takes_control) recording.took_control = steering_;
 }
 
 void Room::recording_opened(std::int64_t recording, const tl::expected<std::string, std::string>& name,
@@ -48,10 +45,7 @@ void Room::recording_opened(std::int64_t recording, const tl::expected<std::stri
     const auto stop = found->second.stop;
     const Received received{client, message};
     if (!name) {
-        // Who took control by it, and did nothing since, gives it back.
-        const bool gives_back = found->second.took_control == steering_;
         recordings_.erase(found);
-        if (gives_back && steering_.release(client)) hold(std::nullopt);
         if (clients_.contains(client)) reject(received, code::failed, name.error());
         if (stop && is_here(*stop))
             reject({stop->client, stop->message}, code::failed, "nothing has been recorded");

@@ -160,7 +160,8 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     state_.camera =
         at != scene::kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
-    steering_ = Steering(state_.control.holder, state_.control.kept, time_);
+    if (state_.control.holder) steering_.take(*state_.control.holder);
+    for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
     for (const protocol::LogHeader::Client& client : header.clients)
         clients_[client.client] = {client.role, client.wanted, client.name};
     for (const protocol::LoggedFrame& frame : header.frames)

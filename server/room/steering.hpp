@@ -3,41 +3,74 @@
 #include <chrono>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace vrut::server::room {
 
 /// Time since the server started, or since a recording began.
 using SessionTime = std::chrono::microseconds;
 
-/// Who steers. A holder who has been quiet for a second, with no pointer pressed, gives way to the next who
-/// steers.
+/// Who holds control: the first control client, until it gives control away, another takes it, or it has been
+/// gone for 10 s. While a control client is here, one holds control.
 class Steering {
 public:
-    static constexpr std::chrono::milliseconds kQuietHolder{1000};
+    /// So long an absent holder keeps control.
+    static constexpr std::chrono::seconds kAbsence{10};
+    /// A holder who has steered nothing for so long is quiet.
+    static constexpr std::chrono::seconds kQuiet{1};
 
-    Steering() = default;
-    /// As it stood at `now`, when `holder` steered last.
-    Steering(std::optional<std::string> holder, bool kept, SessionTime now)
-        : holder_(std::move(holder)), kept_(kept), last_(now) {}
+    /// A control client comes. It holds control if nobody does, or if the holder came with the same
+    /// `resume_key`. An empty key is like no other.
+    void join(const std::string& client, const std::string& resume_key);
+    /// A client goes. A holder with a resume key, or any that `keeps_control`, is absent from then on; from
+    /// others control passes on.
+    void leave(const std::string& client, SessionTime now, bool keeps_control = false);
+    /// From who has been absent too long control passes on.
+    void advance(SessionTime now);
+    /// When advance() has something to do; none: never.
+    std::optional<SessionTime> deadline() const;
 
-    /// Returns true if `client` may steer at `now`: it holds control, or nobody does, or the holder gives
-    /// way.
-    bool may_steer(const std::string& client, SessionTime now, bool holder_presses) const;
-    /// `client`, who may, steers: it holds control from now on.
-    void steer(const std::string& client, SessionTime now);
-    /// `client` takes control and keeps it, however quiet it is, until it gives it back or another takes it.
-    void take(const std::string& client, SessionTime now);
-    /// `client` gives control back, or is gone. True where it held control; nobody inherits.
-    bool release(const std::string& client);
+    /// The holder has steered something.
+    void steer(SessionTime now) { last_ = now; }
+    /// `client` takes control, whoever holds it.
+    void take(const std::string& client);
+    /// The holder gives control to who has asked first, or else to who held it last, or else to who has been
+    /// here longest. Where no other control client is here, it stays.
+    void release();
+    /// Nobody holds control.
+    void clear_holder();
+    /// `client` asks the holder for control.
+    void ask(const std::string& client);
+    /// `client` does not ask any more, or the holder declines.
+    void decline(const std::string& client);
+
     const std::optional<std::string>& holder() const { return holder_; }
-    bool kept() const { return kept_; }
-
-    bool operator==(const Steering&) const = default;
+    bool holds(const std::string& client) const { return holder_ == client; }
+    bool is_absent() const { return absent_since_.has_value(); }
+    /// True if nobody holds control, or the holder is absent or has been quiet for long enough.
+    bool is_quiet(SessionTime now) const {
+        return !holder_ || is_absent() || !last_ || now - *last_ >= kQuiet;
+    }
+    /// The control clients that ask for control, the first one first.
+    const std::vector<std::string>& asking() const { return asking_; }
+    /// True if a control client of this name is here.
+    bool is_here(const std::string& client) const;
 
 private:
+    struct Candidate {
+        std::string client, resume_key;
+    };
+
+    /// To the next in turn, or to nobody.
+    void pass_on();
+
     std::optional<std::string> holder_;
-    bool kept_ = false;
-    SessionTime last_{0};
+    std::string resume_key_;  ///< of the holder
+    std::optional<SessionTime> absent_since_;
+    std::optional<SessionTime> last_;  ///< when a holder steered something
+    /// The other control clients: who held control last first, then by arrival.
+    std::vector<Candidate> candidates_;
+    std::vector<std::string> asking_;
 };
 
 }  // namespace vrut::server::room

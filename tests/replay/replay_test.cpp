@@ -127,6 +127,7 @@ struct Play {
         room.join(line.client, connected.role, line.at);
     }
     void operator()(const LogLine::Disconnected&) const { room.leave(line.client, line.at); }
+    void operator()(const LogLine::ControlPassed&) const { room.pass_control(line.client, line.at); }
     void operator()(const LogLine::Opened& opened) const {
         room.show(*find_scene(opened.scene, opened.sha256), line.at);
     }

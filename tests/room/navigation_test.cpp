@@ -69,7 +69,7 @@ TEST_CASE("fit brings the scene, or a node of it, into view along the same direc
     CHECK(client.wait_for("error")["code"] == "failed");
 }
 
-TEST_CASE("control is taken to keep, and given back") {
+TEST_CASE("control is taken, and given back") {
     TestServer server;
     TestClient a(server.port()), b(server.port()), view(server.port());
     a.join();
@@ -85,10 +85,7 @@ TEST_CASE("control is taken to keep, and given back") {
             if (answer["type"] != "patch") return answer["type"] == "ok";
         }
     };
-    control(a, "take");
-    a.wait_for("ok");
-    CHECK(a.state["control"] == Json({{"holder", "c1"}, {"kept", true}}));
-    std::this_thread::sleep_for(1100ms);
+    CHECK(view.state["control"]["holder"] == "c1");
     CHECK_FALSE(steers(b));
     control(b, "take");
     b.wait_for("ok");
@@ -99,7 +96,7 @@ TEST_CASE("control is taken to keep, and given back") {
     CHECK_FALSE(steers(a));
     control(b, "release");
     b.wait_for("ok");
-    CHECK(b.state["control"] == Json({{"kept", false}}));
+    CHECK(b.state["control"]["holder"] == "c1");
     CHECK(steers(a));
     control(view, "take");
     CHECK(view.wait_for("error")["code"] == "not-allowed");

@@ -98,7 +98,7 @@ TEST_CASE("a disk that is full in truth") {
         CHECK(WEXITSTATUS(status) == 0);
 }
 
-TEST_CASE("record is refused for what is wrong with it, and then nobody steers") {
+TEST_CASE("record is refused for what is wrong with it") {
     const Quiet quiet;
     const TemporaryFolder folder;
     folder.write("take-1.jsonl", "");
@@ -107,7 +107,6 @@ TEST_CASE("record is refused for what is wrong with it, and then nobody steers")
     RecordedStage stage("a", folder.path());
     CHECK(stage.rejection("a", kStart) == "failed");
     CHECK(stage.rejection("a", kStop) == "failed");
-    CHECK(stage.holder() == "");
     const std::string another = R"({"type":"record","id":4,"action":"start","name":"take-2"})";
     CHECK(stage.say("a", another));
     const json told = stage.told().back();
@@ -213,7 +212,7 @@ TEST_CASE("a recording is in the state and answered when its file is open, and h
     CHECK(header["state"]["camera"]["eye"] == json{1, 0, 8});  // as it was when that came
 }
 
-TEST_CASE("a file that cannot be opened refuses the message, and nobody steers by it") {
+TEST_CASE("a file that cannot be opened refuses the message") {
     LateSink sink;
     Stage stage("a", first_scene(), sink.options());
     stage.say("a", kStart);
@@ -221,13 +220,7 @@ TEST_CASE("a file that cannot be opened refuses the message, and nobody steers b
     const json told = stage.told().at(0);
     CHECK(told["code"] == "failed");
     CHECK(told["message"] == "no");
-    CHECK(stage.holder() == "");
     CHECK(stage.rejection("a", kStop) == "failed");
-    CHECK(stage.say("a", kStart));
-    stage.at(1ms);
-    stage.say("a", kTurn);  // who has steered since goes on
-    stage.room.recording_opened(sink.begun, tl::unexpected(std::string("no")), stage.now);
-    CHECK(stage.holder() == "a");
 }
 
 TEST_CASE("the end is answered when all is written; meanwhile another may begin") {
@@ -274,7 +267,7 @@ TEST_CASE("who left before the file was open is not answered, and the recording 
     stage.room.recording_opened(sink.begun, "take-1", stage.now);
     CHECK(stage.told().empty());
     CHECK(stage.state()["recording"]["name"] == "take-1");
-    CHECK(stage.holder() == "");
+    CHECK(stage.holder() == "b");
 }
 
 TEST_CASE("open is answered when its file was looked for, and steers and is recorded then") {
@@ -284,18 +277,16 @@ TEST_CASE("open is answered when its file was looked for, and steers and is reco
     options.load = [&](std::int64_t number, const std::string&) { request = number; };
     Stage stage("ab", first_scene(), std::move(options));
     const std::string open = R"({"type":"open","id":9,"scene":"x.vrut"})";
-    stage.say("b", kStart);
+    stage.say("a", kStart);
     stage.at(1s);
     CHECK_FALSE(stage.say("a", open));
     CHECK(stage.told().empty());
     stage.room.load_answered(request, protocol::Error{{}, "refused-scene", "no"}, stage.now);
     CHECK(stage.told().at(0)["code"] == "refused-scene");
-    CHECK(stage.holder() == "b");
     CHECK(sink.lines.empty());
     stage.say("a", R"({"type":"open","id":10,"scene":"y.vrut"})");
     stage.room.load_answered(request, std::nullopt, stage.now);
     CHECK(stage.told().at(0)["id"] == 10);
-    CHECK(stage.holder() == "a");
     CHECK(sink.lines.at(0)["message"]["scene"] == "y.vrut");
     stage.room.load_answered(request, std::nullopt, stage.now);  // answered once
     CHECK(stage.told().empty());

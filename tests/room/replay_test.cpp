@@ -111,12 +111,15 @@ private:
         if (what < 4) {
             stage.room.remember(++frame_);
         } else if (what == 4) {
-            stage.room.leave("b", stage.now);
-            stage.join('b');
+            stage.room.leave(second_, stage.now);
+            if (number(0, 3) == 0) stage.at(stage.now + 11s);
+            second_ = "b" + std::to_string(++came_);
+            stage.room.join(second_, protocol::Role::control, stage.now, "Bea",
+                            number(0, 1) == 0 ? "" : "secret");
         } else if (what == 5 && number(0, 3) == 0) {
             stage.room.show(number(0, 1) == 0 ? first_scene() : other_scene(), stage.now);
         } else {
-            stage.say(one_of({"a", "a", "b"}), number(0, 1) == 0 ? input() : request());
+            stage.say(one_of({"a", "a", second_.c_str()}), number(0, 1) == 0 ? input() : request());
         }
     }
 
@@ -183,8 +186,13 @@ private:
                                R"({"type":"fly","keyframes":[{"at":50,"camera":{"fov":50}},
                                    {"at":900,"camera":{"eye":[2,5,1]}}]})"});
             case 3:
+                if (number(0, 4) == 0)
+                    return json{
+                        {"type", "control"}, {"action", one_of({"give", "decline"})}, {"client", second_}}
+                        .dump();
                 return one_of({R"({"type":"control","action":"take"})",
                                R"({"type":"control","action":"release"})",
+                               R"({"type":"control","action":"ask"})",
                                R"({"type":"navigate","rotate":[7,3],"pan":[0.1,0],"zoom":1.1})"});
             default:
                 return one_of({R"({"type":"patch","patch":{"navigation":{"style":"cinema4d"}}})",
@@ -202,7 +210,8 @@ public:
     Recorded recorded;
 
 private:
-    int begins_ = 0, frame_ = 0;
+    int begins_ = 0, frame_ = 0, came_ = 0;
+    std::string second_ = "b";
 };
 
 /// The sentence with which a log of these lines behind a good header fails.
@@ -231,6 +240,67 @@ TEST_CASE("begun in a view of the holder's size") {
     recorded.stage.say("b", R"({"type":"control","action":"take"})");  // brings his size
     recorded.stage.say("b", R"({"type":"fit"})");
     recorded.check();
+}
+
+TEST_CASE("control that passes on by itself passes on in the log, too") {
+    Recorded recorded("");
+    recorded.stage.room.join("a", protocol::Role::control, 0s, "Anna", "secret");
+    recorded.stage.join('b');
+    recorded.stage.say("b", R"({"type":"resize","width":640,"height":200,"pixelRatio":0.5})");
+    recorded.start();
+    recorded.stage.at(1s);
+    recorded.stage.room.leave("a", recorded.stage.now);
+    CHECK(recorded.stage.state()["control"]["absent"] == true);
+    recorded.check();
+    SUBCASE("to the next client") {
+        recorded.stage.at(1s + 10s);
+        CHECK(recorded.stage.holder() == "b");
+        recorded.check();
+        recorded.stage.room.leave("b", recorded.stage.now);
+        CHECK(recorded.stage.holder() == "");
+        recorded.check();
+        recorded.stage.join('c');
+        recorded.check();
+    }
+    SUBCASE("to the one that comes back") {
+        recorded.stage.room.join("c", protocol::Role::control, 2s, "Anna", "secret");
+        CHECK(recorded.stage.holder() == "c");
+        recorded.check();
+    }
+}
+
+TEST_CASE(
+    "in logs without lines of control, who steers takes it, and a press is measured in the view it began "
+    "in") {
+    Recorded recorded("ab");
+    recorded.start();
+    const std::string lines = recorded.folder.read("log.jsonl");
+    std::string text = lines.substr(0, lines.find('\n') + 1);
+    const auto add = [&](const char* client, const std::string& message) {
+        text += R"({"at":1,"client":")" + std::string(client) + R"(","message":)" + message + "}\n";
+    };
+    add("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
+    add("b", R"({"type":"resize","width":100,"height":100,"pixelRatio":2})");
+    add("b", pointer("down", 50, 50));
+    add("b", pointer("move", 90, 50));
+    const auto replayed = [&] {
+        const auto log = log_in(recorded.folder.write("old.jsonl", text));
+        REQUIRE_MESSAGE(log, log.error());
+        auto room = replay(*log, find_scene);
+        REQUIRE_MESSAGE(room, room.error());
+        return *std::move(room);
+    };
+    const Room dragged = replayed();
+    CHECK(dragged.holder() == "b");
+    CHECK(dragged.view_size() == protocol::Resize{400, 200, 1});
+    add("b", pointer("up", 90, 50));
+    const Room released = replayed();
+    CHECK(released.view_size() == protocol::Resize{100, 100, 2});
+    CHECK(released.state().camera.eye == dragged.state().camera.eye);
+    text += R"({"at":2,"client":"b","event":"disconnected"})"
+            "\n";
+    add("a", R"({"type":"navigate","zoom":2})");
+    CHECK(replayed().holder() == "a");
 }
 
 TEST_CASE("begun before anybody moved the camera: home goes on to fit the view") {

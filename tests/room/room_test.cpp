@@ -12,6 +12,17 @@ const std::string kFly =
     R"({"type":"fly","id":9,"easing":"linear","keyframes":[{"at":1000,"camera":{"eye":[1,0,4]}}]})";
 const std::string kTake = R"({"type":"control","action":"take"})";
 const std::string kRelease = R"({"type":"control","action":"release"})";
+std::string control(const std::string& action, const std::string& client = "") {
+    json message{{"type", "control"}, {"action", action}};
+    if (!client.empty()) message["client"] = client;
+    return message.dump();
+}
+
+/// The state's `control` where a nameless client holds it and nobody asks.
+json held_by(const std::string& client) {
+    return {{"holder", client}, {"kept", true}, {"absent", false}, {"asking", json::array()}};
+}
+
 const std::string kWheel = R"({"type":"wheel","x":1,"y":1,"deltaX":0,"deltaY":-100,"deltaMode":0})";
 
 std::string finger(const std::string& what, double x, double y, int pointer = 1) {
@@ -41,17 +52,106 @@ using Flown = std::vector<bool>;
 
 }  // namespace
 
-TEST_CASE("a holder who has been quiet for a second gives way, not a millisecond before") {
-    Stage stage("ab");
-    stage.at(5s);
-    CHECK(stage.say("a", kNavigate));
+TEST_CASE("the first control client holds control, however quiet it is") {
+    Stage stage("vhab");
     CHECK(stage.holder() == "a");
-    stage.at(5999ms);
+    CHECK(stage.state()["control"] == held_by("a"));
+    stage.at(1h);
     CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    stage.say("a", kNavigate);
+    stage.at(2h);
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("a", kNavigate) == "");
     CHECK(stage.holder() == "a");
-    stage.at(6s);
-    CHECK(stage.rejection("b", kNavigate) == "");
-    CHECK(stage.holder() == "b");
+}
+
+TEST_CASE("control is asked for, given, declined and taken back") {
+    Stage stage("abc");
+    stage.say("b", control("ask"));
+    stage.say("c", control("ask"));
+    json asked = held_by("a");
+    asked["asking"] = json::parse(R"([{"client":"b","name":"Bea"},{"client":"c"}])");
+    CHECK(stage.state()["control"] == asked);
+    CHECK(stage.rejection("b", control("give", "b")) == "not-in-control");
+    CHECK(stage.rejection("b", control("decline", "c")) == "not-in-control");
+    CHECK(stage.rejection("a", control("give", "v")) == "out-of-range");
+    CHECK(stage.rejection("a", control("give", "nobody")) == "out-of-range");
+    CHECK(stage.state()["control"] == asked);
+    SUBCASE("given, also to who has not asked first") {
+        CHECK(stage.rejection("a", control("give", "c")) == "");
+        asked = held_by("c");
+        asked["asking"] = json::parse(R"([{"client":"b","name":"Bea"}])");
+        CHECK(stage.state()["control"] == asked);
+        CHECK(stage.rejection("a", kNavigate) == "not-in-control");
+    }
+    SUBCASE("declined") {
+        CHECK(stage.rejection("a", control("decline", "b")) == "");
+        CHECK(stage.state()["control"]["asking"].size() == 1);
+        CHECK(stage.holder() == "a");
+    }
+    SUBCASE("cancelled") {
+        CHECK(stage.rejection("b", control("cancel")) == "");
+        CHECK(stage.state()["control"]["asking"].size() == 1);
+    }
+    SUBCASE("released: the first who asks has it") {
+        CHECK(stage.rejection("a", kRelease) == "");
+        CHECK(stage.holder() == "b");
+        CHECK(stage.state()["control"]["name"] == "Bea");
+    }
+    SUBCASE("who asks and leaves does not ask any more") {
+        stage.room.leave("b", stage.now);
+        CHECK(stage.state()["control"]["asking"].size() == 1);
+    }
+    SUBCASE("who takes it does not ask any more") {
+        stage.say("b", kTake);
+        CHECK(stage.holder() == "b");
+        CHECK(stage.state()["control"]["asking"].size() == 1);
+    }
+}
+
+TEST_CASE("what is wrong with a control message is told") {
+    const auto error = [](const char* text) {
+        const auto message = protocol::decode(text);
+        return message ? "" : message.error().message;
+    };
+    CHECK(error(R"({"type":"control","action":"give"})") == "member 'client' is missing");
+    CHECK(error(R"({"type":"control","action":"decline"})") == "member 'client' is missing");
+    CHECK(error(R"({"type":"control","action":"steal"})") != "");
+}
+
+TEST_CASE("a holder whose connection is lost keeps control for 10 s, and has it again when it comes back") {
+    Stage stage("v");
+    stage.room.join("a", protocol::Role::control, stage.now, "Anna", "secret");
+    stage.join('b');
+    stage.say("b", R"({"type":"resize","width":100,"height":300,"pixelRatio":2})");
+    stage.say("a", kFly);
+    stage.at(100ms);
+    stage.room.leave("a", stage.now);
+    CHECK(flown(stage.told()) == Flown{false});
+    json absent = held_by("a");
+    absent["name"] = "Anna";
+    absent["absent"] = true;
+    CHECK(stage.state()["control"] == absent);
+    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.room.deadline() == 100ms + 10s);
+    const std::int64_t revision = stage.revision();
+    SUBCASE("in time") {
+        stage.at(10s);
+        CHECK(stage.revision() == revision);
+        stage.room.join("c", protocol::Role::control, stage.now, "Anna", "secret");
+        CHECK(stage.holder() == "c");
+        CHECK(stage.state()["control"]["absent"] == false);
+        CHECK(stage.rejection("c", kNavigate) == "");
+    }
+    SUBCASE("too late: the next one has it, with its size") {
+        stage.at(100ms + 10s);
+        CHECK(stage.holder() == "b");
+        CHECK(stage.room.view_size() == protocol::Resize{100, 300, 2});
+        CHECK(stage.revision() == revision + 1);
+        CHECK(stage.room.changed_by() == "");
+        stage.room.join("c", protocol::Role::control, stage.now, "Anna", "secret");
+        CHECK(stage.holder() == "b");
+    }
 }
 
 TEST_CASE("a watcher's input is refused silently, but for one with an id") {
@@ -66,49 +166,64 @@ TEST_CASE("a watcher's input is refused silently, but for one with an id") {
     CHECK(stage.rejection("b", R"({"type":"navigate","zoom":2})") == "not-in-control");  // no input event
 }
 
-TEST_CASE("a pressed pointer is not quiet; the second counts from its release") {
-    Stage stage("ab");
+TEST_CASE("a host moves things while the holder is quiet for 1 s, and takes no control by it") {
+    const std::string patch = R"({"type":"patch","patch":{"camera":{"fov":50}}})";
+    Stage stage("ah");
+    stage.at(5s);
+    stage.say("a", kNavigate);
+    stage.at(5999ms);
+    CHECK(stage.rejection("h", patch) == "not-in-control");
+    stage.at(6s);
+    CHECK(stage.rejection("h", patch) == "");
+    CHECK(stage.holder() == "a");
     stage.say("a", finger("down", 100, 100));
     stage.at(1h);
-    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("h", patch) == "not-in-control");
     stage.say("a", finger("up", 100, 100));
     stage.at(1h + 999ms);
-    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("h", patch) == "not-in-control");
     stage.at(1h + 1s);
-    CHECK(stage.rejection("b", kNavigate) == "");
+    CHECK(stage.rejection("h", patch) == "");
 }
 
 TEST_CASE("a move of a pointer that is not pressed steers nothing") {
     Stage stage("ab");
+    const std::int64_t revision = stage.revision();
     CHECK_FALSE(stage.say("a", finger("move", 100, 100)));
-    CHECK(stage.holder() == "");
+    CHECK(stage.revision() == revision);
     CHECK(stage.told().empty());
 }
 
 TEST_CASE("who takes control keeps it until he releases it or another takes it") {
     Stage stage("ab");
-    stage.say("a", kTake);
-    CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", true}}));
     stage.at(1h);
-    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
     CHECK(stage.rejection("b", kTake) == "");
-    CHECK(stage.state()["control"] == json({{"holder", "b"}, {"name", "Bea"}, {"kept", true}}));
+    json of_b = held_by("b");
+    of_b["name"] = "Bea";
+    CHECK(stage.state()["control"] == of_b);
+    CHECK(stage.rejection("a", kNavigate) == "not-in-control");
     CHECK(stage.rejection("a", kRelease) == "");  // which is not his to give
     CHECK(stage.holder() == "b");
-    stage.say("b", kRelease);
-    CHECK(stage.state()["control"] == json({{"kept", false}}));
+    stage.say("b", kRelease);  // to who held it before
+    CHECK(stage.state()["control"] == held_by("a"));
     CHECK(stage.rejection("a", kNavigate) == "");
-    CHECK(stage.state()["control"] == json({{"holder", "a"}, {"kept", false}}));
+    stage.room.leave("b", stage.now);
+    stage.say("a", kRelease);  // there is nobody else
+    CHECK(stage.state()["control"] == held_by("a"));
+    stage.room.leave("a", stage.now);
+    CHECK(stage.holder() == "");
+    stage.join('b');
+    CHECK(stage.holder() == "b");
 }
 
-TEST_CASE("a flight does not keep its client in control; who takes over by steering stops it") {
-    Stage stage("ab");
+TEST_CASE("a host's patch stops a flight of a quiet holder") {
+    Stage stage("ah");
     stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":5000,"camera":{"eye":[1,0,4]}}]})");
     stage.at(999ms);
-    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("h", kMoveHinge) == "not-in-control");
     CHECK(stage.room.flies());
     stage.at(1s);
-    CHECK(stage.say("b", kNavigate));
+    CHECK(stage.say("h", kMoveHinge));
     CHECK(flown(stage.told()) == Flown{false});
     CHECK_FALSE(stage.room.flies());
 }
@@ -207,18 +322,15 @@ TEST_CASE("a message that is refused does not change who steers") {
     Stage stage("ab");
     CHECK(stage.rejection("a", R"({"type":"fit","node":99})") == "unknown-node");
     CHECK(stage.rejection("a", R"({"type":"record","action":"start"})") == "not-allowed");
-    CHECK(stage.holder() == "");
-    stage.say("a", kNavigate);
-    stage.at(1s);
-    CHECK(stage.rejection("b", R"({"type":"fly","keyframes":[{"at":1,"camera":{"node":2}}]})") ==
+    CHECK(stage.rejection("a", R"({"type":"fly","keyframes":[{"at":1,"camera":{"node":2}}]})") ==
           "unknown-node");
-    CHECK(stage.holder() == "a");
+    CHECK(stage.state()["control"] == held_by("a"));
 }
 
 TEST_CASE("hosts patch camera, nodes and selection; nobody but control clients does the rest") {
     Stage stage("hva");
     CHECK(stage.rejection("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "");
-    CHECK(stage.holder() == "h");
+    CHECK(stage.holder() == "a");
     CHECK(stage.rejection("h", kMoveHinge) == "");
     CHECK(stage.rejection("h", R"({"type":"patch","patch":{"selection":{"node":2}}})") == "");
     const std::int64_t revision = stage.revision();
@@ -233,9 +345,6 @@ TEST_CASE("hosts patch camera, nodes and selection; nobody but control clients d
     CHECK(stage.rejection("v", R"({"type":"pick","x":1,"y":1,"then":"select"})") == "not-allowed");
     CHECK(stage.revision() == revision);
     CHECK(stage.rejection("v", R"({"type":"pick","x":1,"y":1})") == "");
-    // The same rule for hosts: the holder who is quiet gives way.
-    stage.say("a", kTake);
-    stage.say("a", kRelease);
     stage.say("a", kNavigate);
     CHECK(stage.rejection("h", R"({"type":"patch","patch":{"camera":{"fov":50}}})") == "not-in-control");
 }
@@ -274,14 +383,14 @@ TEST_CASE("a host tells what its walls show, up to the newest revision") {
     CHECK(stage.rejection("a", shown(revision)) == "not-allowed");
 }
 
-TEST_CASE("who leaves in mid-drag leaves control free at once, and the camera where it is") {
+TEST_CASE("who leaves in mid-drag leaves the camera where it is, and control to the next") {
     Stage stage("ab");
     stage.say("a", finger("down", 100, 100));
     stage.say("a", finger("move", 200, 100));
     const glm::dvec3 eye = stage.camera().eye;
     CHECK(eye != glm::dvec3(1, 0, 8));
     stage.room.leave("a", stage.now);
-    CHECK(stage.holder() == "");
+    CHECK(stage.holder() == "b");
     CHECK(stage.camera().eye == eye);
     CHECK_FALSE(stage.say("a", finger("move", 300, 100)));
     CHECK(stage.told().empty());
@@ -296,24 +405,22 @@ TEST_CASE("whose control is taken in mid-drag moves nothing any more") {
     const glm::dvec3 eye = stage.camera().eye;
     CHECK_FALSE(stage.say("a", finger("move", 300, 100)));  // lifted: nothing that follows a press
     CHECK(stage.camera().eye == eye);
-    CHECK(stage.holder() == "");
+    CHECK(stage.holder() == "a");
 }
 
-TEST_CASE("a press that takes control is measured in the view that it began in") {
+TEST_CASE("the view has the size of who holds control") {
     Stage stage("ab");
-    stage.say("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
     stage.say("b", R"({"type":"resize","width":100,"height":100,"pixelRatio":2})");
-    stage.say("a", kNavigate);
+    CHECK(stage.room.view_size() == protocol::Resize{});
+    stage.say("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
     CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
-    stage.at(1s);
-    stage.say("b", finger("down", 50, 50));
-    CHECK(stage.holder() == "b");
-    CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
-    stage.say("b", finger("up", 50, 50));
+    stage.say("a", control("give", "b"));
     CHECK(stage.room.view_size() == protocol::Resize{100, 100, 2});
+    stage.room.leave("b", stage.now);
+    CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
 }
 
-TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
+TEST_CASE("every role may ask what scenes there are") {
     const std::string ask = R"({"type":"scenes","id":4})";
     Stage none("a");
     CHECK(none.say("a", ask));
@@ -329,20 +436,19 @@ TEST_CASE("every role may ask what scenes there are, and nobody steers by it") {
     for (const std::string client : {"a", "h", "v"}) {
         CHECK(stage.say(client, ask));
         CHECK(stage.told().at(0)["scenes"] == json::parse(R"(["car.vrut","more/bus.vrut"])"));
-        CHECK(stage.holder() == "");
     }
     CHECK(stage.say("a", R"({"type":"scenes"})"));  // nobody could tell what the answer is to
     CHECK(stage.told().empty());
 }
 
 TEST_CASE("an earlier time counts as the latest before") {
-    Stage stage("ab");
+    Stage stage("ah");
     stage.at(10s);
     stage.say("a", kNavigate);
     stage.now = 3s;
     stage.say("a", kNavigate);
     stage.now = 10'999ms;
-    CHECK(stage.rejection("b", kNavigate) == "not-in-control");
+    CHECK(stage.rejection("h", R"({"type":"patch","patch":{}})") == "not-in-control");
 }
 
 TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
@@ -351,19 +457,20 @@ TEST_CASE("each revision tells whose doing it is; what flies is nobody's") {
     stage.revision();
     CHECK(stage.room.changed_by() == "a");
     stage.at(1s);
-    stage.say("b", kFly);
+    stage.say("a", kFly);
     stage.revision();
     stage.at(1500ms);
     stage.revision();
     CHECK(stage.room.changed_by() == "");
 }
 
-TEST_CASE("a new holder's flight begins at the home of his size, live and replayed") {
+TEST_CASE("a new holder's flight begins at the home of his size") {
     Stage stage("ab", other_scene());
     stage.say("a", R"({"type":"resize","width":300,"height":900,"pixelRatio":1})");
     stage.say("b", R"({"type":"resize","width":1280,"height":720,"pixelRatio":1})");
-    stage.say("b", R"({"type":"patch","patch":{}})");
+    stage.say("b", kTake);
     stage.at(2s);
+    stage.say("a", kTake);
     stage.say("a", R"({"type":"fly","id":1,"keyframes":[{"at":1000,"camera":{"fov":41}}]})");
     const glm::dvec3 home = stage.camera().eye;
     CHECK(home == stage.room.state().views->at("home").eye);
@@ -386,7 +493,7 @@ TEST_CASE("a flight to a camera node ends at that node") {
 
 TEST_CASE("what a host may never do is not-allowed, whoever is in control") {
     Stage stage("ha");
-    stage.say("a", kTake);
+    stage.say("a", kNavigate);
     CHECK(stage.rejection("h", R"({"type":"patch","patch":{"renderer":{"wireframe":true}}})") ==
           "not-allowed");
     CHECK(stage.rejection("h", R"({"type":"patch","patch":{"lights":{"active":"nothing"}}})") ==

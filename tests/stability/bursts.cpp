@@ -42,7 +42,7 @@ public:
                        take(*picture);
                    },
                    [](const std::string&) {}}) {
-        engine_.mailbox().push(server::engine::ClientJoined{kClient, protocol::Role::control, {}, 0});
+        engine_.mailbox().push(server::engine::ClientJoined{kClient, protocol::Role::control, {}});
         say(protocol::Control{});
         want_newer_than(0);
     }

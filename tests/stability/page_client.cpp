@@ -66,7 +66,7 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
                 made->socket.async_handshake("127.0.0.1:" + std::to_string(self->port), "/ws",
                                              [self, made](beast::error_code refused) {
                                                  if (refused) return self->lost(made);
-                                                 self->say(protocol::Hello{self->role, {}, {}});
+                                                 self->say(protocol::Hello{self->role, {}, {}, {}});
                                                  self->read(made);
                                              });
             });

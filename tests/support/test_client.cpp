@@ -243,9 +243,10 @@ int TestClient::wait_for_close(std::chrono::milliseconds timeout) {
     return code != 0 ? code : 1006;
 }
 
-Json TestClient::join(const std::string& role, const std::string& token) {
+Json TestClient::join(const std::string& role, const std::string& token, const std::string& resume_key) {
     Json hello = {{"type", "hello"}, {"role", role}};
     if (!token.empty()) hello["token"] = token;
+    if (!resume_key.empty()) hello["resume"] = resume_key;
     send(hello);
     wait_for("welcome");
     return wait_for("state")["state"];

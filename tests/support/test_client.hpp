@@ -88,7 +88,8 @@ public:
     int wait_for_close(std::chrono::milliseconds timeout = 5s);
 
     /// hello; returns the state document.
-    Json join(const std::string& role = "control", const std::string& token = {});
+    Json join(const std::string& role = "control", const std::string& token = {},
+              const std::string& resume_key = {});
     /// Frame, and the state as patches leave it, up to the last refinement of a still frame; grants as it
     /// reads.
     Json wait_for_still(std::chrono::milliseconds for_each = 5s);

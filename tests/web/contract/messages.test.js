@@ -92,7 +92,7 @@ const MESSAGES = {
   },
   open: { right: { scene: 'second.vrut' }, required: { scene: { type: WORD } } },
   record: { right: { action: 'stop' }, required: { action: { type: WORD, range: ['pause', 'Start'] } }, optional: { name: { type: WORD } } },
-  control: { right: { action: 'take' }, required: { action: { type: WORD, range: ['give', ''] } } },
+  control: { right: { action: 'take' }, required: { action: { type: WORD, range: ['steal', ''] } }, optional: { client: { type: WORD } } },
 };
 
 /** `member` out of what is optional or required, as the message that has only that wrong. */

@@ -108,13 +108,14 @@ test('with other clients that come, take over and go', async (t) => {
     await guest.input.drag([[50, 50], [90, 300]]);
     guest.input.down([10, 10]);
     await guest.leave();
-    await client.until('control is free', () => client.state.control.holder === undefined);
+    await client.until('control', () => client.isHolder);
     await client.input.drag([[50, 50], [90, 90]]);
   });
   const end = replayed('guests');
   for (const member of MEMBERS) assert.deepEqual(end[member], camera[member], member);
   const events = lines('guests').filter((line) => /connected$/.test(line.event)).map((line) => line.event);
   assert.deepEqual(events, ['connected', 'disconnected']);
+  assert.deepEqual(lines('guests').filter((line) => line.event === 'control').length, 2);
 });
 
 describe('the log', () => {

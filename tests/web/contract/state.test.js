@@ -54,7 +54,7 @@ const WRITABLE = {
 const READ_ONLY = [
   'scene', 'scene/name', 'scene/nodes', 'scene/bounds', 'scene/notices', 'camera/name', 'camera/near', 'camera/far', 'cameras', 'cameras/11/name',
   'renderer/solid', 'renderer/transparent', 'renderer/reflective', 'lights/items/9/name', 'lights/items/9/type', 'materials', 'materials/1/name',
-  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'recording',
+  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'recording',
 ];
 const UNKNOWN = [
   'weather', 'camera/roll', 'navigation/speed', 'renderer/shadow', 'lights/ambient', 'lights/items/9/angle', 'backgrounds/image',

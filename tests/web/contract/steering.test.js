@@ -1,5 +1,7 @@
 // Contract: "Rules": who steers, tokens; and `control`, `resize` and `hello` of the message table.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import path from 'node:path';
 import { after, describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { ContractClient } from './contract-client.js';
@@ -47,50 +49,42 @@ const FREE = [
   { type: 'resize', ...VIEW },
 ];
 
+/** The state's `control` where `client` holds it; `more` beside that. */
+const heldBy = (client, more = {}) => ({ holder: client.id, kept: true, absent: false, asking: [], ...more });
+
 test('the state tells how the holder calls itself, to everybody', async (t) => {
   const [watcher, first, second] = [await join(t, { role: 'view' }), await join(t, { name: 'Eva’s tablet' }), await join(t)];
-  await first.ask({ type: 'control', action: 'take' });
   await watcher.until('the name', () => watcher.state.control.name === 'Eva’s tablet');
-  assert.equal(watcher.state.control.holder, first.id);
+  assert.deepEqual(first.state.control, heldBy(first, { name: 'Eva’s tablet' }));
   await second.ask({ type: 'control', action: 'take' });
-  assert.deepEqual(second.state.control, { holder: second.id, kept: true });
-  await first.ask({ type: 'control', action: 'take' });
-  await first.ask({ type: 'control', action: 'release' });
-  assert.deepEqual(first.state.control, { kept: false });
-  await first.refused({ type: 'patch', patch: { control: { name: 'Mine' } } }, 'read-only');
+  assert.deepEqual(second.state.control, heldBy(second));
+  await second.refused({ type: 'patch', patch: { control: { name: 'Mine' } } }, 'read-only');
 });
 
-describe('becoming the holder', () => {
-  for (const message of [...STEERING.filter((m) => !['open', 'record'].includes(m.type)), { type: 'record', action: 'stop' }, ...INPUT]) {
-    test(`by ${message.type}, while there is none`, async (t) => {
-      const client = await join(t);
-      assert.equal(client.state.control.holder, undefined);
-      const isInput = INPUT.includes(message);
-      const id = client.send(message);
-      if (isInput) await client.until('control', () => client.isHolder);
-      else if (message.type === 'record') await client.answer(id).catch(() => {}); // nothing is being recorded
-      else await client.answer(id);
-      if (message.type !== 'record') assert.equal(client.isHolder, true);
-      assert.equal(client.state.control.kept, false);
+describe('the first control client', () => {
+  test('holds control from the start, others do not', async (t) => {
+    const watcher = await join(t, { role: 'view' });
+    const host = await join(t, { role: 'host' });
+    assert.deepEqual(watcher.state.control, { kept: false, absent: false, asking: [] });
+    const first = await join(t);
+    const second = await join(t);
+    for (const client of [watcher, host, first, second]) {
+      await client.until('the holder', () => client.state.control.holder === first.id);
+    }
+    await first.ask(PATCH);
+  });
+
+  for (const message of STEERING.filter((m) => !['open', 'record'].includes(m.type))) {
+    test(`holds it, however quiet it is, and whoever tries: ${message.type}`, async (t) => {
+      const first = await join(t);
+      const second = await join(t);
+      await first.ask(PATCH);
+      await sleep(QUIET_MS + 100);
+      await second.refused(message, 'not-in-control', { valid: true });
+      await first.ask(message);
+      assert.ok(first.isHolder);
     });
   }
-
-  test('not by looking', async (t) => {
-    const client = await join(t);
-    for (const message of FREE.filter((m) => m.type !== 'snapshot' && m.type !== 'tree')) await client.ask(message);
-    await client.frame();
-    client.send({ type: 'pointermove', ...POINTER, buttons: 0, button: -1, x: 5, y: 5 });
-    client.send({ type: 'keyup', key: 'x', code: 'KeyX' });
-    await client.barrier();
-    assert.equal(client.state.control.holder, undefined);
-  });
-
-  test('not by a message that is refused', async (t) => {
-    const client = await join(t);
-    await client.refused({ type: 'patch', patch: { camera: { fov: 1000 } } }, 'out-of-range');
-    await client.refused({ type: 'navigate', zoom: 0 }, 'out-of-range');
-    assert.equal(client.state.control.holder, undefined);
-  });
 });
 
 describe('only the holder steers', () => {
@@ -128,63 +122,51 @@ describe('only the holder steers', () => {
   });
 });
 
-describe('a quiet holder', () => {
-  test('loses control to who steers after 1 s, not before', async (t) => {
-    const first = await join(t);
-    const second = await join(t);
-    await first.ask(PATCH);
-    const start = Date.now();
+describe('control', () => {
+  const control = (action, client) => ({ type: 'control', action, ...(client && { client: client.id }) });
+
+  test('is asked for; the holder sees who asks, and gives it', async (t) => {
+    const [first, second] = [await join(t), await join(t, { name: 'Visitor’s phone' })];
+    await second.ask(control('ask'));
+    await first.until('who asks', () => first.state.control.asking.length === 1);
+    assert.deepEqual(first.state.control.asking, [{ client: second.id, name: 'Visitor’s phone' }]);
     await second.refused(PATCH, 'not-in-control', { valid: true });
-    await sleep(QUIET_MS - 300 - (Date.now() - start));
-    await second.refused(PATCH, 'not-in-control', { valid: true });
-    await sleep(500);
+    await first.ask(control('give', second));
+    assert.deepEqual(first.state.control, heldBy(second, { name: 'Visitor’s phone' }));
     await second.ask(PATCH);
-    assert.ok(second.isHolder);
     await first.refused(PATCH, 'not-in-control', { valid: true });
   });
 
-  test('is not quiet while a pointer is down', async (t) => {
-    const first = await join(t);
-    const second = await join(t);
-    await first.ask({ type: 'resize', ...VIEW });
-    first.input.down([200, 150]);
-    await first.until('control', () => first.isHolder);
-    await sleep(QUIET_MS + 300);
-    await second.refused(PATCH, 'not-in-control', { valid: true });
-    first.input.up([200, 150]);
-    await first.barrier();
-    await second.refused(PATCH, 'not-in-control', { valid: true });
-    await sleep(QUIET_MS + 200);
-    await second.ask(PATCH);
+  test('is declined, or not asked for any more', async (t) => {
+    const [first, second] = [await join(t), await join(t)];
+    await second.ask(control('ask'));
+    await second.ask(control('ask'));
+    assert.equal(second.state.control.asking.length, 1);
+    await first.ask(control('decline', second));
+    await second.until('the answer', () => second.state.control.asking.length === 0);
+    await second.ask(control('ask'));
+    await second.ask(control('cancel'));
+    assert.deepEqual(second.state.control, heldBy(first));
   });
 
-  test('is quiet though its flight goes on', async (t) => {
-    const first = await join(t);
-    const second = await join(t);
-    const flight = first.send({ type: 'fly', keyframes: [{ at: 20000, camera: { eye: [3, 0, 8] } }] });
-    await first.answer(flight);
-    await sleep(QUIET_MS + 200);
-    await second.ask(PATCH);
-    assert.ok(second.isHolder);
-    assert.equal((await first.texted('flown')).completed, false);
+  test('only the holder gives and declines, and only to control clients that are here', async (t) => {
+    const [first, second, viewer] = [await join(t), await join(t), await join(t, { role: 'view' })];
+    await second.ask(control('ask'));
+    for (const action of ['give', 'decline']) {
+      await second.refused(control(action, second), 'not-in-control', { valid: true });
+      await first.refused({ type: 'control', action }, 'bad-message');
+    }
+    await first.refused(control('give', viewer), 'out-of-range', { valid: true });
+    await first.refused({ type: 'control', action: 'give', client: 'nobody' }, 'out-of-range', { valid: true });
+    assert.ok(first.isHolder);
   });
 
-  test('keeps control once taken to keep', async (t) => {
-    const first = await holder(t, server);
-    assert.equal(first.state.control.kept, true);
-    const second = await join(t);
-    await sleep(QUIET_MS + 200);
-    await second.refused(PATCH, 'not-in-control', { valid: true });
-  });
-});
-
-describe('control', () => {
-  test('take always succeeds, also from who keeps it, or has a pointer down', async (t) => {
+  test('take always succeeds, also from who has a pointer down', async (t) => {
     const first = await steering(t, server);
     first.input.down([200, 150]);
     await first.barrier();
     const second = await holder(t, server);
-    assert.deepEqual(second.state.control, { holder: second.id, kept: true });
+    assert.deepEqual(second.state.control, heldBy(second));
     await first.refused(PATCH, 'not-in-control', { valid: true });
     const before = structuredClone(second.state.camera);
     first.input.move([300, 150]);
@@ -192,17 +174,25 @@ describe('control', () => {
     assert.deepEqual(first.state.camera, before, 'a drag ends with control');
   });
 
-  test('release leaves it free: nobody inherits, the next who steers has it', async (t) => {
-    const first = await holder(t, server);
-    const second = await join(t);
-    await first.ask({ type: 'control', action: 'release' });
-    assert.equal(first.state.control.holder, undefined);
-    assert.equal(first.state.control.kept, false);
-    await second.ask(PATCH);
-    assert.deepEqual(second.state.control, { holder: second.id, kept: false });
+  test('release gives it back to who held it before', async (t) => {
+    const [first, second] = [await join(t), await join(t)];
+    const script = await holder(t, server);
+    await script.ask({ type: 'control', action: 'release' });
+    assert.deepEqual(script.state.control, heldBy(first));
+    await second.refused(PATCH, 'not-in-control', { valid: true });
+    await first.ask(PATCH);
   });
 
-  test('release lifts the pointers', async (t) => {
+  test('release gives it to who asks', async (t) => {
+    const first = await join(t);
+    await join(t);
+    const third = await join(t);
+    await third.ask(control('ask'));
+    await first.ask(control('release'));
+    assert.deepEqual(first.state.control, heldBy(third));
+  });
+
+  test('release of who is alone changes nothing but the pointers', async (t) => {
     const client = await steering(t, server);
     client.input.down([100, 150]);
     client.input.move([130, 150]);
@@ -211,19 +201,66 @@ describe('control', () => {
     client.input.move([200, 150]);
     await client.barrier();
     assert.deepEqual(client.state.camera, camera);
-    assert.equal(client.state.control.holder, undefined, 'a move without a press does not steer');
+    assert.ok(client.isHolder);
   });
 
-  test('a lost connection leaves it free at once, pointers and all', async (t) => {
+  test('without a resume key a lost connection passes it on at once, and lifts the pointers', async (t) => {
     const first = await steering(t, server);
     const second = await join(t);
     first.input.down([100, 150]);
     await first.barrier();
     first.socket.terminate();
-    await second.until('control free', () => second.state.control.holder === undefined);
-    assert.equal(second.state.control.kept, false);
+    await second.until('control', () => second.isHolder);
     await second.ask(PATCH);
-    assert.ok(second.isHolder);
+  });
+});
+
+describe('a resume key', () => {
+  const logs = temporaryFolder();
+  // An absent holder stays the holder for tests that come after.
+  const at = async (t) => {
+    const own = await Server.start({ options: ['--record', logs] });
+    t.after(() => own.stop());
+    return (hello) => ContractClient.join(t, own, hello);
+  };
+
+  test('keeps control for 10 s for who comes back with it', async (t) => {
+    const come = await at(t);
+    const first = await come({ resume: 'a secret', name: 'Eva’s tablet' });
+    const second = await come({ resume: 'another' });
+    first.socket.terminate();
+    await second.until('absence', () => second.state.control.absent);
+    assert.deepEqual(second.state.control, heldBy(first, { absent: true, name: 'Eva’s tablet' }));
+    await second.refused(PATCH, 'not-in-control', { valid: true });
+    const other = await come({ resume: 'a third' });
+    assert.equal(other.state.control.holder, first.id);
+    const back = await come({ resume: 'a secret', name: 'Eva’s tablet' });
+    await back.until('control', () => back.isHolder);
+    assert.deepEqual(back.state.control, heldBy(back, { name: 'Eva’s tablet' }));
+    await back.ask(PATCH);
+  });
+
+  test('works before the former connection is known to be dead', async (t) => {
+    const come = await at(t);
+    const first = await come({ resume: 'a secret' });
+    const second = await come();
+    const back = await come({ resume: 'a secret' });
+    await back.until('control', () => back.isHolder);
+    first.socket.terminate();
+    await second.barrier();
+    assert.equal(second.state.control.holder, back.id);
+  });
+
+  test('is told to nobody', async (t) => {
+    const come = await at(t);
+    const watcher = await come({ role: 'view' });
+    const first = await come({ resume: 'a very secret key' });
+    await first.ask({ type: 'record', action: 'start', name: 'resume-key' });
+    const back = await come({ resume: 'a very secret key' });
+    await back.ask({ type: 'record', action: 'stop' });
+    assert.equal(readFileSync(path.join(logs, 'resume-key.jsonl'), 'utf8').includes('secret'), false);
+    await watcher.barrier();
+    assert.equal(JSON.stringify(watcher.texts).includes('a very secret key'), false);
   });
 });
 
@@ -236,7 +273,7 @@ describe('a flight', () => {
       const second = await join(t);
       await first.ask({ type: 'fly', keyframes: [{ at: 500, camera: FAR }] });
       await go(first);
-      await second.until('control free', () => second.state.control.holder === undefined);
+      await second.until('control', () => second.isHolder);
       await sleep(700);
       assert.ok(second.state.camera.eye[0] < 2.9, `${second.state.camera.eye}`);
     });
@@ -287,10 +324,10 @@ describe('a flight', () => {
 });
 
 describe('hosts', () => {
-  test('steer by patches of camera, nodes and selection', async (t) => {
+  test('steer by patches of camera, nodes and selection, and take no control by it', async (t) => {
     const host = await join(t, { role: 'host' });
     await host.patch({ camera: { fov: 42 } });
-    assert.deepEqual(host.state.control, { holder: host.id, kept: false });
+    assert.equal(host.state.control.holder, undefined);
     await host.patch({ selection: { node: 4 } });
     await host.patch({ nodes: { 4: { active: false } } });
     await host.patch({ nodes: null, selection: { node: null }, camera: POSE });
@@ -305,17 +342,35 @@ describe('hosts', () => {
     for (const action of ['take', 'release']) await host.refused({ type: 'control', action }, 'not-allowed', { valid: true });
   });
 
-  test('by the same rule: not while another holds, yes once that is quiet', async (t) => {
-    const client = await join(t);
+  test('not while the holder steers, nor within 1 s of that, nor while a pointer is down', async (t) => {
+    const client = await steering(t, server);
     const host = await join(t, { role: 'host' });
+    const patch = { type: 'patch', patch: { camera: { fov: 42 } } };
     await client.ask(PATCH);
-    await host.refused({ type: 'patch', patch: { camera: { fov: 42 } } }, 'not-in-control', { valid: true });
-    await sleep(QUIET_MS + 200);
-    await host.patch({ camera: { fov: 42 } });
-    await client.refused(PATCH, 'not-in-control', { valid: true });
-    await sleep(QUIET_MS + 200);
+    const start = Date.now();
+    await host.refused(patch, 'not-in-control', { valid: true });
+    await sleep(QUIET_MS - 300 - (Date.now() - start));
+    await host.refused(patch, 'not-in-control', { valid: true });
+    await sleep(500);
+    await host.ask(patch);
+    assert.equal(host.state.control.holder, client.id);
+    client.input.down([200, 150]);
+    await client.barrier();
+    await sleep(QUIET_MS + 100);
+    await host.refused(patch, 'not-in-control', { valid: true });
+    client.input.up([200, 150]);
     await client.patch({ camera: POSE });
-    assert.ok(client.isHolder);
+  });
+
+  test('stop a flight of a quiet holder', async (t) => {
+    const client = await steering(t, server);
+    const host = await join(t, { role: 'host' });
+    const id = client.send({ type: 'fly', keyframes: [{ at: 20000, camera: { eye: [3, 0, 8] } }] });
+    await client.answer(id);
+    await sleep(QUIET_MS + 200);
+    await host.patch({ camera: POSE });
+    const flown = await client.texted('flown');
+    assert.deepEqual([flown.id, flown.completed], [id, false]);
   });
 
   test('shown is for hosts only', async (t) => {

@@ -6,6 +6,7 @@ import { mergePatch } from '../../../web-client/merge-patch.js';
 /** Somebody else at the server, who wants no pictures. */
 export class Colleague {
   state = null;
+  id;
   #socket;
   #lastId = 0;
   #asked = new Map();
@@ -39,20 +40,16 @@ export class Colleague {
   }
 
   /**
-   * Changes the state as soon as the holder of control is quiet, and leaves control free.
+   * Takes control, changes the state, and gives control back.
    *
    * @returns {Promise<number>} the revision of the change
    */
   async patch(patch) {
-    for (;;) {
-      const { type, code, message, revision } = await this.ask({ type: 'patch', patch });
-      if (type !== 'error') {
-        await this.ask({ type: 'control', action: 'release' });
-        return revision;
-      }
-      if (code !== 'not-in-control') throw new Error(message);
-      await new Promise((resolve) => setTimeout(resolve, 100));
-    }
+    await this.ask({ type: 'control', action: 'take' });
+    const { type, message, revision } = await this.ask({ type: 'patch', patch });
+    await this.ask({ type: 'control', action: 'release' });
+    if (type === 'error') throw new Error(message);
+    return revision;
   }
 
   async leave() {
@@ -61,6 +58,7 @@ export class Colleague {
   }
 
   #receive(message) {
+    if (message.type === 'welcome') this.id = message.client;
     if (message.type === 'state') this.state = message.state;
     if (message.type === 'patch') this.state = mergePatch(this.state, message.patch);
     this.#asked.get(message.id)?.(message);

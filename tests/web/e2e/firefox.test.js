@@ -44,7 +44,7 @@ describe('Firefox', { skip: firefoxIsMissing }, () => {
       await firefox.until(`${view}.dataset.level === 'still' && Number(${view}.dataset.revision) > ${revision}`);
       await colleague.ask({ type: 'tree', depth: 0 });
       assert.notDeepEqual(colleague.state.camera.eye, eye);
-      assert.match(await firefox.evaluate("document.querySelector('#presence').textContent"), /^Connected · Steering/);
+      assert.match(await firefox.evaluate("document.querySelector('#presence').textContent"), /^Connected · You are in control/);
     });
   }
 

@@ -264,7 +264,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
 
     test('a change that is refused is explained, and taken back', async () => {
       await colleague.ask({ type: 'control', action: 'take' });
-      await tablet.wire.until('the other one to steer', () => tablet.wire.state.control.kept);
+      await tablet.wire.until('the other one to steer', () => tablet.wire.state.control.holder === colleague.id);
       await section('renderer').getByText('Wireframe').tap();
       const { message } = await tablet.wire.until('a refusal', () => tablet.wire.errors.at(-1));
       await page.locator('#lines').getByText(message).waitFor();

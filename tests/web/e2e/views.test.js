@@ -190,34 +190,29 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     await fact(connection, 'data', '0 kB / s');
   });
 
-  test('control is taken, kept and given back', async () => {
+  test('control is taken and given away in the menu', async () => {
     phone = await Tablet.open(browser, server.address, PHONE);
     await phone.wire.still();
     const onPhone = await unfold(phone, 'connection');
     await fact(connection, 'clients', '2');
-    await button(connection, 'Take and keep').tap();
-    await fact(connection, 'holder', 'You, until you release it');
+    await fact(connection, 'holder', 'You');
     const { holder, name } = state().control;
     assert.ok(name);
     await fact(onPhone, 'holder', name);
-    assert.ok(await button(onPhone, 'Release').isDisabled());
+    assert.ok(await button(onPhone, 'Give control away').isDisabled());
 
-    await button(onPhone, 'Take and keep').tap();
-    await fact(onPhone, 'holder', 'You, until you release it');
+    await button(onPhone, 'Take control').tap();
+    await fact(onPhone, 'holder', 'You');
     await fact(connection, 'holder', state().control.name);
     assert.notEqual(state().control.holder, holder);
     await button(views, 'Home').tap();
     await says(/in control|steers/);
 
     await phone.screenshot('phone-connection');
-    await button(onPhone, 'Release').tap();
-    await fact(onPhone, 'holder', 'Nobody');
-    await fact(connection, 'holder', 'Nobody');
+    await button(onPhone, 'Give control away').tap();
+    await fact(connection, 'holder', 'You');
+    await fact(onPhone, 'holder', name);
     await phone.page.close();
-    await button(connection, 'Take and keep').tap();
-    await fact(connection, 'holder', 'You, until you release it');
-    await button(connection, 'Release').tap();
-    await fact(connection, 'holder', 'Nobody');
   });
 
   test('speed and accuracy', async () => {

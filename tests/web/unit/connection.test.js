@@ -12,11 +12,11 @@ let restore = () => {};
 afterEach(() => restore());
 
 /** A connection, all that it is surrounded by, and a log of what it tells. */
-function setUp({ role = 'control', token, random = () => 1 } = {}) {
+function setUp({ role = 'control', token, resume, random = () => 1 } = {}) {
   const page = { sockets: [], phases: [], sent: [], frames: [], states: [], errors: [], messages: [], clock: new FakeClock() };
   page.connection = new Connection({
     url: 'ws://server/ws',
-    hello: { role, token },
+    hello: { role, token, resume },
     on: {
       phase: (phase) => page.phases.push(phase),
       sent: (message) => page.sent.push(message),
@@ -92,23 +92,24 @@ describe('hello', () => {
     assert.equal(page.connection.role, 'control');
   });
 
-  test('control that nobody holds is taken, by a patch of nothing', () => {
-    const page = setUp();
-    page.connection.resize(SIZE);
+  test('with a resume key, again after a lost connection: the server knows the page by it', () => {
+    const page = setUp({ resume: 'secret' });
     page.connection.start();
-    answerHello(page, WELCOME, { ...STATE, state: { control: { kept: false } } });
-    const types = page.socket.take().map(({ type }) => type);
-    assert.deepEqual(types, ['hello', 'resize', 'patch', 'frame', 'frame']);
-    // Somebody else may have been faster, which is nobody's concern.
-    page.socket.says({ type: 'error', id: 2, code: 'not-in-control', message: 'Another steers.' });
-    assert.deepEqual(page.errors, []);
+    page.socket.opens();
+    assert.equal(page.socket.take()[0].resume, 'secret');
+    page.socket.ends(1006);
+    page.clock.advance(page.clock.next);
+    page.socket.opens();
+    assert.equal(page.socket.take()[0].resume, 'secret');
   });
 
-  test('a watcher takes no control', () => {
-    const page = setUp();
-    page.connection.start();
-    answerHello(page, { ...WELCOME, role: 'view' }, { ...STATE, state: { control: {} } });
-    assert.deepEqual(page.socket.take().map(({ type }) => type), ['hello', 'frame', 'frame']);
+  test('takes no control from anybody, and asks for none', () => {
+    for (const control of [{}, { holder: 'b' }]) {
+      const page = setUp();
+      page.connection.start();
+      answerHello(page, WELCOME, { ...STATE, state: { control } });
+      assert.deepEqual(page.socket.take().map(({ type }) => type), ['hello', 'frame', 'frame']);
+    }
   });
 });
 
@@ -372,14 +373,6 @@ describe('a question', () => {
 });
 
 describe('control', () => {
-  const held = (control) => ({ ...STATE, state: { control } });
-  const reconnect = (page, control, welcome = { ...WELCOME, client: 'z' }) => {
-    page.socket.ends(1006);
-    page.clock.advance(page.clock.next);
-    answerHello(page, welcome, held(control));
-    return page.socket.take().filter(({ type }) => type === 'control' || type === 'patch');
-  };
-
   test('is this page\'s where the state names it as the holder', () => {
     const page = setUpOpen();
     assert.ok(!page.connection.steers);
@@ -387,39 +380,6 @@ describe('control', () => {
     assert.ok(page.connection.steers);
     page.socket.ends(1006);
     assert.ok(!page.connection.steers);
-  });
-
-  test('that was kept is kept again after a lost connection', () => {
-    const page = setUpOpen();
-    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
-    assert.deepEqual(reconnect(page, { kept: false }), [{ type: 'control', action: 'take', id: 1 }]);
-  });
-
-  test('also where several attempts were needed', () => {
-    const page = setUpOpen();
-    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
-    page.socket.ends(1006);
-    page.clock.advance(page.clock.next);
-    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['control']);
-  });
-
-  test('is taken from nobody who holds it by then', () => {
-    const page = setUpOpen();
-    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
-    assert.deepEqual(reconnect(page, { holder: 'b', kept: false }), []);
-    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['patch']);
-  });
-
-  test('that a dead connection of this page still keeps is taken from it', () => {
-    const page = setUpOpen();
-    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: true } } });
-    assert.deepEqual(reconnect(page, { holder: 'a', kept: true }), [{ type: 'control', action: 'take', id: 1 }]);
-  });
-
-  test('that was held but not kept is not kept afterwards', () => {
-    const page = setUpOpen();
-    page.socket.says({ type: 'patch', revision: 6, patch: { control: { holder: 'a', kept: false } } });
-    assert.deepEqual(reconnect(page, { kept: false }).map(({ type }) => type), ['patch']);
   });
 });
 

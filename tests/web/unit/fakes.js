@@ -164,13 +164,21 @@ export class FakeElement {
   }
 
   append(...children) {
-    for (const child of children) this.appendChild(child);
+    for (const child of children) {
+      if (typeof child === 'string') this.#text += child;
+      else this.appendChild(child);
+    }
   }
 
   appendChild(child) {
     child.parent = this;
     this.children.push(child);
     return child;
+  }
+
+  replaceChildren(...children) {
+    this.textContent = '';
+    this.append(...children);
   }
 
   remove() {

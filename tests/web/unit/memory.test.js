@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
+import { webcrypto } from 'node:crypto';
 import { afterEach, beforeEach, test } from 'node:test';
-import { recall, remember } from '../../../web-client/memory.js';
-import { FakeStorage } from './fakes.js';
+import { recall, remember, resumeKey } from '../../../web-client/memory.js';
+import { FakeStorage, replaceGlobals } from './fakes.js';
 
 beforeEach(() => {
   globalThis.localStorage = new FakeStorage();
@@ -29,4 +30,21 @@ test('a browser that keeps nothing does no harm', () => {
   remember('language', 'cs');
   remember('language', null);
   assert.equal(recall('language'), null);
+});
+
+test('a tab has one resume key, of 128 bits, that no other tab has; without a storage, one a page', () => {
+  const key = (sessionStorage) => {
+    const restore = replaceGlobals({ sessionStorage, crypto: webcrypto });
+    const made = resumeKey();
+    restore();
+    return made;
+  };
+  const tab = new FakeStorage();
+  const first = key(tab);
+  assert.match(first, /^[0-9a-f]{32}$/);
+  assert.equal(key(tab), first);
+  assert.notEqual(key(new FakeStorage()), first);
+  tab.isOff = true;
+  assert.match(key(tab), /^[0-9a-f]{32}$/);
+  assert.notEqual(key(tab), key(tab));
 });

@@ -33,8 +33,7 @@ describe('connection', () => {
   test('who steers', () => {
     assert.equal(holderWords(undefined, 'c1'), 'Nobody');
     assert.equal(holderWords({ kept: false }, 'c1'), 'Nobody');
-    assert.equal(holderWords({ holder: 'c1', kept: false }, 'c1'), 'You');
-    assert.equal(holderWords({ holder: 'c1', kept: true, name: 'Eva' }, 'c1'), 'You, until you release it');
+    assert.equal(holderWords({ holder: 'c1', kept: true, name: 'Eva' }, 'c1'), 'You');
     assert.equal(holderWords({ holder: 'c2', name: 'Eva\'s tablet' }, 'c1'), 'Eva\'s tablet');
     assert.equal(holderWords({ holder: 'c2' }, 'c1'), 'Client c2');
     setLanguage('cs');
