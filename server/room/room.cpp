@@ -53,8 +53,10 @@ void Room::leave(const std::string& client, SessionTime at) {
     record(client, protocol::LogLine::Disconnected{});
     gestures_.lift(client, camera());
     clicks_.lift(client);
-    if (steering_.holds(client)) end_flight(false);
-    if (steering_.holds(client)) recorded_holder_ = {client, true};
+    if (steering_.holds(client)) {
+        end_flight(false);
+        recorded_holder_ = {client, true};  // by that line
+    }
     steering_.leave(client, time_, options_.replaying);
     clients_.erase(client);
     show_holder();
@@ -312,10 +314,12 @@ bool Room::may_steer(const Received& received) {
 }
 
 void Room::reject_not_in_control(const Received& received) {
-    const auto& [holder, name] = std::tie(state_.control.holder, state_.control.name);
+    const protocol::ControlState& control = state_.control;
+    const std::string remedy = clients_[received.client].role == Role::host
+                                   ? "try again when that client has not steered for 1 s"
+                                   : "'control' with the action 'ask' asks for it";
     reject(received, code::not_in_control,
-           "'" + name.value_or(holder.value_or("nobody")) +
-               "' is in control; 'control' with the action 'ask' asks for it");
+           "'" + control.name.value_or(control.holder.value_or("")) + "' is in control; " + remedy);
 }
 
 void Room::steer(const Received& received) {
@@ -346,6 +350,7 @@ void Room::show_holder() {
         control.holder = steering_.holder();
         control.name = control.holder ? name_of(*control.holder) : std::nullopt;
         if (!size_waits_) use_holders_size();
+        update_visible();
     }
     control.kept = control.holder.has_value();
     control.absent = steering_.is_absent();

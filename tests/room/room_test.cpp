@@ -409,15 +409,20 @@ TEST_CASE("whose control is taken in mid-drag moves nothing any more") {
 }
 
 TEST_CASE("the view has the size of who holds control") {
-    Stage stage("ab");
-    stage.say("b", R"({"type":"resize","width":100,"height":100,"pixelRatio":2})");
+    Stage stage("ab", other_scene());
+    const auto shows_state = [&] { return stage.room.visible().camera.eye == stage.camera().eye; };
+    stage.say("b", R"({"type":"resize","width":100,"height":300,"pixelRatio":2})");
     CHECK(stage.room.view_size() == protocol::Resize{});
     stage.say("a", R"({"type":"resize","width":400,"height":200,"pixelRatio":1})");
     CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
     stage.say("a", control("give", "b"));
-    CHECK(stage.room.view_size() == protocol::Resize{100, 100, 2});
+    CHECK(stage.room.view_size() == protocol::Resize{100, 300, 2});
+    CHECK(shows_state());
+    const glm::dvec3 upright = stage.camera().eye;
     stage.room.leave("b", stage.now);
     CHECK(stage.room.view_size() == protocol::Resize{400, 200, 1});
+    CHECK(stage.camera().eye != upright);
+    CHECK(shows_state());
 }
 
 TEST_CASE("every role may ask what scenes there are") {

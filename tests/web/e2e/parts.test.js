@@ -1,46 +1,12 @@
 import assert from 'node:assert/strict';
-import { once } from 'node:events';
 import { after, before, describe, test } from 'node:test';
-import WebSocket from 'ws';
+import { Colleague } from './colleague.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
 const BLOCK = 20; // pixels; both sides of the view are multiples of it
 const CHANGED = 10; // of 255, in the colour of a block; what finer edges do to it is less
-
-/** Another client beside the page, which asks one thing after the other. */
-class Other {
-  #socket;
-  #lastId = 0;
-
-  static async join(address) {
-    const other = new Other();
-    other.#socket = new WebSocket(address.replace('http', 'ws') + 'ws', 'vrut-preview.v1');
-    await once(other.#socket, 'open');
-    await other.ask({ type: 'hello', role: 'control' });
-    return other;
-  }
-
-  ask(message) {
-    const id = (this.#lastId += 1);
-    const answer = new Promise((resolve) => {
-      const look = (data, isBinary) => {
-        const said = isBinary ? {} : JSON.parse(data);
-        if (said.id !== id) return;
-        this.#socket.off('message', look);
-        resolve(said);
-      };
-      this.#socket.on('message', look);
-    });
-    this.#socket.send(JSON.stringify({ ...message, id }));
-    return answer;
-  }
-
-  leave() {
-    this.#socket.close();
-  }
-}
 
 describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
   let server;
@@ -51,14 +17,14 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
 
   before(async () => {
     server = await Server.start();
-    other = await Other.join(server.address);
+    browser = await launchBrowser();
+    tablet = await Tablet.open(browser, server.address, TABLET);
+    await tablet.wire.still();
+    other = await Colleague.join(server.address);
     for (const name of ['Bonnet', 'Boot lid', 'Spoiler', 'Roof', 'Doors']) {
       const { nodes } = await other.ask({ type: 'tree', search: name });
       ids[name] = nodes.find((node) => node.name === name).id;
     }
-    browser = await launchBrowser();
-    tablet = await Tablet.open(browser, server.address, TABLET);
-    await tablet.wire.still();
     await tablet.page.tap('#menu-button');
     await tablet.page.tap('[data-section="parts"] > summary');
   });
@@ -138,9 +104,7 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
   test('what somebody else hides is grey, with all that is in it, and comes back as in the file', async () => {
     assert.equal(await asInFile().isDisabled(), true);
     const color = () => named('Spoiler').evaluate((button) => getComputedStyle(button).color);
-    const hide = { type: 'patch', patch: { nodes: { [ids['Boot lid']]: { active: false } } } };
-    // Until the tablet has been quiet for long enough to leave control to others.
-    while ((await other.ask(hide)).code === 'not-in-control') await new Promise((resolve) => setTimeout(resolve, 100));
+    await other.patch({ nodes: { [ids['Boot lid']]: { active: false } } });
     await tablet.page.locator('.off').waitFor();
     // Only now is it asked for: the answer tells what is the case, and not what is in the file.
     await unfold('Body').tap();
@@ -148,7 +112,6 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
     await unfold('Boot lid').tap();
     await named('Spoiler').waitFor();
     const grey = await color();
-    await new Promise((resolve) => setTimeout(resolve, 1100)); // now the other is quiet
     const { sent } = await sees(() => asInFile().tap(), 'nothing is changed', () => Object.keys(nodes()).length === 0);
     assert.deepEqual(sent.findLast(({ type }) => type === 'patch').patch, { nodes: null });
     await tablet.page.locator('.off').waitFor({ state: 'detached' });
