@@ -98,14 +98,14 @@ export class Connection {
   }
 
   /**
-   * Sends a message and promises its answer, of a `snapshot` the frame. An error of the server's has its `code`; one
-   * without a message: it got lost.
+   * Sends a message and promises its answer, of a `snapshot` the frame. An error of the server's has its `code`; the
+   * code `not-sent` tells that there is no connection. One without a message or code: the answer got lost.
    */
   ask(message) {
     const id = this.send(message);
     return new Promise((resolve, reject) => {
       if (id) this.#asked.set(id, { resolve, reject });
-      else reject(new Error());
+      else reject(Object.assign(new Error(), { code: 'not-sent' }));
     });
   }
 

@@ -99,8 +99,7 @@ const connection = new Connection({
 
     error(error) {
       if (error.code === 'not-in-control') prediction.forget();
-      lines.pass(errorSentence(error));
-      show();
+      report(error);
     },
 
     message(message) {
@@ -174,7 +173,9 @@ function follow() {
 
 /** Says why something was refused, and shows what is so instead. */
 function report(error) {
-  if (error.message) lines.pass(errorSentence(error));
+  if (error.code === 'not-sent') lines.pass(say('phase.notSent'));
+  else if (error.message) lines.pass(errorSentence(error));
+  if (error.code === 'not-in-control') controlBar.offer();
   show();
 }
 

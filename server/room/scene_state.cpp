@@ -167,9 +167,8 @@ void count_classes(protocol::State& state, const scene::PlacedScene& placed) {
 
 protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect) {
     const scene::Index node = scene::first_camera_node(placed);
-    return view_state_of(node != scene::kNone
-                             ? navigation::fitted(*scene::camera_at(placed, node), placed.bounds, aspect)
-                             : navigation::home_camera(placed.bounds, aspect));
+    return view_state_of(node != scene::kNone ? *scene::camera_at(placed, node)
+                                              : navigation::home_camera(placed.bounds, aspect));
 }
 
 scene::Camera camera_of(const protocol::CameraState& state) {

@@ -12,7 +12,7 @@ namespace vrut::server::room {
 /// The state that a scene starts with, its camera at home for a view of `aspect`.
 protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
                                std::vector<std::string> notices);
-/// What `fit` gives at loading.
+/// The view with which a scene opens: its first camera node's, or else the scene fitted to the view.
 protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect);
 
 scene::Camera camera_of(const protocol::CameraState& state);

@@ -239,6 +239,9 @@ std::vector<MessageType> message_types() {
         {"record stop", "control", {{"type", "record"}, {"action", "stop"}}},
         {"control take", "control", {{"type", "control"}, {"action", "take"}}},
         {"control release", "control", {{"type", "control"}, {"action", "release"}}},
+        {"control ask", "control", {{"type", "control"}, {"action", "ask"}}},
+        {"control cancel", "control", {{"type", "control"}, {"action", "cancel"}}},
+        {"control decline", "control", {{"type", "control"}, {"action", "decline"}, {"client", "c0"}}},
         {"shown", "host", {{"type", "shown"}, {"revision", 1}}},
         {"open", "control", {{"type", "open"}, {"scene", "other.vrut"}}},
     };

@@ -85,7 +85,7 @@ TEST_CASE("control is taken, and given back") {
             if (answer["type"] != "patch") return answer["type"] == "ok";
         }
     };
-    CHECK(view.state["control"]["holder"] == "c1");
+    while (view.state["control"].value("holder", "") != "c1") view.wait_for("patch");
     CHECK_FALSE(steers(b));
     control(b, "take");
     b.wait_for("ok");

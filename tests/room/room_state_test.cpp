@@ -193,7 +193,11 @@ TEST_CASE("f fits what is selected, or the scene") {
 TEST_CASE("Home goes to the view of that name, whatever it is now") {
     Stage stage("a");
     const auto home = [&] { return stage.room.state().views->at("home"); };
+    const glm::dvec3 first = stage.camera().eye;
+    stage.say("a", R"({"type":"navigate","rotate":[30,10],"zoom":2})");
+    CHECK(stage.camera().eye != first);
     stage.say("a", key("Home"));
+    CHECK(stage.camera().eye == first);  // the view with which the scene opens
     CHECK(stage.camera().eye == home().eye);
     stage.say("a", patch(R"({"views":{"home":{"eye":[0,0,3]}}})"));
     stage.say("a", key("Home"));

@@ -248,8 +248,11 @@ Json TestClient::join(const std::string& role, const std::string& token, const s
     if (!token.empty()) hello["token"] = token;
     if (!resume_key.empty()) hello["resume"] = resume_key;
     send(hello);
-    wait_for("welcome");
-    return wait_for("state")["state"];
+    const bool controls = wait_for("welcome")["role"] == "control";
+    wait_for("state");
+    // Who holds control may come behind the state.
+    while (controls && !state["control"].contains("holder")) wait_for("patch");
+    return state;
 }
 
 Json TestClient::wait_for_still(std::chrono::milliseconds for_each) {

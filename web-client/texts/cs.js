@@ -17,6 +17,7 @@ export const cs = {
   'phase.retryIn': 'Nový pokus za {seconds} s.',
   'phase.tokenWrong': 'Server nepřijal přístupový klíč z této adresy.',
   'phase.tokenMissing': 'Server vyžaduje přístupový klíč.',
+  'phase.notSent': 'Není spojení se serverem, nic se nezměnilo.',
   'phase.openAddress': 'Otevřete adresu, kterou server vypsal.',
 
   'presence.connected': 'Připojeno',

@@ -20,6 +20,7 @@ export const en = {
   'phase.retryIn': 'Trying again in {seconds} s.',
   'phase.tokenWrong': 'The server does not accept the token in this address.',
   'phase.tokenMissing': 'The server asks for a token.',
+  'phase.notSent': 'There is no connection to the server: nothing was changed.',
   'phase.openAddress': 'Open the address that the server printed.',
 
   'presence.connected': 'Connected',

@@ -96,7 +96,15 @@ describe('fit', () => {
     });
   }
 
-  test('"home" is what fit gives at loading, and the camera where the scene has none', async (t) => {
+  test('"home" is the view with which the scene opens: its camera node\'s', async (t) => {
+    const fresh = await Server.start();
+    t.after(() => fresh.stop());
+    const { views, camera } = (await ContractClient.join(t, fresh)).state;
+    assert.ok(camera.node !== undefined);
+    for (const member of ['eye', 'focus', 'up', 'center', 'fov']) assert.deepEqual(views.home[member], camera[member], member);
+  });
+
+  test('or what fit gives where the scene has none', async (t) => {
     const bare = await Server.start({ scene: sceneFile('second.vrut') });
     t.after(() => bare.stop());
     const client = await ContractClient.join(t, bare);

@@ -54,6 +54,10 @@ describe('what can go wrong', { skip: browserIsMissing }, () => {
     await greys();
     await corner('Not connected');
     await page.waitForFunction(() => /connection to the server is lost|does not answer/.test(document.querySelector('#lines').textContent));
+    const wireframe = page.locator('[data-section="renderer"]').getByRole('switch', { name: 'Wireframe' });
+    await wireframe.click();
+    await page.locator('#lines').getByText('There is no connection to the server: nothing was changed.').waitFor();
+    await page.waitForFunction((input) => !input.checked, await wireframe.elementHandle());
     await tablet.finger('touchMove', [{ x: 360, y: 420 }]);
     const { connections } = tablet.wire;
     server = await Server.start(server.port);

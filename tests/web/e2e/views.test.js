@@ -108,6 +108,7 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     await button(views, 'Home').tap();
     await cameraIs(state().views.home);
     await tablet.wire.still();
+    await tablet.wheel(2000);
     const { after: far } = await tablet.wheel(2000);
     await button(views, 'Fit the scene').tap();
     await until('the scene to fill the view', () => distance(state().camera) < 0.7 * distance(far));
