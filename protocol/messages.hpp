@@ -36,8 +36,8 @@ enum class ImageFormat { jpeg, png };
 struct Hello {
     Role role = Role::view;
     std::string name, token;
-    std::string
-        resume;  ///< the client's secret: with the same one the holder of control comes back; empty: none
+    /// A secret of the client, by which it gets control back after a lost connection; empty: none.
+    std::string resume;
 };
 
 struct Resize {

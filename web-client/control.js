@@ -48,8 +48,9 @@ export class ControlBar {
   #timer;
   #now = {};
   #shown = 'null';
-  /** This page has asked, and has not taken that back. */
-  #asks = false;
+  /** The id under which this page waits for an answer; undefined while it does not. */
+  #askedAs;
+  #cancelled = false;
 
   /** `on`: `send` a `control` message, and `declined` by the holder of a name. */
   constructor(element, on) {
@@ -72,15 +73,17 @@ export class ControlBar {
   show(now) {
     this.#now = now;
     const { client, control } = now;
-    const asks = Boolean(control?.asking?.some((one) => one.client === client));
-    if (this.#asks && !asks && control && control.holder !== client) this.#on.declined(holderName(control));
-    this.#asks = asks;
+    const asks = client !== undefined && control?.asking?.some((one) => one.client === client);
+    const ended = this.#askedAs === client && client !== undefined && !asks;
+    if (ended && !this.#cancelled && control.holder !== client) this.#on.declined(holderName(control));
+    this.#askedAs = asks ? client : undefined;
+    this.#cancelled &&= asks;
     const bar = controlBar({ ...now, offered: this.#offered });
     const shown = JSON.stringify(bar);
     if (shown === this.#shown) return;
     this.#shown = shown;
     const act = (message) => () => {
-      if (message.action === 'cancel') this.#asks = false;
+      this.#cancelled = message.action === 'cancel';
       this.#on.send({ type: 'control', ...message });
     };
     this.#element.replaceChildren(...(bar ? [

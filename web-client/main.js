@@ -2,7 +2,7 @@ import { Awake } from './awake.js';
 import { Changes } from './changes.js';
 import { connectionSection } from './connection-section.js';
 import { Connection, roleFrom, socketAddress } from './connection.js';
-import { ControlBar } from './control.js';
+import { ControlBar, holderName } from './control.js';
 import { element } from './controls.js';
 import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
@@ -173,9 +173,14 @@ function follow() {
 
 /** Says why something was refused, and shows what is so instead. */
 function report(error) {
-  if (error.code === 'not-sent') lines.pass(say('phase.notSent'));
-  else if (error.message) lines.pass(errorSentence(error));
-  if (error.code === 'not-in-control') controlBar.offer();
+  if (error.code === 'not-in-control') {
+    lines.pass(say('control.other', { name: holderName(connection.state.control) }));
+    controlBar.offer();
+  } else if (error.code === 'not-sent') {
+    lines.pass(say('phase.notSent'));
+  } else if (error.message) {
+    lines.pass(errorSentence(error));
+  }
   show();
 }
 

@@ -25,7 +25,7 @@ export function presence({ phase, client, state, header }) {
 }
 
 /** Who is in control, in words. */
-function holderWords(steering, { control } = {}) {
+function controlWords(steering, { control } = {}) {
   if (steering === 'own') return say('presence.own');
   if (steering === 'nobody') return say('presence.nobody');
   const name = holderName(control);
@@ -70,7 +70,7 @@ export class Presence {
     this.#may = page.role === 'control' && ['other', 'absent'].includes(steering);
     const text = [
       say(CONNECTION[connection]),
-      steering && holderWords(steering, page.state),
+      steering && controlWords(steering, page.state),
       level && say(LEVEL[level]),
     ].filter(Boolean).join(' · ');
     const title = this.#may ? say('presence.hint') : '';

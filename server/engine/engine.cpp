@@ -244,7 +244,10 @@ std::optional<base::Clock::time_point> Engine::take_step(const ScheduledStep& st
 
 void Engine::advance_room() {
     const base::Clock::time_point now = base::Clock::now();
-    if (room_->flies()) last_change_ = now;
+    const auto deadline = room_->deadline();
+    // Else what waits would count as later than it arrived.
+    if (!room_->flies() && !(deadline && *deadline <= time_of(now))) return;
+    last_change_ = now;
     room_->advance(time_of(now));
 }
 

@@ -232,8 +232,7 @@ void Room::apply(const Received& received, const protocol::Control& control) {
     const bool holds = steering_.holds(client) || options_.replaying;
     if ((control.action == Action::give || control.action == Action::decline) && !holds)
         return reject_not_in_control(received);
-    if (control.action == Action::give && !options_.replaying &&
-        !steering_.is_here(control.client.value_or("")))
+    if (control.action == Action::give && !options_.replaying && !steering_.is_here(*control.client))
         return reject(received, code::out_of_range,
                       "'client': there is no control client '" + control.client->substr(0, 40) + "' here");
     switch (control.action) {

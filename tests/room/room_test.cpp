@@ -109,7 +109,7 @@ TEST_CASE("control is asked for, given, declined and taken back") {
     }
 }
 
-TEST_CASE("what is wrong with a control message is told") {
+TEST_CASE("a control message without its client, or of another action, is rejected") {
     const auto error = [](const char* text) {
         const auto message = protocol::decode(text);
         return message ? "" : message.error().message;

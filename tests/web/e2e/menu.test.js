@@ -266,8 +266,8 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       await colleague.ask({ type: 'control', action: 'take' });
       await tablet.wire.until('the other one to steer', () => tablet.wire.state.control.holder === colleague.id);
       await section('renderer').getByText('Wireframe').tap();
-      const { message } = await tablet.wire.until('a refusal', () => tablet.wire.errors.at(-1));
-      await page.locator('#lines').getByText(message).waitFor();
+      await tablet.wire.until('a refusal', () => tablet.wire.errors.at(-1)?.code === 'not-in-control');
+      await page.locator('#lines').getByText(`Client ${colleague.id} is in control.`).waitFor();
       await page.waitForFunction(() => document.querySelector('[data-section="renderer"] [role=switch]').checked);
       await within('camera', 'Field of view').press('ArrowRight');
       await tablet.wire.until('another refusal', () => tablet.wire.errors.length === 2);

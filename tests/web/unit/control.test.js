@@ -102,10 +102,13 @@ describe('shown', () => {
     const cancelled = setUp();
     cancelled.show(asking);
     cancelled.press(0);
+    cancelled.show(asking); // the server has not answered yet
     cancelled.show(OTHER);
     assert.deepEqual([cancelled.sent, cancelled.declined], [[{ type: 'control', action: 'cancel' }], []]);
     const lost = setUp();
-    for (const control of [asking, undefined]) lost.show(control);
+    lost.show(asking);
+    lost.shown.show({ control: asking }); // without a connection the last state stays
+    lost.shown.show({ role: 'control', client: 'z', control: OTHER });
     assert.deepEqual(lost.declined, []);
   });
 });
