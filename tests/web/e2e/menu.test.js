@@ -333,7 +333,11 @@ test('a Czech browser gets Czech, the errors of the server too', { skip: browser
     await colleague.ask({ type: 'control', action: 'take' });
     await page.getByRole('button', { name: 'Nabídka' }).tap();
     await page.locator('[data-section="renderer"]').getByText('Drátový model').tap();
-    await page.locator('#lines').getByText('Scénu právě řídí někdo jiný.').waitFor();
+    await page.locator('#lines').getByText(`Řídí Klient ${colleague.id}.`).waitFor();
+    await colleague.ask({ type: 'control', action: 'release' });
+    await page.locator('[data-section="connection"] > summary').tap();
+    await page.getByRole('button', { name: 'Nahrávat' }).tap(); // the server has no folder for that
+    await page.locator('#lines').getByText('Tato akce zde není povolena').waitFor();
   } finally {
     await colleague.leave();
     await page.context().close();
