@@ -264,6 +264,7 @@ void Engine::handle_waiting() {
 
 void Engine::handle(const ClientJoined& joined) {
     clients_[joined.client].handled = joined.id;
+    output_.handled[joined.client].sequence = clients_[joined.client].sequence = kHelloSequence;
     const base::Clock::time_point now = base::Clock::now();
     room_->join(joined.client, joined.role, time_of(now), joined.name, joined.resume_key);
     stats_.joined(joined.client, joined.role, joined.name, now);

@@ -16,6 +16,9 @@
 
 namespace vrut::server::engine {
 
+/// MessageReceived::sequence begins behind that of `hello`.
+inline constexpr std::uint64_t kHelloSequence = 1;
+
 struct ClientJoined {
     std::string client;
     protocol::Role role = protocol::Role::view;

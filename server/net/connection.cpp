@@ -246,6 +246,7 @@ void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64
     ++registry_.metrics->clients[name_of(*role)];
     observe::log_info("joined",
                       {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
+    sequence_ = engine::kHelloSequence;
     registry_.engine->mailbox().push(
         engine::ClientJoined{client_, *role, hello.name, id.value_or(0), hello.resume});
 

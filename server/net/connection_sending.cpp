@@ -134,8 +134,10 @@ void Connection::pump() {
     ask_again(now);
 }
 
+/// The first document tells of this client, and whether it has control.
 bool Connection::has_updates() const {
-    return !client_.empty() && registry_.document.newest() &&
+    const bool has_joined = handled_sequence_ >= engine::kHelloSequence;
+    return has_joined && registry_.document.newest() &&
            (document_ != registry_.document.newest() || has_broadcasts());
 }
 

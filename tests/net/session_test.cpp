@@ -30,6 +30,16 @@ TEST_CASE("hello is answered by welcome, then the state") {
     CHECK(state->json()["state"]["lights"]["active"] == "headlight");
 }
 
+TEST_CASE("the first state tells that the client that gets it has control") {
+    for (int i = 0; i < 20; ++i) {
+        TestServer server;
+        TestClient client(server.port());
+        client.send({{"type", "hello"}, {"role", "control"}});
+        const std::string name = client.wait_for("welcome")["client"];
+        CHECK(client.wait_for("state")["state"]["control"]["holder"] == name);
+    }
+}
+
 TEST_CASE("two clients have two ids") {
     TestServer server;
     TestClient a(server.port()), b(server.port());
