@@ -79,11 +79,23 @@ GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indic
     return vertex_array_of(*geometry.buffers, geometry.first_vertex, indices);
 }
 
+/// As large as all small geometries of the scene need, up to a few megabytes.
+GeometryBufferPool::GeometryBufferPool(const scene::Scene& scene) {
+    constexpr std::size_t kMostVertices = std::size_t{1} << 15;
+    std::size_t triangles = 0;
+    for (const scene::Geometry& geometry : scene.geometries())
+        if (geometry.triangles.size() <= plan::kMostTrianglesOfSmall) triangles += geometry.triangles.size();
+    triangles = std::max(triangles, plan::kMostTrianglesOfSmall);  // levels of others are small, too
+    vertices_at_most_ = std::min(3 * triangles, kMostVertices);
+    triangles_at_most_ = 2 * std::min(triangles, kMostVertices);
+}
+
 GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
     GpuGeometry geometry;
     geometry.index_count = static_cast<GLsizei>(sizes.triangles * 3);
+    // There may be vertices that no triangle uses.
     const bool is_small = sizes.triangles <= plan::kMostTrianglesOfSmall &&
-                          sizes.vertices <= SharedBuffers::kMostVerticesOfSmall && !sizes.low_positions;
+                          sizes.vertices <= 3 * plan::kMostTrianglesOfSmall && !sizes.low_positions;
     if (is_small)
         share(sizes, geometry);
     else
@@ -92,19 +104,19 @@ GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
 }
 
 void GeometryBufferPool::share(const GeometrySizes& sizes, GpuGeometry& geometry) {
-    SharedBuffers& shared = shared_[sizes.texcoords ? 1 : 0];
-    const std::size_t indices = sizes.triangles * 3;
-    geometry.buffers = shared.buffers.lock();
-    if (!geometry.buffers || shared.vertices + sizes.vertices > shared.capacity ||
-        shared.indices + indices > 3 * shared.capacity) {
-        const std::size_t capacity = std::min(2 * shared.capacity, SharedBuffers::kMostVertices);
-        geometry.buffers = make_geometry_buffers({capacity, capacity, sizes.texcoords}, true);
-        shared = {geometry.buffers, capacity};
+    const std::size_t triangles = 2 * sizes.triangles;  // turned ones, too
+    geometry.buffers = shared_.lock();
+    if (!geometry.buffers || shared_vertices_ + sizes.vertices > vertices_at_most_ ||
+        shared_triangles_ + triangles > triangles_at_most_) {
+        geometry.buffers = make_geometry_buffers({vertices_at_most_, triangles_at_most_, true}, true);
+        shared_ = geometry.buffers;
+        shared_vertices_ = shared_triangles_ = 0;
     }
-    geometry.first_vertex = static_cast<GLint>(shared.vertices);
-    geometry.first_index = static_cast<GLuint>(shared.indices);
-    shared.vertices += sizes.vertices;
-    shared.indices += indices;
+    geometry.first_vertex = static_cast<GLint>(shared_vertices_);
+    geometry.first_index = static_cast<GLuint>(3 * shared_triangles_);
+    geometry.first_turned_index = static_cast<GLuint>(3 * (shared_triangles_ + sizes.triangles));
+    shared_vertices_ += sizes.vertices;
+    shared_triangles_ += triangles;
 }
 
 }  // namespace vrut::gl

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <memory>
 
 #include "gl/handles.hpp"
 #include "plan/draw_groups.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut::gl {
 
@@ -25,8 +25,8 @@ inline constexpr GLuint kInstanceBinding = 3;
 /// The buffers of one large geometry, or of many small ones. One draw call can draw all that share buffers.
 struct GeometryBuffers {
     GlBuffer vertices, indices;
-    /// One for each vertex. Whole numbers are subtracted, so that they lie around 0. Null: the geometries
-    /// have none.
+    /// One for each vertex. Whole numbers are subtracted, so that they lie around 0. Null: the geometry has
+    /// none. Shared buffers hold unused ones for geometries that have none.
     GlBuffer texcoords;
     /// The rest of each position that float rounds away. Null: positions are single floats.
     GlBuffer low_positions;
@@ -39,6 +39,9 @@ struct GeometryBuffers {
 struct GpuGeometry {
     std::shared_ptr<const GeometryBuffers> buffers;
     GLuint first_index = 0;
+    /// Of shared buffers: the same triangles with their first two corners swapped. A matrix that mirrors
+    /// turns them the right way round, so that one draw call draws mirrored items and others.
+    GLuint first_turned_index = 0;
     GLint first_vertex = 0;  ///< added to each index
     GLsizei index_count = 0;
     glm::dvec3 origin{0};
@@ -55,27 +58,20 @@ struct GeometrySizes {
 /// Returns a vertex array of a geometry's vertices with these indices.
 GlVertexArray vertex_array_of(const GpuGeometry& geometry, const GlBuffer& indices);
 
-/// Allocates the buffers of geometries. Small geometries share buffers, which are freed with the last of
-/// them.
+/// Allocates the buffers of a scene's geometries. Small geometries share buffers, which are freed with the
+/// last of them.
 class GeometryBufferPool {
 public:
+    explicit GeometryBufferPool(const scene::Scene& scene);
     /// Returns a geometry of these sizes, without contents. Throws OutOfMemory.
     GpuGeometry allocate(const GeometrySizes& sizes);
 
 private:
-    /// Buffers that are being filled.
-    struct SharedBuffers {
-        static constexpr std::size_t kMostVerticesOfSmall = 3 * plan::kMostTrianglesOfSmall,
-                                     kMostVertices = std::size_t{1} << 15;
-        std::weak_ptr<const GeometryBuffers> buffers;
-        /// In vertices. The next buffers hold twice as many, up to kMostVertices. There are three indices for
-        /// each vertex.
-        std::size_t capacity = kMostVerticesOfSmall;
-        std::size_t vertices = 0, indices = 0;  ///< in use, from the beginning
-    };
     void share(const GeometrySizes& sizes, GpuGeometry& geometry);
 
-    std::array<SharedBuffers, 2> shared_;  // without and with texture coordinates
+    std::size_t vertices_at_most_ = 0, triangles_at_most_ = 0;  // of shared buffers
+    std::weak_ptr<const GeometryBuffers> shared_;               // that are being filled
+    std::size_t shared_vertices_ = 0, shared_triangles_ = 0;    // in use, from the beginning
 };
 
 }  // namespace vrut::gl

@@ -52,7 +52,8 @@ GpuScene::GpuScene(std::shared_ptr<const scene::Scene> scene)
     : scene_(std::move(scene)),
       geometries_(scene_->geometries().size()),
       edges_(geometries_.size()),
-      textures_(scene_->textures().size()) {}
+      textures_(scene_->textures().size()),
+      buffer_pool_(*scene_) {}
 
 // --- requests
 
@@ -176,6 +177,12 @@ void GpuScene::create_geometry(Arrival& arrival) {
     const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
     arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
     arrival.upload.add(geometry.buffers->indices, triangles, geometry.first_index / 3);
+    if (geometry.buffers->shared) {
+        for (const glm::uvec3& corners : triangles)
+            arrival.turned_triangles.emplace_back(corners.y, corners.x, corners.z);
+        arrival.upload.add(geometry.buffers->indices, arrival.turned_triangles,
+                           geometry.first_turned_index / 3);
+    }
     if (!data.texcoords.empty())
         arrival.upload.add(geometry.buffers->texcoords, data.texcoords, first_vertex);
     if (!data.low_positions.empty()) arrival.upload.add(geometry.buffers->low_positions, data.low_positions);

@@ -91,6 +91,7 @@ private:
         Preparation::Result result;
         bool has_storage = false;
         GpuGeometry geometry = {};
+        std::vector<glm::uvec3> turned_triangles = {};
         GpuEdges edges = {};
         GlTexture texture = {};
         Upload upload = {};

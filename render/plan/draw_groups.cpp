@@ -15,11 +15,12 @@ bool overlap(const math::Bounds& a, const math::Bounds& b) {
     return glm::all(glm::lessThanEqual(a.min, b.max)) && glm::all(glm::lessThanEqual(b.min, a.max));
 }
 
-/// What an item covers in view space.
-math::Bounds box_of(const DrawItem& item, const scene::Scene& scene) {
+/// What an item covers in world space, along whose axes most parts lie.
+math::Bounds box_of(const DrawItem& item, const scene::PlacedScene& placed, const glm::dvec3& eye) {
     math::Bounds box =
-        transformed(item.view_from_node, scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds);
-    const double margin = kMargin * std::max(glm::length(box.min), glm::length(box.max));
+        transformed(placed.world[static_cast<std::size_t>(item.node)],
+                    placed.scene->geometries()[static_cast<std::size_t>(item.geometry)].bounds);
+    const double margin = kMargin * glm::length(glm::max(glm::abs(box.min - eye), glm::abs(box.max - eye)));
     box.min -= margin;
     box.max += margin;
     return box;
@@ -32,7 +33,8 @@ bool is_small(const DrawItem& item, const scene::Scene& scene) {
 /// Returns true if they are drawn faster one after the other.
 bool belong_together(const DrawItem& a, const DrawItem& b, const scene::Scene& scene) {
     const bool small = is_small(a, scene);
-    return small == is_small(b, scene) && (small || a.material == b.material) && share_draw(a, b);
+    return small == is_small(b, scene) && (small || (a.material == b.material && a.mirrored == b.mirrored)) &&
+           share_draw(a, b);
 }
 
 /// Items that belong together, in runs whose boxes are tested first.
@@ -83,17 +85,18 @@ Group* group_for(std::vector<Group>& groups, const DrawItem& item, const math::B
 }  // namespace
 
 bool share_draw(const DrawItem& a, const DrawItem& b) {
-    return a.texture == b.texture && a.environment == b.environment && a.mirrored == b.mirrored &&
+    return a.texture == b.texture && a.environment == b.environment &&
            (a.cull_mode == CullMode::none) == (b.cull_mode == CullMode::none) &&
            a.clip_plane.has_value() == b.clip_plane.has_value();
 }
 
-void group_for_draws(std::vector<DrawItem>& items, const scene::Scene& scene) {
+void group_for_draws(std::vector<DrawItem>& items, const scene::PlacedScene& placed, const glm::dvec3& eye) {
+    const scene::Scene& scene = *placed.scene;
     const auto differs = [&](const DrawItem& item) { return !belong_together(items.front(), item, scene); };
     if (std::ranges::none_of(items, differs)) return;
     std::vector<Group> groups;
     for (std::size_t i = 0; i < items.size(); ++i) {
-        const math::Bounds box = box_of(items[i], scene);
+        const math::Bounds box = box_of(items[i], placed, eye);
         Group* group = group_for(groups, items[i], box, scene);
         if (!group) group = &groups.emplace_back(items[i]);
         group->add(i, box);

@@ -16,8 +16,8 @@ inline constexpr std::size_t kMostTrianglesOfSmall = 256;
 bool share_draw(const DrawItem& a, const DrawItem& b);
 
 /// Moves opaque items together: small ones that share draws, and others of one material, since drivers take
-/// long where uniforms of the fragment shader change. Items whose boxes in view space come close keep their
+/// long where uniforms of the fragment shader change. Items whose boxes in world space come close keep their
 /// order: at equal depth the last one is in front. So the image stays the same.
-void group_for_draws(std::vector<DrawItem>& items, const scene::Scene& scene);
+void group_for_draws(std::vector<DrawItem>& items, const scene::PlacedScene& placed, const glm::dvec3& eye);
 
 }  // namespace vrut::plan

@@ -236,7 +236,7 @@ void FramePlanner::find_draw_lists(const View& view, TransparencyCache& shapes,
     plan_.overlay = draw_lists_of(plan_.selected, unculled_items_, view, shapes);
     select_levels(plan_, view, is_resident);
     cull_backfaces(plan_, view);
-    if (!style_of(view).edges) group_for_draws(plan_.scene.opaque, *view.scene->scene);
+    if (!style_of(view).edges) group_for_draws(plan_.scene.opaque, *view.scene, view.camera.eye);
 }
 
 bool FramePlanner::step(const View& view, TransparencyCache& shapes, DrawBudget& budget,

@@ -293,7 +293,8 @@ void measure_file(renderer::Renderer& renderer, const bench::SecondContext& cont
                   const std::string& file) {
     const ScenePointer scene = load(file);
     const std::uint64_t triangles = scene->scene->triangle_count();
-    Subject subject(renderer, contexts, scene, triangles > 2'000'000 ? 3 : 6);
+    const int steps = triangles > 2'000'000 ? 3 : triangles > 200'000 ? 6 : 24;  // short frames vary most
+    Subject subject(renderer, contexts, scene, steps);
     std::vector<Row> rows{
         subject.bare_materials("bare, a draw a material", BareMethod::plain),
         subject.program("program, every triangle", 0, 1, 0),

@@ -25,7 +25,8 @@ Boxes boxes_at(const std::vector<glm::dvec3>& places, int textures) {
     Boxes result{scene_of(parts), {}};
     for (std::size_t i = 0; i < places.size(); ++i) {
         plan::DrawItem item;
-        item.node = item.geometry = static_cast<scene::Index>(i);
+        item.node = result.scene->scene->find_node(static_cast<scene::Id>(i + 1));
+        item.geometry = static_cast<scene::Index>(i);
         item.texture = static_cast<scene::Index>(i) % textures;
         item.view_from_node = moved_by(places[i]);
         result.items.push_back(item);
@@ -34,9 +35,9 @@ Boxes boxes_at(const std::vector<glm::dvec3>& places, int textures) {
 }
 
 std::vector<scene::Index> order_of(Boxes boxes) {
-    plan::group_for_draws(boxes.items, *boxes.scene->scene);
+    plan::group_for_draws(boxes.items, *boxes.scene, glm::dvec3(0));
     std::vector<scene::Index> order;
-    for (const plan::DrawItem& item : boxes.items) order.push_back(item.node);
+    for (const plan::DrawItem& item : boxes.items) order.push_back(item.geometry);
     return order;
 }
 
@@ -87,9 +88,9 @@ TEST_CASE("what one draw call can draw") {
         return plan::share_draw(item, changed);
     };
     CHECK(shares([](plan::DrawItem& changed) { changed.cull_mode = plan::CullMode::hidden_back; }));
+    CHECK(shares([](plan::DrawItem& changed) { changed.mirrored = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.cull_mode = plan::CullMode::none; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.environment = true; }));
-    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.mirrored = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.clip_plane = {0, 0, 1, 0}; }));
 }

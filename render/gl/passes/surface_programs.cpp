@@ -193,7 +193,8 @@ void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry
     instance.diffuse_reflectivity = {glm::vec3(material.diffuse), material.reflectivity};
     instance.specular_shininess = {glm::vec3(material.specular), material.shininess};
     if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
-    draws_.push_back({static_cast<GLuint>(geometry.index_count), 1, geometry.first_index,
+    draws_.push_back({static_cast<GLuint>(geometry.index_count), 1,
+                      item.mirrored ? geometry.first_turned_index : geometry.first_index,
                       geometry.first_vertex, static_cast<GLuint>(draws_.size())});
 }
 
@@ -235,7 +236,9 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
     variant.instanced = true;
     programs_.use(variant);
     bind_textures(first);
-    apply(state.for_item(first));
+    PipelineState applied = state.for_item(first);
+    applied.clockwise_front = false;  // the triangles of mirrored items are turned
+    apply(applied);
     glBindVertexArray(scene_->geometry(first).buffers->vertex_array.get());
     glBindVertexBuffer(kInstanceBinding, instance_buffer_.get(), 0, sizeof(GpuInstance));
     glBindBuffer(GL_DRAW_INDIRECT_BUFFER, draw_buffer_.get());
