@@ -40,6 +40,7 @@ inline constexpr auto kRole = word("control", "view", "host");
 inline constexpr auto kMode = word("realistic", "stylized");
 inline constexpr auto kFormat = word("jpeg", "png");
 inline constexpr auto kStyle = word("vrut", "maya", "catia", "cinema4d");
+inline constexpr auto kTurnAbout = word("center", "touched");
 
 // --- client to server
 
@@ -378,6 +379,7 @@ template <class V>
 void describe(V& v, const NavigationState*) {
     v.writable("style", &NavigationState::style, kStyle);
     v.writable("keepUpright", &NavigationState::keep_upright, Flag{});
+    v.writable("turnAbout", &NavigationState::turn_about, kTurnAbout);
     v.writable("rotateSpeed", &NavigationState::rotate_speed, kSpeed);
     v.writable("panSpeed", &NavigationState::pan_speed, kSpeed);
     v.writable("zoomSpeed", &NavigationState::zoom_speed, kSpeed);

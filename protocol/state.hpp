@@ -76,6 +76,8 @@ struct NavigationState {
     enum class Style { vrut, maya, catia, cinema4d };
     Style style = Style::vrut;
     bool keep_upright = true;
+    enum class TurnAbout { center, touched };
+    TurnAbout turn_about = TurnAbout::center;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
     bool operator==(const NavigationState&) const = default;
 };

@@ -14,7 +14,8 @@ const NONE = { scale: 1, x: 0, y: 0 };
 
 /**
  * What messages will do to the picture that does not show them yet: two fingers, the wheel, and in the style `vrut`
- * right and middle drags, as in the server's Gestures but without limits. All else waits for the next picture.
+ * right and middle drags, as in the server's Gestures but without limits. It is exact at the depth of what is touched.
+ * All else waits for the next picture.
  */
 export class Prediction {
   #navigation = {};
@@ -47,12 +48,12 @@ export class Prediction {
   }
 
   sent(message) {
-    const { id, type, deltaY, deltaMode } = message;
+    const { id, type, deltaY, deltaMode, x, y } = message;
     this.#lastId = id;
     const before = this.#now;
     if (type.startsWith('pointer')) this.#pointer(message);
     if (type === 'wheel') {
-      this.#now = zoomed(before, 1.1 ** (-deltaY / WHEEL_STEPS[deltaMode]), this.#navigation.zoomSpeed);
+      this.#now = this.#zoomed(before, 1.1 ** (-deltaY / WHEEL_STEPS[deltaMode]), { x, y });
     }
     if (type === 'wheel' || OTHER_MOVES.has(type)) this.#restart();
     if (this.#now !== before) this.#pending.push({ id, now: this.#now });
@@ -116,28 +117,32 @@ export class Prediction {
   }
 
   #dragged() {
-    const { panSpeed, zoomSpeed, style } = this.#navigation;
+    const { panSpeed, style } = this.#navigation;
     const [a, b] = this.#pressed.values();
     const x = a.place.x - a.start.x;
     const y = a.place.y - a.start.y;
     if (a.touches && b?.touches) {
-      const pinched = zoomed(this.#start, span(a.place, b.place) / span(a.start, b.start), zoomSpeed);
+      const middle = { x: (a.start.x + b.start.x) / 2, y: (a.start.y + b.start.y) / 2 };
+      const pinched = this.#zoomed(this.#start, span(a.place, b.place) / span(a.start, b.start), middle);
       return panned(pinched, (x + b.place.x - b.start.x) / 2, (y + b.place.y - b.start.y) / 2, panSpeed);
     }
     if (b || style !== 'vrut') return this.#start;
     if (a.buttons === RIGHT) return panned(this.#start, x, y, panSpeed);
-    if (a.buttons === MIDDLE) return zoomed(this.#start, 4 ** (-y / this.#shown?.view.height), zoomSpeed);
+    if (a.buttons === MIDDLE) return this.#zoomed(this.#start, 4 ** (-y / this.#shown?.view.height));
     return this.#start;
+  }
+
+  /** About a place of the view, from its top left; the view's middle where it is left out. */
+  #zoomed({ scale, x, y }, ratio, about) {
+    const factor = ratio ** this.#navigation.zoomSpeed;
+    const { width, height } = this.#shown?.view ?? {};
+    const middle = about ? { x: about.x - width / 2, y: about.y - height / 2 } : { x: 0, y: 0 };
+    return { scale: scale * factor, x: middle.x + factor * (x - middle.x), y: middle.y + factor * (y - middle.y) };
   }
 }
 
 function panned({ scale, x, y }, right, down, speed) {
   return { scale, x: x + right * speed, y: y + down * speed };
-}
-
-function zoomed({ scale, x, y }, ratio, speed) {
-  const factor = ratio ** speed;
-  return { scale: scale * factor, x: x * factor, y: y * factor };
 }
 
 /** From where `base` leads to where `now` does. */

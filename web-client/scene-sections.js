@@ -72,6 +72,8 @@ function camera(change) {
     speed(say('camera.panSpeed'), 'panSpeed'),
     speed(say('camera.zoomSpeed'), 'zoomSpeed'),
     [toggle(say('camera.keepUpright'), set('keepUpright')), get('keepUpright')],
+    [toggle(say('camera.turnAboutTouched'), (on) => set('turnAbout')(on ? 'touched' : 'center')),
+      (state) => [state.navigation.turnAbout === 'touched']],
     [selection(say('camera.style'), set('style')), (state) => [state.navigation.style, STYLES]]);
 }
 

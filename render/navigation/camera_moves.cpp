@@ -80,9 +80,9 @@ scene::Camera rotated(const scene::Camera& camera, double right, double down, bo
     return if_valid(scene::with_orthogonal_up(result), camera);
 }
 
-scene::Camera panned(const scene::Camera& camera, double right, double down) {
+scene::Camera panned(const scene::Camera& camera, double right, double down, double depth) {
     if (right == 0 && down == 0) return camera;
-    const double height = scene::focus_distance(camera) * scene::projection_of(camera, 1).height();
+    const double height = depth * scene::projection_of(camera, 1).height();
     const glm::dvec3 shift = (camera.up * down - scene::right_direction(camera) * right) * height;
     scene::Camera result = camera;
     result.eye += shift;
@@ -90,7 +90,12 @@ scene::Camera panned(const scene::Camera& camera, double right, double down) {
     return if_valid(result, camera);
 }
 
-scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius) {
+scene::Camera panned(const scene::Camera& camera, double right, double down) {
+    return panned(camera, right, down, scene::focus_distance(camera));
+}
+
+scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius,
+                     const glm::dvec3& point) {
     if (factor == 1) return camera;
     const double distance = scene::focus_distance(camera);
     const double radius = scene_radius > 0 ? scene_radius : 1;
@@ -100,8 +105,13 @@ scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_ra
         std::clamp(distance / factor, std::min(distance, closest), std::max(distance, radius * 1e6));
     if (std::abs(wanted - distance) < 1e-14 * distance) return camera;  // at a limit
     scene::Camera result = camera;
-    result.eye = camera.focus - scene::view_direction(camera) * wanted;
+    result.focus = point + (camera.focus - point) * (wanted / distance);
+    result.eye = result.focus - scene::view_direction(camera) * wanted;
     return if_valid(result, camera);
+}
+
+scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius) {
+    return zoomed(camera, factor, scene_radius, camera.focus);
 }
 
 }  // namespace vrut::navigation

@@ -17,10 +17,14 @@ scene::Camera home_camera(const math::Bounds& bounds, double aspect);
 /// `keep_upright` about the scene's vertical, and `down` stops at the poles, so that the scene never stands
 /// on its head; else about the camera's own up.
 scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright);
-/// The image moves right and down by fractions of the view's height in the plane through `focus`.
+/// The image moves right and down by fractions of the view's height in the plane at `depth`, or through
+/// `focus`.
+scene::Camera panned(const scene::Camera& camera, double right, double down, double depth);
 scene::Camera panned(const scene::Camera& camera, double right, double down);
-/// The distance from eye to focus is divided by `factor` (above 0); it stays within 10⁻⁶ and 10⁶ of
-/// `scene_radius`.
+/// Eye and focus come nearer to `point`, or the eye to `focus`: the distance between them is divided by
+/// `factor` (above 0), and stays within 10⁻⁶ and 10⁶ of `scene_radius`. The point stays where it is seen.
+scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius,
+                     const glm::dvec3& point);
 scene::Camera zoomed(const scene::Camera& camera, double factor, double scene_radius);
 
 }  // namespace vrut::navigation

@@ -37,13 +37,30 @@ scene::Camera rotate_by(const scene::Camera& camera, const glm::dvec2& moved,
     return rotated(camera, moved.x * degrees, moved.y * degrees, context.keep_upright);
 }
 
-scene::Camera pan_by(const scene::Camera& camera, const glm::dvec2& moved, const NavigationContext& context) {
+/// `point` moves with the image.
+scene::Camera pan_by(const scene::Camera& camera, const glm::dvec2& moved, const glm::dvec3& point,
+                     const NavigationContext& context) {
     const glm::dvec2 part = moved * (context.pan_speed / context.height);
-    return panned(camera, part.x, part.y);
+    const double depth = glm::dot(point - camera.eye, scene::view_direction(camera));
+    return panned(camera, part.x, part.y, depth);
 }
 
-scene::Camera zoom_by(const scene::Camera& camera, double factor, const NavigationContext& context) {
-    return zoomed(camera, std::pow(factor, context.zoom_speed), context.bounds.radius());
+/// `point` stays where it is seen.
+scene::Camera zoom_by(const scene::Camera& camera, double factor, const glm::dvec3& point,
+                      const NavigationContext& context) {
+    return zoomed(camera, std::pow(factor, context.zoom_speed), context.bounds.radius(), point);
+}
+
+std::optional<glm::dvec3> surface_at(const scene::Camera& camera, const glm::dvec2& place,
+                                     const NavigationContext& context) {
+    return context.surface_at ? context.surface_at(camera, place) : std::nullopt;
+}
+
+/// At the focus' depth.
+glm::dvec3 point_at(const scene::Camera& camera, const glm::dvec2& place, const NavigationContext& context) {
+    const glm::dvec2 size(context.width, context.height);
+    const glm::dvec3 ray = scene::direction_through(camera, size.x / size.y, 2.0 * place / size - 1.0);
+    return camera.eye + ray * (scene::focus_distance(camera) / glm::dot(ray, scene::view_direction(camera)));
 }
 
 /// Fingers that touch the same pixel would divide by zero.
@@ -148,6 +165,7 @@ std::vector<PointerInput> Gestures::pressed() const {
 
 void Gestures::restart(const scene::Camera& camera) {
     start_ = camera;
+    surface_.reset();
     for (Pressed& pressed : pressed_) pressed.start = pressed.now;
 }
 
@@ -164,24 +182,46 @@ std::vector<const Gestures::Pressed*> Gestures::fingers() const {
     return touching;
 }
 
-scene::Camera Gestures::dragged(const NavigationContext& context) const {
+const std::optional<glm::dvec3>& Gestures::surface_at_start(const glm::dvec2& place,
+                                                            const NavigationContext& context) {
+    if (!surface_) surface_ = surface_at(start_, place, context);
+    return *surface_;
+}
+
+glm::dvec3 Gestures::point_at_start(const glm::dvec2& place, const NavigationContext& context) {
+    const std::optional<glm::dvec3>& surface = surface_at_start(place, context);
+    return surface ? *surface : point_at(start_, place, context);
+}
+
+scene::Camera Gestures::turned(const Pressed& pressed, const NavigationContext& context) {
+    scene::Camera start = start_;
+    if (context.turn_about_touched)
+        start.center = surface_at_start(pressed.start, context).value_or(start_.center);
+    scene::Camera result = rotate_by(start, pressed.now - pressed.start, context);
+    result.center = start_.center;
+    return result;
+}
+
+scene::Camera Gestures::dragged(const NavigationContext& context) {
     const std::vector<const Pressed*> touching = fingers();
-    if (touching.size() == 1) return rotate_by(start_, touching[0]->now - touching[0]->start, context);
+    if (touching.size() == 1) return turned(*touching[0], context);
     if (touching.size() == 2) {
         const Pressed &a = *touching[0], &b = *touching[1];
         // The pan comes second, so that it is measured in the image as the fingers leave it.
-        const scene::Camera pinched = zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), context);
-        return pan_by(pinched, (a.now + b.now - a.start - b.start) * 0.5, context);
+        const glm::dvec3 point = point_at_start((a.start + b.start) * 0.5, context);
+        const scene::Camera pinched =
+            zoom_by(start_, span(a.now, b.now) / span(a.start, b.start), point, context);
+        return pan_by(pinched, (a.now + b.now - a.start - b.start) * 0.5, point, context);
     }
     const Pressed& pressed = pressed_.back();
     const glm::dvec2 moved = pressed.now - pressed.start;
     switch (drag_operation(context.style, pressed.grip)) {
         case DragOperation::rotate:
-            return rotate_by(start_, moved, context);
+            return turned(pressed, context);
         case DragOperation::pan:
-            return pan_by(start_, moved, context);
+            return pan_by(start_, moved, point_at_start(pressed.start, context), context);
         case DragOperation::zoom:
-            return zoom_by(start_, std::pow(4, -moved.y / context.height), context);
+            return zoom_by(start_, std::pow(4, -moved.y / context.height), start_.focus, context);
         case DragOperation::none:
             break;
     }
@@ -192,7 +232,9 @@ scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const 
     const double step = input.unit == WheelInput::Unit::pixel  ? 100.0
                         : input.unit == WheelInput::Unit::line ? 3.0
                                                                : 1.0 / 3;
-    return zoom_by(camera, std::pow(1.1, -input.delta_y / step), context);
+    const glm::dvec2 place(input.x, input.y);
+    const glm::dvec3 point = surface_at(camera, place, context).value_or(point_at(camera, place, context));
+    return zoom_by(camera, std::pow(1.1, -input.delta_y / step), point, context);
 }
 
 }  // namespace vrut::navigation

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@ struct WheelInput {
     enum class Unit { pixel, line, page };
     double delta_y = 0;  ///< towards the user is positive
     Unit unit = Unit::pixel;
+    double x = 0, y = 0;  ///< of the pointer, as in PointerInput
 };
 
 struct KeyInput {
@@ -42,12 +45,19 @@ struct NavigationContext {
     bool keep_upright = true;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
     NavigationStyle style = NavigationStyle::vrut;
+    /// Turns about what is touched, where something is, instead of `Camera::center`, which stays.
+    bool turn_about_touched = false;
+    /// Returns the point of a surface that a camera sees at a place of the view; none if nothing is there.
+    /// Empty: nothing is anywhere.
+    std::function<std::optional<glm::dvec3>(const scene::Camera& camera, const glm::dvec2& place)>
+        surface_at = {};
 };
 
 /// Drags by mouse, pen and touch as a pure function of the input. The camera is computed from the camera at
 /// the start of the drag and the pointers' positions since, so that dropped or coalesced moves give a
-/// bit-identical camera. A move (`button` is -1) may be replaced by a later one of the same pointer with the
-/// same buttons if nothing else came between.
+/// bit-identical camera. What was touched at the start stays under the pointer, or between two fingers, while
+/// they pan and zoom; where nothing is, that is the point at the focus' depth. A move (`button` is -1) may be
+/// replaced by a later one of the same pointer with the same buttons if nothing else came between.
 class Gestures {
 public:
     struct HeldKey {
@@ -91,15 +101,20 @@ private:
     void press(const PointerInput& input);
     static void change_buttons(Pressed& pressed, const PointerInput& input);
     std::vector<const Pressed*> fingers() const;  ///< two at most: a third is ignored until it is lifted
-    scene::Camera dragged(const NavigationContext& context) const;
+    scene::Camera dragged(const NavigationContext& context);
+    scene::Camera turned(const Pressed& pressed, const NavigationContext& context);
+    const std::optional<glm::dvec3>& surface_at_start(const glm::dvec2& place,
+                                                      const NavigationContext& context);
+    glm::dvec3 point_at_start(const glm::dvec2& place, const NavigationContext& context);
 
     std::vector<Pressed> pressed_;  // in the order of pressing
     std::vector<HeldKey> keys_;     // in the order of pressing
     scene::Camera start_;
+    std::optional<std::optional<glm::dvec3>> surface_;  // at the start; none: not looked for yet
 };
 
 /// Returns the camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides
-/// the distance by 1.1.
+/// the distance by 1.1. What lies under the pointer stays there, as in a drag.
 scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context);
 
 }  // namespace vrut::navigation

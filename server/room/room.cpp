@@ -388,6 +388,13 @@ navigation::NavigationContext Room::navigation_context() const {
     context.pan_speed = navigation.pan_speed;
     context.zoom_speed = navigation.zoom_speed;
     context.style = static_cast<navigation::NavigationStyle>(navigation.style);
+    context.turn_about_touched = navigation.turn_about == protocol::NavigationState::TurnAbout::touched;
+    context.surface_at = [this](const scene::Camera& camera, const glm::dvec2& place) {
+        Frame seen = present();
+        seen.camera = camera;
+        const std::optional<mesh::Hit> hit = hit_at(seen, place.x, place.y, false);
+        return hit ? std::optional(hit->point) : std::nullopt;
+    };
     return context;
 }
 

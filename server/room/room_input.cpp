@@ -53,8 +53,8 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
 
 void Room::apply(const Received& received, const protocol::Wheel& wheel) {
     steer(received);
-    const navigation::WheelInput input{wheel.delta_y,
-                                       static_cast<navigation::WheelInput::Unit>(wheel.delta_mode)};
+    const navigation::WheelInput input{
+        wheel.delta_y, static_cast<navigation::WheelInput::Unit>(wheel.delta_mode), wheel.x, wheel.y};
     move_camera(navigation::wheel(input, camera(), navigation_context()));
 }
 

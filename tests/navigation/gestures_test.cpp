@@ -160,6 +160,98 @@ TEST_CASE("right drag keeps the point at the focus' depth under the pointer") {
     CHECK(near(hands.pixel_of(point), {400, 500}));
 }
 
+namespace {
+
+/// Hands on a view of a wall at z = 2, before the focus; to the left of x = 0 nothing is.
+struct HandsOnWall : Hands {
+    int looks = 0;
+    HandsOnWall() {
+        context.surface_at = [this](const scene::Camera& seen_by, const glm::dvec2& place) {
+            ++looks;
+            const glm::dvec2 size(context.width, context.height);
+            const glm::dvec3 ray =
+                scene::direction_through(seen_by, size.x / size.y, 2.0 * place / size - 1.0);
+            const glm::dvec3 point = seen_by.eye + ray * ((2 - seen_by.eye.z) / ray.z);
+            return point.x < 0 ? std::nullopt : std::optional(point);
+        };
+    }
+    glm::dvec3 touched(double x, double y) { return *context.surface_at(camera, {x, y}); }
+};
+
+}  // namespace
+
+TEST_CASE("a pan moves what was touched with the pointer, which is looked for once") {
+    HandsOnWall hands;
+    const glm::dvec3 point = hands.touched(900, 300);
+    hands.mouse_down(900, 300, 2, kRight);
+    hands.looks = 0;
+    for (const glm::dvec2 place : {glm::dvec2{700, 100}, {20, 500}, {1000, 710}}) {
+        hands.mouse_move(place.x, place.y, kRight);
+        CHECK(near(hands.pixel_of(point), place));
+    }
+    CHECK(hands.looks == 1);
+    CHECK(hands.camera.center == glm::dvec3(0));
+    CHECK(scene::focus_distance(hands.camera) == doctest::Approx(5).epsilon(1e-14));
+}
+
+TEST_CASE("two fingers keep what was touched between them, at its depth") {
+    HandsOnWall hands;
+    const glm::dvec3 point = hands.touched(900, 200);
+    hands.finger_down(1, 850, 150);
+    hands.finger_down(2, 950, 250);
+    hands.looks = 0;
+    hands.finger_move(2, 1150, 450);
+    CHECK(near(hands.pixel_of(point), {1000, 300}));
+    hands.finger_move(1, 950, 250);
+    CHECK(near(hands.pixel_of(point), {1050, 350}));
+    CHECK(hands.looks == 1);
+    CHECK(near(scene::view_direction(hands.camera), {0, 0, -1}));
+    // The distance to what is touched is halved as that to the focus is.
+    CHECK(scene::focus_distance(hands.camera) == doctest::Approx(2.5).epsilon(1e-13));
+    CHECK(hands.camera.eye.z == doctest::Approx(3.5).epsilon(1e-13));
+    CHECK(hands.camera.center == glm::dvec3(0));
+}
+
+TEST_CASE(
+    "the wheel keeps what lies under the pointer, and where nothing is, the point at the focus' depth") {
+    HandsOnWall hands;
+    for (const glm::dvec2 place : {glm::dvec2{1100, 650}, {130, 90}}) {
+        hands.camera = scene::Camera{};
+        const auto surface = hands.context.surface_at(hands.camera, place);
+        CHECK(surface.has_value() == (place.x > 640));
+        const glm::dvec3 point = surface ? *surface : hands.point_at(place.x, place.y);
+        for (const double delta : {-400, -1000, 700}) {
+            hands.camera = navigation::wheel({delta, navigation::WheelInput::Unit::pixel, place.x, place.y},
+                                             hands.camera, hands.context);
+            CHECK(near(hands.pixel_of(point), place));
+        }
+        CHECK(scene::focus_distance(hands.camera) == doctest::Approx(5 / std::pow(1.1, 7)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE(
+    "with turn_about_touched a turn keeps what was touched in its place; else, and of nothing, the centre") {
+    HandsOnWall hands;
+    hands.camera.center = {1, 0, -3};
+    const scene::Camera before = hands.camera;
+    const glm::dvec3 point = hands.touched(900, 400);
+    const auto turn = [&](double x, double y) {
+        hands.camera = before;
+        hands.mouse_down(x, y, 0, kLeft);
+        hands.mouse_move(x + 90, y + 40, kLeft);
+        hands.mouse_up(x + 90, y + 40, 0);
+        CHECK(hands.camera.center == before.center);
+        return hands.camera;
+    };
+    CHECK(near(turn(900, 400), navigation::rotated(before, 22.5, 10, true)));
+    hands.context.turn_about_touched = true;
+    const scene::Camera turned = turn(900, 400);
+    CHECK(near(hands.pixel_of(point), {900, 400}));
+    CHECK(near(scene::view_direction(turned),
+               scene::view_direction(navigation::rotated(before, 22.5, 10, true))));
+    CHECK(near(turn(100, 400), navigation::rotated(before, 22.5, 10, true)));
+}
+
 TEST_CASE("middle drag up over the view's height divides the distance by 4") {
     Hands hands;
     hands.mouse_down(100, 700, 1, kMiddle);
@@ -432,23 +524,23 @@ TEST_CASE("a third finger is ignored") {
 
 TEST_CASE("a pointer is a client's: the same number elsewhere is another one") {
     Hands hands;
-    hands.send(Action::down, 400, 300, 0, 1, Device::touch, 1, "a");
-    hands.send(Action::down, 600, 300, 0, 1, Device::touch, 1, "b");
+    hands.send(Action::down, 540, 360, 0, 1, Device::touch, 1, "a");
+    hands.send(Action::down, 740, 360, 0, 1, Device::touch, 1, "b");
     CHECK(hands.gestures.is_pressed("a", 1));
     CHECK(hands.gestures.is_pressed("b", 1));
     CHECK_FALSE(hands.gestures.is_pressed("a", 2));
     CHECK_FALSE(hands.gestures.is_pressed("c", 1));
-    hands.send(Action::move, 300, 300, -1, 1, Device::touch, 1, "a");
-    hands.send(Action::move, 700, 300, -1, 1, Device::touch, 1, "b");
+    hands.send(Action::move, 440, 360, -1, 1, Device::touch, 1, "a");
+    hands.send(Action::move, 840, 360, -1, 1, Device::touch, 1, "b");
     CHECK(near(hands.camera.eye, {0, 0, 2.5}));
 
     const scene::Camera before = hands.camera;
     hands.gestures.lift("a", hands.camera);
     CHECK_FALSE(hands.gestures.is_pressed("a", 1));
     CHECK(hands.gestures.is_pressed("b", 1));
-    hands.send(Action::move, 700, 300, -1, 1, Device::touch, 1, "b");
+    hands.send(Action::move, 840, 360, -1, 1, Device::touch, 1, "b");
     CHECK(hands.camera == before);
-    hands.send(Action::move, 720, 300, -1, 1, Device::touch, 1, "b");
+    hands.send(Action::move, 860, 360, -1, 1, Device::touch, 1, "b");
     CHECK(near(hands.camera, navigation::rotated(before, 5, 0, true)));
 }
 

@@ -115,7 +115,8 @@ TEST_CASE("every writable member can be patched and given back") {
 TEST_CASE("what is patched has the value that was given") {
     const State state = after(start(), R"({
         "camera": {"node": 4, "eye": [1,2,3], "focus": [4,5,6], "up": [0,0,1], "center": [7,8,9], "fov": 1},
-        "navigation": {"style": "cinema4d", "keepUpright": false, "rotateSpeed": 0.01, "panSpeed": 100, "zoomSpeed": 2},
+        "navigation": {"style": "cinema4d", "keepUpright": false, "turnAbout": "touched",
+                       "rotateSpeed": 0.01, "panSpeed": 100, "zoomSpeed": 2},
         "renderer": {"mode": "stylized", "wireframe": true, "showSelection": false},
         "lights": {"active": "7", "items": {"7": {"color": [0,0.25,0.5,1], "attenuation": [0,1,2]}}},
         "backgrounds": {"active": "11", "color": [0,0,0,1], "items": {"11": {"color": [1,1,1,0.5]}}},
@@ -129,7 +130,7 @@ TEST_CASE("what is patched has the value that was given") {
     expected.camera.node = 4;
     expected.camera.eye = {1, 2, 3}, expected.camera.focus = {4, 5, 6}, expected.camera.up = {0, 0, 1};
     expected.camera.center = {7, 8, 9}, expected.camera.fov = 1;
-    expected.navigation = {NavigationState::Style::cinema4d, false, 0.01, 100, 2};
+    expected.navigation = {NavigationState::Style::cinema4d, false, NavigationState::TurnAbout::touched, 0.01, 100, 2};
     expected.renderer = {DrawMode::stylized, true, false, 0, 0, 0};
     expected.lights.active = "7";
     expected.lights.items.set("7", {"Sun", "directional", {0, 0.25, 0.5, 1}, {0, 1, 2}});
@@ -181,6 +182,7 @@ const std::vector<Member> kMembers = {
      kNoText,
      {"\"\"", "\"Maya\""}},
     {"/navigation/keepUpright", {"true", "false"}, kNoFlag, {}},
+    {"/navigation/turnAbout", {"\"center\"", "\"touched\""}, kNoText, {"\"\"", "\"Center\""}},
     {"/navigation/rotateSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
     {"/navigation/panSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
     {"/navigation/zoomSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},

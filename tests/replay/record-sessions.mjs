@@ -173,6 +173,14 @@ const SESSIONS = {
     user.up([84, 36], 0, three);
     await user.glide([250, 150], [240, 170], 6, 0, two); // one finger turns
     user.pointer('pointercancel', [240, 170], two);
+    user.down([120, 60], 0, one); // back, until all is seen
+    user.down([280, 190], 0, two);
+    for (let i = 1; i <= 12; ++i) {
+      user.move([120 + 5.5 * i, 60 + 4 * i], 0, one);
+      user.move([280 - 5.5 * i, 190 - 4 * i], 0, two);
+    }
+    user.up([186, 108], 0, one);
+    user.up([214, 142], 0, two);
     return user;
   },
 
@@ -236,7 +244,8 @@ const SESSIONS = {
     await user.drag([120, 140], [160, 120], 8);
     const guest = await Participant.join(session, 'control', { width: 250, height: 400, pixelRatio: 2 });
     await guest.client.refused({ type: 'navigate', rotate: [90, 0] }, 'not-in-control', { valid: true });
-    await quietHolder();
+    await guest.ask({ type: 'control', action: 'ask' });
+    await user.ask({ type: 'control', action: 'give', client: guest.client.id });
     await guest.drag([60, 200], [120, 180], 10, 0, finger(1)); // measured in the view that it began in
     await guest.client.barrier();
     assert.equal(guest.client.isHolder, true);
@@ -251,7 +260,8 @@ const SESSIONS = {
     await guest.glide([100, 100], [140, 90], 6, 0, finger(2));
     await guest.client.barrier();
     guest.client.socket.terminate(); // in mid-drag
-    await user.client.until('nobody to hold', () => user.state.control.holder === undefined);
+    await user.client.until('control to come back', () => user.client.isHolder);
+    await quietHolder();
     const host = await Participant.join(session, 'host');
     await host.ask({ type: 'patch', patch: { camera: { eye: [2.5, 1.9, 4], focus: [0.2, 1, 0] } } });
     await host.ask({ type: 'shown', revision: host.client.revision });

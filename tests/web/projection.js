@@ -8,7 +8,7 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const unit = (a) => times(a, 1 / Math.hypot(...a));
 
 /** Pixels of a length at distance 1. */
-const focalLength = ({ fov }, view) => view.height / 2 / Math.tan((fov * Math.PI) / 360);
+export const focalLength = ({ fov }, view) => view.height / 2 / Math.tan((fov * Math.PI) / 360);
 
 /** From the eye to the focus. */
 export const distance = ({ eye, focus }) => Math.hypot(...subtract(eye, focus));
@@ -27,9 +27,12 @@ export function project(camera, point, view) {
   return [dot(way, right) * scale, -dot(way, up) * scale];
 }
 
-/** The point at the focus' depth that is seen at a place. */
-export function pointAt(camera, [x, y], view) {
-  const { right, up } = axes(camera);
-  const scale = distance(camera) / focalLength(camera, view);
-  return add(camera.focus, add(times(right, x * scale), times(up, -y * scale)));
+/** How deep a point lies before a camera. */
+export const depthOf = (camera, point) => dot(subtract(point, camera.eye), axes(camera).forward);
+
+/** The point at a depth, or else at that of the focus, which is seen at a place. */
+export function pointAt(camera, [x, y], view, depth = distance(camera)) {
+  const { forward, right, up } = axes(camera);
+  const scale = depth / focalLength(camera, view);
+  return add(add(camera.eye, times(forward, depth)), add(times(right, x * scale), times(up, -y * scale)));
 }

@@ -146,6 +146,7 @@ export const cs = {
   'camera.panSpeed': 'Rychlost posunu',
   'camera.zoomSpeed': 'Rychlost přibližování',
   'camera.keepUpright': 'Držet vodorovný horizont',
+  'camera.turnAboutTouched': 'Otáčet kolem místa dotyku',
   'camera.style': 'Ovládání myší',
 
   'light.title': 'Světlo',

@@ -144,6 +144,7 @@ export const en = {
   'camera.panSpeed': 'Move speed',
   'camera.zoomSpeed': 'Zoom speed',
   'camera.keepUpright': 'Keep upright',
+  'camera.turnAboutTouched': 'Turn about what is touched',
   'camera.style': 'Mouse style',
 
   'light.title': 'Light',

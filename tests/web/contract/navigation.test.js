@@ -11,6 +11,7 @@ after(() => server.stop());
 
 const [LEFT, MIDDLE, RIGHT] = [0, 1, 2];
 const Y = [0, 1, 0];
+const MIDDLE_OF_VIEW = [VIEW.width / 2, VIEW.height / 2];
 const ASKEW = { eye: [3, 2, 7], focus: [0.5, 0.25, -0.5], center: [-1, 0.5, 1] };
 const ALIKE = ['eye', 'focus', 'up', 'center', 'fov'];
 const pose = (camera) => Object.fromEntries(ALIKE.map((member) => [member, camera[member]]));
@@ -23,20 +24,35 @@ function orbited(camera, right, down) {
   return { eye: both(camera.eye, camera.center), focus: both(camera.focus, camera.center), up: both(camera.up, [0, 0, 0]), center: camera.center };
 }
 
-/** Panned so that what is at focus depth moves by CSS pixels right and down. */
-function panned(camera, right, down) {
-  const a = axes(camera);
+/** The nearest point of a surface that is seen at a place, or else the one at focus depth there. */
+async function touched(client, [x, y]) {
+  const { node, point } = await client.ask({ type: 'pick', x, y });
+  if (node !== undefined) return point;
+  const { camera } = client.state;
+  const { right, up } = axes(camera);
   const pixel = pixelAtFocus(camera, VIEW);
+  const aside = add(scale(right, (x - VIEW.width / 2) * pixel), scale(up, (VIEW.height / 2 - y) * pixel));
+  return add(camera.focus, aside);
+}
+
+/** Panned so that what is as deep as `point` moves by CSS pixels right and down. */
+function panned(camera, right, down, point = camera.focus) {
+  const a = axes(camera);
+  const depth = dot(sub(point, camera.eye), a.view);
+  const pixel = pixelAtFocus(camera, VIEW) * (depth / distance(camera));
   const shift = add(scale(a.right, -right * pixel), scale(a.up, down * pixel));
   return { eye: add(camera.eye, shift), focus: add(camera.focus, shift), up: camera.up, fov: camera.fov };
 }
 
-/** The distance eye-focus divided by `factor`, along the view. */
-const zoomed = (camera, factor) => ({
-  eye: add(camera.focus, scale(sub(camera.eye, camera.focus), 1 / factor)),
-  focus: camera.focus,
+/** Eye and focus nearer to `point` by `factor`. */
+const zoomed = (camera, factor, point = camera.focus) => ({
+  eye: add(point, scale(sub(camera.eye, point), 1 / factor)),
+  focus: add(point, scale(sub(camera.focus, point), 1 / factor)),
   up: camera.up,
 });
+
+/** Where a part is seen, nearer than the focus or farther, and where nothing is. */
+const PLACES = [SEEN.door, SEEN.pane, SEEN.wall, SEEN.nothing];
 
 const DRAGGED = [[50, 150], [90, 150], [125, 150]]; // 75 pixels: 45 degrees
 
@@ -94,6 +110,20 @@ describe('rotate: left drag, one finger', () => {
     }
   });
 
+  test('with turnAbout touched, about what was touched, and else about center, which stays', async (t) => {
+    const client = await steering(t, server);
+    await client.patch({ navigation: { turnAbout: 'touched' } });
+    for (const place of PLACES) {
+      await client.patch({ camera: { ...POSE, center: [1, 2, 3] } });
+      const before = client.state.camera;
+      const { node, point } = await client.ask({ type: 'pick', x: place[0], y: place[1] });
+      await client.input.drag([place, add(place, [75, 25])]); // 45 and 15 degrees
+      const about = node === undefined ? before.center : point;
+      nearCamera(client.state.camera, { ...orbited({ ...before, center: about }, 45, 15), center: before.center }, 'turn');
+    }
+    await client.patch({ navigation: null });
+  });
+
   test('goes on outside of the view', async (t) => {
     const client = await steering(t, server);
     await client.input.drag([[390, 150], [690, 150]]);
@@ -123,33 +153,39 @@ describe('rotate: left drag, one finger', () => {
 });
 
 describe('pan: right drag, two fingers', () => {
-  test('right drag: the point at focus depth stays under the finger', async (t) => {
-    const client = await steering(t, server, ASKEW);
-    const before = client.state.camera;
-    const from = [120, 90];
-    const to = [245, 201];
-    const a = axes(before);
-    const pixel = pixelAtFocus(before, VIEW);
-    const point = add(before.focus, add(scale(a.right, (from[0] - 200) * pixel), scale(a.up, (150 - from[1]) * pixel)));
-    near(projected(before, VIEW, point), from, 'where it begins');
-    await client.input.drag([from, [300, 20], to], RIGHT);
-    near(projected(client.state.camera, VIEW, point), to, 'where it ends');
-    nearCamera(client.state.camera, panned(before, 125, 111), 'pan');
+  test('right drag: what was touched stays under the finger', async (t) => {
+    const client = await steering(t, server);
+    for (const from of PLACES) {
+      await client.patch({ camera: POSE });
+      const before = client.state.camera;
+      const point = await touched(client, from);
+      const to = add(from, [125, 111]);
+      near(projected(before, VIEW, point), from, 'where it begins');
+      await client.input.drag([from, [300, 20], to], RIGHT);
+      near(projected(client.state.camera, VIEW, point), to, 'where it ends');
+      nearCamera(client.state.camera, panned(before, 125, 111, point), 'pan');
+    }
   });
 
   test('two fingers, by the point between them', async (t) => {
     const client = await steering(t, server);
-    const before = client.state.camera;
-    await fingers(client, [[150, 150], [250, 150]], [[180, 140], [280, 140]]);
-    nearCamera(client.state.camera, panned(before, 30, -10), 'pan');
+    for (const middle of PLACES) {
+      await client.patch({ camera: POSE });
+      const before = client.state.camera;
+      const point = await touched(client, middle);
+      const pair = (place) => [add(place, [-50, 0]), add(place, [50, 0])];
+      await fingers(client, pair(middle), pair(add(middle, [30, -10])));
+      nearCamera(client.state.camera, panned(before, 30, -10, point), 'pan');
+    }
   });
 
   test('panSpeed 2 moves twice as far', async (t) => {
     const client = await steering(t, server);
     const before = client.state.camera;
     await client.patch({ navigation: { panSpeed: 2 } });
+    const point = await touched(client, [100, 100]);
     await client.input.drag([[100, 100], [150, 120]], RIGHT);
-    nearCamera(client.state.camera, panned(before, 100, 40), 'pan');
+    nearCamera(client.state.camera, panned(before, 100, 40, point), 'pan');
     await client.patch({ navigation: null });
   });
 });
@@ -171,10 +207,23 @@ describe('zoom: wheel, middle drag, pinch and spread', () => {
     test(`wheel by ${deltaY.toFixed(2)} in mode ${deltaMode} divides the distance by ${factor.toFixed(3)}`, async (t) => {
       const client = await steering(t, server, ASKEW);
       const before = client.state.camera;
+      const point = await touched(client, MIDDLE_OF_VIEW);
       await client.input.wheel(deltaY, deltaMode);
-      nearCamera(client.state.camera, { ...zoomed(before, factor), center: before.center, fov: before.fov }, 'zoom');
+      nearCamera(client.state.camera, { ...zoomed(before, factor, point), center: before.center, fov: before.fov }, 'zoom');
     });
   }
+
+  test('the wheel keeps what lies under the pointer where it is seen', async (t) => {
+    const client = await steering(t, server);
+    for (const place of PLACES) {
+      await client.patch({ camera: POSE });
+      const before = client.state.camera;
+      const point = await touched(client, place);
+      await client.input.wheel(-300, 0, place);
+      nearCamera(client.state.camera, zoomed(before, 1.1 ** 3, point), 'zoom');
+      near(projected(client.state.camera, VIEW, point), place, 'where it is seen');
+    }
+  });
 
   test('middle drag up over the height divides it by 4, halfway by 2, down multiplies', async (t) => {
     const client = await steering(t, server, ASKEW);
@@ -189,20 +238,25 @@ describe('zoom: wheel, middle drag, pinch and spread', () => {
   test('a pinch divides it by the ratio of the distances of the fingers', async (t) => {
     const client = await steering(t, server, ASKEW);
     const before = client.state.camera;
+    const point = await touched(client, MIDDLE_OF_VIEW);
     await fingers(client, [[150, 150], [250, 150]], [[100, 150], [300, 150]]);
-    nearCamera(client.state.camera, zoomed(before, 2), 'spread');
+    nearCamera(client.state.camera, zoomed(before, 2, point), 'spread');
     await client.patch({ camera: { ...POSE, ...ASKEW } });
     await fingers(client, [[140, 110], [260, 190]], [[185, 140], [215, 160]]);
-    nearCamera(client.state.camera, zoomed(before, 1 / 4), 'pinch');
+    nearCamera(client.state.camera, zoomed(before, 1 / 4, point), 'pinch');
   });
 
   test('together with the pan: what was between the fingers still is', async (t) => {
     const client = await steering(t, server);
-    const before = client.state.camera;
-    await fingers(client, [[150, 150], [250, 150]], [[160, 130], [360, 130]]);
-    near(distance(client.state.camera), distance(before) / 2, 'distance');
-    near(projected(client.state.camera, VIEW, before.focus), [260, 130], 'the point that was between them');
-    near(axes(client.state.camera).view, axes(before).view, 'the direction');
+    for (const [x, y] of PLACES) {
+      await client.patch({ camera: POSE });
+      const before = client.state.camera;
+      const point = await touched(client, [x, y]);
+      await fingers(client, [[x - 50, y], [x + 50, y]], [[x - 40, y - 20], [x + 160, y - 20]]);
+      near(distance(client.state.camera), distance(before) / 2, 'distance');
+      near(projected(client.state.camera, VIEW, point), [x + 60, y - 20], 'the point that was between them');
+      near(axes(client.state.camera).view, axes(before).view, 'the direction');
+    }
   });
 
   test('zoomSpeed 2 squares the factor', async (t) => {
@@ -433,6 +487,7 @@ describe('pointers', () => {
   test('a second mouse button comes as pointermove with button >= 0; what is left held goes on', async (t) => {
     const client = await steering(t, server);
     const { input } = client;
+    const point = await touched(client, [200, 150]);
     input.down([200, 150], LEFT);
     await input.pass(300);
     input.pointer('pointermove', [200, 150], { button: 2, buttons: 3 });
@@ -440,7 +495,7 @@ describe('pointers', () => {
     input.pointer('pointermove', [240, 150], { button: -1, buttons: 2 });
     input.pointer('pointerup', [240, 150], { button: 2, buttons: 0 });
     await client.barrier();
-    nearCamera(client.state.camera, panned(POSE, 40, 0), 'a pan by the right button');
+    nearCamera(client.state.camera, panned(POSE, 40, 0, point), 'a pan by the right button');
   });
 });
 

@@ -33,6 +33,7 @@ const WRITABLE = {
   'camera/fov': { good: [1, 170, 33.3333333333333357], range: [0.999, 170.001, 0, -40], type: ['40', [40], {}, true] },
   'navigation/style': { good: ['vrut', 'maya', 'catia', 'cinema4d'], range: ['blender', '', 'VRUT'], type: [1, [], {}, true] },
   'navigation/keepUpright': FLAG,
+  'navigation/turnAbout': { good: ['touched', 'center'], range: ['finger', ''], type: [1, [], {}, true] },
   'navigation/rotateSpeed': SPEED,
   'navigation/panSpeed': SPEED,
   'navigation/zoomSpeed': SPEED,

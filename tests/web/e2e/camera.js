@@ -50,25 +50,25 @@ export function assertTurned({ before, after }, { right, down }) {
   }
 }
 
-/** The point at the focus stays under the finger, which moved by [x, y] pixels of a view of this height. */
-export function assertPanned({ before, after }, [x, y], viewHeight) {
-  const depth = distance(before.eye, before.focus);
+/** What lies as deep as `point`, or the focus, stays under the finger, which moved by [x, y] pixels. */
+export function assertPanned({ before, after }, [x, y], viewHeight, point = before.focus) {
   const forward = unit(subtract(before.focus, before.eye));
+  const depth = dot(subtract(point, before.eye), forward);
   const right = unit(cross(forward, before.up));
   const up = cross(right, forward);
   const pixel = (2 * depth * Math.tan((before.fov * Math.PI) / 360)) / viewHeight;
   const move = add(times(right, -x * pixel), times(up, y * pixel));
-  for (const point of ['eye', 'focus']) {
-    nearPoint(after[point], add(before[point], move), 1e-4 * depth, point);
+  for (const end of ['eye', 'focus']) {
+    nearPoint(after[end], add(before[end], move), 1e-4 * depth, end);
   }
 }
 
-/** The distance to the focus is divided by a factor, along the view. */
-export function assertZoomed({ before, after }, factor) {
-  const depth = distance(before.eye, before.focus);
-  nearPoint(after.focus, before.focus, 1e-4 * depth, 'focus');
-  const eye = add(before.focus, times(subtract(before.eye, before.focus), 1 / factor));
-  nearPoint(after.eye, eye, 1e-4 * depth, 'eye');
+/** Eye and focus are nearer to `point`, or the eye to the focus, by a factor. */
+export function assertZoomed({ before, after }, factor, point = before.focus) {
+  const tolerance = 1e-4 * distance(before.eye, before.focus);
+  for (const end of ['eye', 'focus']) {
+    nearPoint(after[end], add(point, times(subtract(before[end], point), 1 / factor)), tolerance, end);
+  }
 }
 
 /** The pose alone: what a state document and a frame's header have in common. */

@@ -83,25 +83,27 @@ describe('a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('two fingers pinch', async () => {
+    const { point } = await tablet.pick([590, 410]);
     const spread = await tablet.touch([
       { from: [490, 410], to: [440, 410] },
       { from: [690, 410], to: [740, 410] },
     ]);
-    assertZoomed(spread, 300 / 200);
+    assertZoomed(spread, 300 / 200, point);
     const pinch = await tablet.touch([
       { from: [440, 410], to: [490, 410] },
       { from: [740, 410], to: [690, 410] },
     ]);
-    assertZoomed(pinch, 200 / 300);
+    assertZoomed(pinch, 200 / 300, point);
   });
 
   test('the wheel zooms', async () => {
     for (const turned of [-100, 200]) {
+      const { point } = await tablet.pick([TABLET.width / 2, TABLET.height / 2]);
       const wheel = await tablet.wheel(turned);
       // An emulated pixel ratio makes the browser's own numbers smaller than what was turned.
       const { deltaY } = wheel.last;
       assert.equal(Math.sign(deltaY), Math.sign(turned));
-      assertZoomed(wheel, 1.1 ** (-deltaY / 100));
+      assertZoomed(wheel, 1.1 ** (-deltaY / 100), point);
     }
   });
 

@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
+import { project } from '../projection.js';
 import { assertPanned, assertTurned, assertZoomed, pose } from './camera.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, difference, launchBrowser } from './tablet.js';
@@ -8,6 +9,7 @@ const SIZES = {
   'a tablet': { width: 1180, height: 820, pixelRatio: 2 },
   'an upright tablet': { width: 820, height: 1180, pixelRatio: 2 },
   'a phone': { width: 390, height: 844, pixelRatio: 3 },
+  'a desk': { width: 1600, height: 900, pixelRatio: 1 },
 };
 /** Of 255: by less than this a picture differs from itself, refined or compressed anew. */
 const VISIBLE = 6;
@@ -97,9 +99,23 @@ for (const [name, size] of Object.entries(SIZES)) {
 
     test('two fingers move and zoom', async () => {
       const aside = (part) => [{ from: across(-0.2, 0), to: across(part - 0.2, -part) }, { from: across(0.2, 0), to: across(part + 0.2, -part) }];
-      assertPanned(await changes(() => tablet.stroke(aside(0.1))), [0.1 * shorter, -0.1 * shorter], height);
+      const { point: panned } = await tablet.pick([x, y]);
+      assertPanned(await changes(() => tablet.stroke(aside(0.1))), [0.1 * shorter, -0.1 * shorter], height, panned);
       const spread = [{ from: across(-0.2, 0), to: across(-0.3, 0) }, { from: across(0.2, 0), to: across(0.3, 0) }];
-      assertZoomed(await changes(() => tablet.stroke(spread)), 1.5);
+      const { point: zoomed } = await tablet.pick([x, y]);
+      assertZoomed(await changes(() => tablet.stroke(spread)), 1.5, zoomed);
+    });
+
+    test('two fingers and the wheel zoom about what they touch, beside the middle', async () => {
+      const place = across(0.2, 0.05);
+      const at = ([dx, dy]) => [place[0] + dx, place[1] + dy];
+      const { point } = await tablet.pick(place);
+      assert.ok(point, 'a part lies there');
+      const pinch = [{ from: at([-60, -20]), to: at([-30, -10]) }, { from: at([60, 20]), to: at([30, 10]) }];
+      assertZoomed(await changes(() => tablet.stroke(pinch)), 0.5, point);
+      const [old, { point: turned }] = [state().camera, await tablet.pick(place)];
+      const { last } = await tablet.wheel(-200, place);
+      assertZoomed({ before: old, after: state().camera }, 1.1 ** (-last.deltaY / 100), turned ?? old.focus);
     });
 
     test('a double tap chooses a part, which is named', async () => {
@@ -131,7 +147,8 @@ for (const [name, size] of Object.entries(SIZES)) {
     test('the mouse turns, moves and zooms', async () => {
       const drag = (button, to) => () => tablet.mouse(button, { from: [x, y], to });
       assertTurned(await changes(drag('left', across(-0.1, -0.05))), { right: -18, down: -9 });
-      assertPanned(await moves(drag('right', [x - 30, y + 20])), [-30, 20], height);
+      const { point } = await tablet.pick([x, y]);
+      assertPanned(await moves(drag('right', [x - 30, y + 20])), [-30, 20], height, point);
       assertZoomed(await moves(drag('middle', [x, y + height / 10])), 4 ** -0.1);
       const { deltaY } = (await tablet.wheel(-100)).last;
       assert.ok(deltaY < 0);
@@ -172,6 +189,25 @@ for (const [name, size] of Object.entries(SIZES)) {
       await moves(() => press('f'));
       const { after: home } = await moves(() => press('Home'));
       assert.deepEqual(pose(home), pose(state().views.home));
+    });
+
+    test('with an option one finger turns about what it touches', async () => {
+      const { page } = tablet;
+      const option = page.getByText('Turn about what is touched');
+      await page.locator('#menu-button').tap();
+      await page.locator('[data-section="camera"] > summary').tap();
+      await moves(() => option.tap(), (now) => now.navigation.turnAbout === 'touched');
+      await tablet.screenshot(`turn-about-${name.replaceAll(' ', '-')}`);
+      await page.getByRole('button', { name: 'Close the menu' }).tap();
+
+      const place = across(0.15, 0.05);
+      const { point } = await tablet.pick(place);
+      assert.ok(point, 'a part lies there');
+      const [toX, toY] = across(0.25, 0.1);
+      const { before: old, after: turned } = await moves(() => tablet.stroke([{ from: place, to: [toX, toY] }]));
+      assert.deepEqual(turned.center, old.center);
+      const seen = project(turned, point, size);
+      assert.ok(Math.hypot(seen[0] + x - place[0], seen[1] + y - place[1]) < 0.5, `seen at ${seen}`);
     });
 
     test('in all this the browser had nothing to complain of', () => assert.deepEqual(tablet.complaints, []));

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
-import { pointAt, project } from '../projection.js';
+import { depthOf, pointAt, project } from '../projection.js';
 import { Server } from './program.js';
 import { HeldLink } from './held-link.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
@@ -100,6 +100,7 @@ describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }
     await tablet.screenshot('hands-before');
     const start = await look();
     assert.deepEqual(start.transform, { a: 1, e: 0, f: 0 });
+    const { point: touched } = await tablet.pick([600, 425]);
     link.hold();
     await touch('touchStart', [500, 400]);
     await touch('touchStart', [500, 400], [700, 450]);
@@ -124,7 +125,7 @@ describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }
 
     const old = header(start).camera;
     for (const place of grid) {
-      const point = pointAt(drawn.camera, place, TABLET);
+      const point = pointAt(drawn.camera, place, TABLET, depthOf(drawn.camera, touched));
       const predicted = moved(late.transform, project(old, point, TABLET));
       assert.ok(apart(predicted, place) <= WITHIN_PX, `${predicted} instead of ${place}`);
     }
@@ -134,8 +135,10 @@ describe('hands on a tablet whose pictures are late', { skip: browserIsMissing }
     await settled();
     const start = await look();
     const [x, y] = [500, 600];
-    // What the first finger touches, at the focus' depth.
-    const touched = pointAt(header(start).camera, [x - MIDDLE[0], y - MIDDLE[1]], TABLET);
+    const { camera: old } = header(start);
+    // What the first finger touches, as deep as what lies between the two.
+    const depth = depthOf(old, (await tablet.pick([x + 100, y])).point ?? old.focus);
+    const touched = pointAt(old, [x - MIDDLE[0], y - MIDDLE[1]], TABLET, depth);
     const frames = new Set();
     let movedAhead = 0;
     link.hold();

@@ -1,6 +1,7 @@
 import { existsSync } from 'node:fs';
 import path from 'node:path';
 import { chromium } from 'playwright-core';
+import WebSocket from 'ws';
 import { Wire } from './wire.js';
 
 const BROWSER = '/usr/bin/chromium';
@@ -128,14 +129,32 @@ export class Tablet {
     }, { type: 'pointerup' });
   }
 
-  /** Turns the wheel over the middle of the page. */
-  wheel(deltaY) {
+  /** Turns the wheel, over the middle of the page if nothing else is said. */
+  wheel(deltaY, place) {
     const { mouse } = this.page;
     const { width, height } = this.page.viewportSize();
     return this.gesture(async () => {
-      await mouse.move(width / 2, height / 2);
+      await mouse.move(...(place ?? [width / 2, height / 2]));
       await mouse.wheel(0, deltaY);
     }, { type: 'wheel' });
+  }
+
+  /** What lies at a place of the view, as another client hears it. */
+  pick([x, y]) {
+    return new Promise((resolve, reject) => {
+      const client = new WebSocket(`ws://${new URL(this.page.url()).host}/ws`, 'vrut-preview.v1');
+      client.on('open', () => {
+        client.send(JSON.stringify({ type: 'hello', role: 'view' }));
+        client.send(JSON.stringify({ type: 'pick', id: 1, x, y }));
+      });
+      client.on('message', (data, isBinary) => {
+        const message = isBinary ? {} : JSON.parse(data);
+        if (message.type === 'error') reject(new Error(message.message));
+        if (message.type === 'picked') resolve(message);
+        if (message.type === 'error' || message.type === 'picked') client.close();
+      });
+      client.on('error', reject);
+    });
   }
 
   /** Sends a message on the page's own connection, behind its back. */

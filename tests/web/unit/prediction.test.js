@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
 import { Prediction } from '../../../web-client/prediction.js';
-import { axes, distance, pointAt, project } from '../projection.js';
+import { axes, distance, focalLength } from '../projection.js';
 import { gestures } from './gestures.js';
 
-/** What the page promises of points at the focus' depth is 2 pixels; as the server's arithmetic is known, it is exact. */
+/** What the page promises at the depth of what is touched is 2 pixels; as the server's arithmetic is known, it is exact. */
 const WITHIN_PX = 0.01;
 const VIEW = { width: 1180, height: 820, pixelRatio: 2 };
 const CAMERA = { eye: [0, 0, 5], focus: [0, 0, 0], up: [0, 1, 0], center: [0, 0, 0], fov: 40 };
@@ -24,11 +24,25 @@ const compose = (first, then) => {
   return { scale: first.scale * then.scale, x, y };
 };
 
-/** What a message did to the picture; nothing where it turned the camera. */
-function step(before, after, view) {
+/**
+ * What a message did to the picture, at the depth of what was touched; nothing where it turned the camera. A zoom tells
+ * that depth: what was touched came nearer as the focus did. A pan does not, so that only its direction is checked here,
+ * by the depth at which it is as long as `predicted`; the server's tests check the depth.
+ */
+function step(before, after, view, predicted) {
   if (!looksTheSameWay(before, after)) return NONE;
-  const [x, y] = project(after, before.focus, view);
-  return { scale: distance(before) / distance(after), x, y };
+  const { right, up, forward } = axes(before);
+  const moved = after.eye.map((x, i) => x - before.eye[i]);
+  const along = (axis) => axis.reduce((sum, x, i) => sum + x * moved[i], 0);
+  const factor = distance(before) / distance(after);
+  const pixels = focalLength(before, view);
+  const aside = [-along(right) * pixels, along(up) * pixels];
+  const isZoom = Math.abs(factor - 1) > 1e-9;
+  const seen = Math.hypot(predicted.x, predicted.y);
+  let depth = isZoom ? along(forward) / (1 - 1 / factor) : Math.hypot(...aside) / seen;
+  if (!isZoom && seen < 1e-6) depth = distance(before);
+  const left = isZoom ? depth / factor : depth;
+  return { scale: factor, x: aside[0] / left, y: aside[1] / left };
 }
 
 function gridOf({ width, height }) {
@@ -58,21 +72,27 @@ class Follower {
     this.prediction.drawn({ handled: count, camera: this.cameras[count], view: this.view });
   }
 
+  /** What each message did to the picture before it. */
+  static steps(gesture) {
+    const follower = new Follower(gesture);
+    return gesture.messages.map((_, count) => {
+      follower.send(count + 1);
+      const predicted = follower.prediction.transform ?? NONE;
+      follower.draw(count + 1);
+      return step(follower.cameras[count], follower.cameras[count + 1], gesture.view, predicted);
+    });
+  }
+
   /** The picture after `shown` messages is moved to where the one after `now` will be. */
   check(shown, now) {
-    const { cameras, view, prediction } = this;
+    const { view, prediction } = this;
     const what = `the picture after ${shown} messages of ${now}`;
     if (shown === now) assert.equal(prediction.transform, null, what);
     const transform = prediction.transform ?? NONE;
     let expected = NONE;
-    let turned = false;
-    for (let count = shown; count < now; count += 1) {
-      turned ||= !looksTheSameWay(cameras[count], cameras[count + 1]);
-      expected = compose(expected, step(cameras[count], cameras[count + 1], view));
-    }
+    for (let count = shown; count < now; count += 1) expected = compose(expected, this.steps[count]);
     for (const place of gridOf(view)) {
-      let seen = [(place[0] - expected.x) / expected.scale, (place[1] - expected.y) / expected.scale];
-      if (!turned) seen = project(cameras[shown], pointAt(cameras[now], place, view), view);
+      const seen = [(place[0] - expected.x) / expected.scale, (place[1] - expected.y) / expected.scale];
       const error = apart(apply(transform, seen), place);
       assert.ok(error <= WITHIN_PX, `${what}: ${error} pixels beside ${place}`);
     }
@@ -97,11 +117,13 @@ for (const gesture of gestures) {
     continue;
   }
   const count = PREDICTED[gesture.name] ?? gesture.messages.length;
+  const steps = Follower.steps(gesture);
+  const follow = () => Object.assign(new Follower(gesture), { steps });
   describe(gesture.name, () => {
     test('one picture comes in the middle, or none', () => {
       for (let now = 1; now <= count; now += 1) {
         for (let shown = 0; shown <= now; shown += 1) {
-          const follower = new Follower(gesture);
+          const follower = follow();
           for (let sent = 1; sent <= now; sent += 1) follower.send(sent);
           follower.check(0, now);
           follower.draw(shown);
@@ -112,7 +134,7 @@ for (const gesture of gestures) {
 
     test('pictures come late, one for each message', () => {
       for (let late = 0; late <= count; late += 1) {
-        const follower = new Follower(gesture);
+        const follower = follow();
         for (let now = 1; now <= count + late; now += 1) {
           if (now <= count) follower.send(now);
           if (now > late) follower.draw(now - late);
@@ -245,7 +267,8 @@ test('a view of another size, too', () => {
 
 test('what a wheel turned too far is put right by its picture', () => {
   const page = setUp();
-  page.send({ type: 'wheel', deltaY: -100_000, deltaMode: 0 }, { type: 'wheel', deltaY: -100, deltaMode: 0 });
+  const wheel = { type: 'wheel', x: VIEW.width / 2, y: VIEW.height / 2, deltaMode: 0 };
+  page.send({ ...wheel, deltaY: -100_000 }, { ...wheel, deltaY: -100 });
   page.draw(1, { camera: { ...CAMERA, eye: [0, 0, 1e-6] } });
   const { scale, x, y } = page.prediction.transform;
   assert.ok(Math.abs(scale - 1.1) < 1e-9, `${scale}`);
