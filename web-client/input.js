@@ -17,7 +17,10 @@ export class Input {
   /** One mapping for a whole gesture, even if the view changes. */
   #toView = null;
 
-  /** The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, and `marks`: FingerMarks. */
+  /**
+   * The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, `marks`: FingerMarks, and `unheard`
+   * for what would be passed on were it enabled.
+   */
   constructor(element, page) {
     this.#page = { window: globalThis.window, ...page };
     const { window } = this.#page;
@@ -63,7 +66,10 @@ export class Input {
 
   #down(event) {
     event.preventDefault();
-    if (!this.#enabled) return;
+    if (!this.#enabled) {
+      this.#page.unheard?.();
+      return;
+    }
     const { currentTarget, pointerId, pointerType, clientX, clientY } = event;
     try {
       currentTarget.setPointerCapture(pointerId);
@@ -111,16 +117,23 @@ export class Input {
 
   #wheel(event) {
     event.preventDefault();
-    if (!this.#enabled) return;
+    if (!this.#enabled) {
+      this.#page.unheard?.();
+      return;
+    }
     const place = this.#page.mapping()(event.clientX, event.clientY);
     this.#send({ ...members(event, 'deltaX', 'deltaY', 'deltaMode'), ...place });
   }
 
   #keyDown(event) {
     const { key, ctrlKey, metaKey, altKey } = event;
-    if (!this.#enabled || ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
+    if (ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
     // The menu and its button have keys of their own.
     if (event.defaultPrevented || event.target?.closest?.('#menu, button')) return;
+    if (!this.#enabled) {
+      this.#page.unheard?.();
+      return;
+    }
     event.preventDefault();
     if (event.repeat && !REPEATING_KEYS.has(key)) return;
     this.#keys.add(event.code);

@@ -126,6 +126,7 @@ const input = new Input(canvas, {
   // Few moves where all is late.
   soon: (action) => (meter.lateMs(performance.now()) > 1000 ? setTimeout(action, 250) : requestAnimationFrame(action)),
   marks: new FingerMarks(find('finger-marks')),
+  unheard: () => controlBar.offer(),
 });
 
 const sendControl = (message) => ask(message).catch(report);
@@ -142,7 +143,6 @@ canvas.addEventListener('pointerdown', () => {
   // Who touches the picture means it with the keys, too.
   canvas.classList.add('by-pointer');
   canvas.focus({ preventScroll: true });
-  if (!connection.steers) controlBar.offer();
 });
 
 /** For the menu's sections. */

@@ -136,8 +136,8 @@ export class Prediction {
   #zoomed({ scale, x, y }, ratio, about) {
     const factor = ratio ** this.#navigation.zoomSpeed;
     const { width, height } = this.#shown?.view ?? {};
-    const middle = about ? { x: about.x - width / 2, y: about.y - height / 2 } : { x: 0, y: 0 };
-    return { scale: scale * factor, x: middle.x + factor * (x - middle.x), y: middle.y + factor * (y - middle.y) };
+    const fixed = about ? { x: about.x - width / 2, y: about.y - height / 2 } : { x: 0, y: 0 };
+    return { scale: scale * factor, x: fixed.x + factor * (x - fixed.x), y: fixed.y + factor * (y - fixed.y) };
   }
 }
 

@@ -64,6 +64,9 @@ describe('control', { skip: browserIsMissing }, () => {
         await touch(visitor);
         await bar(visitor).getByText('Windows is in control.').waitFor();
         await visitor.screenshot(`control-${name}-visitor`);
+        await bar(visitor).getByText('Windows is in control.').waitFor({ state: 'detached' });
+        await visitor.page.keyboard.press('ArrowLeft');
+        await bar(visitor).getByText('Windows is in control.').waitFor();
         assert.deepEqual(visitor.wire.sent.filter(({ type }) => /pointer|wheel|key|patch|control/.test(type)), []);
         const after = (await presenter.touch([{ from: [180, 420], to: [200, 420] }])).before;
         assert.deepEqual(pose(after), pose(camera));

@@ -10,7 +10,7 @@ function setUp() {
   const window = new FakeWindow();
   const captured = [];
   const element = Object.assign(new EventTarget(), { setPointerCapture: (id) => captured.push(id) });
-  const page = { window, element, captured, sent: [], marked: [], frame: 12, scale: 1 };
+  const page = { window, element, captured, sent: [], marked: [], unheard: 0, frame: 12, scale: 1 };
   const mark = (what) => (...told) => page.marked.push([what, ...told]);
   page.input = new Input(element, {
     window,
@@ -21,6 +21,7 @@ function setUp() {
     },
     frame: () => page.frame,
     soon: (action) => window.requestAnimationFrame(action),
+    unheard: () => (page.unheard += 1),
     marks: { press: mark('press'), move: mark('move'), release: mark('release'), clear: mark('clear') },
   });
   page.take = () => page.sent.splice(0);
@@ -193,8 +194,13 @@ describe('pointers', () => {
     page.window.displayFrame();
     page.move(2, 2);
     page.pointer('pointerdown', { pointerId: 2 });
+    assert.equal(page.unheard, 1);
     page.on('wheel', { clientX: 0, clientY: 0, deltaX: 0, deltaY: 1, deltaMode: 0 });
+    assert.equal(page.unheard, 2);
     page.key('keydown', 'w');
+    page.key('keydown', 'x');
+    page.key('keydown', 'w', { ctrlKey: true });
+    assert.equal(page.unheard, 3);
     page.input.enabled = true;
     page.move(3, 3);
     page.pointer('pointerup');
