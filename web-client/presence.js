@@ -13,15 +13,16 @@ const LEVEL = { moving: 'quality.moving', still: 'quality.still' };
 const HOLD_MS = 800;
 
 /**
- * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), and the
- * picture's kind.
+ * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), the picture's
+ * kind, and whether the session is recorded.
  */
 export function presence({ phase, client, state, header }) {
   if (phase.name !== 'open') return { connection: phase.name };
   const { holder, absent } = state?.control ?? {};
   const others = absent ? 'absent' : 'other';
   const held = holder === client ? 'own' : others;
-  return { connection: 'open', steering: holder ? held : 'nobody', level: header?.quality?.level };
+  const steering = holder ? held : 'nobody';
+  return { connection: 'open', steering, level: header?.quality?.level, recording: state?.recording ? 'on' : '' };
 }
 
 /** Who is in control, in words. */
@@ -66,17 +67,18 @@ export class Presence {
   }
 
   show(page) {
-    const { connection, steering = '', level = '' } = presence(page);
+    const { connection, steering = '', level = '', recording = '' } = presence(page);
     this.#may = page.role === 'control' && ['other', 'absent'].includes(steering);
     const text = [
       say(CONNECTION[connection]),
       steering && controlWords(steering, page.state),
       level && say(LEVEL[level]),
+      recording && say('recording.name'),
     ].filter(Boolean).join(' · ');
     const title = this.#may ? say('presence.hint') : '';
     if (this.#element.title !== title) Object.assign(this.#element, { title, ariaDisabled: !this.#may });
     if (text === this.#element.textContent) return;
-    Object.assign(this.#element.dataset, { connection, steering, level });
+    Object.assign(this.#element.dataset, { connection, steering, level, recording });
     this.#element.textContent = text;
   }
 }

@@ -130,7 +130,8 @@ TEST_CASE("what is patched has the value that was given") {
     expected.camera.node = 4;
     expected.camera.eye = {1, 2, 3}, expected.camera.focus = {4, 5, 6}, expected.camera.up = {0, 0, 1};
     expected.camera.center = {7, 8, 9}, expected.camera.fov = 1;
-    expected.navigation = {NavigationState::Style::cinema4d, false, NavigationState::TurnAbout::touched, 0.01, 100, 2};
+    expected.navigation = {
+        NavigationState::Style::cinema4d, false, NavigationState::TurnAbout::touched, 0.01, 100, 2};
     expected.renderer = {DrawMode::stylized, true, false, 0, 0, 0};
     expected.lights.active = "7";
     expected.lights.items.set("7", {"Sun", "directional", {0, 0.25, 0.5, 1}, {0, 1, 2}});
