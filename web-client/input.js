@@ -64,12 +64,14 @@ export class Input {
     this.#page.marks?.clear();
   }
 
+  #isHeard() {
+    if (!this.#enabled) this.#page.unheard?.();
+    return this.#enabled;
+  }
+
   #down(event) {
     event.preventDefault();
-    if (!this.#enabled) {
-      this.#page.unheard?.();
-      return;
-    }
+    if (!this.#isHeard()) return;
     const { currentTarget, pointerId, pointerType, clientX, clientY } = event;
     try {
       currentTarget.setPointerCapture(pointerId);
@@ -117,10 +119,7 @@ export class Input {
 
   #wheel(event) {
     event.preventDefault();
-    if (!this.#enabled) {
-      this.#page.unheard?.();
-      return;
-    }
+    if (!this.#isHeard()) return;
     const place = this.#page.mapping()(event.clientX, event.clientY);
     this.#send({ ...members(event, 'deltaX', 'deltaY', 'deltaMode'), ...place });
   }
@@ -130,10 +129,7 @@ export class Input {
     if (ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
     // The menu and its button have keys of their own.
     if (event.defaultPrevented || event.target?.closest?.('#menu, button')) return;
-    if (!this.#enabled) {
-      this.#page.unheard?.();
-      return;
-    }
+    if (!this.#isHeard()) return;
     event.preventDefault();
     if (event.repeat && !REPEATING_KEYS.has(key)) return;
     this.#keys.add(event.code);

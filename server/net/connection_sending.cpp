@@ -134,7 +134,7 @@ void Connection::pump() {
     ask_again(now);
 }
 
-/// The first document tells of this client, and whether it has control.
+/// A client that has not joined the room gets no document: its first one tells who has control.
 bool Connection::has_updates() const {
     const bool has_joined = handled_sequence_ >= engine::kHelloSequence;
     return has_joined && registry_.document.newest() &&
