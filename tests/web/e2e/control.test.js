@@ -82,6 +82,7 @@ describe('control', { skip: browserIsMissing }, () => {
         await presenter.screenshot(`control-${name}-asked`);
         await choose(presenter, 'Not now');
         await visitor.page.locator('#lines').getByText('Windows keeps control.').waitFor();
+        await bar(presenter).getByText('Android asks for control.').waitFor({ state: 'detached' });
         assert.equal(await bar(presenter).textContent(), '');
 
         await visitor.page.locator('#presence').tap();
