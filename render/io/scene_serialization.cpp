@@ -339,6 +339,7 @@ void serialize(Stream& stream, scene::Node& node, const scene::SceneParts& parts
     stream.text(node.name);
     stream.integer(node.type, 0, static_cast<std::int64_t>(scene::NodeType::sound));
     serialize_flag(stream, node.active);
+    serialize_flag(stream, node.presentation);
     for (int column = 0; column < 4; ++column) serialize_vector(stream, node.matrix[column]);
     stream.require(glm::dvec4(node.matrix[0][3], node.matrix[1][3], node.matrix[2][3], node.matrix[3][3]) ==
                        glm::dvec4(0, 0, 0, 1),

@@ -43,6 +43,7 @@ std::vector<ShownShape> shown_shapes(const scene::Scene& scene, ConversionWarnin
 void report_lost_nodes(const scene::Scene& scene, ConversionWarnings& warnings) {
     for (const scene::Node& node : scene.nodes()) {
         if (node.hinge) warnings.add("a hinge is lost");
+        if (node.presentation) warnings.add("a mark of presentation is lost");
         if (node.type == scene::NodeType::background) warnings.add("a background is lost");
         if (node.type == scene::NodeType::switch_) warnings.add("a switch is replaced by its active child");
         if (node.type == scene::NodeType::lod) warnings.add("a LOD node is replaced by its first child");

@@ -233,6 +233,7 @@ std::optional<Hit> pick(const scene::PlacedScene& placed, const Ray& ray, bool t
         const auto* data = std::get_if<scene::GeometryData>(&nodes[i].data);
         if (!shown[i] || !data || data->geometry == scene::kNone || !scene::is_finite(placed.world[i]))
             continue;
+        if (placed.scene->is_presentation(static_cast<scene::Index>(i))) continue;
         const scene::Geometry& geometry =
             placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
         const scene::Material& material = placed.scene->material(placed.nodes[i].material);

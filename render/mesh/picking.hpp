@@ -24,7 +24,7 @@ struct Hit {
 
 /// Returns the nearest triangle along the ray among what an image of this mode from `ray.origin` shows:
 /// nodes that are active and chosen by their switches and LODs, front faces, and back faces where they are
-/// drawn, but no glass of alpha 0. At exactly equal distance the node of higher id is hit. With
+/// drawn, but no glass of alpha 0 and no presentation (scene::Node). At exactly equal distance the node of higher id is hit. With
 /// `through_transparent` transparent materials are passed, whatever the alpha of their texture is there.
 /// Edges and corners belong to their triangles, so that a closed surface has no gaps; a triangle without
 /// area, or seen exactly along its plane, is missed. Nothing is hit by a ray that is not finite or has no

@@ -167,7 +167,7 @@ std::vector<DrawItem> visible_items(const View& view) {
     const scene::Style style = style_of(view);
     std::vector<DrawItem> items;
     for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i])
+        if (shown[i] && (style.presentation || !placed.scene->is_presentation(static_cast<scene::Index>(i))))
             if (const auto item = item_of(placed, i, view_matrix, style)) items.push_back(*item);
     sort_by_id(items, *placed.scene);
     if (style.faces && !style.override_material) assign_textures(items, view);

@@ -86,11 +86,13 @@ void number_coincident(std::vector<TracedInstance>& parts, const scene::PlacedSc
 
 std::vector<TracedInstance> parts_of(const plan::View& view) {
     std::vector<TracedInstance> parts;
-    if (!view.scene || !plan::style_of(view).faces) return parts;
+    const scene::Style style = plan::style_of(view);
+    if (!view.scene || !style.faces) return parts;
     const auto& nodes = view.scene->scene->nodes();
     const std::vector<bool> shown = scene::shown_nodes(*view.scene, view.camera.eye);
     for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i])
+        if (shown[i] &&
+            (style.presentation || !view.scene->scene->is_presentation(static_cast<scene::Index>(i))))
             if (auto part = instance_of(view, i)) parts.push_back(*std::move(part));
     const auto id = [&](const TracedInstance& part) { return nodes[static_cast<std::size_t>(part.node)].id; };
     std::sort(parts.begin(), parts.end(),

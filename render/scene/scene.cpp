@@ -190,6 +190,9 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
         for (Index child : scene.nodes_[i].children)
             scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
+    for (const Node& node : scene.nodes_)
+        scene.is_presentation_.push_back(node.presentation ||
+                                         (node.parent != kNone && scene.is_presentation(node.parent)));
     scene.extents_ = extents_of(scene);
     return scene;
 }

@@ -120,6 +120,9 @@ struct Node {
     glm::dmat4 matrix{1};  ///< parent from node
     std::variant<GroupData, GeometryData, CameraData, LightData, SwitchData, LodData, BackgroundData> data;
     std::optional<Hinge> hinge = {};  ///< of assemblies and geometry nodes
+    /// What hangs at and below it presents the product and is no part of it, as a shadow or a studio: not
+    /// picked, not fitted into the view, and left out of drawings. Of assemblies and geometry nodes.
+    bool presentation = false;
 };
 
 /// A reader's result: nodes still refer to their parents by id.
@@ -183,6 +186,8 @@ public:
     /// Returns true if a geometry with that material is a planar mirror. Other reflective ones reflect the
     /// environment map.
     bool is_mirror(const Material& material, Index geometry) const;
+    /// Returns true if the node or one above it is marked as presentation.
+    bool is_presentation(Index node) const { return is_presentation_[static_cast<std::size_t>(node)]; }
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;
@@ -199,6 +204,7 @@ private:
     std::vector<std::optional<math::Plane>> planes_;
     std::vector<double> extents_;  // of geometries, in metres
     std::vector<Node> nodes_;
+    std::vector<bool> is_presentation_;  // one for each node
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;
 };

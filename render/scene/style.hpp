@@ -12,6 +12,7 @@ enum class DrawMode { realistic, stylized };
 /// How surfaces are drawn.
 struct Style {
     bool faces = true;
+    bool presentation = true;  ///< what presents the product is drawn, too (Node::presentation)
     /// Of all faces, static; in the place of their own, with its texture, transparency and reflections. Null:
     /// none.
     const Material* override_material = nullptr;
@@ -36,6 +37,7 @@ inline Style style_of(DrawMode mode, bool wireframe) {
     Style style;
     style.faces = !wireframe;
     style.edges = wireframe || mode == DrawMode::stylized;
+    style.presentation = !style.edges;
     if (mode == DrawMode::stylized) {
         style.override_material = &stylized_faces();
         style.edge_color = {0.55, 0.78, 1};

@@ -22,7 +22,7 @@ def pointed(eye, focus):
 
 def add(car):
     car.numbered_from(900)
-    group = car.group("Presentation")
+    group = car.group("Presentation", presentation=True)
     lights(car, car.group("Lights", group))
     cameras(car, car.group("Cameras", group))
     backgrounds(car, car.group("Backgrounds", group))

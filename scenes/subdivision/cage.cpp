@@ -337,8 +337,10 @@ public:
             result.part.parent_id = to_integer(*parent, 0, scene::kMaxId, members.who(), "parent");
         members.read("active", node.active);
         if (const Json* matrix = members.find("matrix")) read_matrix(*matrix, node, members.who());
-        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry)
+        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry) {
             if (const Json* hinge = members.find("hinge")) node.hinge = to_hinge(*hinge, members.who());
+            members.read("presentation", node.presentation);
+        }
         read_type(members, result);
         members.expect_no_more();
         if (!places_.emplace(node.id, scene_.nodes.size()).second)

@@ -419,6 +419,7 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "node 1 \"x\" geometry\nhinge 0 1 0 -361 end", 3, "the hinge's degrees"},
         {h + "node 1 \"x\" geometry\nhinge 0 1 0 inf end", 3, "the hinge's degrees"},
         {h + "node 1 \"x\" geometry\nhinge 0 1 0 5 hinge 0 1 0 5 end", 3, "'hinge' once in node 1"},
+        {h + "node 1 \"x\" assembly\npresentation 2 end", 3, "presentation"},
         // --- the tree
         {h + "node 1 \"x\" assembly end\n\nnode 1 \"y\" assembly end", 4, "each node once, found 1 twice"},
         {h + "node 1 \"x\" assembly end\nnode 2 \"x\" assembly\nparent 7 end", 3,

@@ -58,7 +58,8 @@ auto members(const scene::BackgroundData& data) { return std::tie(data.material,
 
 bool same(const scene::Node& a, const scene::Node& b) {
     const auto of_all = [](const scene::Node& n) {
-        return std::tie(n.id, n.name, n.type, n.parent, n.children, n.active, n.matrix, n.hinge);
+        return std::tie(n.id, n.name, n.type, n.parent, n.children, n.active, n.matrix, n.hinge,
+                        n.presentation);
     };
     if (of_all(a) != of_all(b) || a.data.index() != b.data.index()) return false;
     return std::visit(
@@ -188,6 +189,8 @@ private:
                 for (int row = 0; row < 3; ++row) result.matrix[column][row] = number(1e15);
         if ((type == scene::NodeType::assembly || type == scene::NodeType::geometry) && coin())
             result.hinge = {point() + glm::dvec3(0, 1e-3, 0), number(360)};
+        if (type == scene::NodeType::assembly || type == scene::NodeType::geometry)
+            result.presentation = coin();
         set_data(result);
         return result;
     }
@@ -280,7 +283,7 @@ geometry 8 end
 node 0 "Root" root active 0 end
 node 4 "Grüße" assembly active 0 matrix 1 2 3 4 5 6 7 8 9 10 11 12.5 0 0 0 1 hinge -0 2.5e-17 1e15 -360 end
 node 5 "Door" geometry parent 4 geometry 7 material 3 hinge 0.1 0.2 0.30000000000000004 64.99999999999999 end
-node 51 "Lid" geometry parent 4 hinge 1 0 0 360 end
+node 51 "Lid" geometry parent 4 presentation 1 hinge 1 0 0 360 end
 node 50 "Nothing" geometry parent 4 end
 node 6 "Eye" camera parent 0 eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 end
 node 8 "Lamp" light parent 0 type spot color 0.1 0.2 0.3 1 attenuation 4 5 6 angle 33 end

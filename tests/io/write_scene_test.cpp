@@ -103,6 +103,7 @@ scene::Scene everything() {
     add(node("Body", scene::NodeType::assembly, scene::GroupData{}, glm::rotate(0.5, glm::dvec3(1, 2, 3))),
         0);
     parts.nodes.back().node.hinge = scene::Hinge{{0, 1, 0}, 60};
+    parts.nodes.back().node.presentation = true;
     add(node("Left wing", scene::NodeType::geometry, scene::GeometryData{0, 0}), 1);
     add(node("Right wing", scene::NodeType::geometry, scene::GeometryData{0, 1}, mirrored()), 0);
     add(node("Windscreen", scene::NodeType::geometry, scene::GeometryData{1, 2}), 1);
@@ -263,6 +264,7 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
     CHECK(lost == std::vector<std::string>{
                       "a LOD node is replaced by its first child", "a background is lost",
                       "a camera's focus distance is lost", "a hinge is lost", "a light's attenuation is lost",
+                      "a mark of presentation is lost",
                       "a material's ambient colour becomes a tenth of its diffuse colour (2 times)",
                       "a material's reflectivity is lost", "a switch is replaced by its active child",
                       "an initially hidden geometry is omitted (3 times)", "the scene's unit is lost"});
@@ -434,7 +436,7 @@ TEST_CASE("an STL file holds the shown triangles in world space, their fronts ou
 
 TEST_CASE("a scene survives a file of its own format, pictures from inside another file too") {
     const TemporaryFolder folder;
-    CHECK(written(everything(), folder.path() / "all.glb").size() == 10);
+    CHECK(written(everything(), folder.path() / "all.glb").size() == 11);
     const scene::Scene scene = read_well(folder.path() / "all.glb");
     CHECK(written(scene, folder.path() / "all.vrut").empty());
     const scene::Scene read = read_well(folder.path() / "all.vrut");

@@ -12,7 +12,7 @@ const std::string kGood = R"({"unit": 0.001,
    "texcoords": [[0,0],[1,0],[2,0],[0,1],[1,1],[2,1]], "quads": [[0,1,4,3],[1,2,5,4]], "creases": [[1,4,2.5]]}],
  "skins": [{"mesh": 0, "cuts": [{"name": "Door", "gap": 0.004, "within":
    [{"from": "left", "outline": [[0,0,0.1],[1,0,0.1],[1,1,0]]}]}]}],
- "nodes": [{"id": 1, "name": "All", "type": "assembly", "hinge": [0,1,0,-65], "matrix": [1,0,0,7, 0,1,0,8, 0,0,1,9, 0,0,0,1]},
+ "nodes": [{"id": 1, "name": "All", "type": "assembly", "hinge": [0,1,0,-65], "presentation": true, "matrix": [1,0,0,7, 0,1,0,8, 0,0,1,9, 0,0,0,1]},
   {"id": 2, "name": "Part", "type": "geometry", "parent": 1, "mesh": 0, "material": "Red", "tolerance": 3},
   {"id": 3, "name": "Panel", "type": "geometry", "parent": 1, "material": "Red",
    "panel": {"skin": 0, "cut": "Door", "lift": 0.001, "thickness": 0.02, "edge": 0.002}},
@@ -47,7 +47,9 @@ TEST_CASE("a file of cages") {
     REQUIRE(scene->nodes.size() == 9);
     CHECK(scene->nodes[0].part.node.matrix[3] == glm::dvec4(7, 8, 9, 1));
     CHECK(scene->nodes[0].part.node.hinge == scene::Hinge{{0, 1, 0}, -65});
+    CHECK(scene->nodes[0].part.node.presentation);
     CHECK_FALSE(scene->nodes[1].part.node.hinge);
+    CHECK_FALSE(scene->nodes[1].part.node.presentation);
     CHECK(scene->nodes[1].tolerance == 3);
     CHECK(std::get<scene::GeometryData>(scene->nodes[1].part.node.data).material == 0);
     CHECK(scene->nodes[2].panel->cut == 0);

@@ -254,8 +254,11 @@ private:
             {"active", [&] { node.active = tokens_.take_flag("active"); }},
             {"matrix", [&] { read_matrix(node.matrix); }},
         };
-        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry)
+        if (node.type == scene::NodeType::assembly || node.type == scene::NodeType::geometry) {
             members.push_back({"hinge", [&] { read_hinge(node.hinge.emplace()); }});
+            members.push_back(
+                {"presentation", [&] { node.presentation = tokens_.take_flag("presentation"); }});
+        }
         add_members_of_type(node, references, members);
         read_members("node " + std::to_string(node.id), members);
         if (node.type == scene::NodeType::sound)

@@ -128,6 +128,7 @@ private:
         if (node.parent != scene::kNone)
             text("  parent").number(scene.nodes()[static_cast<std::size_t>(node.parent)].id);
         if (!node.active) text("  active 0");
+        if (node.presentation) text("  presentation 1");
         if (!is_identity(node.matrix)) {
             text("\n  matrix");
             for (int row = 0; row < 4; ++row)
