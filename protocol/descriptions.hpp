@@ -428,6 +428,7 @@ void describe(V& v, const SelectionState*) {
     v.writable("node", &SelectionState::node, kId);
     v.fixed("name", &SelectionState::name, kName);
     v.fixed("path", &SelectionState::path, List<Text>{kName, 0, 32});
+    v.fixed("pathIds", &SelectionState::path_ids, List<Integer>{kId, 0, 32});
 }
 
 template <class V>

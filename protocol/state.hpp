@@ -119,7 +119,8 @@ struct BackgroundsState {
 struct SelectionState {
     std::optional<std::int64_t> node;
     std::optional<std::string> name;               // r
-    std::optional<std::vector<std::string>> path;  // r: names from the root, the last 32
+    std::optional<std::vector<std::string>> path;       // r: names from the root, the last 32
+    std::optional<std::vector<std::int64_t>> path_ids;  // r: the same nodes
     bool operator==(const SelectionState&) const = default;
 };
 

@@ -42,23 +42,43 @@ double clamp_pitch(const scene::Camera& camera, double radians) {
 
 }  // namespace
 
-scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, double aspect) {
-    const double extent = bounds.empty() || bounds.radius() == 0 ? 1 : bounds.radius();
-    const double radius = std::max(extent, closest_at(bounds.center()));
-    const double half_fov = camera.fov * scene::kRadiansPerDegree / 2;
-    const double half_width = std::atan(scene::projection_of(camera, aspect).right);
+FitTarget fit_target(const math::Bounds& box) {
+    return {box, [box](const glm::dvec3& direction) {
+                const glm::dvec3 farthest = glm::max(direction * box.min, direction * box.max);
+                return farthest.x + farthest.y + farthest.z;
+            }};
+}
+
+scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect) {
+    constexpr double kFilled = 0.84;     // of the view's width or height
+    constexpr double kLeastDepth = 0.1;  // of the nearest point, in radii
+    const glm::dvec3 middle = target.box.center();
+    const double radius = target.box.radius();
+    const double least = std::max(radius == 0 ? 1.0 : 0.0, closest_at(middle));
+    if (radius < least) return fitted(camera, fit_target({middle - least, middle + least}), aspect);
+
+    const glm::dvec3 right = scene::right_direction(camera), back = -scene::view_direction(camera);
+    const math::Projection projection = scene::projection_of(camera, aspect);
+    const double x = projection.right * kFilled, y = projection.top * kFilled;  // tangents
+    // A point p is within the view's right side where p · (right + x back) is at most the eye's; the other
+    // sides alike.
+    const auto reach = [&](const glm::dvec3& side) { return target.support(side) - glm::dot(side, middle); };
+    const double to_right = reach(x * back + right), to_left = reach(x * back - right);
+    const double to_top = reach(y * back + camera.up), to_bottom = reach(y * back - camera.up);
+    const double distance = std::max(
+        {(to_right + to_left) / (2 * x), (to_top + to_bottom) / (2 * y), reach(back) + kLeastDepth * radius});
     scene::Camera result = camera;
-    const glm::dvec3 view = scene::view_direction(camera);
-    result.focus = result.center = bounds.center();
-    result.eye = result.focus - view * (radius / std::sin(std::min(half_fov, half_width)));
+    result.center = middle;
+    result.focus = middle + right * ((to_right - to_left) / 2) + camera.up * ((to_top - to_bottom) / 2);
+    result.eye = result.focus + back * distance;
     return result;
 }
 
-scene::Camera home_camera(const math::Bounds& bounds, double aspect) {
+scene::Camera home_camera(const FitTarget& target, double aspect) {
     scene::Camera camera;
     camera.focus = {0, 0, 0};
     camera.eye = {1, 0.45, 1.25};
-    return fitted(scene::with_orthogonal_up(camera), bounds, aspect);
+    return fitted(scene::with_orthogonal_up(camera), target, aspect);
 }
 
 scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright) {

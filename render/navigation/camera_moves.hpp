@@ -1,15 +1,28 @@
 #pragma once
 
+#include <functional>
+#include <glm/glm.hpp>
+
 #include "math/bounds.hpp"
 #include "scene/camera.hpp"
 
 namespace vrut::navigation {
 
-/// The camera, looking along the same direction, from where the sphere around `bounds` just fits into a view
-/// of `aspect`: distance r / sin(half of the smaller fov). Empty bounds count as a unit sphere at the origin.
-scene::Camera fitted(const scene::Camera& camera, const math::Bounds& bounds, double aspect);
+/// What is fitted into a view, in world space.
+struct FitTarget {
+    math::Bounds box;  ///< holds it
+    /// How far it reaches in a direction d: the largest d · p of its points p (its support function).
+    std::function<double(const glm::dvec3& direction)> support;
+};
+FitTarget fit_target(const math::Bounds& box);
+
+/// The camera, looking along the same direction, from where the target just fits into a view of `aspect`: in
+/// its middle, with a margin of 8 % on all sides, and no nearer than a tenth of its box's radius. `focus`
+/// lies on the view's axis at the depth of the box's centre, which `center` is. An empty or pointlike target
+/// counts as a cube of side 2.
+scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect);
 /// The view of a scene without a camera node: three quarters from the front and above, fitted.
-scene::Camera home_camera(const math::Bounds& bounds, double aspect);
+scene::Camera home_camera(const FitTarget& target, double aspect);
 
 // Camera moves. Each returns the camera bit-identical if the move is zero or its result is not finite.
 

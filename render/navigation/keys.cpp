@@ -58,10 +58,9 @@ scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Ca
             return panned(camera, by.x, by.y);
         case Kind::zoom:
             return zoomed(camera, by.x, context.bounds.radius());
-        case Kind::fit:
-            return fitted(camera, context.bounds, context.width / context.height);
         case Kind::home:
             return home;
+        case Kind::fit:
         case Kind::toggle_wireframe:
         case Kind::toggle_stylized:
         case Kind::escape:

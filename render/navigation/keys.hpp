@@ -22,7 +22,8 @@ struct KeyOperation {
 std::optional<KeyOperation> key_operation(const KeyInput& input);
 
 /// Returns the camera after an operation; unchanged for those that do not move it. Speeds do not apply.
-/// `home` is the target of Home; `context.bounds` is fitted by fit, and limits the zoom.
+/// `home` is the target of Home; `context.bounds` limits the zoom. `fit` is left to the caller, who knows
+/// what is shown.
 scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Camera& camera,
                                   const scene::Camera& home, const NavigationContext& context);
 

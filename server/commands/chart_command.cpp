@@ -61,7 +61,8 @@ std::vector<Experiment> triangle_experiments(const ChartArguments& arguments, ob
         home.width = arguments.width;
         home.height = arguments.height;
         home.camera =
-            navigation::home_camera(home.scene->bounds, static_cast<double>(home.width) / home.height);
+            navigation::home_camera(navigation::fit_target(home.scene->bounds),
+                                    static_cast<double>(home.width) / home.height);
         experiment.frames = arguments.frames;
         experiment.settings = {{.jpeg_quality = 0}};
         list.push_back(experiment);

@@ -26,7 +26,7 @@ Room::Room(scenes::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
       loaded_(std::move(scene)),
       scene_(loaded_.placed),
-      starting_(starting_state(*scene_, aspect(), loaded_.notices)),
+      starting_(starting_state(*scene_, aspect(), loaded_.notices, loaded_.picking_trees.get())),
       state_(starting_),
       document_(protocol::StateDocument::next({}, state_)),
       at_home_(!state_.camera.node),
@@ -176,7 +176,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     record({}, protocol::LogLine::Opened{scene.name, scene.sha256});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
-    starting_ = starting_state(*scene_, aspect(), loaded_.notices);
+    starting_ = starting_state(*scene_, aspect(), loaded_.notices, loaded_.picking_trees.get());
     protocol::State next = starting_;
     next.navigation = state_.navigation;
     next.renderer.mode = state_.renderer.mode;
@@ -369,7 +369,7 @@ void Room::use_holders_size() {
     if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
     view_size_ = *holder->second.wanted;
     if (at_home_) {
-        state_.views.set("home", home_view(*scene_, aspect()));
+        state_.views.set("home", home_view(*scene_, aspect(), loaded_.picking_trees.get()));
         state_.camera = state_of(camera_of(state_.views->at("home")), scene_->bounds);
     }
     gestures_.restart(camera());

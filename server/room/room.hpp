@@ -208,7 +208,14 @@ private:
     std::optional<mesh::Hit> hit_at(const Frame& seen, double x, double y, bool through) const;
     void apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit);
     void select(scene::Index node);
-    std::vector<std::string> path_of(scene::Index node) const;
+    /// kNone where nothing is.
+    scene::Index selected() const;
+    /// From the root, the last 32.
+    struct Path {
+        std::vector<std::string> names;
+        std::vector<scene::Id> ids;
+    };
+    Path path_of(scene::Index node) const;
 
     // --- patches
     std::optional<protocol::Error> use_nodes(protocol::State& next,
@@ -235,6 +242,7 @@ private:
     void drag_camera(const scene::Camera& camera);
     /// From anything else: drags begin anew there.
     void move_camera(const scene::Camera& camera);
+    void fit_selection();
     void end_flight(bool completed);
 
     RoomOptions options_;

@@ -4,6 +4,7 @@
 
 #include "codec.hpp"
 #include "navigation/keys.hpp"
+#include "room/named_part.hpp"
 #include "room/room.hpp"
 
 namespace vrut::server::room {
@@ -76,14 +77,17 @@ void Room::apply(const Received& received, const protocol::Key& key) {
     if (operation->kind == Kind::toggle_stylized)
         renderer.mode = renderer.mode == protocol::DrawMode::stylized ? protocol::DrawMode::realistic
                                                                       : protocol::DrawMode::stylized;
-    navigation::NavigationContext context = navigation_context();
-    if (operation->kind == Kind::fit && state_.selection.node) {
-        const math::Bounds selected =
-            scene::subtree_bounds(*scene_, scene_->scene->find_node(*state_.selection.node));
-        if (!selected.empty()) context.bounds = selected;
-    }
-    move_camera(
-        navigation::apply_key_operation(*operation, camera(), camera_of(state_.views->at("home")), context));
+    if (operation->kind == Kind::fit) return fit_selection();
+    move_camera(navigation::apply_key_operation(*operation, camera(), camera_of(state_.views->at("home")),
+                                                navigation_context()));
+}
+
+void Room::fit_selection() {
+    const mesh::PickingTrees* trees = loaded_.picking_trees.get();
+    const scene::Index node = selected();
+    navigation::FitTarget target = fit_target(*scene_, node == scene::kNone ? 0 : node, trees);
+    if (target.box.empty()) target = fit_target(*scene_, 0, trees);
+    move_camera(navigation::fitted(camera(), target, aspect()));
 }
 
 void Room::apply(const Received& received, const protocol::Pick& pick) {
@@ -97,15 +101,18 @@ void Room::apply(const Received& received, const protocol::Pick& pick) {
     const std::optional<mesh::Hit> hit = hit_at(named ? *named : present(), pick.x, pick.y, pick.through);
     if (pick.then) {
         steer(received);
-        apply(*pick.then == Then::select   ? navigation::Click::Operation::select
-              : *pick.then == Then::center ? navigation::Click::Operation::set_center
-                                           : navigation::Click::Operation::look_at,
-              hit);
+        if (*pick.then == Then::select)
+            select(hit ? hit->node : scene::kNone);
+        else
+            apply(*pick.then == Then::center ? navigation::Click::Operation::set_center
+                                             : navigation::Click::Operation::look_at,
+                  hit);
     }
     protocol::Picked picked;
     if (hit) {
         const scene::Node& node = scene_->scene->nodes()[static_cast<std::size_t>(hit->node)];
-        picked = {0, node.id, node.name, path_of(hit->node), hit->point, hit->normal, hit->distance, {}};
+        picked = {0,          node.id,     node.name,     path_of(hit->node).names,
+                  hit->point, hit->normal, hit->distance, {}};
         const glm::dmat4& world_from_node = scene_->world[static_cast<std::size_t>(hit->node)];
         if (std::abs(scene::relative_determinant(glm::dmat3(world_from_node))) > kLeastDeterminant) {
             const glm::dvec3 local(glm::inverse(world_from_node) * glm::dvec4(hit->point, 1));
@@ -130,7 +137,8 @@ std::optional<mesh::Hit> Room::hit_at(const Frame& seen, double x, double y, boo
 }
 
 void Room::apply(navigation::Click::Operation operation, const std::optional<mesh::Hit>& hit) {
-    if (operation == navigation::Click::Operation::select) return select(hit ? hit->node : scene::kNone);
+    if (operation == navigation::Click::Operation::select)
+        return select(named_part(*scene_, hit ? hit->node : scene::kNone, selected()));
     if (!hit) return;
     scene::Camera moved = camera();
     moved.center = hit->point;
@@ -141,19 +149,28 @@ void Room::apply(navigation::Click::Operation operation, const std::optional<mes
     move_camera(moved);
 }
 
+scene::Index Room::selected() const {
+    return state_.selection.node ? scene_->scene->find_node(*state_.selection.node) : scene::kNone;
+}
+
 void Room::select(scene::Index node) {
     state_.selection = {};
     if (node == scene::kNone) return;
     const scene::Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
-    state_.selection = {selected.id, selected.name, path_of(node)};
+    const auto [names, ids] = path_of(node);
+    state_.selection = {selected.id, selected.name, names, ids};
 }
 
-std::vector<std::string> Room::path_of(scene::Index node) const {
-    std::vector<std::string> path;
-    for (; node != scene::kNone && path.size() < kLongestPath;
-         node = scene_->scene->nodes()[static_cast<std::size_t>(node)].parent)
-        path.push_back(scene_->scene->nodes()[static_cast<std::size_t>(node)].name);
-    std::reverse(path.begin(), path.end());
+Room::Path Room::path_of(scene::Index index) const {
+    Path path;
+    while (index != scene::kNone && path.ids.size() < kLongestPath) {
+        const scene::Node& node = scene_->scene->nodes()[static_cast<std::size_t>(index)];
+        path.names.push_back(node.name);
+        path.ids.push_back(node.id);
+        index = node.parent;
+    }
+    std::reverse(path.names.begin(), path.names.end());
+    std::reverse(path.ids.begin(), path.ids.end());
     return path;
 }
 

@@ -32,16 +32,14 @@ void Room::apply(const Received& received, const protocol::Navigate& navigate) {
 }
 
 void Room::apply(const Received& received, const protocol::Fit& fit) {
-    math::Bounds bounds = scene_->bounds;
-    if (fit.node) {
-        const scene::Index node = scene_->scene->find_node(*fit.node);
-        const std::string name = "node " + std::to_string(*fit.node);
-        if (node == scene::kNone) return reject(received, code::unknown_node, "there is no " + name);
-        bounds = scene::subtree_bounds(*scene_, node);
-        if (bounds.empty()) return reject(received, code::failed, "nothing of " + name + " is to be seen");
-    }
+    const scene::Index node = fit.node ? scene_->scene->find_node(*fit.node) : 0;
+    const std::string name = "node " + std::to_string(fit.node.value_or(0));
+    if (node == scene::kNone) return reject(received, code::unknown_node, "there is no " + name);
+    const navigation::FitTarget target = fit_target(*scene_, node, loaded_.picking_trees.get());
+    if (fit.node && target.box.empty())
+        return reject(received, code::failed, "nothing of " + name + " is to be seen");
     steer(received);
-    move_camera(navigation::fitted(camera(), bounds, aspect()));
+    move_camera(navigation::fitted(camera(), target, aspect()));
     answer(received);
 }
 

@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "navigation/camera_moves.hpp"
+#include "mesh/support_function.hpp"
 #include "plan/frame_plan.hpp"
 
 namespace vrut::server::room {
@@ -134,7 +134,7 @@ std::optional<Error> apply(protocol::NodeOverride& change, const scene::Scene& s
 }  // namespace
 
 protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
-                               std::vector<std::string> notices) {
+                               std::vector<std::string> notices, const mesh::PickingTrees* trees) {
     protocol::State state;
     const scene::Scene& scene = *placed.scene;
     state.scene.value = std::make_shared<const protocol::SceneState>(
@@ -148,7 +148,7 @@ protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
                              .notices = std::move(notices)});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
-    state.views.set("home", home_view(placed, aspect));
+    state.views.set("home", home_view(placed, aspect, trees));
     const scene::Index node = scene::first_camera_node(placed);
     state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);
@@ -165,10 +165,18 @@ void count_classes(protocol::State& state, const scene::PlacedScene& placed) {
     state.renderer.reflective = counts.reflective;
 }
 
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect) {
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect,
+                              const mesh::PickingTrees* trees) {
     const scene::Index node = scene::first_camera_node(placed);
-    return view_state_of(node != scene::kNone ? *scene::camera_at(placed, node)
-                                              : navigation::home_camera(placed.bounds, aspect));
+    return view_state_of(node != scene::kNone
+                             ? *scene::camera_at(placed, node)
+                             : navigation::home_camera(fit_target(placed, 0, trees), aspect));
+}
+
+navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
+                                 const mesh::PickingTrees* trees) {
+    const mesh::SupportFunction support(placed, node, trees);
+    return {support.bounds(), support};
 }
 
 scene::Camera camera_of(const protocol::CameraState& state) {

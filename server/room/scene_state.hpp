@@ -3,17 +3,24 @@
 #include <tl/expected.hpp>
 
 #include "frame_header.hpp"
+#include "mesh/picking_trees.hpp"
+#include "navigation/camera_moves.hpp"
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
 #include "state.hpp"
 
 namespace vrut::server::room {
 
-/// The state that a scene starts with, its camera at home for a view of `aspect`.
+/// The state that a scene starts with, its camera at home for a view of `aspect`. `trees`, here and below,
+/// change the time that it takes; null: none.
 protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
-                               std::vector<std::string> notices);
+                               std::vector<std::string> notices, const mesh::PickingTrees* trees = nullptr);
 /// The view with which a scene opens: its first camera node's, or else the scene fitted to the view.
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect);
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect,
+                              const mesh::PickingTrees* trees);
+/// What is shown at and below a node, less what presents it.
+navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,
+                                 const mesh::PickingTrees* trees);
 
 scene::Camera camera_of(const protocol::CameraState& state);
 scene::Camera camera_of(const protocol::ViewState& view);

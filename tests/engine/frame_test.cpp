@@ -252,7 +252,7 @@ TEST_CASE("the whole scene stays in view while nobody has moved the camera, and 
     client.wait_for("ok");
     const Json upright = client.state["camera"];
     CHECK(upright["eye"] != home["eye"]);
-    CHECK(upright["focus"] == home["focus"]);
+    CHECK(upright["center"] == home["center"]);
     client.send(eye(2, 1));
     client.wait_for("ok");
     const Json own = client.state["camera"];

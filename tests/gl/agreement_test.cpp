@@ -39,7 +39,8 @@ plan::View view_of_file(const fs::path& path, int width, int height) {
     view.height = height;
     const scene::PlacedScene& placed = *view.scene;
     const auto& nodes = placed.scene->nodes();
-    view.camera = navigation::home_camera(placed.bounds, static_cast<double>(width) / height);
+    view.camera =
+        navigation::home_camera(navigation::fit_target(placed.bounds), static_cast<double>(width) / height);
     if (const scene::Index camera = scene::first_camera_node(placed); camera != scene::kNone)
         view.camera = *scene::camera_at(placed, camera);
     for (std::size_t i = 0; i < nodes.size(); ++i) {

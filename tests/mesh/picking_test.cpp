@@ -320,6 +320,30 @@ mesh::Ray pixel_ray(const scene::Camera& camera, const glm::ivec2& size, const g
 
 }  // namespace
 
+TEST_CASE("presentation is not hit, in any mode") {
+    scene::SceneParts parts;
+    parts.geometries = {corner_triangle()};
+    for (const scene::Id id : {1, 2, 3}) {
+        scene::SceneParts::PartNode part;
+        part.node.id = id;
+        part.node.presentation = id == 2;
+        if (id != 2) part.node.data = scene::GeometryData{0, scene::kNone};
+        if (id != 2) part.node.type = scene::NodeType::geometry;
+        if (id == 3) part.node.matrix = moved_by({0, 0, 1});
+        part.parent_id = id == 3 ? 2 : 0;
+        parts.nodes.push_back(part);
+    }
+    auto scene = scene::Scene::build(std::move(parts));
+    REQUIRE(scene);
+    const scene::PlacedScene placed = scene::place(*std::move(scene));
+    for (const scene::DrawMode mode : {scene::DrawMode::realistic, scene::DrawMode::stylized}) {
+        const auto hit = mesh::pick(placed, {{0.2, 0.2, 5}, {0, 0, -1}}, false, nullptr, mode);
+        REQUIRE(hit);
+        CHECK(placed.scene->nodes()[static_cast<std::size_t>(hit->node)].id == 1);
+        CHECK(hit->distance == 5);
+    }
+}
+
 TEST_CASE("a triangle: point, normal and distance") {
     const scene::PlacedScene placed = scene_of(corner_triangle());
     const auto hit = mesh::pick(placed, down_z(0.25, 0.5), false);
@@ -518,7 +542,7 @@ TEST_CASE("the car, against the reference") {
 }
 
 TEST_CASE("a picked point lies under its pixel") {
-    const scene::Camera camera = navigation::home_camera(car().bounds, 1.5);
+    const scene::Camera camera = navigation::home_camera(navigation::fit_target(car().bounds), 1.5);
     const glm::ivec2 size(60, 40);
     const scene::ClipRange range = scene::fit_clip_range(camera, car().bounds);
     const glm::dmat4 clip_from_world =

@@ -68,7 +68,7 @@ scene::SceneParts::PartNode camera_part(scene::Id id, scene::Id parent, const sc
 
 }  // namespace
 
-TEST_CASE("fit: the sphere around the box touches the smaller side of the view") {
+TEST_CASE("fit: the box fills 84 % of the width or the height, in the middle") {
     Random random(1);
     for (const double fov : {1.0, 20.0, 40.0, 90.0, 170.0})
         for (const double aspect : {0.01, 0.5, 1.0, 16.0 / 9, 100.0}) {
@@ -77,18 +77,25 @@ TEST_CASE("fit: the sphere around the box touches the smaller side of the view")
             math::Bounds box;
             box.add(random.vector(5));
             box.add(random.vector(50));
-            const scene::Camera after = navigation::fitted(before, box, aspect);
-            const double smaller = std::min(degrees(fov) / 2, std::atan(std::tan(degrees(fov) / 2) * aspect));
-            const double distance = glm::distance(after.eye, box.center());
-            CHECK(std::asin(glm::length(box.max - box.min) / 2 / distance) ==
-                  doctest::Approx(smaller).epsilon(1e-12));
+            const scene::Camera after = navigation::fitted(before, navigation::fit_target(box), aspect);
+            glm::dvec3 low(kInfinity), high(-kInfinity);
             for (const glm::dvec3& corner : math::corners(box)) {
-                const glm::dvec3 place = seen(after, corner);
-                CHECK(place.z > 0);
-                CHECK(std::abs(place.x) <= aspect * (1 + 1e-9));
-                CHECK(std::abs(place.y) <= 1 + 1e-9);
+                low = glm::min(low, seen(after, corner));
+                high = glm::max(high, seen(after, corner));
             }
-            CHECK(after.focus == box.center());
+            low.x /= aspect;
+            high.x /= aspect;
+            const double wide = std::max(high.x, -low.x), tall = std::max(high.y, -low.y);
+            const double nearest = low.z / (0.1 * box.radius());
+            CAPTURE(fov);
+            CAPTURE(aspect);
+            CHECK(wide <= 0.84 * (1 + 1e-9));
+            CHECK(tall <= 0.84 * (1 + 1e-9));
+            CHECK(nearest >= 1 - 1e-9);
+            CHECK(std::max({wide / 0.84, tall / 0.84, 1 / nearest}) == doctest::Approx(1).epsilon(1e-9));
+            if (wide > 0.84 * (1 - 1e-9)) CHECK(-low.x == doctest::Approx(high.x).epsilon(1e-9));
+            if (tall > 0.84 * (1 - 1e-9)) CHECK(-low.y == doctest::Approx(high.y).epsilon(1e-9));
+            CHECK(near(seen(after, after.focus), {0, 0, seen(after, box.center()).z}, 1e-9 * box.radius()));
             CHECK(after.center == box.center());
             CHECK(near(scene::view_direction(after), scene::view_direction(before)));
             CHECK(after.up == before.up);
@@ -98,17 +105,22 @@ TEST_CASE("fit: the sphere around the box touches the smaller side of the view")
 
 TEST_CASE("fit: nothing, a point, and a box far from the origin") {
     const scene::Camera camera;  // looks along -z
-    CHECK(near(navigation::fitted(camera, math::Bounds{}, 1).eye, {0, 0, 1 / std::sin(degrees(20))}));
-    CHECK(navigation::fitted(camera, math::Bounds{}, 1).focus == glm::dvec3(0));
+    const auto fitted = [&](const math::Bounds& box) {
+        return navigation::fitted(camera, navigation::fit_target(box), 1);
+    };
+    // The front of a cube of side 2 fills 84 %.
+    const double before_cube = 1 + 1 / (0.84 * std::tan(degrees(20)));
+    CHECK(near(fitted({}).eye, {0, 0, before_cube}));
+    CHECK(fitted({}).focus == glm::dvec3(0));
     math::Bounds point;
     point.add({3, 4, 5});
-    CHECK(near(navigation::fitted(camera, point, 1).eye, {3, 4, 5 + 1 / std::sin(degrees(20))}));
+    CHECK(near(fitted(point).eye, {3, 4, 5 + before_cube}));
     for (const double far : {1e7, 1e12, 1e15, 1e30, 1e149})
         for (const double size : {0.0, 1e-6, 1.0}) {
             math::Bounds box;
             box.add({far, far, far});
             box.add({far + size, far, far});
-            const scene::Camera fit = navigation::fitted(camera, box, 1);
+            const scene::Camera fit = fitted(box);
             CHECK(scene::is_valid_pose(fit, box.radius()));
             CHECK(near(scene::view_direction(fit), {0, 0, -1}, 1e-3));
         }
@@ -501,8 +513,8 @@ TEST_CASE("home looks from three quarters and above, and fits") {
     box.add({1, 0, 2});
     box.add({3, 1.5, 6});
     for (const double aspect : {0.5, 2.0}) {
-        const scene::Camera home = navigation::home_camera(box, aspect);
-        CHECK(home.focus == box.center());
+        const scene::Camera home = navigation::home_camera(navigation::fit_target(box), aspect);
+        CHECK(home.center == box.center());
         const glm::dvec3 from_center = home.eye - home.focus;
         CHECK(from_center.x > 0);
         CHECK(from_center.y > 0);
@@ -514,5 +526,5 @@ TEST_CASE("home looks from three quarters and above, and fits") {
             CHECK(std::abs(seen(home, corner).y) < 1);
         }
     }
-    CHECK(scene::is_valid_pose(navigation::home_camera(math::Bounds{}, 1), 0));
+    CHECK(scene::is_valid_pose(navigation::home_camera(navigation::fit_target({}), 1), 0));
 }

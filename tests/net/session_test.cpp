@@ -119,17 +119,19 @@ TEST_CASE("answers come in order, those to unreadable messages too") {
     TestServer server;
     TestClient client(server.port());
     client.join();
+    client.send({{"type", "resize"}, {"id", 1}, {"width", 9}, {"height", 9}, {"pixelRatio", 1}});
+    client.wait_for("ok");  // home is fitted to that
     // More answers than may wait: the server stops reading until they are taken.
     constexpr int kMessages = 6000;
     std::thread sender([&] {
-        for (int id = 1; id <= kMessages; ++id) {
+        for (int id = 2; id <= kMessages; ++id) {
             if (id % 2 == 0)
                 client.send({{"type", "dance"}, {"id", id}});
             else
                 client.send({{"type", "resize"}, {"id", id}, {"width", 9}, {"height", 9}, {"pixelRatio", 1}});
         }
     });
-    for (int id = 1; id <= kMessages; ++id) {
+    for (int id = 2; id <= kMessages; ++id) {
         const auto answer = client.receive();
         REQUIRE(answer.has_value());
         CHECK(answer->json()["id"] == id);

@@ -135,7 +135,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     add(encode(Welcome{1, "0.1", "c1", Role::control, {65536, 32, 2, 16'000'000, 10'000, 1'000'000}}));
     add(first->encode());
     state.camera.node = 4, state.camera.name = "Driver";
-    state.selection = {5, "Door", {{"Car", "Door"}}};
+    state.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}};
     state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
     state.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
     state.control = {"c1", "Bea", true};

@@ -535,7 +535,7 @@ public:
                 result.control.holder.reset();
                 break;
             case 4:
-                result.selection = {5, "Door", {{"Car", "Door"}}};
+                result.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}};
                 break;
             case 5:
                 result.camera.name = "Driver";
@@ -626,6 +626,7 @@ TEST_CASE("a state comes back from its document") {
             starting.materials = state.materials;
             starting.camera.name = state.camera.name;
             starting.selection.name = state.selection.name, starting.selection.path = state.selection.path;
+            starting.selection.path_ids = state.selection.path_ids;
             starting.recording = state.recording;
             const json document = json::parse(StateDocument::next({}, state)->json().dump());
             const auto back = restored(starting, document);

@@ -189,9 +189,11 @@ const SESSIONS = {
     user.watch();
     await user.client.until('a frame', () => user.frame);
     await user.record(name);
-    await user.tap([176, 125], 0, finger(2)); // the red box
-    await user.tap([177, 126], 0, finger(2));
-    await user.client.until('the red box', () => user.state.selection.node === 5);
+    for (const [part, node] of [['the furniture', 3], ['of that the red box', 5]]) {
+      await user.tap([176, 125], 0, finger(2));
+      await user.tap([177, 126], 0, finger(2));
+      await user.client.until(part, () => user.state.selection.node === node);
+    }
     await user.tap([222, 122], 2); // the blue box: the scene turns about it from here on
     await user.tap([222, 122], 2);
     await user.client.until('another centre', () => user.state.camera.center[0] > 0.1);

@@ -73,7 +73,8 @@ TEST_CASE("a pick may select, set the centre of rotation, and look at the point"
         return client.wait_for("picked");
     };
     picked(640, "select");
-    CHECK(client.state["selection"] == Json({{"node", 1}, {"name", "Triangle"}, {"path", {"", "Triangle"}}}));
+    CHECK(client.state["selection"] ==
+          Json({{"node", 1}, {"name", "Triangle"}, {"path", {"", "Triangle"}}, {"pathIds", {0, 1}}}));
     picked(5, "select");
     CHECK(client.state["selection"] == Json::object());
 

@@ -35,7 +35,8 @@ Study moves_lost(const Laboratory& laboratory) {
         "A drag is a function of the camera at its start and of the pointers' places: moves may be merged or "
         "lost, and the last one alone decides.";
     study.cost = "None: one move is computed where several came.";
-    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    const scene::Camera start =
+        navigation::home_camera(navigation::fit_target({{-1, -1, -1}, {1, 1, 1}}), 1.5);
     navigation::NavigationContext context;
     context.keep_upright = false;
     const auto place = [](int i) {
@@ -83,7 +84,8 @@ Study releases_lost(const Laboratory& laboratory) {
         "A second press of a pressed pointer begins a new drag where it is; a client that leaves has its "
         "pointers lifted; the camera stays where it is.";
     study.cost = "None.";
-    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    const scene::Camera start =
+        navigation::home_camera(navigation::fit_target({{-1, -1, -1}, {1, 1, 1}}), 1.5);
     navigation::NavigationContext context;
     context.keep_upright = false;
     const glm::dvec2 place(640, 360);

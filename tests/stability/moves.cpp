@@ -19,7 +19,8 @@ Study many_moves(const Laboratory& laboratory) {
         "The camera is a pose in double; a drag is computed from where it began, and a turn keeps the "
         "distances from the centre.";
     study.cost = "Less than a microsecond a move.";
-    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    const scene::Camera start =
+        navigation::home_camera(navigation::fit_target({{-1, -1, -1}, {1, 1, 1}}), 1.5);
     const double radius = glm::distance(start.eye, start.center);
     const glm::vec3 axis(glm::normalize(glm::dvec3(0.3, 1, 0.2)));
     const glm::mat4 turn = glm::rotate(glm::mat4(1), 0.7F, axis);
@@ -74,7 +75,8 @@ Study through_the_focus(const Laboratory& laboratory) {
         "Zoom divides the distance between eye and focus, and ends at a millionth and at a million of the "
         "scene's radius.";
     study.cost = "None.";
-    const scene::Camera start = navigation::home_camera({{-1, -1, -1}, {1, 1, 1}}, 1.5);
+    const scene::Camera start =
+        navigation::home_camera(navigation::fit_target({{-1, -1, -1}, {1, 1, 1}}), 1.5);
     const glm::dvec3 view = scene::view_direction(start);
     for (const double steps : laboratory.chosen({1, 5, 9, 11, 100, 1e3, 1e6, 1e9})) {
         scene::Camera linear = start;

@@ -270,12 +270,16 @@ describe('zoom: wheel, middle drag, pinch and spread', () => {
 
 describe('select: left double click, double tap', () => {
   const TOUCH = { pointerType: 'touch' };
+  const HINGE = 3; // of the door
   for (const [what, more] of [['left double click', {}], ['double tap', TOUCH]]) {
     test(`${what} selects what is there, on nothing clears the selection`, async (t) => {
       const client = await steering(t, server);
       const { camera } = client.state;
       await client.input.doubleClick(SEEN.door, LEFT, more);
-      assert.equal(client.state.selection.node, 4);
+      assert.equal(client.state.selection.node, HINGE, 'the part that a person would name');
+      assert.deepEqual(client.state.selection.pathIds, [0, 1, HINGE]);
+      await client.input.doubleClick(SEEN.door, LEFT, more);
+      assert.equal(client.state.selection.node, 4, 'a level deeper');
       await client.input.doubleClick(SEEN.wall, LEFT, more);
       assert.equal(client.state.selection.node, 2);
       await client.input.doubleClick(SEEN.nothing, LEFT, more);
@@ -315,7 +319,7 @@ describe('select: left double click, double tap', () => {
     test(`${what}: ${selects ? 'a double click' : 'none'}`, async (t) => {
       const client = await steering(t, server);
       await presses(client, list);
-      assert.equal(client.state.selection.node, selects ? 4 : undefined);
+      assert.equal(client.state.selection.node, selects ? HINGE : undefined);
     });
   }
 
@@ -347,7 +351,7 @@ describe('select: left double click, double tap', () => {
         client.send(timeStamp === undefined ? event : { ...event, timeStamp });
       });
       await client.barrier();
-      assert.equal(client.state.selection.node, 4);
+      assert.equal(client.state.selection.node, HINGE);
     });
   }
 
@@ -367,7 +371,7 @@ describe('select: left double click, double tap', () => {
     await client.ask({ type: 'navigate', rotate: [90, 0] });
     await client.frameOfNow();
     await client.input.doubleClick(SEEN.door, LEFT, { frame: seen });
-    assert.equal(client.state.selection.node, 4);
+    assert.equal(client.state.selection.node, HINGE);
   });
 });
 

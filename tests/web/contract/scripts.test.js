@@ -73,28 +73,44 @@ describe('navigate', () => {
 });
 
 describe('fit', () => {
-  const corners = ({ min, max }) => Array.from({ length: 8 }, (_, i) => [0, 1, 2].map((axis) => (i & (1 << axis) ? max : min)[axis]));
-  const inside = (camera, view, box) => corners(box).every((corner) => {
-    const [x, y] = projected(camera, view, corner);
-    return x >= -0.5 && y >= -0.5 && x <= view.width + 0.5 && y <= view.height + 0.5 && dot(sub(corner, camera.eye), axes(camera).view) > 0;
-  });
-  /** How much of the view's width or height the box takes. */
-  const share = (camera, view, box) => {
-    const seen = corners(box).map((corner) => projected(camera, view, corner));
-    const extent = (i) => Math.max(...seen.map((p) => p[i])) - Math.min(...seen.map((p) => p[i]));
-    return Math.max(extent(0) / view.width, extent(1) / view.height);
+  const FREE = 0.84; // of the view, between the margins
+  /** The corners of a square with sides along x and y. */
+  const square = ([x, y, z], side) => [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([i, j]) => [x + (i * side) / 2, y + (j * side) / 2, z]);
+  const DOOR = square([1, 0, 0], 1);
+  const SHOWN = [...square([0, 0, -1], 4), ...DOOR, ...square([-1, 0, 1], 1), ...square([0, 1.5, 0], 0.5), ...square([0, -1.5, 0], 0.5)];
+  /** The points fill the free part of the view, in its middle. */
+  const fills = (camera, view, points) => {
+    const seen = points.map((point) => projected(camera, view, point));
+    for (const point of points) assert.ok(dot(sub(point, camera.eye), axes(camera).view) > 0);
+    const sides = [view.width, view.height].map((size, i) => {
+      const low = Math.min(...seen.map((p) => p[i])) / size - 0.5;
+      const high = Math.max(...seen.map((p) => p[i])) / size - 0.5;
+      return { most: Math.max(-low, high), skew: low + high };
+    });
+    const [fuller] = [...sides].sort((a, b) => b.most - a.most);
+    near(2 * fuller.most, FREE, 'what is filled');
+    near(fuller.skew, 0, 'the middle');
   };
 
   for (const [width, height] of [[400, 300], [150, 600], [600, 100]]) {
-    test(`the whole scene is in view, and fills it, at ${width} x ${height}`, async (t) => {
+    test(`the whole scene fills what is free of ${width} x ${height}`, async (t) => {
       const client = await steering(t, server, ASKEW);
       await client.ask({ type: 'resize', width, height, pixelRatio: 1 });
+      const before = axes(client.state.camera).view;
       await client.ask({ type: 'fit' });
-      const { camera, scene } = client.state;
-      assert.ok(inside(camera, { width, height }, scene.bounds));
-      assert.ok(share(camera, { width, height }, scene.bounds) > 0.5);
+      const { camera } = client.state;
+      fills(camera, { width, height }, SHOWN);
+      near(axes(camera).view, before, 'direction');
     });
   }
+
+  test('what is hidden does not count', async (t) => {
+    const client = await steering(t, server, ASKEW);
+    await client.patch({ nodes: { 2: { active: false } } });
+    await client.ask({ type: 'fit' });
+    fills(client.state.camera, VIEW, SHOWN.slice(4));
+    await client.patch({ nodes: null });
+  });
 
   test('"home" is the view with which the scene opens: its camera node\'s', async (t) => {
     const fresh = await Server.start();
@@ -119,11 +135,10 @@ describe('fit', () => {
   test("a node's subtree, along the same direction", async (t) => {
     const client = await steering(t, server, ASKEW);
     const before = axes(client.state.camera).view;
-    const door = { min: [0.5, -0.5, 0], max: [1.5, 0.5, 0] };
     for (const node of [4, 3]) {
       await client.ask({ type: 'fit', node });
-      assert.ok(inside(client.state.camera, VIEW, door));
-      assert.ok(share(client.state.camera, VIEW, door) > 0.4);
+      fills(client.state.camera, VIEW, DOOR);
+      near(client.state.camera.center, [1, 0, 0], 'center');
       near(axes(client.state.camera).view, before, 'direction');
     }
     await client.refused({ type: 'fit', node: 999 }, 'unknown-node', { valid: true });
