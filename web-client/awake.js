@@ -1,7 +1,7 @@
 /** Keeps the screen on while that is wanted and the page is to be seen, where the browser can. */
 export class Awake {
   #wanted = false;
-  /** A promise of the lock. */
+  /** @type {?Promise<WakeLockSentinel|void>|undefined} of the lock */
   #lock = null;
 
   constructor() {

@@ -7,7 +7,9 @@ import { mergePatch } from './merge-patch.js';
 export class Changes {
   #ask;
   #refused;
+  /** @type {?object} */
   #next = null;
+  /** @type {?Promise<void>} */
   #sending = null;
 
   /** `ask` sends a message and promises its answer; `refused` is told the error where there is none. */

@@ -1,6 +1,8 @@
 import { frameHeader } from './frame-header.js';
 import { mergePatch } from './merge-patch.js';
 
+/** @import { ClientHello, ServerError, StateDocument } from './protocol.js' */
+
 const SUBPROTOCOL = 'vrut-preview.v1';
 const POLICY_VIOLATION = 1008;
 /** One frame is drawn while the next is on its way. */
@@ -16,31 +18,34 @@ const SILENT_AFTER_MS = 10_000;
 /**
  * Where the connection stands; `reason`: why the server refused it.
  *
- * @typedef {{name: 'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
+ * @typedef {{name: 'starting'|'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
  *   reason?: {code?: string, message: string}}} Phase
  */
 
 /** Connects, says hello, keeps the state document, grants frames, and begins anew when the connection is lost. */
 export class Connection {
-  /** The document as last heard, kept over a lost connection; null before the first. */
+  /** @type {?StateDocument} as last heard, kept over a lost connection; null before the first */
   state = null;
   revision = 0;
-  /** What the server gave this page; undefined while not connected. */
+  /** @type {ClientHello['role']|undefined} what the server gave this page; undefined while not connected */
   role;
+  /** @type {string|undefined} the same */
   client;
 
   #url;
   #hello;
   #on;
 
+  /** @type {?WebSocket} */
   #socket = null;
   #phase = 'waiting';
+  /** @type {?{width: number, height: number, pixelRatio: number}} */
   #size = null;
   #lastId = 0;
-  /** How to settle what is not answered yet, by id. */
+  /** @type {Map<number, {resolve: Function, reject: Function}>} how to settle what is not answered yet, by id */
   #asked = new Map();
   #retries = 0;
-  /** The error that came before the welcome. */
+  /** @type {ServerError|undefined} that came before the welcome */
   #refusal;
   #timer;
 
@@ -110,7 +115,7 @@ export class Connection {
   }
 
   #post(message) {
-    this.#socket.send(JSON.stringify(message));
+    this.#socket?.send(JSON.stringify(message));
   }
 
   /** A connection may die without a word: after a silence a question finds out. */
@@ -127,10 +132,12 @@ export class Connection {
     this.#setTimer(ms, () => this.#lost({}));
   }
 
+  /** @param {{code?: number, reason?: string}} event */
   #lost({ code, reason }) {
+    const socket = /** @type {WebSocket} */ (this.#socket);
     // The close of a silent connection may never come.
-    this.#socket.onclose = null;
-    this.#socket.close();
+    socket.onclose = null;
+    socket.close();
     this.#socket = null;
     clearTimeout(this.#timer);
     const hadOpened = this.#phase === 'open';

@@ -1,6 +1,8 @@
 import { button, element } from './controls.js';
 import { say } from './texts.js';
 
+/** @import { ClientControl, StateDocument } from './protocol.js' */
+
 const OFFERED_MS = 8000;
 
 /** How people call a client: by the name that it gave in `hello`, or else by its id. */
@@ -8,7 +10,11 @@ export function clientName({ client, name }) {
   return name || say('connection.client', { id: client });
 }
 
-/** How people call the holder of `control` of the state. */
+/**
+ * How people call the holder of `control` of the state.
+ *
+ * @param {Partial<StateDocument['control']>} control
+ */
 export function holderName({ holder, name }) {
   return clientName({ client: holder, name });
 }
@@ -17,7 +23,7 @@ export function holderName({ holder, name }) {
  * What the bar says of control to the page of `client`, or null: to the holder that somebody asks, to another that it
  * has asked, or, where that is `offered`, that it may ask. An action is a `control` message without its type.
  *
- * @returns {?{text: string, actions: {label: string, message: object}[]}}
+ * @returns {?{text: string, actions: {label: string, message: Omit<ClientControl, 'type'>}[]}}
  */
 export function controlBar({ role, client, control, offered }) {
   if (role !== 'control' || !control?.holder) return null;

@@ -45,8 +45,15 @@ function group(label, kind, ...inputs) {
   return element('fieldset', { className: `control ${kind}` }, element('legend', {}, label), ...inputs);
 }
 
-/** With an icon of index.html; `only` with that, or else the label is its `lastChild`. */
-export function button(label, act, { icon, quiet = false, only = false } = {}) {
+/**
+ * With an icon of index.html; `only` with that, or else the label is its `lastChild`.
+ *
+ * @param {string} label
+ * @param {() => void} act
+ * @param {{icon?: string, quiet?: boolean, only?: boolean}} [looks]
+ */
+export function button(label, act, looks = {}) {
+  const { icon, quiet = false, only = false } = looks;
   const made = element('button', { type: 'button', onclick: act, className: quiet ? 'quiet' : '' });
   const use = `<use href="#icon-${icon}"/>`;
   if (icon) made.innerHTML = `<svg class="icon" viewBox="0 0 24 24" aria-hidden="true">${use}</svg>`;

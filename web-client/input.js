@@ -15,7 +15,7 @@ export class Input {
   #moved = new Set();
   #keys = new Set();
   /** One mapping for a whole gesture, even if the view changes. */
-  #toView = null;
+  #toView;
 
   /**
    * The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, `marks`: FingerMarks, and `unheard`

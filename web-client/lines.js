@@ -48,9 +48,15 @@ export class Lines {
   }
 }
 
-/** What is to be said of a Phase of the connection; null where the last still holds. */
+/**
+ * What is to be said of a Phase of the connection; null where the last still holds.
+ *
+ * @param {import('./connection.js').Phase} phase
+ * @param {boolean} hasPicture
+ * @param {boolean} hasToken
+ */
 export function connectionSentence({ name, retryMs, hadOpened, reason }, hasPicture, hasToken) {
-  const seconds = Math.round(retryMs / 1000);
+  const seconds = Math.round((retryMs ?? 0) / 1000);
   switch (name) {
     case 'starting':
       return say('phase.connecting');

@@ -21,7 +21,10 @@ import { Token } from './token.js';
 import { watchViewSize } from './view-size.js';
 import { viewsSection } from './views-section.js';
 
-const find = (id) => document.getElementById(id);
+/** @import { StateDocument } from './protocol.js' */
+
+/** Of index.html. */
+const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 const canvas = find('view');
 const lines = new Lines(find('lines'));
 const picture = new Picture(canvas);
@@ -31,6 +34,7 @@ const meter = new Meter();
 const awake = new Awake();
 const token = new Token(location.hash);
 
+/** @type {import('./connection.js').Phase} */
 let phase = { name: 'starting' };
 let hasPicture = false;
 let stats = null;
@@ -72,7 +76,7 @@ const connection = new Connection({
       if (outcome === 'failed') lines.pass(say('view.unreadable'));
       if (outcome !== 'drawn' || phase.name !== 'open') return;
       // In the same task, so that nothing jumps.
-      prediction.drawn(picture.header);
+      prediction.drawn(frame.header);
       follow();
       meter.drawn(frame.header.handled, frame.data.byteLength, performance.now());
       hasPicture = true;
@@ -122,7 +126,7 @@ const input = new Input(canvas, {
   send: (message) => connection.send(message),
   mapping: () => picture.mapping(),
   // A server that has begun anew knows nothing of the frames before.
-  frame: () => (hasPicture ? picture.header.frame : undefined),
+  frame: () => (hasPicture ? picture.header?.frame : undefined),
   // Few moves where all is late.
   soon: (action) => (meter.lateMs(performance.now()) > 1000 ? setTimeout(action, 250) : requestAnimationFrame(action)),
   marks: new FingerMarks(find('finger-marks')),
@@ -174,7 +178,7 @@ function follow() {
 /** Says why something was refused, and shows what is so instead. */
 function report(error) {
   if (error.code === 'not-in-control') {
-    lines.pass(say('control.other', { name: holderName(connection.state.control) }));
+    lines.pass(say('control.other', { name: holderName(connection.state?.control ?? {}) }));
     controlBar.offer();
   } else if (error.code === 'not-sent') {
     lines.pass(say('phase.notSent'));
@@ -200,7 +204,11 @@ function show() {
   });
 }
 
-/** The chosen part's name and its parent's, as variants are called by their paint; the rest of its path is small. */
+/**
+ * The chosen part's name and its parent's, as variants are called by their paint; the rest of its path is small.
+ *
+ * @param {StateDocument['selection']} selection
+ */
 function showPart({ node, name, path = [] }) {
   const names = path.slice(1);
   const title = names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`);

@@ -2,14 +2,17 @@ import { button, element } from './controls.js';
 import { recall, remember } from './memory.js';
 import { language, say } from './texts.js';
 
+/** @import { FrameHeader, ServerStats, StateDocument } from './protocol.js' */
+
 /**
  * What the page knows: the state, the last drawn frame's header, what the server measures, this page's id.
  *
- * @typedef {{state: ?object, revision: number, header: ?object, stats: ?object, client?: string, steers: boolean}} Now
+ * @typedef {{state: ?StateDocument, revision: number, header: ?FrameHeader, stats: ?ServerStats, client?: string,
+ *   steers: boolean}} Now
  *
  * A folding part of the menu, told when opened.
  *
- * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now) => void,
+ * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now & {state: StateDocument}) => void,
  *   unfolded?: () => void}} Section
  */
 
@@ -19,7 +22,9 @@ export class Menu {
   #panel;
   #build;
   #setLanguage;
+  /** @type {Section[]} */
   #sections = [];
+  /** @type {?Now} */
   #now = null;
 
   /** Empty until `rebuild`; `build` gives the sections in the language in force. */
@@ -82,8 +87,9 @@ export class Menu {
   }
 
   #showAll() {
-    if (!this.#now?.state) return;
-    for (const section of this.#sections) section.show(this.#now);
+    const now = this.#now;
+    if (!now?.state) return;
+    for (const section of this.#sections) section.show({ ...now, state: now.state });
   }
 }
 
@@ -96,6 +102,7 @@ function turnFullScreen() {
   else document.documentElement.requestFullscreen();
 }
 
+/** @param {Section} section */
 function foldable({ name, title, content, unfolded: opened }) {
   const details = element('details', { data: { section: name }, open: unfolded().includes(name) },
     element('summary', {}, element('h2', {}, title)), element('div', { className: 'content' }, ...content));

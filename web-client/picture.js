@@ -1,6 +1,8 @@
+/** @import { FrameHeader } from './protocol.js' */
+
 /** Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. */
 export class Picture {
-  /** The header of the frame last drawn; null before the first. */
+  /** @type {?FrameHeader} of the frame last drawn; null before the first */
   header = null;
   #canvas;
   #context;

@@ -1,3 +1,5 @@
+/** @import { FrameHeader, StateDocument } from './protocol.js' */
+
 const RIGHT = 2; // of `buttons`
 const MIDDLE = 4;
 
@@ -18,9 +20,10 @@ const NONE = { scale: 1, x: 0, y: 0 };
  * All else waits for the next picture.
  */
 export class Prediction {
+  /** @type {Partial<StateDocument['navigation']>} */
   #navigation = {};
   #steers = false;
-  /** The header of the picture shown. */
+  /** @type {?FrameHeader} of the picture shown */
   #shown = null;
   /** From the picture shown to what the last message makes of it, and where the drag began. */
   #now = NONE;
@@ -37,7 +40,8 @@ export class Prediction {
   get transform() {
     const { scale, x, y } = this.#now;
     const isMoved = scale !== 1 || x !== 0 || y !== 0;
-    return isMoved && this.#steers && this.#shown?.handled >= this.#blindUntil ? this.#now : null;
+    const isTold = this.#steers && this.#shown !== null && this.#shown.handled >= this.#blindUntil;
+    return isMoved && isTold ? this.#now : null;
   }
 
   /** The state document as last heard, and whether this page steers. */
@@ -59,12 +63,13 @@ export class Prediction {
     if (this.#now !== before) this.#pending.push({ id, now: this.#now });
   }
 
+  /** @param {FrameHeader} header */
   drawn(header) {
     const before = this.#shown;
     this.#shown = header;
     const { handled, view } = header;
     const isOtherView = view.width !== before?.view.width || view.height !== before.view.height;
-    if (isOtherView || (handled === before.handled && poseOf(header) !== poseOf(before))) {
+    if (!before || isOtherView || (handled === before.handled && poseOf(header) !== poseOf(before))) {
       this.#giveUp();
       return;
     }
@@ -128,14 +133,25 @@ export class Prediction {
     }
     if (b || style !== 'vrut') return this.#start;
     if (a.buttons === RIGHT) return panned(this.#start, x, y, panSpeed);
-    if (a.buttons === MIDDLE) return this.#zoomed(this.#start, 4 ** (-y / this.#shown?.view.height));
+    if (a.buttons === MIDDLE) return this.#zoomed(this.#start, 4 ** (-y / this.#view.height));
     return this.#start;
   }
 
-  /** About a place of the view, from its top left; the view's middle where it is left out. */
+  /** Before the first picture nothing is told. */
+  get #view() {
+    return this.#shown?.view ?? { width: 1, height: 1 };
+  }
+
+  /**
+   * About a place of the view, from its top left; the view's middle where it is left out.
+   *
+   * @param {Similarity} from
+   * @param {number} ratio
+   * @param {{x: number, y: number}} [about]
+   */
   #zoomed({ scale, x, y }, ratio, about) {
-    const factor = ratio ** this.#navigation.zoomSpeed;
-    const { width, height } = this.#shown?.view ?? {};
+    const factor = ratio ** (this.#navigation.zoomSpeed ?? 1);
+    const { width, height } = this.#view;
     const fixed = about ? { x: about.x - width / 2, y: about.y - height / 2 } : { x: 0, y: 0 };
     return { scale: scale * factor, x: fixed.x + factor * (x - fixed.x), y: fixed.y + factor * (y - fixed.y) };
   }

@@ -1,6 +1,8 @@
 import { holderName } from './control.js';
 import { say } from './texts.js';
 
+/** @import { StateDocument } from './protocol.js' */
+
 const CONNECTION = {
   open: 'presence.connected',
   starting: 'presence.connecting',
@@ -25,8 +27,13 @@ export function presence({ phase, client, state, header }) {
   return { connection: 'open', steering, level: header?.quality?.level, recording: state?.recording ? 'on' : '' };
 }
 
-/** Who is in control, in words. */
-function controlWords(steering, { control } = {}) {
+/**
+ * Who is in control, in words.
+ *
+ * @param {string} steering
+ * @param {StateDocument} state
+ */
+function controlWords(steering, { control }) {
   if (steering === 'own') return say('presence.own');
   if (steering === 'nobody') return say('presence.nobody');
   const name = holderName(control);

@@ -1,6 +1,12 @@
 import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
 import { say, written } from './texts.js';
 
+/**
+ * @import { Control } from './controls.js'
+ * @import { Now } from './menu.js'
+ * @import { StateDocument } from './protocol.js'
+ */
+
 const STYLES = [['vrut', 'VRUT'], ['maya', 'Maya'], ['catia', 'CATIA'], ['cinema4d', 'Cinema 4D']];
 
 /** The five sections of the thesis (chapter 6.9), bound to the state. */
@@ -8,7 +14,13 @@ export function sceneSections({ change, state }) {
   return [scene(), renderer(change), camera(change), light(change, state), background(change, state)];
 }
 
-/** `bound` are pairs of a control and what it shows, an array, by the state and all else that the page knows. */
+/**
+ * `bound` are pairs of a control and what it shows, by the state and all else that the page knows.
+ *
+ * @param {string} name
+ * @param {string} title
+ * @param {...[Control, (state: StateDocument, now: Now) => *[]]} bound
+ */
 function section(name, title, ...bound) {
   return {
     name,
@@ -63,6 +75,7 @@ function camera(change) {
   const degrees = { min: 1, max: 170, say: (value) => `${written(value, 1)}°` };
   const fov = range(say('camera.fov'), degrees, (value) => change({ camera: { fov: value } }));
   const factor = { min: 0.01, max: 100, logarithmic: true, step: 0.05, say: (value) => `${written(value, 2)} ×` };
+  /** @returns {[Control, (state: StateDocument) => *[]]} */
   const speed = (label, member) => [range(label, factor, set(member)), get(member)];
   return section('camera', say('camera.title'),
     [about, ({ camera: now }, { header }) =>

@@ -32,7 +32,11 @@ export function say(key, values = {}) {
   });
 }
 
-/** The sentence for an error: by its code, or the server's own where the language has none for that. */
+/**
+ * The sentence for an error: by its code, or the server's own where the language has none for that.
+ *
+ * @param {{code?: string, message: string}} error
+ */
 export function errorSentence({ code, message }) {
   const key = `error.${code}`;
   return key in TABLES[current] ? say(key, { message }) : message;

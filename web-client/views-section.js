@@ -71,10 +71,10 @@ function markers({ tell, fly, change, report, state, header }) {
   return {
     content: [...list.content, entry.element],
     show({ state: { markers: all }, header: drawn }) {
-      const entries = Object.entries(all)
-        .map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.markers?.[name] }]);
-      list.show(entries);
-      entry.show(unusedName(say('markers.newText'), entries.map(([, { text }]) => text)));
+      const textOf = (name) => all[name].text || name;
+      const names = Object.keys(all);
+      list.show(names.map((name) => [name, { text: textOf(name), lost: !drawn?.markers?.[name] }]));
+      entry.show(unusedName(say('markers.newText'), names.map(textOf)));
     },
   };
 }
