@@ -1,27 +1,27 @@
-import { Awake } from './awake.js';
-import { Changes } from './changes.js';
-import { connectionSection } from './connection-section.js';
-import { Connection, roleFrom, socketAddress } from './connection.js';
-import { ControlBar, holderName } from './control.js';
-import { element } from './controls.js';
-import { FingerMarks } from './finger-marks.js';
-import { Input } from './input.js';
-import { Labels } from './labels.js';
-import { Lines, connectionSentence } from './lines.js';
-import { recall, remember, resumeKey } from './memory.js';
-import { Menu } from './menu.js';
-import { Meter } from './meter.js';
-import { partsSection } from './parts-section.js';
-import { Picture } from './picture.js';
-import { Prediction } from './prediction.js';
-import { Presence } from './presence.js';
-import { sceneSections } from './scene-sections.js';
-import { errorSentence, language, preferredLanguage, say, setLanguage } from './texts.js';
-import { Token } from './token.js';
-import { watchViewSize } from './view-size.js';
-import { viewsSection } from './views-section.js';
+import { Awake } from './stage/awake.js';
+import { Changes } from './connection/changes.js';
+import { connectionSection } from './panels/connection-section.js';
+import { Connection, roleFrom, socketAddress } from './connection/connection.js';
+import { ControlBar, holderName } from './stage/control.js';
+import { element } from './panels/controls.js';
+import { FingerMarks } from './stage/finger-marks.js';
+import { Input } from './stage/input.js';
+import { Labels } from './stage/labels.js';
+import { Lines, connectionSentence } from './stage/lines.js';
+import { recall, remember, resumeKey } from './base/memory.js';
+import { Menu } from './panels/menu.js';
+import { Meter } from './connection/meter.js';
+import { partsSection } from './panels/parts-section.js';
+import { Picture } from './stage/picture.js';
+import { Prediction } from './stage/prediction.js';
+import { Presence } from './stage/presence.js';
+import { sceneSections } from './panels/scene-sections.js';
+import { errorSentence, language, preferredLanguage, say, setLanguage } from './base/texts.js';
+import { Token } from './connection/token.js';
+import { watchViewSize } from './stage/view-size.js';
+import { viewsSection } from './panels/views-section.js';
 
-/** @import { StateDocument } from './protocol.js' */
+/** @import { StateDocument } from './base/protocol.js' */
 
 /** Of index.html. */
 const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -34,7 +34,7 @@ const meter = new Meter();
 const awake = new Awake();
 const token = new Token(location.hash);
 
-/** @type {import('./connection.js').Phase} */
+/** @type {import('./connection/connection.js').Phase} */
 let phase = { name: 'starting' };
 let hasPicture = false;
 let stats = null;

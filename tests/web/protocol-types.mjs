@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const SCHEMA = new URL('../../protocol/protocol.schema.json', import.meta.url);
-export const TYPES = new URL('../../web-client/protocol.d.ts', import.meta.url);
+export const TYPES = new URL('../../web-client/base/protocol.d.ts', import.meta.url);
 
 const HEAD = '// Written by tests/web/protocol-types.mjs from protocol/protocol.schema.json.\n';
 

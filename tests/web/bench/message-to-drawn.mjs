@@ -51,7 +51,7 @@ function keepPictures() {
 /** Runs in the page. @returns {Promise<{page: number[], bare: number[], bytes: number[]}>} milliseconds, and sizes */
 async function measure({ rounds, warmUp }) {
   const [{ Connection }, { Picture }, { frameHeader }] = await Promise.all([
-    import('/connection.js'), import('/picture.js'), import('/frame-header.js'),
+    import('/connection/connection.js'), import('/stage/picture.js'), import('/connection/frame-header.js'),
   ]);
   const stills = window.pictures.filter((data) => {
     const { quality } = frameHeader(data);

@@ -1,7 +1,7 @@
 import { once } from 'node:events';
 import WebSocket from 'ws';
-import { socketAddress } from '../../../web-client/connection.js';
-import { mergePatch } from '../../../web-client/merge-patch.js';
+import { socketAddress } from '../../../web-client/connection/connection.js';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
 
 /** Somebody else at the server, who wants no pictures. */
 export class Colleague {

@@ -179,7 +179,7 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
 
   test('a door turns about its axis, by the right-hand rule, in its own space', async () => {
     const opened = (...hinge) => tablet.page.evaluate(async ([axis, degrees, closed, part]) => {
-      const parts = await import('/parts-section.js');
+      const parts = await import('/panels/parts-section.js');
       return parts.opened({ axis, degrees, closed }, part);
     }, hinge);
     const near = (actual, expected) => {
@@ -197,7 +197,7 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
 
   test('a list of many goes on when it is asked to, and a choice of many is a list', async () => {
     await tablet.page.evaluate(async () => {
-      const { partsSection } = await import('/parts-section.js');
+      const { partsSection } = await import('/panels/parts-section.js');
       const state = { scene: {}, selection: {}, nodes: {} };
       const page = (ids, next) => ({ nodes: ids.map((id) => ({ id, name: `Nut ${id}`, parent: 0, active: true, children: 0 })), next });
       const choices = ['a', 'b', 'c', 'd', 'e'];

@@ -1,5 +1,5 @@
-import { frameHeader } from '../../../web-client/frame-header.js';
-import { mergePatch } from '../../../web-client/merge-patch.js';
+import { frameHeader } from '../../../web-client/connection/frame-header.js';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
 
 const LIMIT_MS = 30_000;
 

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { afterEach, test } from 'node:test';
-import { Awake } from '../../../web-client/awake.js';
+import { Awake } from '../../../web-client/stage/awake.js';
 import { replaceGlobals } from './fakes.js';
 
 const settled = () => new Promise((resolve) => setImmediate(resolve));

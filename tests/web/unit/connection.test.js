@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import { Connection, roleFrom, socketAddress, tokenFrom } from '../../../web-client/connection.js';
+import { Connection, roleFrom, socketAddress, tokenFrom } from '../../../web-client/connection/connection.js';
 import { FakeClock, FakeSocket, jpegWith, replaceGlobals } from './fakes.js';
 
 const SIZE = { width: 1180, height: 820, pixelRatio: 2 };

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { FingerMarks } from '../../../web-client/finger-marks.js';
+import { FingerMarks } from '../../../web-client/stage/finger-marks.js';
 
 function setUp() {
   const elements = [];

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { frameHeader } from '../../../web-client/frame-header.js';
+import { frameHeader } from '../../../web-client/connection/frame-header.js';
 import { JFIF, comment, jpegWith, segments } from './fakes.js';
 
 const header = { frame: 7, revision: 3, camera: { name: 'Škoda' } };

@@ -1,6 +1,6 @@
 import { readFileSync, readdirSync } from 'node:fs';
-import { Input } from '../../../web-client/input.js';
-import { viewMapping } from '../../../web-client/picture.js';
+import { Input } from '../../../web-client/stage/input.js';
+import { viewMapping } from '../../../web-client/stage/picture.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
 
 const FOLDER = new URL('../../data/gestures/', import.meta.url);

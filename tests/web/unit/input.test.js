@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { Input } from '../../../web-client/input.js';
+import { Input } from '../../../web-client/stage/input.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
 import { gestures, messagesOf } from './gestures.js';
 

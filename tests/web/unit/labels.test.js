@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { inView, labelPlaces } from '../../../web-client/labels.js';
-import { viewMapping } from '../../../web-client/picture.js';
+import { inView, labelPlaces } from '../../../web-client/stage/labels.js';
+import { viewMapping } from '../../../web-client/stage/picture.js';
 
 const view = { width: 200, height: 100, pixelRatio: 2 };
 // The eye at (0, 0, 10) looks along −z: 90° high, near 1, far 100.

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, beforeEach, describe, test } from 'node:test';
-import { Lines, connectionSentence } from '../../../web-client/lines.js';
-import { setLanguage } from '../../../web-client/texts.js';
+import { Lines, connectionSentence } from '../../../web-client/stage/lines.js';
+import { setLanguage } from '../../../web-client/base/texts.js';
 import { FakeClock, FakeElement, fakeDocument, replaceGlobals } from './fakes.js';
 
 let clock;

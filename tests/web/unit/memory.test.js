@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { webcrypto } from 'node:crypto';
 import { afterEach, beforeEach, test } from 'node:test';
-import { recall, remember, resumeKey } from '../../../web-client/memory.js';
+import { recall, remember, resumeKey } from '../../../web-client/base/memory.js';
 import { FakeStorage, replaceGlobals } from './fakes.js';
 
 beforeEach(() => {

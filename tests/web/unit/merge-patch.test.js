@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { mergePatch } from '../../../web-client/merge-patch.js';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
 
 // The table of RFC 7396, appendix A.
 const table = [

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Meter } from '../../../web-client/meter.js';
+import { Meter } from '../../../web-client/connection/meter.js';
 
 test('nothing is measured before anything came', () => {
   assert.deepEqual(new Meter().read(0), { p50: undefined, p95: undefined, framesPerSecond: 0, bytesPerSecond: 0 });

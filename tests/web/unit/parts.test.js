@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import { variants } from '../../../web-client/parts-section.js';
-import { setLanguage } from '../../../web-client/texts.js';
+import { variants } from '../../../web-client/panels/parts-section.js';
+import { setLanguage } from '../../../web-client/base/texts.js';
 
 afterEach(() => setLanguage('en'));
 

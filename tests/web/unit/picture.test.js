@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Picture, viewMapping } from '../../../web-client/picture.js';
+import { Picture, viewMapping } from '../../../web-client/stage/picture.js';
 
 function setUp() {
   const page = { drawn: [], closed: [], decoding: [], classes: new Set(), box: { left: 0, top: 0, width: 100, height: 50 } };

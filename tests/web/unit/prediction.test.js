@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { Prediction } from '../../../web-client/prediction.js';
+import { Prediction } from '../../../web-client/stage/prediction.js';
 import { axes, distance, focalLength } from '../projection.js';
 import { gestures } from './gestures.js';
 

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { describe, test } from 'node:test';
-import { Presence, presence } from '../../../web-client/presence.js';
+import { Presence, presence } from '../../../web-client/stage/presence.js';
 import { FakeClock, replaceGlobals } from './fakes.js';
 
 const OPEN = { phase: { name: 'open' }, role: 'control', client: 'a', header: { quality: { level: 'still' } } };

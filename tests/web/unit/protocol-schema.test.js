@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { test } from 'node:test';
 import Ajv from 'ajv/dist/2020.js';
-import { mergePatch } from '../../../web-client/merge-patch.js';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
 
 const read = (path) => JSON.parse(readFileSync(new URL(path, import.meta.url), 'utf8'));
 const schema = read('../../../protocol/protocol.schema.json');

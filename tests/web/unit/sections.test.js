@@ -2,9 +2,9 @@ import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
 import {
   bytesWords, holderWords, hostWords, qualityWords, snapshotName, snapshotSize,
-} from '../../../web-client/connection-section.js';
-import { setLanguage } from '../../../web-client/texts.js';
-import { lookingAt, placeOf, unusedName } from '../../../web-client/views-section.js';
+} from '../../../web-client/panels/connection-section.js';
+import { setLanguage } from '../../../web-client/base/texts.js';
+import { lookingAt, placeOf, unusedName } from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
 

@@ -1,13 +1,14 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { afterEach, test } from 'node:test';
-import { errorSentence, language, preferredLanguage, say, setLanguage, written } from '../../../web-client/texts.js';
-import { cs } from '../../../web-client/texts/cs.js';
-import { en } from '../../../web-client/texts/en.js';
+import { errorSentence, language, preferredLanguage, say, setLanguage, written } from '../../../web-client/base/texts.js';
+import { cs } from '../../../web-client/base/texts/cs.js';
+import { en } from '../../../web-client/base/texts/en.js';
 
 const read = (path) => readFileSync(new URL(path, new URL('../../../', import.meta.url)), 'utf8');
 const tables = Object.entries({ en, cs });
-const modules = readdirSync(new URL('../../../web-client/', import.meta.url)).filter((name) => name.endsWith('.js'))
+const modules = readdirSync(new URL('../../../web-client/', import.meta.url), { recursive: true })
+  .filter((name) => name.endsWith('.js') && !name.includes('texts/'))
   .map((name) => ({ name, source: read(`web-client/${name}`) }));
 const codes = JSON.parse(read('protocol/protocol.schema.json')).$defs.serverError.properties.code.enum;
 

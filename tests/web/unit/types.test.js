@@ -10,7 +10,7 @@ const path = (relative) => fileURLToPath(new URL(relative, import.meta.url));
 
 test('the types of the protocol are those of its schema', () => {
   const isStale = readFileSync(TYPES, 'utf8') !== protocolTypes();
-  assert.ok(!isStale, 'web-client/protocol.d.ts is stale: run node tests/web/protocol-types.mjs');
+  assert.ok(!isStale, 'web-client/base/protocol.d.ts is stale: run node tests/web/protocol-types.mjs');
 });
 
 test('the page keeps to its types', async () => {

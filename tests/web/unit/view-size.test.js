@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { watchViewSize } from '../../../web-client/view-size.js';
+import { watchViewSize } from '../../../web-client/stage/view-size.js';
 import { FakeWindow } from './fakes.js';
 
 function setUp(clientWidth = 1180, clientHeight = 820, devicePixelRatio = 2) {

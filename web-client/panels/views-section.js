@@ -1,6 +1,6 @@
 import { button, byName, element, joined } from './controls.js';
 import { rows } from './rows.js';
-import { say } from './texts.js';
+import { say } from '../base/texts.js';
 
 const FLIGHT_MS = 600;
 

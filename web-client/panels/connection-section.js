@@ -1,6 +1,6 @@
-import { clientName, holderName } from './control.js';
+import { clientName, holderName } from '../stage/control.js';
 import { button, element, fact, facts, joined, range } from './controls.js';
-import { say, written } from './texts.js';
+import { say, written } from '../base/texts.js';
 
 const LARGEST_SIDE = 8192;
 const MEASURES_EVERY_MS = 500;

@@ -1,4 +1,4 @@
-import { mergePatch } from './merge-patch.js';
+import { mergePatch } from '../base/merge-patch.js';
 
 /**
  * Sends changes of the state, one at a time: while one is on its way, those that follow become one. A slider

@@ -1,8 +1,8 @@
 import { button, element } from './controls.js';
-import { recall, remember } from './memory.js';
-import { language, say } from './texts.js';
+import { recall, remember } from '../base/memory.js';
+import { language, say } from '../base/texts.js';
 
-/** @import { FrameHeader, ServerStats, StateDocument } from './protocol.js' */
+/** @import { FrameHeader, ServerStats, StateDocument } from '../base/protocol.js' */
 
 /**
  * What the page knows: the state, the last drawn frame's header, what the server measures, this page's id.

@@ -1,7 +1,7 @@
 import { frameHeader } from './frame-header.js';
-import { mergePatch } from './merge-patch.js';
+import { mergePatch } from '../base/merge-patch.js';
 
-/** @import { ClientHello, ServerError, StateDocument } from './protocol.js' */
+/** @import { ClientHello, ServerError, StateDocument } from '../base/protocol.js' */
 
 const SUBPROTOCOL = 'vrut-preview.v1';
 const POLICY_VIOLATION = 1008;

@@ -1,5 +1,5 @@
 import { tokenFrom } from './connection.js';
-import { recall, remember } from './memory.js';
+import { recall, remember } from '../base/memory.js';
 
 /** The token to say hello with: the address's, or, as an installed page has none there, the last accepted. */
 export class Token {

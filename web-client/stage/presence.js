@@ -1,7 +1,7 @@
 import { holderName } from './control.js';
-import { say } from './texts.js';
+import { say } from '../base/texts.js';
 
-/** @import { StateDocument } from './protocol.js' */
+/** @import { StateDocument } from '../base/protocol.js' */
 
 const CONNECTION = {
   open: 'presence.connected',

@@ -1,5 +1,5 @@
 import { button, choice, element, selection, toggle } from './controls.js';
-import { say } from './texts.js';
+import { say } from '../base/texts.js';
 
 const MOST_SEGMENTS = 5;
 const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB

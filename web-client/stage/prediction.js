@@ -1,4 +1,4 @@
-/** @import { FrameHeader, StateDocument } from './protocol.js' */
+/** @import { FrameHeader, StateDocument } from '../base/protocol.js' */
 
 const RIGHT = 2; // of `buttons`
 const MIDDLE = 4;

@@ -1,4 +1,4 @@
-/** @import { FrameHeader } from './protocol.js' */
+/** @import { FrameHeader } from '../base/protocol.js' */
 
 /** Shows frames on a canvas, none after a newer; `data-frame`, `data-level` and `data-revision` say which. */
 export class Picture {

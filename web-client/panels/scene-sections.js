@@ -1,10 +1,10 @@
 import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
-import { say, written } from './texts.js';
+import { say, written } from '../base/texts.js';
 
 /**
  * @import { Control } from './controls.js'
  * @import { Now } from './menu.js'
- * @import { StateDocument } from './protocol.js'
+ * @import { StateDocument } from '../base/protocol.js'
  */
 
 const STYLES = [['vrut', 'VRUT'], ['maya', 'Maya'], ['catia', 'CATIA'], ['cinema4d', 'Cinema 4D']];

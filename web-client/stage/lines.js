@@ -1,5 +1,5 @@
-import { element } from './controls.js';
-import { errorSentence, say } from './texts.js';
+import { element } from '../panels/controls.js';
+import { errorSentence, say } from '../base/texts.js';
 
 const MOST_LINES = 3;
 const PASSES_AFTER_MS = 6000;
@@ -51,7 +51,7 @@ export class Lines {
 /**
  * What is to be said of a Phase of the connection; null where the last still holds.
  *
- * @param {import('./connection.js').Phase} phase
+ * @param {import('../connection/connection.js').Phase} phase
  * @param {boolean} hasPicture
  * @param {boolean} hasToken
  */

@@ -1,7 +1,7 @@
-import { button, element } from './controls.js';
-import { say } from './texts.js';
+import { button, element } from '../panels/controls.js';
+import { say } from '../base/texts.js';
 
-/** @import { ClientControl, StateDocument } from './protocol.js' */
+/** @import { ClientControl, StateDocument } from '../base/protocol.js' */
 
 const OFFERED_MS = 8000;
 

@@ -1,4 +1,4 @@
-import { language, written } from './texts.js';
+import { language, written } from '../base/texts.js';
 
 /** With properties (`data` for its dataset, `role` and `aria-…` as attributes) and children. */
 export function element(tag, properties = {}, ...children) {
