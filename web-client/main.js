@@ -1,24 +1,25 @@
-import { Awake } from './stage/awake.js';
+import { holderName } from './base/client-names.js';
+import { element } from './base/element.js';
+import { recall, remember, resumeKey } from './base/memory.js';
+import { errorSentence, language, preferredLanguage, say, setLanguage } from './base/texts.js';
 import { Changes } from './connection/changes.js';
-import { connectionSection } from './panels/connection-section.js';
 import { Connection, roleFrom, socketAddress } from './connection/connection.js';
-import { ControlBar, holderName } from './stage/control.js';
-import { element } from './panels/controls.js';
+import { Meter } from './connection/meter.js';
+import { Token } from './connection/token.js';
+import { Awake } from './stage/awake.js';
+import { ControlBar } from './stage/control.js';
 import { FingerMarks } from './stage/finger-marks.js';
 import { Input } from './stage/input.js';
 import { Labels } from './stage/labels.js';
 import { Lines, connectionSentence } from './stage/lines.js';
-import { recall, remember, resumeKey } from './base/memory.js';
-import { Menu } from './panels/menu.js';
-import { Meter } from './connection/meter.js';
-import { partsSection } from './panels/parts-section.js';
 import { Picture } from './stage/picture.js';
 import { Prediction } from './stage/prediction.js';
 import { Presence } from './stage/presence.js';
-import { sceneSections } from './panels/scene-sections.js';
-import { errorSentence, language, preferredLanguage, say, setLanguage } from './base/texts.js';
-import { Token } from './connection/token.js';
 import { watchViewSize } from './stage/view-size.js';
+import { connectionSection } from './panels/connection-section.js';
+import { Menu } from './panels/menu.js';
+import { partsSection } from './panels/parts-section.js';
+import { sceneSections } from './panels/scene-sections.js';
 import { viewsSection } from './panels/views-section.js';
 
 /** @import { StateDocument } from './base/protocol.js' */

@@ -1,6 +1,7 @@
-import { clientName, holderName } from '../stage/control.js';
-import { button, element, fact, facts, joined, range } from './controls.js';
+import { clientName, holderName } from '../base/client-names.js';
+import { button, element } from '../base/element.js';
 import { say, written } from '../base/texts.js';
+import { fact, facts, joined, range } from './controls.js';
 
 const LARGEST_SIDE = 8192;
 const MEASURES_EVERY_MS = 500;

@@ -1,4 +1,4 @@
-import { button, element } from './controls.js';
+import { button, element } from '../base/element.js';
 import { recall, remember } from '../base/memory.js';
 import { language, say } from '../base/texts.js';
 

@@ -1,5 +1,6 @@
-import { button, choice, element, selection, toggle } from './controls.js';
+import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
+import { choice, selection, toggle } from './controls.js';
 
 const MOST_SEGMENTS = 5;
 const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB

@@ -1,4 +1,4 @@
-import { element } from './controls.js';
+import { element } from '../base/element.js';
 
 /**
  * A Control of [key, item] for each row, or the words `none`. `make(key)` gives a row's {children, show(item)}; while

@@ -1,5 +1,5 @@
-import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
 import { say, written } from '../base/texts.js';
+import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
 
 /**
  * @import { Control } from './controls.js'

@@ -1,6 +1,7 @@
-import { button, byName, element, joined } from './controls.js';
-import { rows } from './rows.js';
+import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
+import { byName, joined } from './controls.js';
+import { rows } from './rows.js';
 
 const FLIGHT_MS = 600;
 

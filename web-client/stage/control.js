@@ -1,23 +1,10 @@
-import { button, element } from '../panels/controls.js';
+import { clientName, holderName } from '../base/client-names.js';
+import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 
-/** @import { ClientControl, StateDocument } from '../base/protocol.js' */
+/** @import { ClientControl } from '../base/protocol.js' */
 
 const OFFERED_MS = 8000;
-
-/** How people call a client: by the name that it gave in `hello`, or else by its id. */
-export function clientName({ client, name }) {
-  return name || say('connection.client', { id: client });
-}
-
-/**
- * How people call the holder of `control` of the state.
- *
- * @param {Partial<StateDocument['control']>} control
- */
-export function holderName({ holder, name }) {
-  return clientName({ client: holder, name });
-}
 
 /**
  * What the bar says of control to the page of `client`, or null: to the holder that somebody asks, to another that it

@@ -1,4 +1,4 @@
-import { element } from '../panels/controls.js';
+import { element } from '../base/element.js';
 
 /** A `.finger-mark` for each finger and pen, `.pressed` while that is; in a container that fills the window. */
 export class FingerMarks {

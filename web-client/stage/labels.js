@@ -1,4 +1,4 @@
-import { element } from '../panels/controls.js';
+import { element } from '../base/element.js';
 
 /** Shows each marker's text beside its sign in the picture, in a container as large as the window. */
 export class Labels {

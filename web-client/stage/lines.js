@@ -1,4 +1,4 @@
-import { element } from '../panels/controls.js';
+import { element } from '../base/element.js';
 import { errorSentence, say } from '../base/texts.js';
 
 const MOST_LINES = 3;

@@ -1,4 +1,4 @@
-import { holderName } from './control.js';
+import { holderName } from '../base/client-names.js';
 import { say } from '../base/texts.js';
 
 /** @import { StateDocument } from '../base/protocol.js' */

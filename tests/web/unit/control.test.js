@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, beforeEach, describe, test } from 'node:test';
-import { ControlBar, clientName, controlBar } from '../../../web-client/stage/control.js';
+import { clientName } from '../../../web-client/base/client-names.js';
+import { ControlBar, controlBar } from '../../../web-client/stage/control.js';
 import { FakeClock, FakeElement, fakeDocument, replaceGlobals } from './fakes.js';
 
 const OTHER = { holder: 'b', name: 'Eva’s iPad', kept: true, absent: false, asking: [] };
