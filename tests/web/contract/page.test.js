@@ -1,8 +1,10 @@
 // What a browser is sent when it opens the page, and when it reloads it.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
 import http from 'node:http';
 import { after, test } from 'node:test';
 import { gunzipSync } from 'node:zlib';
+import typescript from 'typescript';
 import { Server } from './server.js';
 
 const MOST_BYTES = 60 * 1024;
@@ -73,6 +75,18 @@ test('each module that is imported is asked for at once, and no other', async ()
   }
   assert.ok(imported.size > 10);
   assert.deepEqual([...imported].sort(), announced.sort());
+});
+
+test('modules come without the lines of comment, and else as they are', async () => {
+  const bare = (code) => typescript.transpile(code, { target: 'esnext', removeComments: true });
+  const modules = [...referencesOf((await get('', BROWSER)).text).keys()].filter((path) => path.endsWith('.js'));
+  assert.ok(modules.length > 10);
+  for (const path of modules) {
+    const { text } = await get(path, BROWSER);
+    assert.doesNotMatch(text, /^\s*(\/\/|\/\*\*.*[^/]$)/m, path);
+    const source = readFileSync(new URL(path.replace(/^[^/]+/, '../../../web-client'), import.meta.url), 'utf8');
+    assert.equal(bare(text), bare(source), path);
+  }
 });
 
 test('a reload asks for the page alone, and is sent nothing', async () => {
