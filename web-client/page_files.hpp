@@ -7,7 +7,7 @@ namespace vrut {
 
 /// A file of the page, as it is served.
 struct PageFile {
-    std::string_view name;  ///< "main.js"
+    std::string_view name;  ///< "app.js"
     std::string_view content_type;
     std::string_view bytes;
     std::string_view

@@ -68,7 +68,7 @@ struct Servers {
 
 // --- routes
 
-const std::vector<std::string> kPublic{"/", "/main.js", "/healthz"};
+const std::vector<std::string> kPublic{"/", "/app.js", "/healthz"};
 const std::vector<std::string> kGuarded{"/readyz", "/metrics", "/protocol.schema.json",
                                         "/frame.jpg?width=16&height=16"};
 

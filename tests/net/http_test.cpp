@@ -10,12 +10,12 @@ TEST_CASE("the page and its files are served, and nothing else") {
     TestServer server;
     const HttpAnswer page = http(server.port(), "GET", "/");
     CHECK(page.status == 200);
-    CHECK(page.body.find("main.js") != std::string::npos);
+    CHECK(page.body.find("app.js") != std::string::npos);
     CHECK(page.headers.find("Content-Security-Policy: default-src 'none'") != std::string::npos);
     CHECK(page.headers.find("; connect-src 'self' ws://127.0.0.1 wss://127.0.0.1\r\n") != std::string::npos);
     CHECK(page.headers.find("\r\nCross-Origin-Resource-Policy: same-origin\r\n") != std::string::npos);
     CHECK(page.headers.find("; manifest-src 'self'; ") != std::string::npos);
-    CHECK(http(server.port(), "GET", "/main.js").headers.find("text/javascript") != std::string::npos);
+    CHECK(http(server.port(), "GET", "/app.js").headers.find("text/javascript") != std::string::npos);
     CHECK(http(server.port(), "GET", "/style.css?x=1").status == 200);
     const HttpAnswer head = http(server.port(), "HEAD", "/");
     CHECK(head.status == 200);

@@ -105,23 +105,23 @@ test('a reload asks for the page alone, and is sent nothing', async () => {
       assert.equal(headers['cache-control'], 'public, max-age=31536000, immutable', path);
     }
   }
-  assert.equal((await get('page-0123456789abcdef/main.js')).status, 404);
+  assert.equal((await get('page-0123456789abcdef/app.js')).status, 404);
   const [folder] = /page-[0-9a-f]{16}\//.exec(index.text);
   assert.equal((await get(`${folder}index.html`)).status, 404, 'its references start from the root');
 });
 
 test('who does not accept gzip gets the same bytes as they are', async () => {
-  const compressed = await get('main.js', BROWSER);
+  const compressed = await get('app.js', BROWSER);
   assert.equal(compressed.headers.vary, 'Accept-Encoding');
   assert.ok(compressed.body.length < compressed.text.length / 2);
   for (const headers of [{}, { 'accept-encoding': 'identity' }, { 'accept-encoding': 'gzip;q=0, *;q=0.000' }, { 'accept-encoding': ';;,' }]) {
-    const plain = await get('main.js', headers);
+    const plain = await get('app.js', headers);
     assert.equal(plain.headers['content-encoding'], undefined, JSON.stringify(headers));
     assert.equal(plain.body.toString(), compressed.text);
     assert.notEqual(plain.headers.etag, compressed.headers.etag);
-    assert.equal((await get('main.js', { ...headers, 'if-none-match': plain.headers.etag })).status, 304);
+    assert.equal((await get('app.js', { ...headers, 'if-none-match': plain.headers.etag })).status, 304);
   }
   for (const headers of [{ 'accept-encoding': '*' }, { 'accept-encoding': 'br, GZIP;q=0.5' }]) {
-    assert.equal((await get('main.js', headers)).headers['content-encoding'], 'gzip', JSON.stringify(headers));
+    assert.equal((await get('app.js', headers)).headers['content-encoding'], 'gzip', JSON.stringify(headers));
   }
 });
