@@ -6,6 +6,8 @@ const TABLES = { cs, en };
 const KNOWN = { cs: 'cs', sk: 'cs', en: 'en' };
 
 let current = 'en';
+/** @type {Record<string, Intl.NumberFormat>} by language and digits */
+const formats = {};
 
 /** The language in force: 'en' or 'cs'. */
 export function language() {
@@ -44,5 +46,8 @@ export function errorSentence({ code, message }) {
 
 /** A number as the language writes it; `digits` behind the decimal sign, at most. */
 export function written(value, digits = 0) {
-  return new Intl.NumberFormat(current, { maximumFractionDigits: digits }).format(value);
+  const key = `${current} ${digits}`;
+  // Making one takes longer than all else that is done for a frame.
+  formats[key] ??= new Intl.NumberFormat(current, { maximumFractionDigits: digits });
+  return formats[key].format(value);
 }
