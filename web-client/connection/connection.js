@@ -15,13 +15,6 @@ const ANSWER_WITHIN_MS = 4000;
 const ASKS_AFTER_MS = 5000;
 const SILENT_AFTER_MS = 10_000;
 
-/**
- * Where the connection stands; `reason`: why the server refused it.
- *
- * @typedef {{name: 'starting'|'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
- *   reason?: {code?: string, message: string}}} Phase
- */
-
 /** Connects, says hello, keeps the state document, grants frames, and begins anew when the connection is lost. */
 export class Connection {
   /** @type {?StateDocument} as last heard, kept over a lost connection; null before the first */

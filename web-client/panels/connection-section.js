@@ -1,51 +1,60 @@
 import { clientName, holderName } from '../base/client-names.js';
 import { button, element } from '../base/element.js';
+import { onChange } from '../base/store.js';
 import { say, written } from '../base/texts.js';
-import { fact, facts, joined, range } from './controls.js';
+import { fact, facts, range } from './controls.js';
+import { each, joined, stateOf } from './section.js';
+
+/** @import { Page, Section } from './section.js' */
 
 const LARGEST_SIDE = 8192;
 const MEASURES_EVERY_MS = 500;
 const KEEPS_FILE_MS = 60_000;
 
-/** Who steers, how pictures come, and what the server does besides. */
-export function connectionSection({ change, ask, report, meter, state, header }) {
-  const tell = (message) => ask(message).catch(report);
-  const others = scenes(tell);
+/**
+ * Who steers, how pictures come, and what the server does besides.
+ *
+ * @param {Page} page
+ * @returns {Section}
+ */
+export function connectionSection({ commands, meter, store }) {
+  const others = scenes(commands);
   return {
-    ...others,
     name: 'connection',
     title: say('connection.title'),
-    ...joined([steering(tell), pictures(change, meter), files(tell, state, header), others]),
+    unfolded: others.unfolded,
+    ...joined([steering(commands), pictures(commands, meter), files(commands, store), others]),
   };
 }
 
-function steering(tell) {
+function steering({ control }) {
   const about = facts({
     holder: say('control.holder'),
     clients: say('connection.clients'),
     watchers: say('connection.watchers'),
   });
-  const control = (action) => () => tell({ type: 'control', action });
-  const take = button(say('control.take'), control('take'), { icon: 'hand' });
-  const release = button(say('control.release'), control('release'));
+  const take = button(say('control.take'), () => control({ action: 'take' }), { icon: 'hand' });
+  const release = button(say('control.release'), () => control({ action: 'release' }));
   const heading = element('h3', {}, say('connection.walls'));
   const walls = element('dl', { className: 'facts' });
   return {
     content: [about.element, element('div', { className: 'buttons' }, take, release), heading, walls],
-    show({ state, stats, client, steers, revision }) {
-      const { hosts = {}, ...counts } = stats ?? {};
-      about.show({ ...counts, holder: holderWords(state.control, client) });
-      take.ariaDisabled = steers;
-      release.ariaDisabled = !steers;
-      const lines = Object.entries(hosts).map(([id, host]) =>
-        fact(clientName({ client: id, name: host.name }), element('dd', {}, hostWords(host, revision))));
-      heading.hidden = lines.length === 0;
-      walls.replaceChildren(...lines);
-    },
+    show: each(
+      onChange(({ state, stats, client }) => [state.control, client, stats], (held, client, stats) =>
+        about.show({ ...stats, holder: holderWords(held, client) })),
+      onChange(({ steers }) => [steers], (steers) => {
+        take.ariaDisabled = steers;
+        release.ariaDisabled = !steers;
+      }),
+      onChange(({ stats, revision }) => [stats?.hosts, hasMembers(stats?.hosts) && revision], (hosts, revision) => {
+        const lines = hostLines(hosts, revision);
+        heading.hidden = lines.length === 0;
+        walls.replaceChildren(...lines.map(({ name, words }) => fact(name, element('dd', {}, words))));
+      })),
   };
 }
 
-function pictures(change, meter) {
+function pictures({ change }, meter) {
   const about = facts({
     latency: say('connection.latency'),
     frames: say('connection.frames'),
@@ -58,33 +67,29 @@ function pictures(change, meter) {
   let timer;
   const measure = () => {
     clearTimeout(timer);
-    const { p50, p95, framesPerSecond, bytesPerSecond } = meter.read(performance.now());
-    about.show({
-      latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
-      frames: written(framesPerSecond, 1),
-      data: `${bytesWords(bytesPerSecond)} / s`,
-    });
+    const measured = meter.read(performance.now());
+    about.show(pictureFacts(measured));
     // Nobody tells when pictures cease.
-    if (framesPerSecond > 0 && about.element.isConnected) timer = setTimeout(measure, MEASURES_EVERY_MS);
+    if (measured.framesPerSecond > 0 && about.element.isConnected) timer = setTimeout(measure, MEASURES_EVERY_MS);
   };
   return {
     content: [about.element, preferred.element, level],
-    show({ state, header }) {
-      measure();
-      preferred.show(state.quality.preference);
-      level.textContent = header ? qualityWords(header.quality) : '';
-    },
+    show: each(
+      onChange(({ header }) => [header], measure),
+      onChange(({ state }) => [state.quality.preference], preferred.show),
+      onChange(({ header }) => [header ? qualityWords(header.quality) : ''], (words) => {
+        level.textContent = words;
+      })),
   };
 }
 
-function files(tell, present, drawn) {
+function files(commands, store) {
   const about = facts({ recording: say('recording.name') });
-  const record = button('', () => tell({ type: 'record', action: present().recording ? 'stop' : 'start' }),
-    { icon: 'record' });
+  const record = button('', () => commands.record(stateOf(store).recording ? 'stop' : 'start'), { icon: 'record' });
   const snapshot = button('', async () => {
     if (snapshot.ariaBusy === 'true') return;
     setBusy(true);
-    const picture = await tell({ type: 'snapshot', ...snapshotSize(drawn().view), jpegQuality: 95 });
+    const picture = await commands.snapshot(snapshotSize(store.now.header.view));
     if (picture) save(picture.data);
     setBusy(false);
   }, { icon: 'camera' });
@@ -96,24 +101,26 @@ function files(tell, present, drawn) {
   setBusy(false);
   return {
     content: [element('div', { className: 'buttons' }, snapshot, record), about.element],
-    show({ state: { recording }, header }) {
-      snapshot.disabled = !header;
-      record.lastChild.data = recording ? say('recording.stop') : say('recording.start');
-      about.element.hidden = !recording;
-      about.show({ recording: recording?.name });
-    },
+    show: each(
+      onChange(({ header }) => [!header], (disabled) => Object.assign(snapshot, { disabled })),
+      onChange(({ state }) => [state.recording], (recording) => {
+        record.lastChild.data = recording ? say('recording.stop') : say('recording.start');
+        about.element.hidden = !recording;
+        about.show({ recording: recording?.name });
+      })),
   };
 }
 
-function scenes(tell) {
-  let askedBy;
+function scenes(commands) {
+  let isAsked = false;
   const select = element('select');
   const label = element('label', { className: 'control' }, say('scenes.label'), select);
-  const open = button(say('scenes.open'), () => tell({ type: 'open', scene: select.value }), { icon: 'open' });
+  const open = button(say('scenes.open'), () => commands.open(select.value), { icon: 'open' });
   const row = element('div', { className: 'entry', hidden: true }, label, open);
   const none = element('p', { className: 'note', hidden: true }, say('scenes.none'));
-  const unfolded = async () => {
-    const answer = askedBy && await tell({ type: 'scenes' });
+  const ask = async () => {
+    isAsked = true;
+    const answer = await commands.scenes();
     if (!answer) return;
     select.replaceChildren(...answer.scenes.map((name) => new Option(name, name, false, name === select.value)));
     none.hidden = answer.scenes.length > 0;
@@ -121,12 +128,27 @@ function scenes(tell) {
   };
   return {
     content: [row, none],
-    unfolded,
-    show({ client }) {
-      if (!client || client === askedBy) return;
-      askedBy = client;
-      unfolded();
-    },
+    unfolded: () => isAsked && ask(),
+    show: onChange(({ client }) => [client], (client) => client && ask()),
+  };
+}
+
+function hasMembers(object = {}) {
+  return Object.keys(object).length > 0;
+}
+
+/** Of the stats' hosts. @returns {{name: string, words: string}[]} */
+export function hostLines(hosts = {}, revision) {
+  return Object.entries(hosts).map(([client, host]) =>
+    ({ name: clientName({ client, name: host.name }), words: hostWords(host, revision) }));
+}
+
+/** By what a Meter reads. */
+export function pictureFacts({ p50, p95, framesPerSecond, bytesPerSecond }) {
+  return {
+    latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
+    frames: written(framesPerSecond, 1),
+    data: `${bytesWords(bytesPerSecond)} / s`,
   };
 }
 
@@ -143,7 +165,7 @@ export function hostWords({ revision: shown, lagMs }, revision) {
 }
 
 /** By a header's `quality`. */
-export function qualityWords({ level, scale, samples, detail, jpegQuality, error }) {
+export function qualityWords({ level, scale, samples, detail, jpegQuality, error = NaN }) {
   const flip = error > 0 && error < 1e-3 ? `< ${written(1e-3, 3)}` : written(error, 3);
   return [
     level === 'still' ? say('quality.still') : say('quality.moving'),

@@ -101,18 +101,21 @@ export function range(label, { min, max, logarithmic = false, step = 1, say }, c
 export function numbers(label, labels, change) {
   let latest = [];
   const inputs = labels.map(() => element('input', { type: 'number', min: 0, step: 'any', inputMode: 'decimal' }));
-  for (const [i, input] of inputs.entries()) {
-    input.onchange = () => {
-      if (input.valueAsNumber >= 0) change(latest = latest.with(i, input.valueAsNumber));
-      else input.value = latest[i];
-    };
-  }
-  const show = (values) => {
+  const labelledInputs = inputs.map((input, i) => element('label', {}, labels[i], input));
+  const apply = (values) => {
     latest = values;
     for (const [i, input] of inputs.entries()) if (document.activeElement !== input) input.value = values[i];
   };
-  const labelledInputs = inputs.map((input, i) => element('label', {}, labels[i], input));
-  return { element: group(label, 'numbers', ...labelledInputs), show };
+  const control = patient(group(label, 'numbers', ...labelledInputs), apply, () => {});
+  for (const [i, input] of inputs.entries()) {
+    input.onchange = () => {
+      if (input.valueAsNumber >= 0) control.during(change(latest = latest.with(i, input.valueAsNumber)));
+      else input.value = latest[i];
+    };
+    // What was refused goes with the focus.
+    input.onblur = () => control.during();
+  }
+  return control;
 }
 
 /** A colour; its alpha stays as it is. @returns {Control} shows RGBA, 0 to 1 */
@@ -145,16 +148,6 @@ export function facts(labels) {
 /** One line of such a list. */
 export function fact(label, value) {
   return element('div', {}, element('dt', {}, label), value);
-}
-
-/** Parts of a section as one. */
-export function joined(parts) {
-  return {
-    content: parts.flatMap(({ content }) => content),
-    show(now) {
-      for (const part of parts) part.show(now);
-    },
-  };
 }
 
 /** The order in which people look for names. */

@@ -2,18 +2,9 @@ import { button, element } from '../base/element.js';
 import { recall, remember } from '../base/memory.js';
 import { language, say } from '../base/texts.js';
 
-/** @import { FrameHeader, ServerStats, StateDocument } from '../base/protocol.js' */
-
 /**
- * What the page knows: the state, the last drawn frame's header, what the server measures, this page's id.
- *
- * @typedef {{state: ?StateDocument, revision: number, header: ?FrameHeader, stats: ?ServerStats, client?: string,
- *   steers: boolean}} Now
- *
- * A folding part of the menu, told when opened.
- *
- * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Now & {state: StateDocument}) => void,
- *   unfolded?: () => void}} Section
+ * @import { Store } from '../base/store.js'
+ * @import { Section } from './section.js'
  */
 
 /** The panel of folding sections, and the button that opens it. */
@@ -22,15 +13,21 @@ export class Menu {
   #panel;
   #build;
   #setLanguage;
+  #store;
   /** @type {Section[]} */
   #sections = [];
-  /** @type {?Now} */
-  #now = null;
 
-  /** Empty until `rebuild`; `build` gives the sections in the language in force. */
-  constructor({ button: opener, panel, build, setLanguage }) {
+  /**
+   * Empty until `rebuild`; `build` gives the sections in the language in force.
+   *
+   * @param {{store: Store, build: () => Section[], setLanguage: (code: string) => void}} page
+   */
+  constructor({ store, build, setLanguage }) {
+    const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
+    const panel = /** @type {HTMLElement} */ (document.getElementById('menu'));
     this.#button = opener;
     this.#panel = panel;
+    this.#store = store;
     this.#build = build;
     this.#setLanguage = setLanguage;
     opener.onclick = () => this.open();
@@ -39,6 +36,12 @@ export class Menu {
       event.stopPropagation();
       if (event.key === 'Escape' && !event.defaultPrevented) this.close();
     };
+    store.subscribe(({ role }) => [role], (role) => {
+      if (!role) return; // not connected: what was allowed still is
+      opener.hidden = role !== 'control';
+      if (opener.hidden) this.close();
+    });
+    store.subscribe((now) => [now], () => this.#showAll());
   }
 
   get isOpen() {
@@ -48,7 +51,7 @@ export class Menu {
   open() {
     this.#turn(true);
     this.#showAll();
-    this.#panel.querySelector('.close').focus({ preventScroll: true });
+    /** @type {HTMLElement} */ (this.#panel.querySelector('.close')).focus({ preventScroll: true });
   }
 
   close() {
@@ -61,12 +64,7 @@ export class Menu {
   #turn(isOpen) {
     this.#panel.inert = !isOpen;
     this.#panel.classList.toggle('open', isOpen);
-    this.#button.ariaExpanded = isOpen;
-  }
-
-  show(now) {
-    this.#now = now;
-    if (this.isOpen) this.#showAll();
+    this.#button.ariaExpanded = String(isOpen);
   }
 
   /** Makes everything anew, in the language in force. */
@@ -83,13 +81,13 @@ export class Menu {
     const head = element('div', { className: 'head' }, turn, ...(document.fullscreenEnabled ? [full] : []), close);
     this.#panel.replaceChildren(head, ...this.#sections.map(foldable));
     if (this.isOpen) turn.focus({ preventScroll: true });
-    if (this.#now) this.show(this.#now);
+    this.#showAll();
   }
 
   #showAll() {
-    const now = this.#now;
-    if (!now?.state) return;
-    for (const section of this.#sections) section.show({ ...now, state: now.state });
+    const { state, ...now } = this.#store.now;
+    if (!this.isOpen || !state) return;
+    for (const section of this.#sections) section.show({ ...now, state });
   }
 }
 

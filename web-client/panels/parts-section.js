@@ -1,6 +1,10 @@
 import { button, element } from '../base/element.js';
+import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { choice, selection, toggle } from './controls.js';
+import { stateOf } from './section.js';
+
+/** @import { Page, Section } from './section.js' */
 
 const MOST_SEGMENTS = 5;
 const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB
@@ -8,9 +12,15 @@ const MOST_ROWS = 50; // before somebody asks for more, or as a page has them
 const SEARCH_AFTER_MS = 250;
 const SWING_MS = 600;
 
-/** The scene's variants, doors and parts, asked for when looked at, and anew with each whole state. */
-export function partsSection({ ask, change, report, state }) {
-  let shown = {};
+/**
+ * The scene's variants, doors and parts, asked for when looked at, and anew with each whole state.
+ *
+ * @param {Page} page
+ * @returns {Section}
+ */
+export function partsSection({ commands, store }) {
+  const { change } = commands;
+  const state = () => stateOf(store);
   let scene;
   /** What shows a part of the state, and how it is brought up to date. */
   const followers = new Map();
@@ -21,11 +31,11 @@ export function partsSection({ ask, change, report, state }) {
   const asInFile = button(say('parts.asInFile'), async () => {
     swings.clear();
     await change({}); // by itself, or what waits with it would take its place
-    ask({ type: 'patch', patch: { nodes: null } }).catch(report);
+    commands.patch({ nodes: null });
   });
 
   function look() {
-    const present = state()?.scene;
+    const present = store.now.state?.scene;
     if (!present || !choices.closest('details').open) return;
     if (scene !== present) {
       scene = present;
@@ -54,19 +64,14 @@ export function partsSection({ ask, change, report, state }) {
   async function fill(rows, query) {
     const enough = rows.childElementCount + MOST_ROWS;
     let { after } = query;
-    try {
-      // A page may be empty, and yet not the last.
-      do {
-        const { nodes, next } = await ask({ type: 'tree', ...query, after });
-        if (!rows.isConnected) return;
-        rows.append(...nodes.filter(({ id, parent }) => parent !== undefined && id !== query.node).map(row));
-        refresh();
-        after = next;
-      } while (after !== undefined && rows.childElementCount < enough);
-    } catch (error) {
-      report(error);
-      return;
-    }
+    // A page may be empty, and yet not the last.
+    do {
+      const answer = await commands.tree({ ...query, after });
+      if (!answer || !rows.isConnected) return;
+      rows.append(...answer.nodes.filter(({ id, parent }) => parent !== undefined && id !== query.node).map(row));
+      refresh();
+      after = answer.next;
+    } while (after !== undefined && rows.childElementCount < enough);
     if (query.search) {
       const count = `${rows.childElementCount}${after === undefined ? '' : '+'}`;
       found.textContent = say('parts.found', { count });
@@ -87,7 +92,7 @@ export function partsSection({ ask, change, report, state }) {
     const choose = button(name, () => change({ selection: { node: state().selection.node === id ? null : id } }),
       { quiet: true });
     const see = tool('seen', '', () => change({ nodes: { [id]: { active: !active } } }));
-    const fit = tool('fit', say('parts.fit', { name }), () => ask({ type: 'fit', node: id }).catch(report));
+    const fit = tool('fit', say('parts.fit', { name }), () => commands.fit(id));
     const line = element('div', { className: 'row' }, choose, see, fit);
     const item = element('li', {}, line);
     if (node.children > 0) line.prepend(unfolder(item, id, name));
@@ -158,16 +163,12 @@ export function partsSection({ ask, change, report, state }) {
 
   async function loadChoices() {
     const asked = scene;
-    try {
-      const switches = await allOf(ask, { only: 'switches' });
-      const doors = await allOf(ask, { only: 'hinges' });
-      if (asked !== scene) return;
-      addChoices(say('parts.variants'), variants(switches).map(variant));
-      addChoices(say('parts.doors'), doors.map(door));
-      refresh();
-    } catch (error) {
-      report(error);
-    }
+    const switches = await allOf(commands.tree, { only: 'switches' });
+    const doors = switches && await allOf(commands.tree, { only: 'hinges' });
+    if (!doors || asked !== scene) return;
+    addChoices(say('parts.variants'), variants(switches).map(variant));
+    addChoices(say('parts.doors'), doors.map(door));
+    refresh();
   }
 
   function addChoices(title, controls) {
@@ -223,11 +224,7 @@ export function partsSection({ ask, change, report, state }) {
     title: say('parts.title'),
     content: [choices, element('div', { className: 'control' }, element('h3', {}, all), asInFile), box, found, tree],
     unfolded: look,
-    show(now) {
-      const before = shown;
-      shown = now.state;
-      if (['scene', 'nodes', 'selection'].some((member) => shown[member] !== before[member])) look();
-    },
+    show: onChange(({ state: { scene: whole, nodes, selection: chosen } }) => [whole, nodes, chosen], look),
   };
 }
 
@@ -243,10 +240,17 @@ function nameOf({ id, name }) {
   return name || `#${id}`;
 }
 
-/** Promises all nodes that a `tree` query finds, page after page. */
-async function allOf(ask, query) {
-  const { nodes, next } = await ask({ type: 'tree', ...query });
-  return next === undefined ? nodes : [...nodes, ...(await allOf(ask, { ...query, after: next }))];
+/** Promises all nodes that a `tree` query finds, page after page; undefined where an answer is missing. */
+async function allOf(tree, query) {
+  const nodes = [];
+  let after;
+  do {
+    const answer = await tree({ ...query, after });
+    if (!answer) return undefined;
+    nodes.push(...answer.nodes);
+    after = answer.next;
+  } while (after !== undefined);
+  return nodes;
 }
 
 /** What there is to choose, as {title, switches}: those of the same names together, if none is empty. */

@@ -1,35 +1,23 @@
 import { say, written } from '../base/texts.js';
 import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
+import { section, stateOf } from './section.js';
 
 /**
- * @import { Control } from './controls.js'
- * @import { Now } from './menu.js'
  * @import { StateDocument } from '../base/protocol.js'
+ * @import { Control } from './controls.js'
+ * @import { Page } from './section.js'
  */
 
 const STYLES = [['vrut', 'VRUT'], ['maya', 'Maya'], ['catia', 'CATIA'], ['cinema4d', 'Cinema 4D']];
 
-/** The five sections of the thesis (chapter 6.9), bound to the state. */
-export function sceneSections({ change, state }) {
-  return [scene(), renderer(change), camera(change), light(change, state), background(change, state)];
-}
-
 /**
- * `bound` are pairs of a control and what it shows, by the state and all else that the page knows.
+ * The five sections of the thesis (chapter 6.9), bound to the state.
  *
- * @param {string} name
- * @param {string} title
- * @param {...[Control, (state: StateDocument, now: Now) => *[]]} bound
+ * @param {Page} page
  */
-function section(name, title, ...bound) {
-  return {
-    name,
-    title,
-    content: bound.map(([control]) => control.element),
-    show(now) {
-      for (const [control, values] of bound) control.show(...values(now.state, now));
-    },
-  };
+export function sceneSections({ commands: { change }, store }) {
+  const present = () => stateOf(store);
+  return [scene(), renderer(change), camera(change), light(change, present), background(change, present)];
 }
 
 function scene() {
@@ -56,10 +44,11 @@ function renderer(change) {
     [choice(say('renderer.mode'), modes, set('mode')), get('mode')],
     [toggle(say('renderer.wireframe'), set('wireframe')), get('wireframe')],
     [toggle(say('renderer.showSelection'), set('showSelection')), get('showSelection')],
-    [about, (state, { stats }) => {
-      const mean = stats?.renderer?.meanRenderMs;
-      return [{ ...state.renderer, time: mean && `${written(mean, 1)} ms` }];
-    }]);
+    [about, (state, { stats }) => [state.renderer, stats?.renderer?.meanRenderMs], rendererFacts]);
+}
+
+export function rendererFacts(renderer, meanRenderMs) {
+  return [{ ...renderer, time: meanRenderMs && `${written(meanRenderMs, 1)} ms` }];
 }
 
 function camera(change) {
@@ -78,8 +67,8 @@ function camera(change) {
   /** @returns {[Control, (state: StateDocument) => *[]]} */
   const speed = (label, member) => [range(label, factor, set(member)), get(member)];
   return section('camera', say('camera.title'),
-    [about, ({ camera: now }, { header }) =>
-      [{ name: say('camera.free'), ...now, id: now.node?.toString(), plane: planeSize(now, header?.view) }]],
+    [about, ({ camera: { name, node, near, far, fov: angle } }, { header }) =>
+      [name, node, near, far, angle, header?.view.width, header?.view.height], cameraFacts],
     [fov, (state) => [state.camera.fov]],
     speed(say('camera.rotateSpeed'), 'rotateSpeed'),
     speed(say('camera.panSpeed'), 'panSpeed'),
@@ -90,50 +79,66 @@ function camera(change) {
     [selection(say('camera.style'), set('style')), (state) => [state.navigation.style, STYLES]]);
 }
 
-/** Of the near plane, in the scene's unit. */
-function planeSize({ fov, near }, view) {
-  if (!view) return undefined;
+/** The plane is the near one, its size in the scene's unit, and known once a picture is. */
+export function cameraFacts(name = say('camera.free'), node, near, far, fov, viewWidth, viewHeight) {
   const height = 2 * near * Math.tan((fov * Math.PI) / 360);
-  return `${written((height * view.width) / view.height, 3)} × ${written(height, 3)}`;
+  const plane = viewWidth && `${written((height * viewWidth) / viewHeight, 3)} × ${written(height, 3)}`;
+  return [{ name, id: node?.toString(), near, far, plane }];
 }
 
 function light(change, present) {
-  const types = {
-    headlight: say('light.headlight'),
-    point: say('light.point'),
-    spot: say('light.spot'),
-    directional: say('light.directional'),
-  };
   const set = (member) => (value) => change({ lights: { items: { [present().lights.active]: { [member]: value } } } });
   const get = (member) => ({ lights }) => [lights.items[lights.active][member]];
   const parts = [say('light.constant'), say('light.linear'), say('light.quadratic')];
   return section('light', say('light.title'),
     [selection(say('light.active'), (active) => change({ lights: { active } })),
-      ({ lights: { active, items: { headlight, ...others } } }) =>
-        [active, [['headlight', types.headlight], ...options(others)]]],
-    [facts({ name: say('fact.name'), id: say('fact.id'), type: say('fact.type') }),
-      ({ lights: { active, items } }) => {
-        const { name, type } = items[active];
-        const named = active === 'headlight' ? { name: types.headlight } : { name, id: active };
-        return [{ ...named, type: types[type] }];
-      }],
+      (state) => [state.lights], lightChoice],
+    [facts({ name: say('fact.name'), id: say('fact.id'), type: say('fact.type') }), (state) => [state.lights], lightFacts],
     [color(say('fact.color'), set('color')), get('color')],
     [numbers(say('light.attenuation'), parts, set('attenuation')), get('attenuation')]);
 }
 
+function lightTypes() {
+  return {
+    headlight: say('light.headlight'),
+    point: say('light.point'),
+    spot: say('light.spot'),
+    directional: say('light.directional'),
+  };
+}
+
+/** The active one, and all. */
+export function lightChoice({ active, items: { headlight, ...others } }) {
+  return [active, [['headlight', say('light.headlight')], ...options(others)]];
+}
+
+export function lightFacts({ active, items }) {
+  const { name, type } = items[active];
+  const types = lightTypes();
+  const named = active === 'headlight' ? { name: types.headlight } : { name, id: active };
+  return [{ ...named, type: types[type] }];
+}
+
 function background(change, present) {
-  const plain = say('background.plain');
   const setColor = (value) => {
     const { active } = present().backgrounds;
     return change({ backgrounds: active === 'color' ? { color: value } : { items: { [active]: { color: value } } } });
   };
   return section('background', say('background.title'),
     [selection(say('background.active'), (active) => change({ backgrounds: { active } })),
-      ({ backgrounds: { active, items } }) => [active, [['color', plain], ...options(items)]]],
+      (state) => [state.backgrounds], backgroundChoice],
     [facts({ name: say('fact.name'), id: say('fact.id'), texture: say('background.texture') }),
-      ({ backgrounds: { active, items } }) =>
-        [active === 'color' ? { name: plain } : { ...items[active], id: active }]],
+      (state) => [state.backgrounds], backgroundFacts],
     [color(say('fact.color'), setColor), ({ backgrounds: all }) => [(all.items[all.active] ?? all).color]]);
+}
+
+/** The active one, and all. */
+export function backgroundChoice({ active, items }) {
+  return [active, [['color', say('background.plain')], ...options(items)]];
+}
+
+export function backgroundFacts({ active, items }) {
+  return [active === 'color' ? { name: say('background.plain') } : { ...items[active], id: active }];
 }
 
 function options(items) {

@@ -1,31 +1,34 @@
 import { button, element } from '../base/element.js';
+import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
-import { byName, joined } from './controls.js';
+import { byName } from './controls.js';
 import { rows } from './rows.js';
+import { each, joined, stateOf } from './section.js';
 
-const FLIGHT_MS = 600;
+/** @import { Page, Section } from './section.js' */
 
-/** Where to look from, and at what: saved views, cameras, markers. */
-export function viewsSection(page) {
-  const { ask, report, state } = page;
-  const tell = (message) => ask(message).catch(report);
-  const fly = (camera) => tell({ type: 'fly', keyframes: [{ at: FLIGHT_MS, camera }] });
-  const parts = joined([savedViews, cameras, markers].map((part) => part({ ...page, tell, fly })));
-  const home = button(say('views.home'), () => fly(state().views.home), { icon: 'home' });
-  const fit = button('', () => tell({ type: 'fit', node: state().selection.node }), { icon: 'fit' });
+/**
+ * Where to look from, and at what: saved views, cameras, markers.
+ *
+ * @param {Page} page
+ * @returns {Section}
+ */
+export function viewsSection({ commands, report, store }) {
+  const page = { ...commands, report, state: () => stateOf(store), header: () => store.now.header };
+  const parts = joined([savedViews, cameras, markers].map((part) => part(page)));
+  const home = button(say('views.home'), () => commands.fly(page.state().views.home), { icon: 'home' });
+  const fit = button('', () => commands.fit(page.state().selection.node), { icon: 'fit' });
   return {
     name: 'views',
     title: say('views.title'),
     content: [element('div', { className: 'buttons' }, home, fit), ...parts.content],
-    show(now) {
-      fit.lastChild.data = now.state.selection.node === undefined
-        ? say('views.fitScene') : say('views.fitPart');
-      parts.show(now);
-    },
+    show: each(parts.show, onChange(({ state }) => [state.selection.node === undefined], (isScene) => {
+      fit.lastChild.data = isScene ? say('views.fitScene') : say('views.fitPart');
+    })),
   };
 }
 
-function savedViews({ tell, fly, change, report, state }) {
+function savedViews({ fly, change, patch, report, state }) {
   const list = places(say('views.saved'), say('views.none'),
     (name) => fly(state().views[name]), (name) => change({ views: { [name]: null } }));
   const entry = field(say('views.name'), say('views.save'), (name) => {
@@ -33,15 +36,15 @@ function savedViews({ tell, fly, change, report, state }) {
     if (Object.hasOwn(state().views, name)) {
       return report(new Error(say('views.nameTaken', { name })));
     }
-    return tell({ type: 'patch', patch: { views: { [name]: {} } } });
+    return patch({ views: { [name]: {} } });
   });
   return {
     content: [...list.content, entry.element],
-    show({ state: { views } }) {
+    show: onChange(({ state }) => [state.views], (views) => {
       const names = Object.keys(views).filter((name) => name !== 'home');
       list.show(names.map((name) => [name, { text: name }]));
       entry.show(unusedName(say('views.newName'), names));
-    },
+    }),
   };
 }
 
@@ -50,34 +53,46 @@ function cameras({ change }) {
     (id) => change({ camera: { node: Number(id) } }));
   return {
     ...list,
-    show({ state: { cameras: all, camera } }) {
-      const entries = Object.entries(all);
-      list.show(entries.map(([id, { name }]) => [id, { text: name || `#${id}`, used: camera.node === Number(id) }]));
-    },
+    show: onChange(({ state: { cameras: all, camera } }) => [all, camera.node], (...picked) =>
+      list.show(cameraEntries(...picked))),
   };
 }
 
-function markers({ tell, fly, change, report, state, header }) {
+/** [id, item] of each; `node`: that of the camera in use. */
+export function cameraEntries(all, node) {
+  return Object.entries(all).map(([id, { name }]) => [id, { text: name || `#${id}`, used: node === Number(id) }]);
+}
+
+function markers({ pick, patch, fly, change, report, state, header }) {
   const list = places(say('markers.title'), say('markers.none'),
     (name) => fly(lookingAt(state().camera, header().markers[name])), (name) => change({ markers: { [name]: null } }));
   const mark = async (text) => {
     const { frame, view } = header() ?? {};
-    const picked = view && await tell({ type: 'pick', x: view.width / 2, y: view.height / 2, frame });
+    const picked = view && await pick({ x: view.width / 2, y: view.height / 2, frame });
     if (!picked) return false;
     if (!picked.point) return report(new Error(say('markers.noPart')));
     const name = unusedName('marker', Object.keys(state().markers));
-    return tell({ type: 'patch', patch: { markers: { [name]: { ...placeOf(picked), text } } } });
+    return patch({ markers: { [name]: { ...placeOf(picked), text } } });
   };
   const entry = field(say('markers.text'), say('markers.add'), mark);
   return {
     content: [...list.content, entry.element],
-    show({ state: { markers: all }, header: drawn }) {
-      const textOf = (name) => all[name].text || name;
-      const names = Object.keys(all);
-      list.show(names.map((name) => [name, { text: textOf(name), lost: !drawn?.markers?.[name] }]));
-      entry.show(unusedName(say('markers.newText'), names.map(textOf)));
-    },
+    // Where they are changes with each frame; here only which the frame has.
+    show: onChange(({ state, header: drawn }) => [state.markers, String(Object.keys(drawn?.markers ?? {}))], (all) => {
+      const entries = markerEntries(all, header()?.markers);
+      list.show(entries);
+      entry.show(unusedName(say('markers.newText'), entries.map(([, { text }]) => text)));
+    }),
   };
+}
+
+/**
+ * [name, item] of each marker; lost where `drawn`, those of the frame, does not have it.
+ *
+ * @returns {[string, {text: string, lost: boolean}][]}
+ */
+export function markerEntries(all, drawn) {
+  return Object.entries(all).map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.[name] }]);
 }
 
 /** A list of buttons that go there, and with `remove` those that delete. */

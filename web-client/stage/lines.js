@@ -51,7 +51,7 @@ export class Lines {
 /**
  * What is to be said of a Phase of the connection; null where the last still holds.
  *
- * @param {import('../connection/connection.js').Phase} phase
+ * @param {import('../base/store.js').Phase} phase
  * @param {boolean} hasPicture
  * @param {boolean} hasToken
  */

@@ -231,6 +231,15 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
           fields[i].dispatchEvent(new Event('change'));
         }
       }), () => key().attenuation.join() === '1,5,3');
+      // What the server refuses goes with the focus.
+      const { errors } = tablet.wire;
+      const refused = errors.length;
+      await within('light', 'Linear').fill('1e31');
+      await page.keyboard.press('Enter');
+      await tablet.wire.until('a refusal', () => errors.length > refused);
+      assert.equal(await within('light', 'Linear').inputValue(), '1e31');
+      await within('light', 'Constant').focus();
+      await page.waitForFunction(() => document.querySelectorAll('.numbers input')[1].value === '5');
     });
 
     test('the background', async () => {
@@ -265,12 +274,13 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
     test('a change that is refused is explained, and taken back', async () => {
       await colleague.ask({ type: 'control', action: 'take' });
       await tablet.wire.until('the other one to steer', () => tablet.wire.state.control.holder === colleague.id);
+      const refused = tablet.wire.errors.length;
       await section('renderer').getByText('Wireframe').tap();
       await tablet.wire.until('a refusal', () => tablet.wire.errors.at(-1)?.code === 'not-in-control');
       await page.locator('#lines').getByText(`Client ${colleague.id} is in control.`).waitFor();
       await page.waitForFunction(() => document.querySelector('[data-section="renderer"] [role=switch]').checked);
       await within('camera', 'Field of view').press('ArrowRight');
-      await tablet.wire.until('another refusal', () => tablet.wire.errors.length === 2);
+      await tablet.wire.until('another refusal', () => tablet.wire.errors.length === refused + 2);
       await page.waitForFunction(() => document.querySelector('[data-section="camera"] [type=range]').value === '33');
       await tablet.screenshot(`menu-${size.width}-refused`);
       await colleague.ask({ type: 'control', action: 'release' });

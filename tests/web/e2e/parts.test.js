@@ -201,12 +201,12 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
       const state = { scene: {}, selection: {}, nodes: {} };
       const page = (ids, next) => ({ nodes: ids.map((id) => ({ id, name: `Nut ${id}`, parent: 0, active: true, children: 0 })), next });
       const choices = ['a', 'b', 'c', 'd', 'e'];
-      const ask = async ({ only, after }) => {
+      const tree = async ({ only, after }) => {
         if (only === 'switches') return { nodes: [{ id: 9, name: 'Seat', choices, activeChild: -1 }] };
         if (only) return { nodes: [] };
         return { undefined: page([], 1), 1: page([1, 2, ...Array.from({ length: 60 }, (_, i) => 100 + i)], 2), 2: page([3]) }[after];
       };
-      const section = partsSection({ ask, change() {}, report(error) { throw error; }, state: () => state });
+      const section = partsSection({ commands: { tree, change() {} }, store: { now: { state } } });
       const details = document.createElement('details');
       details.id = 'many';
       details.open = true;

@@ -1,14 +1,74 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import {
-  bytesWords, holderWords, hostWords, qualityWords, snapshotName, snapshotSize,
-} from '../../../web-client/panels/connection-section.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
-import { lookingAt, placeOf, unusedName } from '../../../web-client/panels/views-section.js';
+import {
+  bytesWords, holderWords, hostLines, hostWords, pictureFacts, qualityWords, snapshotName, snapshotSize,
+} from '../../../web-client/panels/connection-section.js';
+import {
+  backgroundChoice, backgroundFacts, cameraFacts, lightChoice, lightFacts, rendererFacts,
+} from '../../../web-client/panels/scene-sections.js';
+import { section } from '../../../web-client/panels/section.js';
+import {
+  cameraEntries, lookingAt, markerEntries, placeOf, unusedName,
+} from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
 
+test('a section shows anew only the controls of which something is another', () => {
+  const shown = [];
+  const control = (name) => ({ element: name, show: (...values) => shown.push([name, ...values]) });
+  const { content, show } = section('light', 'Light',
+    [control('mode'), (state) => [state.mode]],
+    [control('facts'), (state, { stats }) => [state.solid, stats?.ms], (solid, ms) => [{ solid, time: `${ms} ms` }]]);
+  assert.deepEqual(content, ['mode', 'facts']);
+  show({ state: { mode: 'a', solid: 1 }, stats: { ms: 2 } });
+  assert.deepEqual(shown.splice(0), [['mode', 'a'], ['facts', { solid: 1, time: '2 ms' }]]);
+  show({ state: { mode: 'a', solid: 1 }, stats: { ms: 3 } });
+  assert.deepEqual(shown.splice(0), [['facts', { solid: 1, time: '3 ms' }]]);
+  show({ state: { mode: 'b', solid: 1 }, stats: { ms: 3 } });
+  assert.deepEqual(shown, [['mode', 'b']]);
+});
+
+describe('the scene', () => {
+  test('the renderer\'s counts, and its time once it is measured', () => {
+    assert.deepEqual(rendererFacts({ solid: 7 }, undefined), [{ solid: 7, time: undefined }]);
+    assert.deepEqual(rendererFacts({ solid: 7 }, 4.26), [{ solid: 7, time: '4.3 ms' }]);
+  });
+
+  test('the camera: its name and the size of its near plane', () => {
+    const [free] = cameraFacts(undefined, undefined, 0.5, 100, 90, 1000, 500);
+    assert.deepEqual(free, { name: 'Free', id: undefined, near: 0.5, far: 100, plane: '2 × 1' });
+    const [named] = cameraFacts('Driver', 0, 0.5, 100, 90);
+    assert.deepEqual(named, { name: 'Driver', id: '0', near: 0.5, far: 100, plane: undefined });
+  });
+
+  test('lights: the headlight is the first and has no id', () => {
+    const items = { 9: { name: 'Lamp 10', type: 'spot' }, 8: { name: 'Lamp 9', type: 'point' }, headlight: { name: '', type: 'headlight' } };
+    assert.deepEqual(lightChoice({ active: '9', items }), ['9', [['headlight', 'Headlight'], ['8', 'Lamp 9'], ['9', 'Lamp 10']]]);
+    assert.deepEqual(lightFacts({ active: '9', items }), [{ name: 'Lamp 10', id: '9', type: 'Spot' }]);
+    assert.deepEqual(lightFacts({ active: 'headlight', items }), [{ name: 'Headlight', type: 'Headlight' }]);
+  });
+
+  test('backgrounds: the plain one is the first', () => {
+    const items = { 4: { name: 'Studio', texture: 'studio.png', color: [1, 1, 1, 1] } };
+    assert.deepEqual(backgroundChoice({ active: '4', items }), ['4', [['color', 'Plain color'], ['4', 'Studio']]]);
+    assert.deepEqual(backgroundFacts({ active: '4', items }), [{ ...items[4], id: '4' }]);
+    assert.deepEqual(backgroundFacts({ active: 'color', items }), [{ name: 'Plain color' }]);
+  });
+});
+
 describe('views', () => {
+  test('a marker that the frame does not have is lost', () => {
+    const all = { a: { text: 'Scratch' }, b: { text: '' } };
+    assert.deepEqual(markerEntries(all, { a: [0, 0, 0] }), [['a', { text: 'Scratch', lost: false }], ['b', { text: 'b', lost: true }]]);
+    assert.deepEqual(markerEntries(all, undefined).map(([, { lost }]) => lost), [true, true]);
+  });
+
+  test('the camera in use is marked, and one without a name is called by its number', () => {
+    const entries = cameraEntries({ 3: { name: 'Front' }, 5: { name: '' } }, 5);
+    assert.deepEqual(entries, [['3', { text: 'Front', used: false }], ['5', { text: '#5', used: true }]]);
+  });
+
   test('a look at a place keeps direction and distance', () => {
     const camera = lookingAt({ eye: [1, 2, 3], focus: [1, 2, -7] }, [5, 0, 0.1]);
     assert.deepEqual(camera.focus, [5, 0, 0.1]);
@@ -30,6 +90,18 @@ describe('views', () => {
 });
 
 describe('connection', () => {
+  test('each wall with how far it is', () => {
+    assert.deepEqual(hostLines(undefined, 9), []);
+    assert.deepEqual(hostLines({ h1: { name: '', revision: 9 }, h2: { name: 'Wall', revision: 8 } }, 9),
+      [{ name: 'Client h1', words: 'up to date' }, { name: 'Wall', words: '1 behind' }]);
+  });
+
+  test('how pictures come; no latency before the first', () => {
+    assert.deepEqual(pictureFacts({ framesPerSecond: 12.34, bytesPerSecond: 1.5e6 }),
+      { latency: undefined, frames: '12.3', data: '1.5 MB / s' });
+    assert.equal(pictureFacts({ p50: 20.4, p95: 80, framesPerSecond: 0, bytesPerSecond: 0 }).latency, '20 ms, 80 ms');
+  });
+
   test('who steers', () => {
     assert.equal(holderWords(undefined, 'c1'), 'Nobody');
     assert.equal(holderWords({ kept: false }, 'c1'), 'Nobody');

@@ -1,0 +1,42 @@
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { test } from 'node:test';
+import Ajv from 'ajv/dist/2020.js';
+import { commandsBy } from '../../../web-client/connection/commands.js';
+
+const schema = JSON.parse(readFileSync(new URL('../../../protocol/protocol.schema.json', import.meta.url), 'utf8'));
+const ajv = new Ajv({ strict: true, strictRequired: false });
+ajv.addSchema(schema);
+const isClientMessage = ajv.compile({ $ref: `${schema.$id}#/$defs/clientMessage` });
+
+test('each command is a message of the protocol', async () => {
+  const asked = [];
+  const commands = commandsBy({ ask: async (message) => asked.push(message), refused: assert.fail });
+  await commands.change({ camera: { fov: 50 } });
+  await commands.patch({ nodes: null });
+  await commands.control({ action: 'give', client: 'c2' });
+  await commands.fit();
+  await commands.fly({ eye: [1, 2, 3], focus: [0, 0, 0] });
+  await commands.pick({ x: 1, y: 2, frame: 3 });
+  await commands.tree({ only: 'switches' });
+  await commands.snapshot({ width: 10, height: 20 });
+  await commands.record('start');
+  await commands.scenes();
+  await commands.open('car');
+  assert.deepEqual(asked.map(({ type }) => type),
+    ['patch', 'patch', 'control', 'fit', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'open']);
+  for (const message of asked) {
+    assert.ok(isClientMessage(JSON.parse(JSON.stringify(message))), `${JSON.stringify(message)}: ${ajv.errorsText(isClientMessage.errors)}`);
+  }
+  assert.equal(asked.length, Object.keys(commands).length);
+});
+
+test('a command promises its answer, or nothing once its refusal is told', async () => {
+  const refused = [];
+  const answers = [async () => ({ type: 'ok' }), () => Promise.reject(new Error('no such scene'))];
+  const commands = commandsBy({ ask: () => answers.shift()(), refused: ({ message }) => refused.push(message) });
+  assert.deepEqual(await commands.scenes(), { type: 'ok' });
+  assert.deepEqual(refused, []);
+  assert.equal(await commands.open('none'), undefined);
+  assert.deepEqual(refused, ['no such scene']);
+});

@@ -1,0 +1,65 @@
+/** @import { ClientHello, FrameHeader, ServerError, ServerStats, StateDocument } from './protocol.js' */
+
+/**
+ * Where the connection stands; `reason`: why the server refused it.
+ *
+ * @typedef {{name: 'starting'|'connecting'|'open'|'waiting'|'refused', retryMs?: number, hadOpened?: boolean,
+ *   reason?: {code?: string, message: string}}} Phase
+ *
+ * What the page knows: what the server made it while connected, the state as last heard, the header last drawn, whether
+ * that frame is of this connection, what the server measures.
+ *
+ * @typedef {{phase: Phase, role?: ClientHello['role'], client?: string, steers: boolean, state: ?StateDocument,
+ *   revision: number, header: ?FrameHeader, hasPicture: boolean, stats: ?ServerStats, language: string}} Now
+ */
+
+/**
+ * Gives a function that calls `show` with what `select` picks, if one of that is another than the last time.
+ *
+ * @template T
+ * @param {(now: T) => *[]} select of always the same length
+ * @param {(...picked: *[]) => void} show
+ * @returns {(now: T) => void}
+ */
+export function onChange(select, show) {
+  let last;
+  return (now) => {
+    const picked = select(now);
+    if (last?.every((value, i) => Object.is(value, picked[i]))) return;
+    last = picked;
+    show(...picked);
+  };
+}
+
+/** One place for what the page knows. What is shown of it follows in the next display frame. */
+export class Store {
+  /** @type {Now} */
+  now = {
+    phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false, stats: null,
+    language: 'en',
+  };
+  /** @type {((now: Now) => void)[]} */
+  #subscribers = [];
+  #waits = false;
+
+  /** @param {Partial<Now>} members */
+  set(members) {
+    this.now = { ...this.now, ...members };
+    if (this.#waits) return;
+    this.#waits = true;
+    requestAnimationFrame(() => {
+      this.#waits = false;
+      for (const show of this.#subscribers) show(this.now);
+    });
+  }
+
+  /**
+   * As onChange().
+   *
+   * @param {(now: Now) => *[]} select
+   * @param {(...picked: *[]) => void} show
+   */
+  subscribe(select, show) {
+    this.#subscribers.push(onChange(select, show));
+  }
+}

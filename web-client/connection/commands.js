@@ -1,0 +1,40 @@
+import { Changes } from './changes.js';
+
+/** @import { ClientControl, ClientMessage, ClientPick, ClientTree, StatePatch } from '../base/protocol.js' */
+
+const FLIGHT_MS = 600;
+
+/**
+ * All that the page asks of the server. Each promises the answer; undefined where there is none, once `refused` was told.
+ *
+ * @typedef {ReturnType<typeof commandsBy>} Commands
+ *
+ * @param {{ask: (message: ClientMessage) => Promise<*>, refused: (error: *) => void}} page
+ */
+export function commandsBy({ ask, refused }) {
+  /** @param {ClientMessage} message */
+  const tell = (message) => ask(message).catch((error) => void refused(error));
+  const changes = new Changes({ ask, refused });
+  return {
+    /** Together with what waits for an answer; see Changes. @param {StatePatch} patch */
+    change: (patch) => changes.add(patch),
+    /** By itself. @param {StatePatch} patch */
+    patch: (patch) => tell({ type: 'patch', patch }),
+    /** @param {Omit<ClientControl, 'type'>} action */
+    control: (action) => tell({ type: 'control', ...action }),
+    /** @param {number} [node] the whole scene if left out */
+    fit: (node) => tell({ type: 'fit', node }),
+    fly: (camera) => tell({ type: 'fly', keyframes: [{ at: FLIGHT_MS, camera }] }),
+    /** @param {Omit<ClientPick, 'type'>} place */
+    pick: (place) => tell({ type: 'pick', ...place }),
+    /** @param {Omit<ClientTree, 'type'>} query */
+    tree: (query) => tell({ type: 'tree', ...query }),
+    /** @param {{width: number, height: number}} size */
+    snapshot: (size) => tell({ type: 'snapshot', ...size, jpegQuality: 95 }),
+    /** @param {'start'|'stop'} action */
+    record: (action) => tell({ type: 'record', action }),
+    scenes: () => tell({ type: 'scenes' }),
+    /** @param {string} scene */
+    open: (scene) => tell({ type: 'open', scene }),
+  };
+}

@@ -1,0 +1,69 @@
+import { onChange } from '../base/store.js';
+
+/**
+ * @import { Now, Store } from '../base/store.js'
+ * @import { StateDocument } from '../base/protocol.js'
+ * @import { Commands } from '../connection/commands.js'
+ * @import { Meter } from '../connection/meter.js'
+ * @import { Control } from './controls.js'
+ */
+
+/**
+ * What a section is given.
+ *
+ * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void}} Page
+ *
+ * What the page knows once it has a state.
+ *
+ * @typedef {Now & {state: StateDocument}} Known
+ *
+ * A folding part of the menu, told when opened.
+ *
+ * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Known) => void,
+ *   unfolded?: () => void}} Section
+ */
+
+/**
+ * Of each control, what it shows depends on, and how that is shown: its arguments; left out, they are these themselves.
+ *
+ * @param {string} name
+ * @param {string} title
+ * @param {...[Control, (state: StateDocument, now: Known) => *[], ((...picked: *[]) => *[])?]} bound
+ * @returns {Section}
+ */
+export function section(name, title, ...bound) {
+  const parts = bound.map(([{ element, show }, select, model]) => ({
+    content: [element],
+    show: onChange((now) => select(now.state, now), model ? (...picked) => show(...model(...picked)) : show),
+  }));
+  return { name, title, ...joined(parts) };
+}
+
+/** The state, which is there as soon as a section is shown. @param {Store} store */
+export function stateOf(store) {
+  return /** @type {StateDocument} */ (store.now.state);
+}
+
+/**
+ * Parts of a section as one.
+ *
+ * @param {{content: HTMLElement[], show: (now: Known) => void}[]} parts
+ */
+export function joined(parts) {
+  return {
+    content: parts.flatMap(({ content }) => content),
+    show: each(...parts.map(({ show }) => show)),
+  };
+}
+
+/**
+ * One function that calls all.
+ *
+ * @param {...(now: Known) => void} shows
+ */
+export function each(...shows) {
+  /** @param {Known} now */
+  return (now) => {
+    for (const show of shows) show(now);
+  };
+}

@@ -1,0 +1,192 @@
+import { holderName } from '../base/client-names.js';
+import { element } from '../base/element.js';
+import { errorSentence, say } from '../base/texts.js';
+import { ControlBar } from './control.js';
+import { FingerMarks } from './finger-marks.js';
+import { Input } from './input.js';
+import { Labels } from './labels.js';
+import { Lines, connectionSentence } from './lines.js';
+import { Picture } from './picture.js';
+import { Prediction } from './prediction.js';
+import { Presence } from './presence.js';
+import { watchViewSize } from './view-size.js';
+
+/**
+ * @import { StateDocument } from '../base/protocol.js'
+ * @import { Store } from '../base/store.js'
+ * @import { Commands } from '../connection/commands.js'
+ * @import { Connection } from '../connection/connection.js'
+ * @import { Meter } from '../connection/meter.js'
+ */
+
+/** Few moves where all is late. */
+const LATE_MS = 1000;
+const THINNED_MS = 250;
+
+/** The picture, all that lies on it, and the hands on it. */
+export class Stage {
+  #store;
+  #hasToken;
+  #canvas = find('view');
+  #picture = new Picture(this.#canvas);
+  #prediction = new Prediction();
+  #labels = new Labels(find('labels'));
+  #lines = new Lines(find('lines'));
+  #noticesSeen = new Set();
+  #controlBar;
+  #input;
+
+  /** @param {{store: Store, commands: Commands, connection: Connection, meter: Meter, hasToken: boolean}} page */
+  constructor({ store, commands, connection, meter, hasToken }) {
+    this.#store = store;
+    this.#hasToken = hasToken;
+    const presence = new Presence(find('presence'), {
+      ask: () => commands.control({ action: 'ask' }),
+      take: () => commands.control({ action: 'take' }),
+    });
+    this.#controlBar = new ControlBar(find('control'), {
+      send: commands.control,
+      declined: (name) => this.#lines.pass(say('control.declined', { name })),
+    });
+    this.#input = new Input(this.#canvas, {
+      send: (message) => connection.send(message),
+      mapping: () => this.#picture.mapping(),
+      // A server that has begun anew knows nothing of the frames before.
+      frame: () => (store.now.hasPicture ? store.now.header?.frame : undefined),
+      soon: (action) =>
+        (meter.lateMs(performance.now()) > LATE_MS ? setTimeout(action, THINNED_MS) : requestAnimationFrame(action)),
+      marks: new FingerMarks(find('finger-marks')),
+      unheard: () => this.#controlBar.offer(),
+    });
+    this.#canvas.addEventListener('pointerdown', () => {
+      // Who touches the picture means it with the keys, too.
+      this.#canvas.classList.add('by-pointer');
+      this.#canvas.focus({ preventScroll: true });
+    });
+    document.addEventListener('keydown', () => this.#canvas.classList.remove('by-pointer'), { capture: true });
+    watchViewSize(this.#canvas, (size) => {
+      this.#picture.layout();
+      connection.resize(size);
+      this.#move();
+    });
+
+    store.subscribe(({ language }) => [language], () => {
+      this.#canvas.ariaLabel = say('view.label');
+    });
+    store.subscribe(({ hasPicture, language }) => [hasPicture, language], () => this.#showPhase());
+    store.subscribe(
+      ({ phase, role, client, state, hasPicture, header, language }) =>
+        [phase, role, client, state?.control, state?.recording, hasPicture && header?.quality?.level, language],
+      () => {
+        const { hasPicture, header, ...now } = store.now;
+        presence.show({ ...now, header: hasPicture ? header : null });
+      });
+    store.subscribe(({ role, client, state, language }) => [role, client, state?.control, language],
+      (role, client, control) => this.#controlBar.show({ role, client, control }));
+    store.subscribe(({ state }) => [state?.selection], (selection) => showPart(partTitle(selection ?? {})));
+    store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
+    store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
+      (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
+  }
+
+  /** Another phase of the connection has begun. */
+  phase() {
+    this.#input.enabled = this.#store.now.steers;
+    this.#prediction.forget();
+    this.#move();
+    this.#lines.hold('loading', '');
+    this.#showPhase();
+  }
+
+  /** Promises whether the frame is drawn, and the latest. */
+  async draw(frame) {
+    const outcome = await this.#picture.show(frame);
+    if (outcome === 'failed') this.#lines.pass(say('view.unreadable'));
+    if (outcome !== 'drawn' || this.#store.now.phase.name !== 'open') return false;
+    // In the same task, so that nothing jumps.
+    this.#prediction.drawn(frame.header);
+    this.#move();
+    return true;
+  }
+
+  sent(message) {
+    this.#prediction.sent(message);
+    this.#move();
+  }
+
+  /** Before the next event, which counts only from who steers. @param {StateDocument} state */
+  follow(state) {
+    const { steers } = this.#store.now;
+    this.#input.enabled = steers;
+    this.#prediction.follow(state, steers);
+  }
+
+  loading({ scene, fraction, done, refused }) {
+    this.#lines.hold('loading', done || refused ? '' : say('view.loading', { scene }), fraction);
+    if (refused) this.#lines.pass(refused);
+  }
+
+  /** Says why something was refused. */
+  report(error) {
+    if (error.code === 'not-in-control') {
+      this.#lines.pass(say('control.other', { name: holderName(this.#store.now.state?.control ?? {}) }));
+      this.#controlBar.offer();
+    } else if (error.code === 'not-sent') {
+      this.#lines.pass(say('phase.notSent'));
+    } else if (error.message) {
+      this.#lines.pass(errorSentence(error));
+    }
+  }
+
+  /** The server does not take what was sent. */
+  forget() {
+    this.#prediction.forget();
+    this.#move();
+  }
+
+  /** While frames are late, picture and labels go with the fingers. */
+  #move() {
+    const { transform } = this.#prediction;
+    this.#picture.move(transform);
+    this.#labels.show(this.#picture.header, this.#store.now.state?.markers, this.#picture.mapping(), transform);
+  }
+
+  #showPhase() {
+    const { phase, hasPicture } = this.#store.now;
+    this.#canvas.classList.toggle('stale', !hasPicture);
+    const sentence = connectionSentence(phase, hasPicture, this.#hasToken);
+    if (sentence !== null) this.#lines.hold('connection', sentence);
+  }
+
+  #passNotices(notices) {
+    for (const notice of notices) {
+      if (!this.#noticesSeen.has(notice)) this.#lines.pass(notice);
+      this.#noticesSeen.add(notice);
+    }
+  }
+}
+
+/** Of index.html. */
+function find(id) {
+  return /** @type {HTMLElement} */ (document.getElementById(id));
+}
+
+/**
+ * The chosen part's name and its parent's, as variants are called by their paint; the rest of its path is small.
+ *
+ * @param {StateDocument['selection']} selection
+ */
+export function partTitle({ node, name, path = [] }) {
+  const names = path.slice(1);
+  return {
+    title: names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`),
+    above: names.slice(0, -2).join(' › '),
+  };
+}
+
+function showPart({ title, above }) {
+  const part = find('part');
+  // Only a change: screen readers read it again.
+  if (part.textContent === title + above) return;
+  part.replaceChildren(...(title ? [title, element('small', {}, above)] : []));
+}
