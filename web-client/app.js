@@ -28,9 +28,10 @@ const connection = new Connection({
       // A link to watch is not to take the presenter's place.
       if (phase.name === 'open' && (role === 'control' || !recall('token'))) token.accepted();
     },
-    async frame({ header, data }) {
-      if (!await stage.draw({ header, data })) return;
-      meter.drawn(header.handled, data.byteLength, performance.now());
+    async frame(frame) {
+      const header = await stage.draw(frame);
+      if (!header) return;
+      meter.drawn(header.handled, frame.data.byteLength, performance.now());
       store.set({ header, hasPicture: true });
     },
     sent(message) {
@@ -42,10 +43,7 @@ const connection = new Connection({
       store.set({ state, revision: connection.revision, steers: connection.steers });
       stage.follow(state);
     },
-    error(error) {
-      if (error.code === 'not-in-control') stage.forget();
-      stage.report(error);
-    },
+    error: (error) => stage.inputRefused(error),
     message(message) {
       if (message.type === 'stats') store.set({ stats: message });
       else if (message.type === 'loading') stage.loading(message);

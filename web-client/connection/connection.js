@@ -1,7 +1,14 @@
 import { frameHeader } from './frame-header.js';
 import { mergePatch } from '../base/merge-patch.js';
 
-/** @import { ClientHello, ServerError, StateDocument } from '../base/protocol.js' */
+/**
+ * @import {
+ *   ClientHello, ClientMessage, FrameHeader, ServerError, ServerMessage, StateDocument,
+ * } from '../base/protocol.js'
+ * @import { Phase } from '../base/store.js'
+ *
+ * @typedef {{header: ?FrameHeader, data: ArrayBuffer}} Frame
+ */
 
 const SUBPROTOCOL = 'vrut-preview.v1';
 const POLICY_VIOLATION = 1008;
@@ -43,8 +50,17 @@ export class Connection {
   #timer;
 
   /**
-   * `on` has a function for each `phase`, `frame` ({header, data}; the header may be null; promises that it is drawn or
-   * dropped), message `sent`, changed `state`, `error` and other `message` that answers nothing that was asked.
+   * `on` has a function for each `phase`, `frame` (promises that it is drawn or dropped), message `sent`,
+   * changed `state`, `error` and other `message` that answers nothing that was asked.
+   *
+   * @param {{url: string, hello: Omit<ClientHello, 'type'>, on: {
+   *   phase: (phase: Phase) => void,
+   *   frame: (frame: Frame) => Promise<void>,
+   *   sent?: (message: ClientMessage & {id: number}) => void,
+   *   state: (state: StateDocument) => void,
+   *   error: (error: ServerError) => void,
+   *   message: (message: ServerMessage) => void,
+   * }}} page
    */
   constructor({ url, hello, on }) {
     this.#url = url;
@@ -163,7 +179,7 @@ export class Connection {
         this.state = message.state ?? mergePatch(this.state, message.patch);
         this.revision = message.revision;
         if (!isOpen) this.#begin();
-        this.#on.state(this.state);
+        this.#on.state(/** @type {StateDocument} */ (this.state));
         break;
       case 'error':
         if (!isOpen) this.#refusal = message;
@@ -208,6 +224,7 @@ export class Connection {
     }
   }
 
+  /** @param {Phase} phase */
   #setPhase(phase) {
     this.#phase = phase.name;
     this.#on.phase(phase);
@@ -223,6 +240,7 @@ export function socketAddress(page) {
   return new URL('ws', page).href.replace('http', 'ws');
 }
 
+/** @param {string} hash @returns {'view'|'control'} */
 export function roleFrom(hash) {
   return settings(hash).has('watch') ? 'view' : 'control';
 }

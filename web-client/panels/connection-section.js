@@ -5,7 +5,13 @@ import { say, written } from '../base/texts.js';
 import { fact, facts, range } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 
-/** @import { Page, Section } from './section.js' */
+/**
+ * @import { FrameHeader, ServerStats, StateDocument } from '../base/protocol.js'
+ * @import { Store } from '../base/store.js'
+ * @import { Commands } from '../connection/commands.js'
+ * @import { Meter } from '../connection/meter.js'
+ * @import { Page, Section } from './section.js'
+ */
 
 const LARGEST_SIDE = 8192;
 const MEASURES_EVERY_MS = 500;
@@ -27,6 +33,7 @@ export function connectionSection({ commands, meter, store }) {
   };
 }
 
+/** @param {Commands} commands */
 function steering({ control }) {
   const about = facts({
     holder: say('control.holder'),
@@ -54,6 +61,7 @@ function steering({ control }) {
   };
 }
 
+/** @param {Commands} commands @param {Meter} meter */
 function pictures({ change }, meter) {
   const about = facts({
     latency: say('connection.latency'),
@@ -83,13 +91,14 @@ function pictures({ change }, meter) {
   };
 }
 
+/** @param {Commands} commands @param {Store} store */
 function files(commands, store) {
   const about = facts({ recording: say('recording.name') });
   const record = button('', () => commands.record(stateOf(store).recording ? 'stop' : 'start'), { icon: 'record' });
   const snapshot = button('', async () => {
     if (snapshot.ariaBusy === 'true') return;
     setBusy(true);
-    const picture = await commands.snapshot(snapshotSize(store.now.header.view));
+    const picture = await commands.snapshot(snapshotSize(/** @type {FrameHeader} */ (store.now.header).view));
     if (picture) save(picture.data);
     setBusy(false);
   }, { icon: 'camera' });
@@ -111,6 +120,7 @@ function files(commands, store) {
   };
 }
 
+/** @param {Commands} commands */
 function scenes(commands) {
   let isAsked = false;
   const select = element('select');
@@ -137,13 +147,18 @@ function hasMembers(object = {}) {
   return Object.keys(object).length > 0;
 }
 
-/** Of the stats' hosts. @returns {{name: string, words: string}[]} */
-export function hostLines(hosts = {}, revision) {
-  return Object.entries(hosts).map(([client, host]) =>
+/**
+ * How far each host is behind.
+ *
+ * @param {ServerStats['hosts']|undefined} hosts
+ * @param {number} revision
+ */
+export function hostLines(hosts, revision) {
+  return Object.entries(hosts ?? {}).map(([client, host]) =>
     ({ name: clientName({ client, name: host.name }), words: hostWords(host, revision) }));
 }
 
-/** By what a Meter reads. */
+/** @param {ReturnType<Meter['read']>} measured */
 export function pictureFacts({ p50, p95, framesPerSecond, bytesPerSecond }) {
   return {
     latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
@@ -152,19 +167,24 @@ export function pictureFacts({ p50, p95, framesPerSecond, bytesPerSecond }) {
   };
 }
 
-/** Who is in control, by `control` of the state, for the page of `client`. */
+/**
+ * Who is in control, for the page of `client`.
+ *
+ * @param {StateDocument['control']|undefined} control
+ * @param {string|undefined} client
+ */
 export function holderWords(control, client) {
   if (!control?.holder) return say('control.nobody');
   return control.holder === client ? say('control.you') : holderName(control);
 }
 
-/** How far a host is behind. */
+/** How far a host is behind. @param {{revision: number, lagMs?: number}} host @param {number} revision */
 export function hostWords({ revision: shown, lagMs }, revision) {
   const words = shown < revision ? say('connection.behind', { count: revision - shown }) : say('connection.upToDate');
   return lagMs === undefined ? words : `${words} · ${written(lagMs)} ms`;
 }
 
-/** By a header's `quality`. */
+/** @param {FrameHeader['quality']} quality */
 export function qualityWords({ level, scale, samples, detail, jpegQuality, error = NaN }) {
   const flip = error > 0 && error < 1e-3 ? `< ${written(1e-3, 3)}` : written(error, 3);
   return [
@@ -177,7 +197,7 @@ export function qualityWords({ level, scale, samples, detail, jpegQuality, error
   ].filter(Boolean).join(' · ');
 }
 
-/** As many pixels as the server draws. */
+/** As many pixels as the server draws. @param {FrameHeader['view']} view */
 export function snapshotSize({ width, height, pixelRatio }) {
   const scale = Math.min(pixelRatio, LARGEST_SIDE / width, LARGEST_SIDE / height);
   const side = (length) => Math.max(1, Math.round(length * scale));

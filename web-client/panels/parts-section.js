@@ -4,7 +4,12 @@ import { say } from '../base/texts.js';
 import { choice, selection, toggle } from './controls.js';
 import { stateOf } from './section.js';
 
-/** @import { Page, Section } from './section.js' */
+/**
+ * @import { ServerTree } from '../base/protocol.js'
+ * @import { Page, Section } from './section.js'
+ *
+ * @typedef {ServerTree['nodes'][number]} Node
+ */
 
 const MOST_SEGMENTS = 5;
 const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB
@@ -253,7 +258,11 @@ async function allOf(tree, query) {
   return nodes;
 }
 
-/** What there is to choose, as {title, switches}: those of the same names together, if none is empty. */
+/**
+ * What there is to choose, as {title, switches}: those of the same names together, if none is empty.
+ *
+ * @param {Node[]} switches
+ */
 export function variants(switches) {
   const groups = new Map();
   for (const node of switches) {
@@ -272,7 +281,12 @@ function titleOf(group) {
   return say('parts.count', { count: group.length });
 }
 
-/** The matrix of a node with that hinge, opened by a part from 0 to 1: closed · rotation, 16 numbers, row by row. */
+/**
+ * The matrix of a node with that hinge, opened by a part from 0 to 1: closed · rotation, 16 numbers, row by row.
+ *
+ * @param {NonNullable<Node['hinge']>} hinge
+ * @param {number} part
+ */
 export function opened({ axis, degrees, closed }, part) {
   const matrix = new DOMMatrix(transposed(closed)).rotateAxisAngleSelf(...axis, part * degrees);
   return transposed([...matrix.toFloat64Array()]);

@@ -47,6 +47,7 @@ function renderer(change) {
     [about, (state, { stats }) => [state.renderer, stats?.renderer?.meanRenderMs], rendererFacts]);
 }
 
+/** @param {StateDocument['renderer']} renderer @param {number} [meanRenderMs] */
 export function rendererFacts(renderer, meanRenderMs) {
   return [{ ...renderer, time: meanRenderMs && `${written(meanRenderMs, 1)} ms` }];
 }
@@ -107,11 +108,12 @@ function lightTypes() {
   };
 }
 
-/** The active one, and all. */
+/** The active one, and all. @param {StateDocument['lights']} lights */
 export function lightChoice({ active, items: { headlight, ...others } }) {
   return [active, [['headlight', say('light.headlight')], ...options(others)]];
 }
 
+/** @param {StateDocument['lights']} lights */
 export function lightFacts({ active, items }) {
   const { name, type } = items[active];
   const types = lightTypes();
@@ -132,15 +134,17 @@ function background(change, present) {
     [color(say('fact.color'), setColor), ({ backgrounds: all }) => [(all.items[all.active] ?? all).color]]);
 }
 
-/** The active one, and all. */
+/** The active one, and all. @param {StateDocument['backgrounds']} backgrounds */
 export function backgroundChoice({ active, items }) {
   return [active, [['color', say('background.plain')], ...options(items)]];
 }
 
+/** @param {StateDocument['backgrounds']} backgrounds */
 export function backgroundFacts({ active, items }) {
   return [active === 'color' ? { name: say('background.plain') } : { ...items[active], id: active }];
 }
 
+/** @param {Record<string, {name: string}>} items */
 function options(items) {
   return Object.entries(items).map(([key, { name }]) => [key, name]).sort(([, a], [, b]) => byName(a, b));
 }

@@ -5,7 +5,10 @@ import { byName } from './controls.js';
 import { rows } from './rows.js';
 import { each, joined, stateOf } from './section.js';
 
-/** @import { Page, Section } from './section.js' */
+/**
+ * @import { FrameHeader, ServerPicked, StateDocument } from '../base/protocol.js'
+ * @import { Page, Section } from './section.js'
+ */
 
 /**
  * Where to look from, and at what: saved views, cameras, markers.
@@ -53,12 +56,17 @@ function cameras({ change }) {
     (id) => change({ camera: { node: Number(id) } }));
   return {
     ...list,
-    show: onChange(({ state: { cameras: all, camera } }) => [all, camera.node], (...picked) =>
-      list.show(cameraEntries(...picked))),
+    show: onChange(({ state: { cameras: all, camera } }) => [all, camera.node], (entries, node) =>
+      list.show(cameraEntries(entries, node))),
   };
 }
 
-/** [id, item] of each; `node`: that of the camera in use. */
+/**
+ * [id, item] of each; `node`: that of the camera in use.
+ *
+ * @param {StateDocument['cameras']} all
+ * @param {number} [node]
+ */
 export function cameraEntries(all, node) {
   return Object.entries(all).map(([id, { name }]) => [id, { text: name || `#${id}`, used: node === Number(id) }]);
 }
@@ -89,6 +97,8 @@ function markers({ pick, patch, fly, change, report, state, header }) {
 /**
  * [name, item] of each marker; lost where `drawn`, those of the frame, does not have it.
  *
+ * @param {StateDocument['markers']} all
+ * @param {FrameHeader['markers']} drawn
  * @returns {[string, {text: string, lost: boolean}][]}
  */
 export function markerEntries(all, drawn) {
@@ -124,12 +134,21 @@ function field(label, action, add) {
   return { element: form, show: (placeholder) => Object.assign(input, { placeholder }) };
 }
 
-/** Where a marker is to be: if the server tells it, in the part's own space, to move with the part. */
+/**
+ * Where a marker is to be: if the server tells it, in the part's own space, to move with the part.
+ *
+ * @param {ServerPicked} picked
+ */
 export function placeOf({ node, point, local }) {
   return local ? { node, point: local } : { point };
 }
 
-/** The camera looking at a place and turning about it, in the same direction and from as far. */
+/**
+ * The camera looking at a place and turning about it, in the same direction and from as far.
+ *
+ * @param {StateDocument['camera']} camera
+ * @param {number[]} place
+ */
 export function lookingAt({ eye, focus }, place) {
   return { eye: eye.map((x, i) => x + (place[i] - focus[i])), focus: place, center: place };
 }

@@ -2,7 +2,7 @@ import { clientName, holderName } from '../base/client-names.js';
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 
-/** @import { ClientControl } from '../base/protocol.js' */
+/** @import { ClientControl, ClientHello, StateDocument } from '../base/protocol.js' */
 
 const OFFERED_MS = 8000;
 
@@ -10,6 +10,7 @@ const OFFERED_MS = 8000;
  * What the bar says of control to the page of `client`, or null: to the holder that somebody asks, to another that it
  * has asked, or, where that is `offered`, that it may ask. An action is a `control` message without its type.
  *
+ * @param {{role?: ClientHello['role'], client?: string, control?: StateDocument['control'], offered?: boolean}} now
  * @returns {?{text: string, actions: {label: string, message: Omit<ClientControl, 'type'>}[]}}
  */
 export function controlBar({ role, client, control, offered }) {

@@ -1,5 +1,10 @@
 import { element } from '../base/element.js';
 
+/**
+ * @import { FrameHeader, StateDocument } from '../base/protocol.js'
+ * @import { Similarity } from './prediction.js'
+ */
+
 /** Shows each marker's text beside its sign in the picture, in a container as large as the window. */
 export class Labels {
   #container;
@@ -8,7 +13,7 @@ export class Labels {
     this.#container = container;
   }
 
-  /** Takes what labelPlaces() takes. */
+  /** @param {Parameters<typeof labelPlaces>} picture */
   show(...picture) {
     const { children, clientWidth } = this.#container;
     const places = labelPlaces(...picture);
@@ -23,13 +28,21 @@ export class Labels {
   }
 }
 
-/** {text, x, y} on the window, of a picture's header, the state's markers, the picture's mapping(), and its move. */
+/**
+ * {text, x, y} on the window, of a picture's header, the state's markers, the picture's mapping(), and its move.
+ *
+ * @param {?FrameHeader} header
+ * @param {StateDocument['markers']|undefined} markers
+ * @param {(x: number, y: number) => {x: number, y: number}} mapping
+ * @param {?Similarity} [move]
+ */
 export function labelPlaces(header, markers, mapping, move) {
   const { scale, x, y } = move ?? { scale: 1, x: 0, y: 0 };
   const origin = mapping(0, 0);
   const perPixel = mapping(1, 0).x - origin.x;
   const places = [];
-  for (const [name, point] of Object.entries(header?.markers ?? {})) {
+  if (!header) return places;
+  for (const [name, point] of Object.entries(header.markers ?? {})) {
     const text = markers?.[name]?.text;
     const at = text && inView(header, point);
     if (!at) continue;
@@ -43,7 +56,12 @@ export function labelPlaces(header, markers, mapping, move) {
   return places;
 }
 
-/** Where a point of the world is in the view; null behind the camera and outside the picture. */
+/**
+ * Where a point of the world is in the view; null behind the camera and outside the picture.
+ *
+ * @param {Pick<FrameHeader, 'camera'|'view'>} header
+ * @param {number[]} point
+ */
 export function inView({ camera, view }, point) {
   const [x, y, , w] = transformed(camera.projectionMatrix, transformed(camera.viewMatrix, [...point, 1]));
   if (!(w > 0) || Math.abs(x) > w || Math.abs(y) > w) return null;

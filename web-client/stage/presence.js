@@ -1,7 +1,10 @@
 import { holderName } from '../base/client-names.js';
 import { say } from '../base/texts.js';
 
-/** @import { StateDocument } from '../base/protocol.js' */
+/**
+ * @import { StateDocument } from '../base/protocol.js'
+ * @import { Now } from '../base/store.js'
+ */
 
 const CONNECTION = {
   open: 'presence.connected',
@@ -17,6 +20,8 @@ const HOLD_MS = 800;
 /**
  * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), the picture's
  * kind, and whether the session is recorded.
+ *
+ * @param {Pick<Now, 'phase'|'client'|'state'|'header'>} now
  */
 export function presence({ phase, client, state, header }) {
   if (phase.name !== 'open') return { connection: phase.name };

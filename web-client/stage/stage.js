@@ -12,10 +12,10 @@ import { Presence } from './presence.js';
 import { watchViewSize } from './view-size.js';
 
 /**
- * @import { StateDocument } from '../base/protocol.js'
+ * @import { ServerError, ServerLoading, StateDocument } from '../base/protocol.js'
  * @import { Store } from '../base/store.js'
  * @import { Commands } from '../connection/commands.js'
- * @import { Connection } from '../connection/connection.js'
+ * @import { Connection, Frame } from '../connection/connection.js'
  * @import { Meter } from '../connection/meter.js'
  */
 
@@ -98,15 +98,16 @@ export class Stage {
     this.#showPhase();
   }
 
-  /** Promises whether the frame is drawn, and the latest. */
+  /** Promises the header of the frame; null where that is not drawn. @param {Frame} frame */
   async draw(frame) {
+    const { header } = frame;
     const outcome = await this.#picture.show(frame);
     if (outcome === 'failed') this.#lines.pass(say('view.unreadable'));
-    if (outcome !== 'drawn' || this.#store.now.phase.name !== 'open') return false;
+    if (outcome !== 'drawn' || !header || this.#store.now.phase.name !== 'open') return null;
     // In the same task, so that nothing jumps.
-    this.#prediction.drawn(frame.header);
+    this.#prediction.drawn(header);
     this.#move();
-    return true;
+    return header;
   }
 
   sent(message) {
@@ -121,6 +122,7 @@ export class Stage {
     this.#prediction.follow(state, steers);
   }
 
+  /** @param {ServerLoading} message */
   loading({ scene, fraction, done, refused }) {
     this.#lines.hold('loading', done || refused ? '' : say('view.loading', { scene }), fraction);
     if (refused) this.#lines.pass(refused);
@@ -138,10 +140,11 @@ export class Stage {
     }
   }
 
-  /** The server does not take what was sent. */
-  forget() {
-    this.#prediction.forget();
+  /** What was refused is no answer to a question. @param {ServerError} error */
+  inputRefused(error) {
+    if (error.code === 'not-in-control') this.#prediction.forget();
     this.#move();
+    this.report(error);
   }
 
   /** While frames are late, picture and labels go with the fingers. */
