@@ -11,7 +11,8 @@ const HEAD = '// Written by tests/web/protocol-types.mjs from protocol/protocol.
 /** @returns {string} TypeScript: an exported type for each definition of the schema */
 export function protocolTypes() {
   const { $defs } = JSON.parse(readFileSync(SCHEMA, 'utf8'));
-  return HEAD + Object.entries($defs).map(([name, schema]) => `\nexport type ${typeName(name)} = ${typeOf(schema)};\n`).join('');
+  const types = Object.entries($defs).map(([name, schema]) => `\nexport type ${typeName(name)} = ${typeOf(schema)};\n`);
+  return HEAD + types.join('');
 }
 
 function typeName(name) {

@@ -5,7 +5,7 @@ import { Changes } from './changes.js';
 const FLIGHT_MS = 600;
 
 /**
- * All that the page asks of the server. Each promises the answer; undefined where there is none, once `refused` was told.
+ * All that the page asks of the server. Each promises the answer; undefined where `refused` was told why there is none.
  *
  * @typedef {ReturnType<typeof commandsBy>} Commands
  *

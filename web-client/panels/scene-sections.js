@@ -8,7 +8,8 @@ import { section, stateOf } from './section.js';
  * @import { Page } from './section.js'
  */
 
-const STYLES = [['vrut', 'VRUT'], ['maya', 'Maya'], ['catia', 'CATIA'], ['cinema4d', 'Cinema 4D']];
+/** @type {Record<StateDocument['navigation']['style'], string>} */
+const STYLES = { vrut: 'VRUT', maya: 'Maya', catia: 'CATIA', cinema4d: 'Cinema 4D' };
 
 /**
  * The five sections of the thesis (chapter 6.9), bound to the state.
@@ -77,7 +78,8 @@ function camera(change) {
     [toggle(say('camera.keepUpright'), set('keepUpright')), get('keepUpright')],
     [toggle(say('camera.turnAboutTouched'), (on) => set('turnAbout')(on ? 'touched' : 'center')),
       (state) => [state.navigation.turnAbout === 'touched']],
-    [selection(say('camera.style'), set('style')), (state) => [state.navigation.style, STYLES]]);
+    [selection(say('camera.style'), set('style')), (state) => [state.navigation.style],
+      (style) => [style, Object.entries(STYLES)]]);
 }
 
 /** The plane is the near one, its size in the scene's unit, and known once a picture is. */
@@ -94,7 +96,8 @@ function light(change, present) {
   return section('light', say('light.title'),
     [selection(say('light.active'), (active) => change({ lights: { active } })),
       (state) => [state.lights], lightChoice],
-    [facts({ name: say('fact.name'), id: say('fact.id'), type: say('fact.type') }), (state) => [state.lights], lightFacts],
+    [facts({ name: say('fact.name'), id: say('fact.id'), type: say('fact.type') }),
+      (state) => [state.lights], lightFacts],
     [color(say('fact.color'), set('color')), get('color')],
     [numbers(say('light.attenuation'), parts, set('attenuation')), get('attenuation')]);
 }
