@@ -517,6 +517,7 @@ export type StateDocument = {
     name?: string;
     node?: number;
     path?: Array<string>;
+    pathIds?: Array<number>;
   };
   views: Record<string, {
     center: Array<number>;
