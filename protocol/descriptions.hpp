@@ -349,6 +349,7 @@ void describe(V& v, const SceneState::Bounds*) {
 template <class V>
 void describe(V& v, const SceneState*) {
     v.fixed("name", &SceneState::name, kName);
+    v.fixed("file", &SceneState::file, Text{kMaxSceneName});
     v.fixed("nodes", &SceneState::nodes, kId);
     v.fixed("materials", &SceneState::materials, kId);
     v.fixed("geometries", &SceneState::geometries, kId);

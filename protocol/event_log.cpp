@@ -93,6 +93,14 @@ ClientMessage read_client_message(const Json& json) {
     return message;
 }
 
+LogLine::Opened read_opened(const Json& json) {
+    LogLine::Opened opened{read_string(member(json, "scene"), "scene", 1000),
+                           read_string(member(json, "sceneSha256"), "sceneSha256", 100)};
+    if (const auto changes = json.find("changes"); changes != json.end())
+        opened.changes = dump(read_object(*changes, "changes"));
+    return opened;
+}
+
 decltype(LogLine::what) read_event(const Json& json) {
     constexpr auto kEvents = word("connected", "disconnected", "control", "opened", "drawn");
     switch (kEvents.read(member(json, "event"), "event")) {
@@ -103,8 +111,7 @@ decltype(LogLine::what) read_event(const Json& json) {
         case 2:
             return LogLine::ControlPassed{};
         case 3:
-            return LogLine::Opened{read_string(member(json, "scene"), "scene", 1000),
-                                   read_string(member(json, "sceneSha256"), "sceneSha256", 100)};
+            return read_opened(json);
         default:
             return LogLine::Drawn{read_integer(member(json, "frame"), "frame", 1, kMaxInteger)};
     }
@@ -134,6 +141,7 @@ struct WriteWhat {
         json["event"] = "opened";
         json["scene"] = opened.scene;
         json["sceneSha256"] = opened.sha256;
+        if (!opened.changes.empty()) json["changes"] = Json::parse(opened.changes);
     }
     void operator()(const LogLine::Drawn& drawn) {
         json["event"] = "drawn";

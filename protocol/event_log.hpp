@@ -64,6 +64,7 @@ struct LogLine {
     /// A scene that was being loaded is shown from here on.
     struct Opened {
         std::string scene, sha256;
+        std::string changes = {};  ///< what was kept of it: a patch of the state; empty: nothing
     };
     /// A picture of this number was drawn of what is to be seen now.
     struct Drawn {

@@ -94,6 +94,16 @@ tl::expected<State, Error> restored(const State& starting, const Json& document)
     });
 }
 
+std::string kept_changes(const State& starting, const State& state) {
+    Json changes = Json::object();
+    const auto from = document_of(starting), to = document_of(state);
+    for (const char* section : {"views", "markers", "nodes"}) {
+        Json diff = merge_diff(from->at(section), to->at(section));
+        if (!diff.empty()) changes[section] = std::move(diff);
+    }
+    return dump(changes);
+}
+
 tl::expected<CameraOverlay, Error> parse_camera(std::string_view text) {
     return or_error([&] { return read_struct<CameraOverlay>(parse_strictly(text), "camera"); });
 }

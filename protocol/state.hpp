@@ -48,8 +48,8 @@ private:
 
 // --- the state document's members, as values. Those marked r are read-only to clients.
 
-struct SceneState {  // r
-    std::string name;
+struct SceneState {          // r
+    std::string name, file;  ///< its title, and the name by which it is opened
     std::uint64_t nodes = 0, materials = 0, geometries = 0, triangles = 0;
     struct Bounds {
         glm::dvec3 min{0}, max{0};
@@ -118,7 +118,7 @@ struct BackgroundsState {
 
 struct SelectionState {
     std::optional<std::int64_t> node;
-    std::optional<std::string> name;               // r
+    std::optional<std::string> name;                    // r
     std::optional<std::vector<std::string>> path;       // r: names from the root, the last 32
     std::optional<std::vector<std::int64_t>> path_ids;  // r: the same nodes
     bool operator==(const SelectionState&) const = default;
@@ -209,6 +209,10 @@ inline constexpr double kFarthest = 1e30;
 tl::expected<State, Error> patched(const State& state, const State& starting, const nlohmann::json& patch);
 /// A patch from the text of a JSON object.
 tl::expected<Patch, Error> parse_patch(std::string_view text);
+
+/// The text of the patch that leads from `starting` to what is kept of a scene in `state`: its views, markers
+/// and nodes. "{}" where they are the same.
+std::string kept_changes(const State& starting, const State& state);
 
 /// The document of a state, as clients see it.
 std::shared_ptr<const nlohmann::json> document_of(const State& state);

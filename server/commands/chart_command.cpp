@@ -37,9 +37,8 @@ Subject subject_of(const fs::path& path, const ChartArguments& arguments, observ
     });
     if (!scene) throw std::runtime_error(scene.error());
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
-    Subject subject{
-        scene->name, scene->sha256,
-        room::view_of(room::starting_state(*scene->placed, aspect, scene->notices), scene->placed)};
+    Subject subject{scene->name, scene->sha256,
+                    room::view_of(room::starting_state(*scene, aspect), scene->placed)};
     progress.show(0, subject.name + ", making levels of detail");
     subject.home.levels = detail_levels_of(scene->placed);
     subject.home.width = arguments.width;
@@ -60,9 +59,8 @@ std::vector<Experiment> triangle_experiments(const ChartArguments& arguments, ob
         home.levels = detail_levels_of(home.scene);
         home.width = arguments.width;
         home.height = arguments.height;
-        home.camera =
-            navigation::home_camera(navigation::fit_target(home.scene->bounds),
-                                    static_cast<double>(home.width) / home.height);
+        home.camera = navigation::home_camera(navigation::fit_target(home.scene->bounds),
+                                              static_cast<double>(home.width) / home.height);
         experiment.frames = arguments.frames;
         experiment.settings = {{.jpeg_quality = 0}};
         list.push_back(experiment);

@@ -73,10 +73,12 @@ void info_command(const InfoArguments& arguments) {
     auto scene =
         scenes::import_scene(arguments.scene, observe::loading_bar(arguments.scene.filename().string()));
     if (!scene) throw std::runtime_error(scene.error());
-    const scene::PlacedScene placed = scene::place(*std::move(scene));
-    const protocol::SceneState state =
-        *room::starting_state(placed, 1, scenes::all_notices(*placed.scene)).scene.value;
-    const auto nodes = list_nodes(placed);
+    scenes::LoadedScene loaded;
+    loaded.name = arguments.scene.filename().string();
+    loaded.notices = scenes::all_notices(*scene);
+    loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
+    const protocol::SceneState state = *room::starting_state(loaded, 1).scene.value;
+    const auto nodes = list_nodes(*loaded.placed);
     if (arguments.json)
         std::cout << protocol::encode_info(state, nodes) << std::endl;
     else

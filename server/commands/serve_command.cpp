@@ -12,6 +12,7 @@
 #include "net/server.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
+#include "scenes/change_store.hpp"
 #include "scenes/library.hpp"
 
 namespace vrut::server::commands {
@@ -104,16 +105,18 @@ void serve_command(const ServeArguments& arguments) {
     }
 
     const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
-    const std::string name = path.filename().string();
+    options.library = scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes), {}, path);
+    const std::string& name = options.library.start_name();
     auto scene = scenes::load_scene(path, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
+    scene->changes = scenes::stored_changes(scene->sha256);
+    options.keep_changes = scenes::store_changes;
     const scene::Scene& read = *scene->placed->scene;
     for (const std::string& notice : scene->notices)
         observe::log_warning("notice", {{"scene", name}, {"text", notice}});
     observe::log_info(
         "scene_read",
         {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});
-    options.library = scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes));
     options.record_folder = existing_folder("--record", arguments.record);
 
     net::Server server(options, *std::move(scene), engine::gl_renderer(arguments.device));

@@ -75,6 +75,9 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
                       room_->recording_ended(recording, why, time_of(base::Clock::now()));
                   },
                   {}),
+      change_keeper_(
+          std::move(options.keep_changes), file_results_,
+          [this](const std::string& why) { notice("Views, markers and parts cannot be kept: " + why); }),
       encoder_(
           metrics,
           [this](std::shared_ptr<const EncodedPicture> picture) {
@@ -116,6 +119,7 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
         snapshot_encoder_.stop();
         loader_.stop();
         recordings_.end_all(base::Clock::now());
+        if (begun) keep_changes();
         renderer_ = {};  // what belongs to GL ends on the thread that it began on
         room_.reset();
     });
@@ -154,6 +158,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     room::RoomOptions options;
     connect_files(options);
     room_.emplace(prepared(scene), std::move(options));
+    note_kept();
     try {
         while (renderer_.upload_step && !renderer_.upload_step(room_->visible())) {
         }
@@ -177,6 +182,7 @@ void Engine::run() {
         check_files();
         apply();
         publish();
+        check_changes();
         until = take_step(scheduler_.next(situation(base::Clock::now())));
     }
 }
@@ -365,8 +371,7 @@ void Engine::broadcast(const protocol::Loading& loading) {
 void Engine::handle(const scenes::SceneLoaded& loaded) {
     arrived_ = Arrived{loaded};
     if (loaded.scene)
-        arrived_->view =
-            room::view_of(room::starting_state(*loaded.scene->placed, 1, {}), loaded.scene->placed);
+        arrived_->view = room::view_of(room::starting_state(*loaded.scene, 1), loaded.scene->placed);
 }
 
 void Engine::handle(const MessageReceived& received) {

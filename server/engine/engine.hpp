@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/watchdog.hpp"
+#include "engine/change_keeper.hpp"
 #include "engine/encoder.hpp"
 #include "engine/fair_queue.hpp"
 #include "engine/frame_quality.hpp"
@@ -68,6 +69,7 @@ struct EngineOptions {
     scenes::LoadedScene scene;
     scenes::SceneLibrary library;
     std::filesystem::path record_folder;
+    ChangeKeeper::Store keep_changes = {};  ///< none: they go with the scene
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
@@ -171,6 +173,10 @@ private:
     void read_levels(const scenes::LoadedScene& scene);
     std::optional<base::Clock::time_point> files_due() const;
     void check_files();
+    bool has_changes_to_keep() const;
+    void check_changes();
+    void keep_changes();
+    void note_kept();
     room::SessionTime time_of(base::Clock::time_point when) const {
         return std::chrono::duration_cast<room::SessionTime>(when - start_);
     }
@@ -234,6 +240,11 @@ private:
     const std::shared_ptr<ResultPost> file_results_;
     SceneLookup lookup_;
     RecordingWriter recordings_;
+    ChangeKeeper change_keeper_;
+    /// What is kept, or on its way.
+    protocol::SharedMap<protocol::ViewState> kept_views_;
+    protocol::SharedMap<protocol::Marker> kept_markers_;
+    protocol::SharedMap<protocol::NodeOverride> kept_nodes_;
     FairQueue waiting_;
     base::Watchdog watchdog_;
     std::atomic<bool> draws_{false};

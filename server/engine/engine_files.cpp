@@ -33,8 +33,36 @@ void Engine::read_levels(const scenes::LoadedScene& scene) {
 }
 
 std::optional<base::Clock::time_point> Engine::files_due() const {
-    const auto lookup = lookup_.due(), recordings = recordings_.due();
-    return lookup && recordings ? std::min(lookup, recordings) : lookup ? lookup : recordings;
+    std::optional<base::Clock::time_point> first;
+    for (const auto due : {lookup_.due(), recordings_.due(), change_keeper_.due()})
+        if (due) first = std::min(first.value_or(*due), *due);
+    return first;
+}
+
+bool Engine::has_changes_to_keep() const {
+    const protocol::State& state = room_->state();
+    return !(state.views == kept_views_ && state.markers == kept_markers_ && state.nodes == kept_nodes_);
+}
+
+void Engine::check_changes() {
+    const base::Clock::time_point now = base::Clock::now();
+    if (has_changes_to_keep()) change_keeper_.changed(now);
+    if (const auto due = change_keeper_.due(); due && now >= *due) keep_changes();
+}
+
+/// Those of the scene that is shown.
+void Engine::keep_changes() {
+    if (!has_changes_to_keep()) return;
+    change_keeper_.keep(room_->scene_sha256(), room_->changes());
+    note_kept();
+}
+
+/// What stands now is kept already.
+void Engine::note_kept() {
+    const protocol::State& state = room_->state();
+    kept_views_ = state.views;
+    kept_markers_ = state.markers;
+    kept_nodes_ = state.nodes;
 }
 
 void Engine::check_files() {

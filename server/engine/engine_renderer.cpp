@@ -91,7 +91,12 @@ void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> 
     if (loading.refused) {
         observe::log_warning("scene_refused", {{"scene", loaded.name}, {"reason", *loading.refused}});
     } else {
-        room_->show(prepared(*loaded.scene), time_of(base::Clock::now()));
+        keep_changes();
+        scenes::LoadedScene scene = prepared(*loaded.scene);
+        // What was read may be older.
+        if (const auto newer = change_keeper_.newest(scene.sha256)) scene.changes = *newer;
+        room_->show(std::move(scene), time_of(base::Clock::now()));
+        note_kept();
         use(loaded.levels);
         pixel_budget_ = limits_;
         last_change_ = base::Clock::now();

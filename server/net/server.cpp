@@ -47,7 +47,8 @@ struct Server::Impl {
                 stop();
             });
         };
-        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder};
+        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder,
+                                             options.keep_changes};
         engine = std::make_unique<engine::Engine>(std::move(engine_options), renderer, metrics,
                                                   std::move(callbacks));
         registry.engine = engine.get();

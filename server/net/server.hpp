@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/change_keeper.hpp"
 #include "engine/frame_renderer.hpp"
 #include "net/access.hpp"
 #include "net/addresses.hpp"
@@ -24,6 +25,8 @@ struct ServerOptions {
     Deadlines deadlines{};
     scenes::SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
+    /// Of what clients change of scenes; none: it goes with the scene.
+    engine::ChangeKeeper::Store keep_changes = {};
     /// A thread that has something to do and does not come round for longer is not alive.
     std::chrono::milliseconds longest_busy{30'000};
 };

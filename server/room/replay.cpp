@@ -61,6 +61,7 @@ struct Player {
     std::optional<std::string> operator()(const protocol::LogLine::Opened& opened) const {
         auto scene = find_scene(opened.scene, opened.sha256);
         if (!scene) return scene.error();
+        scene->changes = opened.changes;
         room.show(*std::move(scene), line.at);
         return std::nullopt;
     }

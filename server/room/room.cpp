@@ -26,11 +26,13 @@ Room::Room(scenes::LoadedScene scene, RoomOptions options)
     : options_(std::move(options)),
       loaded_(std::move(scene)),
       scene_(loaded_.placed),
-      starting_(starting_state(*scene_, aspect(), loaded_.notices, loaded_.picking_trees.get())),
+      starting_(starting_state(loaded_, aspect())),
       state_(starting_),
-      document_(protocol::StateDocument::next({}, state_)),
-      at_home_(!state_.camera.node),
-      visible_(view_of(state_, scene_)) {}
+      at_home_(!state_.camera.node) {
+    lay_changes();
+    document_ = protocol::StateDocument::next({}, state_);
+    visible_ = view_of(state_, scene_);
+}
 
 void Room::join(const std::string& client, Role role, SessionTime at, const std::string& name,
                 const std::string& resume_key) {
@@ -173,10 +175,10 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     document();
     changing_.clear();
     end_flight(false);
-    record({}, protocol::LogLine::Opened{scene.name, scene.sha256});
+    record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
-    starting_ = starting_state(*scene_, aspect(), loaded_.notices, loaded_.picking_trees.get());
+    starting_ = starting_state(loaded_, aspect());
     protocol::State next = starting_;
     next.navigation = state_.navigation;
     next.renderer.mode = state_.renderer.mode;
@@ -188,13 +190,26 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     next.notices = state_.notices;
     state_ = std::move(next);
     at_home_ = !state_.camera.node;
+    lay_changes();
     gestures_.restart(camera());
     update_visible();
 }
 
+void Room::lay_changes() {
+    if (loaded_.changes.empty()) return;
+    if (const auto error = use_changes())
+        add_notice("What was kept of " + loaded_.name + " cannot be used: " + error->message);
+}
+
+std::string Room::changes() const { return protocol::kept_changes(starting_, state_); }
+
 void Room::notice(const std::string& sentence) {
     document();
     changing_.clear();  // the server's doing
+    add_notice(sentence);
+}
+
+void Room::add_notice(const std::string& sentence) {
     std::erase(state_.notices, sentence);
     state_.notices.push_back(sentence);
     if (state_.notices.size() > protocol::kMaxNotices) state_.notices.erase(state_.notices.begin());
@@ -369,8 +384,11 @@ void Room::use_holders_size() {
     if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
     view_size_ = *holder->second.wanted;
     if (at_home_) {
-        state_.views.set("home", home_view(*scene_, aspect(), loaded_.picking_trees.get()));
-        state_.camera = state_of(camera_of(state_.views->at("home")), scene_->bounds);
+        const protocol::ViewState home = home_view(*scene_, aspect(), loaded_.picking_trees.get());
+        for (protocol::State* state : {&starting_, &state_}) {
+            state->views.set("home", home);
+            state->camera = state_of(camera_of(home), scene_->bounds);
+        }
     }
     gestures_.restart(camera());
 }

@@ -104,6 +104,9 @@ public:
     bool flies() const { return flight_.has_value(); }
     const std::optional<std::string>& holder() const { return steering_.holder(); }
     const std::string& scene_name() const { return loaded_.name; }
+    const std::string& scene_sha256() const { return loaded_.sha256; }
+    /// What clients have changed of the scene, to be kept: LoadedScene::changes of its next opening.
+    std::string changes() const;
 
     /// The document of the present state. Changes since the last call become one revision, made by
     /// `changed_by`.
@@ -218,6 +221,10 @@ private:
     Path path_of(scene::Index node) const;
 
     // --- patches
+    /// Lays what is kept of the scene over what its file says. Where it cannot be used, nothing of it counts,
+    /// and a notice says so.
+    void lay_changes();
+    std::optional<protocol::Error> use_changes();
     std::optional<protocol::Error> use_nodes(protocol::State& next,
                                              std::shared_ptr<const scene::PlacedScene>& placed);
     std::optional<protocol::Error> use_camera(protocol::State& next, const scene::PlacedScene& placed,
@@ -244,6 +251,7 @@ private:
     void move_camera(const scene::Camera& camera);
     void fit_selection();
     void end_flight(bool completed);
+    void add_notice(const std::string& sentence);
 
     RoomOptions options_;
     scenes::LoadedScene loaded_;

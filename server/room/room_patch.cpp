@@ -43,6 +43,32 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     answer(received);
 }
 
+std::optional<Error> Room::use_changes() {
+    const auto patch = protocol::parse_patch(loaded_.changes);
+    if (!patch) return patch.error();
+    if (!protocol::names_only(*patch->patch, {"views", "markers", "nodes"}))
+        return Error{{}, code::bad_message, "it names other members than views, markers and nodes"};
+    auto next = protocol::patched(state_, starting_, *patch->patch);
+    if (!next) return next.error();
+    std::shared_ptr<const scene::PlacedScene> placed = scene_;
+    auto error = use_nodes(*next, placed);
+    if (!error) error = use_views(*next, *placed);
+    if (!error) error = check_names(*next);
+    if (error) return error;
+    state_ = *std::move(next);
+    scene_ = std::move(placed);
+
+    const protocol::ViewState& home = state_.views->at("home");
+    const bool is_moved = home != starting_.views->at("home");
+    const scene::Index node =
+        is_moved || !state_.camera.node ? scene::kNone : scene_->scene->find_node(*state_.camera.node);
+    const auto at_node = node == scene::kNone ? std::nullopt : scene::camera_at(*scene_, node);
+    state_.camera =
+        at_node ? state_at_node(*at_node, *scene_, node) : state_of(camera_of(home), scene_->bounds);
+    at_home_ = at_home_ && !is_moved;
+    return std::nullopt;
+}
+
 std::optional<Error> Room::use_nodes(protocol::State& next,
                                      std::shared_ptr<const scene::PlacedScene>& placed) {
     if (next.nodes == state_.nodes) return std::nullopt;

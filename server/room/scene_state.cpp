@@ -133,22 +133,23 @@ std::optional<Error> apply(protocol::NodeOverride& change, const scene::Scene& s
 
 }  // namespace
 
-protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
-                               std::vector<std::string> notices, const mesh::PickingTrees* trees) {
+protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect) {
     protocol::State state;
+    const scene::PlacedScene& placed = *loaded.placed;
     const scene::Scene& scene = *placed.scene;
     state.scene.value = std::make_shared<const protocol::SceneState>(
         protocol::SceneState{.name = scene.name(),
+                             .file = loaded.name,
                              .nodes = scene.nodes().size(),
                              .materials = scene.materials().size(),
                              .geometries = scene.geometries().size(),
                              .triangles = scene.triangle_count(),
                              .bounds = {placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.min,
                                         placed.bounds.empty() ? glm::dvec3(0) : placed.bounds.max},
-                             .notices = std::move(notices)});
+                             .notices = loaded.notices});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
-    state.views.set("home", home_view(placed, aspect, trees));
+    state.views.set("home", home_view(placed, aspect, loaded.picking_trees.get()));
     const scene::Index node = scene::first_camera_node(placed);
     state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);

@@ -7,15 +7,15 @@
 #include "navigation/camera_moves.hpp"
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
+#include "scenes/loaded_scene.hpp"
 #include "state.hpp"
 
 namespace vrut::server::room {
 
-/// The state that a scene starts with, its camera at home for a view of `aspect`. `trees`, here and below,
+/// The state of a scene as its file says, its camera at home for a view of `aspect`.
+protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect);
+/// The view with which a scene opens: its first camera node's, or else the scene fitted to the view. `trees`
 /// change the time that it takes; null: none.
-protocol::State starting_state(const scene::PlacedScene& placed, double aspect,
-                               std::vector<std::string> notices, const mesh::PickingTrees* trees = nullptr);
-/// The view with which a scene opens: its first camera node's, or else the scene fitted to the view.
 protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect,
                               const mesh::PickingTrees* trees);
 /// What is shown at and below a node, less what presents it.

@@ -8,8 +8,8 @@
 
 namespace vrut::server::scenes {
 
-/// Where the levels of a scene on a machine are kept, once they are measured: in $XDG_STATE_HOME, else in
-/// ~/.local/state, the folder vrut-preview/levels. Empty where neither is an absolute path.
+/// Where the levels of a scene on a machine are kept, once they are measured: in the state folder, the folder
+/// levels. Empty where there is no state folder.
 std::filesystem::path levels_file(const std::string& scene_sha256, const std::string& renderer);
 
 /// Writes the file of the table's scene and renderer, whole or not at all, and returns it. Throws

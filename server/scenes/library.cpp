@@ -43,7 +43,35 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     return tl::unexpected(out_of_memory(path));
 }
 
+namespace {
+
+bool can_be_asked_for(const std::string& name) {
+    return name.size() <= protocol::kMaxSceneName &&
+           vrut::base::find_invalid_utf8(name) == std::string_view::npos;
+}
+
+}  // namespace
+
+SceneLibrary::SceneLibrary(fs::path folder, std::optional<ImportLimits> limits, fs::path start)
+    : folder_(std::move(folder)), start_(std::move(start)), limits_(limits) {
+    if (start_.empty()) return;
+    std::error_code error;
+    const fs::path file = fs::weakly_canonical(start_, error);
+    start_name_ = start_.filename().string();
+    if (folder_.empty()) return;
+    const fs::path below = file.lexically_relative(fs::weakly_canonical(folder_, error));
+    if (!below.empty() && *below.begin() != "..")
+        start_name_ = below.generic_string();
+    else if (find_in_folder(start_name_))
+        start_name_ = (file.parent_path().filename() / file.filename()).generic_string();
+}
+
 tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) const {
+    if (!start_.empty() && name == start_name_) return start_;
+    return find_in_folder(name);
+}
+
+tl::expected<fs::path, std::string> SceneLibrary::find_in_folder(const std::string& name) const {
     if (folder_.empty()) return tl::unexpected(std::string("this server has no folder of scenes to open"));
     const std::string sentence = "there is no scene '" + name.substr(0, 100) + "'";
     const fs::path relative(name);
@@ -64,11 +92,22 @@ tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) 
 
 /// What is opened is the link's target, which may have another ending.
 bool SceneLibrary::leads_to_scene(const std::string& link) const {
-    const auto file = find(link);
+    const auto file = find_in_folder(link);
     return file && io::has_reader(*file);
 }
 
 std::vector<std::string> SceneLibrary::names() const {
+    std::vector<std::string> names = names_in_folder();
+    if (!start_.empty()) {
+        std::erase(names, start_name_);
+        names.resize(std::min(names.size(), kMostNames - 1));
+        if (can_be_asked_for(start_name_)) names.push_back(start_name_);
+    }
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::vector<std::string> SceneLibrary::names_in_folder() const {
     std::vector<std::string> names;
     if (folder_.empty()) return names;
     std::size_t entries = 0;
@@ -80,9 +119,7 @@ std::vector<std::string> SceneLibrary::names() const {
             ++entries;
             const fs::path below = folders.front() / entry->path().filename();
             const std::string name = below.generic_string();
-            if (name.size() > protocol::kMaxSceneName ||
-                vrut::base::find_invalid_utf8(name) != std::string_view::npos)
-                continue;  // no message can ask for it
+            if (!can_be_asked_for(name)) continue;
             std::error_code ignored;
             const bool link = entry->is_symlink(ignored);
             if (!link && entry->is_directory(ignored))

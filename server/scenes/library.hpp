@@ -19,18 +19,25 @@ tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& p
                                                   const io::ReadProgress& progress = {},
                                                   const std::optional<ImportLimits>& limits = {});
 
-/// The folder of scenes that clients may open.
+/// The scenes that clients may open: those in a folder, and the one that the server starts with, wherever it
+/// lies.
 class SceneLibrary {
 public:
-    /// Without a folder there are none.
+    /// There are none.
     SceneLibrary() = default;
-    explicit SceneLibrary(std::filesystem::path folder, std::optional<ImportLimits> limits = {})
-        : folder_(std::move(folder)), limits_(limits) {}
+    /// An empty path: no folder, or no start scene.
+    explicit SceneLibrary(std::filesystem::path folder, std::optional<ImportLimits> limits = {},
+                          std::filesystem::path start = {});
+
+    /// The start scene's: its path in the folder, else its file's name, with the name of the folder above
+    /// where the folder of scenes has another of that name.
+    const std::string& start_name() const { return start_name_; }
 
     /// Of reading each of its scenes; none: import_limits().
     const std::optional<ImportLimits>& limits() const { return limits_; }
 
-    /// The file of this name, which may lie in a folder below, but nowhere else; or why there is none.
+    /// The file of this name, which may lie in a folder below, but nowhere else, or is the start scene; or
+    /// why there is none.
     tl::expected<std::filesystem::path, std::string> find(const std::string& name) const;
 
     static constexpr std::size_t kMostNames = protocol::kMaxScenes, kMostEntries = 10'000;
@@ -40,9 +47,12 @@ public:
     std::vector<std::string> names() const;
 
 private:
+    tl::expected<std::filesystem::path, std::string> find_in_folder(const std::string& name) const;
     bool leads_to_scene(const std::string& link) const;
+    std::vector<std::string> names_in_folder() const;
 
-    std::filesystem::path folder_;
+    std::filesystem::path folder_, start_;
+    std::string start_name_;
     std::optional<ImportLimits> limits_;
 };
 

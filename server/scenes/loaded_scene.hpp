@@ -17,6 +17,8 @@ struct LoadedScene {
     std::string sha256;  ///< of its file, in hexadecimal
     std::shared_ptr<const scene::PlacedScene> placed;
     std::vector<std::string> notices;
+    /// A patch of the state that is laid over what the file says (stored_changes()); empty: none.
+    std::string changes = {};
     std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/clock.hpp"
+#include "scenes/change_store.hpp"
 #include "scenes/level_store.hpp"
 
 namespace vrut::server::scenes {
@@ -54,7 +55,9 @@ SceneLoaded load(const std::filesystem::path& path, const std::string& name, con
                  const io::ReadProgress& progress, const std::optional<ImportLimits>& limits) try {
     SceneLoaded loaded{name, load_scene(path, name, progress, limits)};
     progress(1);
-    if (loaded.scene) loaded.levels = levels_of(loaded.scene->sha256, renderer);
+    if (!loaded.scene) return loaded;
+    loaded.levels = levels_of(loaded.scene->sha256, renderer);
+    loaded.scene->changes = stored_changes(loaded.scene->sha256);
     return loaded;
 } catch (const std::exception& error) {
     return {name, tl::unexpected(std::string(error.what()))};

@@ -36,8 +36,8 @@ public:
 
     /// From start() until finish().
     bool busy() const { return task_.has_value(); }
-    /// Reads a scene, and the levels that are kept for `renderer`; not while busy(). Throws std::system_error
-    /// where no thread can be had.
+    /// Reads a scene, what is kept of it, and the levels that are kept for `renderer`; not while busy().
+    /// Throws std::system_error where no thread can be had.
     void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
                const std::optional<ImportLimits>& limits);
     /// To be called after `on_loaded`.

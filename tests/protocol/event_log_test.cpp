@@ -133,6 +133,9 @@ TEST_CASE("each kind of line, as it stands in the file") {
           R"({"at":0.0,"client":"c1","event":"disconnected"})");
     CHECK(text({LogTime(1), "", LogLine::Opened{"car", "ab12"}}) ==
           R"({"at":0.001,"event":"opened","scene":"car","sceneSha256":"ab12"})");
+    CHECK(
+        text({LogTime(1), "", LogLine::Opened{"car", "ab12", R"({"markers":{"m":null}})"}}) ==
+        R"({"at":0.001,"changes":{"markers":{"m":null}},"event":"opened","scene":"car","sceneSha256":"ab12"})");
     CHECK(text({LogTime(-3), "", LogLine::Drawn{7}}) == R"({"at":-0.003,"event":"drawn","frame":7})");
     CHECK(text({LogTime(100), "c2", ClientMessage{5, Fit{4}}}) ==
           R"({"at":0.1,"client":"c2","message":{"id":5,"node":4,"type":"fit"}})");
@@ -153,6 +156,10 @@ TEST_CASE("each kind of line is read back") {
     CHECK(opened.client.empty());
     CHECK(std::get<LogLine::Opened>(opened.what).scene == "car");
     CHECK(std::get<LogLine::Opened>(opened.what).sha256 == "ab12");
+    CHECK(std::get<LogLine::Opened>(opened.what).changes.empty());
+    const LogLine changed =
+        line(R"({"at":1,"event":"opened","scene":"car","sceneSha256":"ab12","changes":{"views":{}}})");
+    CHECK(std::get<LogLine::Opened>(changed.what).changes == R"({"views":{}})");
     CHECK(std::get<LogLine::Drawn>(line(R"({"at":1,"event":"drawn","frame":7})").what).frame == 7);
     const LogLine message = line(R"({"at":1,"client":"c1","message":{"type":"fit","id":5,"node":4}})");
     CHECK(std::get<ClientMessage>(message.what).id == 5);

@@ -22,7 +22,8 @@ std::vector<scene::Id> taps(const scene::PlacedScene& placed, scene::Id hit, int
     scene::Index now = scene::kNone;
     for (int i = 0; i < count; ++i) {
         now = named_part(placed, placed.scene->find_node(hit), now);
-        selected.push_back(now == scene::kNone ? -1 : placed.scene->nodes()[static_cast<std::size_t>(now)].id);
+        selected.push_back(now == scene::kNone ? -1
+                                               : placed.scene->nodes()[static_cast<std::size_t>(now)].id);
     }
     return selected;
 }

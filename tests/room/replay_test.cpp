@@ -477,6 +477,21 @@ TEST_CASE("what is no log is told with file and line") {
     CHECK(holds(log_in(folder.path() / "none.jsonl").error(), "none.jsonl: cannot be opened"));
 }
 
+TEST_CASE("what was kept of a scene that is opened, and of the one before, is in the log") {
+    LoadedScene shown = first_scene(), other = other_scene();
+    shown.changes = R"({"nodes":{"2":{"active":false}},"views":{"v":{"fov":30}}})";
+    other.changes = R"({"views":{"home":{"fov":30}},"markers":{"m":{"point":[1,2,3]}}})";
+    Recorded recorded("a", shown);
+    recorded.start();
+    recorded.stage.say("a", R"({"type":"patch","patch":{"markers":{"n":{"point":[1,1,1]}}}})");
+    recorded.stage.room.show(other, 1s);
+    recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
+    recorded.stage.say("a", R"({"type":"keydown","key":"Home","code":"Home"})");
+    recorded.check();
+    recorded.stage.say("a", R"({"type":"patch","patch":{"views":null,"markers":null}})");
+    recorded.check();
+}
+
 TEST_CASE("a scene that is another one now is told") {
     Recorded recorded("a");
     recorded.start();

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "contains.hpp"
 #include "io/read_scene.hpp"
 #include "needs_folder.hpp"
 #include "room/room.hpp"
@@ -71,7 +72,7 @@ TEST_CASE("the state of a scene with all that clients may change is no longer th
                 " end\n";
     }
     const LoadedScene loaded = scene_of(text, "names.vrut");
-    protocol::State state = starting_state(*loaded.placed, 1, {});
+    protocol::State state = starting_state(loaded, 1);
     const auto bytes = [&] { return protocol::StateDocument::next({}, state)->encode().size(); };
     constexpr std::size_t kOfEveryScene = 4096;
     CHECK(bytes() < most_state_bytes(loaded) + kOfEveryScene);
@@ -328,6 +329,80 @@ TEST_CASE("another scene starts anew, but for control, navigation, the way of dr
     CHECK(told[0]["completed"] == false);
     CHECK(stage.room.scene_name() == "other.vrut");
     CHECK(stage.rejection("a", patch(R"({"selection":{"node":2}})")) == "unknown-node");
+}
+
+namespace {
+
+LoadedScene with_changes(LoadedScene scene, std::string changes) {
+    scene.changes = std::move(changes);
+    return scene;
+}
+
+const char* const kGiveBack = R"({"type":"patch","patch":{"views":null,"markers":null,"nodes":null}})";
+
+}  // namespace
+
+TEST_CASE("what is kept of a scene is laid over what its file says, and null gives that back") {
+    Stage before("a");
+    const json file = before.state();
+    before.say("a", patch(R"({"views":{"front":{"eye":[0,0,9],"fov":20}},"markers":{"m":{"point":[1,2,3]}},
+        "nodes":{"2":{"active":false},"3":{"activeChild":1}}})"));
+    const json changed = before.state();
+    Stage after("a", with_changes(first_scene(), before.room.changes()));
+    for (const char* kept : {"views", "markers", "nodes"}) CHECK(after.state()[kept] == changed[kept]);
+    CHECK(after.state()["camera"] == file["camera"]);  // that of the scene's opening
+    CHECK_FALSE(
+        after.room.scene().nodes[static_cast<std::size_t>(after.room.scene().scene->find_node(2))].active);
+    CHECK(after.room.changes() == before.room.changes());
+
+    after.say("a", kGiveBack);
+    CHECK(after.room.changes() == "{}");
+    for (const char* kept : {"views", "markers", "nodes"}) CHECK(after.state()[kept] == file[kept]);
+}
+
+TEST_CASE("a home that was kept is the view with which the scene opens") {
+    for (LoadedScene (*scene)() : {first_scene, other_scene}) {
+        Stage before("a", scene());
+        before.say("a", patch(R"({"views":{"home":{"eye":[0,1,9],"fov":25}}})"));
+        Stage after("a", with_changes(scene(), before.room.changes()));
+        CHECK(after.camera().eye == glm::dvec3(0, 1, 9));
+        CHECK(after.camera().fov == 25);
+        CHECK_FALSE(after.camera().node);
+        after.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
+        CHECK(after.camera().eye == glm::dvec3(0, 1, 9));
+    }
+}
+
+TEST_CASE("a home that follows the view's size is no change of the scene") {
+    Stage stage("a", other_scene());
+    stage.say("a", patch("{}"));
+    stage.say("a", R"({"type":"resize","width":100,"height":200,"pixelRatio":1})");
+    stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
+    CHECK(stage.room.changes() == "{}");
+}
+
+TEST_CASE("a camera at a node that was moved stands where it was moved to") {
+    Stage before("a");
+    before.say("a", kMoveHinge);
+    Stage after("a", with_changes(first_scene(), before.room.changes()));
+    CHECK(after.camera().node == 6);
+    CHECK(after.camera().eye == before.camera().eye);
+}
+
+TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice says so") {
+    const std::pair<const char*, const char*> cases[] = {
+        {R"({"markers":{"m":{"point":[1,2,3]}},"nodes":{"99":{"active":false}}})", "99"},
+        {R"({"camera":{"fov":20}})", "views, markers and nodes"},
+        {R"({"views":{"v":{"fov":"wide"}}})", "fov"},
+    };
+    for (const auto& [changes, culprit] : cases) {
+        Stage stage("a", with_changes(first_scene(), changes));
+        CHECK(stage.room.changes() == "{}");
+        const json notices = stage.state()["notices"];
+        REQUIRE(notices.size() == 1);
+        CHECK(contains(notices[0], "stage.vrut cannot be used"));
+        CHECK(contains(notices[0], culprit));
+    }
 }
 
 TEST_CASE("a pick names one of the last 64 frames") {

@@ -96,6 +96,33 @@ TEST_CASE("without a folder there is nothing to open") {
     CHECK(SceneLibrary().find("room.vrut").error() == "this server has no folder of scenes to open");
 }
 
+TEST_CASE("the scene of the start is always there, wherever it lies") {
+    const TemporaryFolder folder, elsewhere;
+    folder.write("a/deep.vrut", kScene);
+    folder.write("room.vrut", kScene);
+    const fs::path outside = elsewhere.write("shown/hall.vrut", kScene),
+                   twin = elsewhere.write("shown/room.vrut", kScene);
+    const auto check = [](const SceneLibrary& library, const std::string& name, const fs::path& file,
+                          const std::vector<std::string>& names) {
+        CHECK(library.start_name() == name);
+        CHECK(fs::canonical(*library.find(name)) == fs::canonical(file));
+        CHECK(library.names() == names);
+    };
+    check(SceneLibrary({}, {}, outside), "hall.vrut", outside, {"hall.vrut"});
+    CHECK_FALSE(SceneLibrary({}, {}, outside).find("shown/hall.vrut"));
+    check(SceneLibrary(folder.path(), {}, outside), "hall.vrut", outside,
+          {"a/deep.vrut", "hall.vrut", "room.vrut"});
+    check(SceneLibrary(folder.path(), {}, folder.path() / "a/../a/deep.vrut"), "a/deep.vrut",
+          folder.path() / "a/deep.vrut", {"a/deep.vrut", "room.vrut"});
+    check(SceneLibrary(folder.path(), {}, twin), "shown/room.vrut", twin,
+          {"a/deep.vrut", "room.vrut", "shown/room.vrut"});
+    CHECK(SceneLibrary(folder.path(), {}, twin).find("room.vrut") ==
+          fs::canonical(folder.path() / "room.vrut"));
+    // A file without an ending, or one that is read by its content alone, is named, too.
+    check(SceneLibrary(folder.path(), {}, elsewhere.write("scene", kScene)), "scene",
+          elsewhere.path() / "scene", {"a/deep.vrut", "room.vrut", "scene"});
+}
+
 TEST_CASE("the names are those of scene files, sorted, and open finds each of them") {
     const TemporaryFolder folder;
     for (const std::string name : {"room.vrut", "a/b/deep.vrut", "a.vrut", "Large.VRUT", "a/room.vrut"})

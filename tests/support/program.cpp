@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "environment_variable.hpp"
 #include "test_client.hpp"
 
 namespace vrut::test {
@@ -26,6 +27,7 @@ Program::Program(const std::vector<std::string>& arguments) {
     posix_spawn_file_actions_init(&actions);
     for (const int standard : {STDOUT_FILENO, STDERR_FILENO})
         posix_spawn_file_actions_adddup2(&actions, ends[1], standard);
+    const EnvironmentVariable state("XDG_STATE_HOME", state_.path().c_str());
     REQUIRE(posix_spawn(&process_, VRUT_PREVIEW, &actions, nullptr, argv.data(), environ) == 0);
     posix_spawn_file_actions_destroy(&actions);
     close(ends[1]);

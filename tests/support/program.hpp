@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "process.hpp"
+#include "temporary_folder.hpp"
 
 namespace vrut::test {
 
-/// `vrut-preview` as its users start it: a process of its own, killed with the object. What it writes to
+/// `vrut-preview` as its users start it: a process of its own, with nothing kept from before, killed with the
+/// object. What it writes to
 /// standard output and standard error is kept, and does not go on until it is read.
 class Program {
 public:
@@ -33,6 +35,7 @@ public:
 private:
     bool read_more();
 
+    TemporaryFolder state_;
     pid_t process_ = 0;
     int writes_ = -1;
     std::string output_;

@@ -506,6 +506,7 @@ export type StateDocument = {
       max: Array<number>;
       min: Array<number>;
     };
+    file: string;
     geometries: number;
     materials: number;
     name: string;

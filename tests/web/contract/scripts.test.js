@@ -573,11 +573,14 @@ describe('scenes', () => {
     await clients[0].until('the first scene', () => clients[0].state.scene.name === 'stage', 30000);
   });
 
-  test('none without a folder', async (t) => {
+  test('without a folder the scene of the start, which can be opened again', async (t) => {
     const bare = await Server.start();
     t.after(() => bare.stop());
-    const client = await ContractClient.join(t, bare, { role: 'view' });
-    assert.deepEqual((await client.ask({ type: 'scenes' })).scenes, []);
+    const client = await ContractClient.join(t, bare);
+    assert.deepEqual((await client.ask({ type: 'scenes' })).scenes, ['stage.vrut']);
+    assert.equal(client.state.scene.file, 'stage.vrut');
+    await client.ask({ type: 'open', scene: 'stage.vrut' });
+    await client.until('the loading to end', () => client.texts.some(({ type, done }) => type === 'loading' && done), 30000);
   });
 });
 

@@ -40,7 +40,7 @@ export class Server {
 
   #start(command, env) {
     if (!PROGRAM) throw new Error('The environment has to give the path of the program in VRUT_PREVIEW.');
-    const child = (this.#child = spawn(PROGRAM, command, { env: { ...process.env, ...env } }));
+    const child = (this.#child = spawn(PROGRAM, command, { env: { ...process.env, XDG_STATE_HOME: temporaryFolder(), ...env } }));
     process.on('exit', () => child.kill('SIGKILL'));
     let printed = '';
     return new Promise((resolve, reject) => {

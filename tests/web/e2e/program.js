@@ -1,5 +1,6 @@
 import { execFile, spawn } from 'node:child_process';
 import { once } from 'node:events';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
@@ -16,6 +17,13 @@ function fromEnvironment(name, what) {
   return value;
 }
 
+/** A folder that goes when the process does. */
+export function temporaryFolder() {
+  const folder = mkdtempSync(path.join(tmpdir(), 'vrut-e2e-'));
+  process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
+  return folder;
+}
+
 /** A running `vrut-preview serve` with the car. */
 export class Server {
   #child;
@@ -23,9 +31,11 @@ export class Server {
   /**
    * @param {number} [port] any free one if left out
    * @param {string[]} [options] more of the command line
+   * @param {string} [state] the folder of what is kept; one of its own if left out
    */
-  static async start(port = 0, options = []) {
+  static async start(port = 0, options = [], state = temporaryFolder()) {
     const server = new Server();
+    server.state = state;
     server.address = await server.#start(port, options);
     server.port = Number(new URL(server.address).port);
     return server;
@@ -33,7 +43,7 @@ export class Server {
 
   #start(port, options) {
     const words = ['serve', scene, '--listen', `127.0.0.1:${port}`, ...options];
-    this.#child = spawn(program, words, { stdio: ['ignore', 'pipe', 'pipe'] });
+    this.#child = spawn(program, words, { stdio: ['ignore', 'pipe', 'pipe'], env: { ...process.env, XDG_STATE_HOME: this.state } });
     const child = this.#child;
     let said = '';
     let complained = '';

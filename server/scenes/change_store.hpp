@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace vrut::server::scenes {
+
+/// Where it is kept what clients have changed of a scene: views, markers and parts. In the state folder, the
+/// folder scenes. Empty where there is no state folder.
+std::filesystem::path changes_file(const std::string& scene_sha256);
+
+/// Keeps a patch of the state, which leads from what the scene's file says to what stands now, whole or not
+/// at all. An empty patch leaves no file. Throws std::runtime_error with a sentence. From any thread.
+void store_changes(const std::string& scene_sha256, const std::string& patch);
+
+/// The patch that is kept; empty where none is. Its 30 days begin anew. Files whose 30 days are over are
+/// removed, this one and the others. The log tells of a file that cannot be used. From any thread.
+std::string stored_changes(const std::string& scene_sha256);
+
+}  // namespace vrut::server::scenes
