@@ -32,7 +32,7 @@ inline constexpr Integer kId{};
 inline constexpr Integer kPixels{1, 8192};
 inline constexpr Integer kJpegQuality{1, 100};
 inline constexpr Text kName{std::numeric_limits<std::uint32_t>::max()};
-inline constexpr Text kClientName{100};
+inline constexpr Text kClientName{kMaxClientName};
 inline constexpr std::size_t kMaxKeyframes = 1000;
 
 inline constexpr Integer kActiveChild{-2, std::numeric_limits<int>::max()};

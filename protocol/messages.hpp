@@ -21,6 +21,8 @@ inline constexpr std::size_t kMaxMessageBytes = 65'536;
 inline constexpr std::size_t kMaxServerMessageBytes = std::size_t{64} << 20;
 inline constexpr int kMaxDepth = 32;
 inline constexpr int kMaxGrants = 2;
+/// Bytes of a client's name.
+inline constexpr std::size_t kMaxClientName = 100;
 inline constexpr std::size_t kMaxSceneName = 1000;  ///< bytes
 inline constexpr std::size_t kMaxScenes = 1000;     ///< in a list
 inline constexpr std::size_t kMaxChoices = 64;      ///< of a switch that tells of its children

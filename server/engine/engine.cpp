@@ -273,7 +273,7 @@ void Engine::handle(const ClientJoined& joined) {
     output_.handled[joined.client].sequence = clients_[joined.client].sequence = kHelloSequence;
     const base::Clock::time_point now = base::Clock::now();
     room_->join(joined.client, joined.role, time_of(now), joined.name, joined.resume_key);
-    stats_.joined(joined.client, joined.role, joined.name, now);
+    stats_.joined(joined.client, joined.role, room_->client_name(joined.client), now);
 }
 
 void Engine::handle(const ClientLeft& left) {

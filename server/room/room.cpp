@@ -39,13 +39,37 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     advance(at);
     document();
     changing_.clear();  // who holds control is the server's doing
-    clients_[client].role = role;
-    clients_[client].name = name;
-    record(client, protocol::LogLine::Connected{role, name});
+    clients_[client] = {role, {}, own_name(name, resume_key), resume_key};
+    record(client, protocol::LogLine::Connected{role, clients_[client].name});
     if (role != Role::control || options_.replaying) return;
     steering_.join(client, resume_key);
     show_holder();
     record_holder();
+}
+
+std::string Room::own_name(const std::string& name, const std::string& resume_key) const {
+    const auto is_taken = [&](const std::string& candidate) {
+        return std::any_of(clients_.begin(), clients_.end(), [&](const auto& entry) {
+            const Client& other = entry.second;
+            // Its own connection of before may not have ended yet.
+            const bool is_same = !resume_key.empty() && other.resume_key == resume_key;
+            return other.name == candidate && !is_same;
+        });
+    };
+    if (name.empty() || options_.replaying || !is_taken(name)) return name;
+    for (int number = 2;; ++number) {
+        const std::string suffix = " " + std::to_string(number);
+        std::size_t size = std::min(name.size(), protocol::kMaxClientName - suffix.size());
+        while (size > 0 && size < name.size() && (name[size] & 0xC0) == 0x80) --size;  // within a character
+        std::string candidate = name.substr(0, size) + suffix;
+        if (!is_taken(candidate)) return candidate;
+    }
+}
+
+const std::string& Room::client_name(const std::string& client) const {
+    static const std::string none;
+    const auto found = clients_.find(client);
+    return found == clients_.end() ? none : found->second.name;
 }
 
 void Room::leave(const std::string& client, SessionTime at) {

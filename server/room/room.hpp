@@ -103,6 +103,8 @@ public:
     const plan::View& visible() const { return visible_; }
     bool flies() const { return flight_.has_value(); }
     const std::optional<std::string>& holder() const { return steering_.holder(); }
+    /// As others see it: with a number where another client has the same name. Empty where it has none.
+    const std::string& client_name(const std::string& client) const;
     const std::string& scene_name() const { return loaded_.name; }
     const std::string& scene_sha256() const { return loaded_.sha256; }
     /// What clients have changed of the scene, to be kept: LoadedScene::changes of its next opening.
@@ -126,7 +128,8 @@ private:
     struct Client {
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
-        std::string name = {};
+        std::string name = {};        ///< as others see it
+        std::string resume_key = {};  ///< as it gave it; empty: none
         bool knows_not_allowed = false;  ///< of input without an id
     };
     /// The message in hand.
@@ -182,6 +185,9 @@ private:
     template <class Message>
     void answer_with(const Received& received, const Message& message);
     void reject(const Received& received, const char* code, const std::string& sentence);
+
+    /// `name`, with the first free number behind it where another client has that name.
+    std::string own_name(const std::string& name, const std::string& resume_key) const;
 
     // --- who steers
     /// Returns true if its client's role is one of these; else it is rejected.

@@ -65,6 +65,31 @@ TEST_CASE("the first control client holds control, however quiet it is") {
     CHECK(stage.holder() == "a");
 }
 
+TEST_CASE("clients of one name are told apart by a number") {
+    Stage stage("");
+    const auto join = [&](const std::string& client, const std::string& name, const std::string& key = {}) {
+        stage.room.join(client, protocol::Role::control, stage.now, name, key);
+        return stage.room.client_name(client);
+    };
+    CHECK(join("a", "iPad", "key of a") == "iPad");
+    CHECK(join("b", "iPad") == "iPad 2");
+    CHECK(join("c", "iPad") == "iPad 3");
+    CHECK(join("d", "") == "");
+    CHECK(join("e", "") == "");
+    stage.room.leave("b", stage.now);
+    CHECK(join("f", "iPad") == "iPad 2");
+    // It comes again before its old connection has ended.
+    CHECK(join("g", "iPad", "key of a") == "iPad");
+    const std::string longest(100, 'x'), of_two_bytes = std::string(97, 'x') + "xé";
+    CHECK(join("h", longest) == longest);
+    CHECK(join("i", longest) == longest.substr(2) + " 2");
+    CHECK(join("j", of_two_bytes) == of_two_bytes);
+    CHECK(join("k", of_two_bytes) == std::string(98, 'x') + " 3");
+    stage.say("c", control("take"));
+    CHECK(stage.state()["control"]["name"] == "iPad 3");
+    CHECK(stage.room.client_name("nobody").empty());
+}
+
 TEST_CASE("control is asked for, given, declined and taken back") {
     Stage stage("abc");
     stage.say("b", control("ask"));
