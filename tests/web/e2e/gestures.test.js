@@ -118,6 +118,25 @@ for (const [name, size] of Object.entries(SIZES)) {
       assertZoomed({ before: old, after: state().camera }, 1.1 ** (-last.deltaY / 100), turned ?? old.focus);
     });
 
+    test('f shows the whole car, as large as the view allows, in its middle', async () => {
+      await changes(() => press('f'));
+      const steps = Array.from({ length: 49 }, (_, i) => (i + 1) / 50);
+      const met = async (places) => {
+        const hits = await tablet.picks(places.map(([across, down]) => [across * width, down * height]));
+        return hits.some(({ node }) => node !== undefined);
+      };
+      const sides = async (part) => ({
+        left: await met(steps.map((step) => [part, step])),
+        right: await met(steps.map((step) => [1 - part, step])),
+        top: await met(steps.map((step) => [step, part])),
+        bottom: await met(steps.map((step) => [step, 1 - part])),
+      });
+      assert.deepEqual(await sides(0.075), { left: false, right: false, top: false, bottom: false });
+      const within = await sides(0.105);
+      assert.ok((within.left && within.right) || (within.top && within.bottom), JSON.stringify(within));
+      await tablet.screenshot(`fit-${width}`);
+    });
+
     test('a double tap chooses a part, which is named', async () => {
       await changes(async () => {
         await tap(x, y);

@@ -140,18 +140,25 @@ export class Tablet {
   }
 
   /** What lies at a place of the view, as another client hears it. */
-  pick([x, y]) {
+  async pick(place) {
+    return (await this.picks([place]))[0];
+  }
+
+  /** The same of several places. */
+  picks(places) {
     return new Promise((resolve, reject) => {
       const client = new WebSocket(`ws://${new URL(this.page.url()).host}/ws`, 'vrut-preview.v1');
+      const picked = [];
       client.on('open', () => {
         client.send(JSON.stringify({ type: 'hello', role: 'view' }));
-        client.send(JSON.stringify({ type: 'pick', id: 1, x, y }));
+        for (const [i, [x, y]] of places.entries()) client.send(JSON.stringify({ type: 'pick', id: i + 1, x, y }));
       });
       client.on('message', (data, isBinary) => {
         const message = isBinary ? {} : JSON.parse(data);
         if (message.type === 'error') reject(new Error(message.message));
-        if (message.type === 'picked') resolve(message);
-        if (message.type === 'error' || message.type === 'picked') client.close();
+        if (message.type === 'picked') picked.push(message);
+        if (message.type === 'error' || picked.length === places.length) client.close();
+        if (picked.length === places.length) resolve(picked);
       });
       client.on('error', reject);
     });
