@@ -134,6 +134,16 @@ std::vector<std::optional<math::Plane>> fitted_planes(const std::vector<Geometry
     return planes;
 }
 
+/// For each node whether it or one above it is marked; parents come before their children.
+std::vector<bool> presentation_of(const std::vector<Node>& nodes) {
+    std::vector<bool> marked;
+    marked.reserve(nodes.size());
+    for (const Node& node : nodes)
+        marked.push_back(node.presentation ||
+                         (node.parent != kNone && marked[static_cast<std::size_t>(node.parent)]));
+    return marked;
+}
+
 /// Of each geometry the longest side of the world-space boxes around its instances, in metres.
 std::vector<double> extents_of(const Scene& scene) {
     std::vector<double> extents(scene.geometries().size());
@@ -190,9 +200,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
         for (Index child : scene.nodes_[i].children)
             scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
-    for (const Node& node : scene.nodes_)
-        scene.is_presentation_.push_back(node.presentation ||
-                                         (node.parent != kNone && scene.is_presentation(node.parent)));
+    scene.is_presentation_ = presentation_of(scene.nodes_);
     scene.extents_ = extents_of(scene);
     return scene;
 }
