@@ -128,8 +128,8 @@ private:
     struct Client {
         protocol::Role role = protocol::Role::view;
         std::optional<protocol::Resize> wanted;
-        std::string name = {};        ///< as others see it
-        std::string resume_key = {};  ///< as it gave it; empty: none
+        std::string name = {};           ///< as others see it
+        std::string resume_key = {};     ///< as it gave it; empty: none
         bool knows_not_allowed = false;  ///< of input without an id
     };
     /// The message in hand.
