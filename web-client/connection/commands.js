@@ -1,6 +1,10 @@
 import { Changes } from './changes.js';
 
-/** @import { ClientControl, ClientMessage, ClientPick, ClientTree, StatePatch } from '../base/protocol.js' */
+/**
+ * @import {
+ *   ClientControl, ClientMessage, ClientPick, ClientTree, ServerTree, StatePatch,
+ * } from '../base/protocol.js'
+ */
 
 const FLIGHT_MS = 600;
 
@@ -37,4 +41,22 @@ export function commandsBy({ ask, refused }) {
     /** @param {string} scene */
     open: (scene) => tell({ type: 'open', scene }),
   };
+}
+
+/**
+ * Promises all nodes that a `tree` query finds, page after page; undefined where an answer is missing.
+ *
+ * @param {(query: Omit<ClientTree, 'type'>) => Promise<ServerTree|undefined>} tree
+ * @param {Omit<ClientTree, 'type'>} query
+ */
+export async function allOf(tree, query) {
+  const nodes = [];
+  let after;
+  do {
+    const answer = await tree({ ...query, after });
+    if (!answer) return undefined;
+    nodes.push(...answer.nodes);
+    after = answer.next;
+  } while (after !== undefined);
+  return nodes;
 }

@@ -1,6 +1,7 @@
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
+import { allOf } from '../connection/commands.js';
 import { choice, selection, toggle } from './controls.js';
 import { stateOf } from './section.js';
 
@@ -243,19 +244,6 @@ function tool(icon, label, act) {
 
 function nameOf({ id, name }) {
   return name || `#${id}`;
-}
-
-/** Promises all nodes that a `tree` query finds, page after page; undefined where an answer is missing. */
-async function allOf(tree, query) {
-  const nodes = [];
-  let after;
-  do {
-    const answer = await tree({ ...query, after });
-    if (!answer) return undefined;
-    nodes.push(...answer.nodes);
-    after = answer.next;
-  } while (after !== undefined);
-  return nodes;
 }
 
 /**

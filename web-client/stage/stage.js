@@ -1,11 +1,11 @@
 import { holderName } from '../base/client-names.js';
-import { element } from '../base/element.js';
 import { errorSentence, say } from '../base/texts.js';
 import { ControlBar } from './control.js';
 import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
 import { Labels } from './labels.js';
 import { Lines, connectionSentence } from './lines.js';
+import { PartBar } from './part-bar.js';
 import { Picture } from './picture.js';
 import { Prediction } from './prediction.js';
 import { Presence } from './presence.js';
@@ -48,6 +48,7 @@ export class Stage {
       send: commands.control,
       declined: (name) => this.#lines.pass(say('control.declined', { name })),
     });
+    const partBar = new PartBar(find('selection'), { commands, leave: () => this.#canvas.focus() });
     this.#input = new Input(this.#canvas, {
       send: (message) => connection.send(message),
       mapping: () => this.#picture.mapping(),
@@ -83,7 +84,9 @@ export class Stage {
       });
     store.subscribe(({ role, client, state, language }) => [role, client, state?.control, language],
       (role, client, control) => this.#controlBar.show({ role, client, control }));
-    store.subscribe(({ state }) => [state?.selection], (selection) => showPart(partTitle(selection ?? {})));
+    store.subscribe(
+      ({ role, state, language }) => [role, state?.scene, state?.selection, state?.nodes, language],
+      () => partBar.show(store.now));
     store.subscribe(({ steers, state }) => [steers, state?.markers], () => this.#move());
     store.subscribe(({ state }) => [state?.scene?.notices, state?.notices],
       (...notices) => this.#passNotices(notices.flat().filter(Boolean)));
@@ -172,24 +175,4 @@ export class Stage {
 /** Of index.html. */
 function find(id) {
   return /** @type {HTMLElement} */ (document.getElementById(id));
-}
-
-/**
- * The chosen part's name and its parent's, as variants are called by their paint; the rest of its path is small.
- *
- * @param {StateDocument['selection']} selection
- */
-export function partTitle({ node, name, path = [] }) {
-  const names = path.slice(1);
-  return {
-    title: names.slice(-2).join(' › ') || name || (node === undefined ? '' : `#${node}`),
-    above: names.slice(0, -2).join(' › '),
-  };
-}
-
-function showPart({ title, above }) {
-  const part = find('part');
-  // Only a change: screen readers read it again.
-  if (part.textContent === title + above) return;
-  part.replaceChildren(...(title ? [title, element('small', {}, above)] : []));
 }

@@ -13,7 +13,7 @@ const SIZES = {
 
 /** Pairs of what lies on the picture and meets, by their ids. */
 function overlaps() {
-  const boxes = [...document.querySelectorAll('#presence, #control, #lines, #part, #menu-button, #menu.open')]
+  const boxes = [...document.querySelectorAll('#presence, #control, #lines, #selection, #menu-button, #menu.open')]
     .filter((element) => element.checkVisibility() && (element.textContent || /menu/.test(element.id)))
     .map((element) => ({ id: element.id, element, ...element.getBoundingClientRect().toJSON() }))
     .filter(({ width, height }) => width > 0 && height > 0);

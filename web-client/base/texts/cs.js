@@ -78,6 +78,13 @@ export const cs = {
   'scenes.open': 'Otevřít',
   'scenes.none': 'Server nenabízí žádné další scény.',
 
+  'part.label': 'Vybraný díl',
+  'part.clear': 'Zrušit výběr',
+  'part.fit': 'Přiblížit',
+  'part.hide': 'Skrýt',
+  'part.isolate': 'Izolovat',
+  'part.showAll': 'Zobrazit vše',
+
   'parts.title': 'Díly',
   'parts.all': 'Všechny díly',
   'parts.asInFile': 'Obnovit podle souboru',

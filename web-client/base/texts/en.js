@@ -76,6 +76,13 @@ export const en = {
   'scenes.open': 'Open',
   'scenes.none': 'The server has no other scenes to offer.',
 
+  'part.label': 'Selected part',
+  'part.clear': 'Clear the selection',
+  'part.fit': 'Fit',
+  'part.hide': 'Hide',
+  'part.isolate': 'Isolate',
+  'part.showAll': 'Show all',
+
   'parts.title': 'Parts',
   'parts.all': 'All parts',
   'parts.asInFile': 'As in the file',
