@@ -77,7 +77,7 @@ test('each module that is imported is asked for at once, and no other', async ()
   assert.deepEqual([...imported].sort(), announced.sort());
 });
 
-test('modules come without the lines of comment, and else as they are', async () => {
+test('modules come without the lines of comment and indentation, and else as they are', async () => {
   const bare = (code) => typescript.transpile(code, { target: 'esnext', removeComments: true });
   const modules = [...referencesOf((await get('', BROWSER)).text).keys()].filter((path) => path.endsWith('.js'));
   assert.ok(modules.length > 10);
@@ -86,7 +86,15 @@ test('modules come without the lines of comment, and else as they are', async ()
     assert.doesNotMatch(text, /^\s*(\/\/|\/\*\*.*[^/]$)/m, path);
     const source = readFileSync(new URL(path.replace(/^[^/]+/, '../../../web-client'), import.meta.url), 'utf8');
     assert.equal(bare(text), bare(source), path);
+    assert.doesNotMatch(text, /\n[ \t\n]/, path);
   }
+});
+
+test('so does the style sheet', async () => {
+  const bare = (style) => style.replace(/\/\*.*?\*\//gs, '').replace(/\s+/g, ' ').trim();
+  const { text } = await get('style.css', BROWSER);
+  assert.equal(bare(text), bare(readFileSync(new URL('../../../web-client/style.css', import.meta.url), 'utf8')));
+  assert.doesNotMatch(text, /\/\*|\n[ \t\n]/);
 });
 
 test('a reload asks for the page alone, and is sent nothing', async () => {
