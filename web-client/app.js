@@ -3,11 +3,14 @@ import { Store } from './base/store.js';
 import { language, preferredLanguage, setLanguage } from './base/texts.js';
 import { commandsBy } from './connection/commands.js';
 import { Connection, socketAddress } from './connection/connection.js';
-import { hello } from './connection/hello.js';
+import { Token, hello } from './connection/hello.js';
 import { Meter } from './connection/meter.js';
-import { Token } from './connection/token.js';
+import { Bar } from './panels/bar.js';
+import { connectionSection } from './panels/connection-section.js';
 import { Menu } from './panels/menu.js';
-import { sections } from './panels/sections.js';
+import { partsSection } from './panels/parts-section.js';
+import { sceneSections } from './panels/scene-sections.js';
+import { viewsSection } from './panels/views-section.js';
 import { Awake } from './stage/awake.js';
 import { Stage } from './stage/stage.js';
 
@@ -36,6 +39,7 @@ const connection = new Connection({
     },
     sent(message) {
       stage.sent(message);
+      bar.sent(message);
       // What one who does not steer sends moves nothing.
       if (connection.steers) meter.sent(message.type, message.id, performance.now());
     },
@@ -53,7 +57,11 @@ const connection = new Connection({
 const report = (error) => stage.report(error);
 const commands = commandsBy({ ask: (message) => connection.ask(message), refused: report });
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
-const menu = new Menu({ store, build: () => sections({ store, commands, meter, report }), setLanguage: speak });
+const page = { store, commands, meter, report };
+/** All of the menu, from top to bottom. */
+const build = () => [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)];
+const menu = new Menu({ store, build, setLanguage: speak });
+const bar = new Bar({ store, commands, menu });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));
 
@@ -64,6 +72,7 @@ function speak(chosen) {
   document.documentElement.lang = language();
   store.set({ language: language() });
   menu.rebuild();
+  bar.rebuild();
 }
 
 document.addEventListener('visibilitychange', () => {

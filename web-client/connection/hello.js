@@ -1,5 +1,5 @@
-import { resumeKey } from '../base/memory.js';
-import { roleFrom } from './connection.js';
+import { recall, remember, resumeKey } from '../base/memory.js';
+import { roleFrom, tokenFrom } from './connection.js';
 
 /** What the page says of itself. */
 export function hello(hash, token) {
@@ -11,4 +11,17 @@ export function hello(hash, token) {
     token,
     resume: resumeKey(),
   };
+}
+
+/** The token to say hello with: the address's, or, as an installed page has none there, the last accepted. */
+export class Token {
+  constructor(hash) {
+    const token = tokenFrom(hash);
+    this.inAddress = token !== undefined;
+    this.value = token ?? recall('token') ?? undefined;
+  }
+
+  accepted() {
+    if (this.inAddress) remember('token', this.value);
+  }
 }

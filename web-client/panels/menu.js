@@ -10,6 +10,9 @@ import { language, say } from '../base/texts.js';
 /** The panel of folding sections, and the button that opens it. */
 export class Menu {
   #button;
+  /** What has the focus when the menu is closed. @type {HTMLElement} */
+  #opener;
+  #stage;
   #panel;
   #build;
   #setLanguage;
@@ -25,12 +28,15 @@ export class Menu {
   constructor({ store, build, setLanguage }) {
     const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
     const panel = /** @type {HTMLElement} */ (document.getElementById('menu'));
+    const stage = /** @type {HTMLElement} */ (document.getElementById('stage'));
+    this.#opener = opener;
+    this.#stage = stage;
     this.#button = opener;
     this.#panel = panel;
     this.#store = store;
     this.#build = build;
     this.#setLanguage = setLanguage;
-    opener.onclick = () => this.open();
+    opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
       // What is typed here is not meant for the view.
       event.stopPropagation();
@@ -39,7 +45,9 @@ export class Menu {
     store.subscribe(({ role }) => [role], (role) => {
       if (!role) return; // not connected: what was allowed still is
       opener.hidden = role !== 'control';
-      if (opener.hidden) this.close();
+      if (!opener.hidden) return;
+      this.close();
+      this.#clean(false);
     });
     store.subscribe((now) => [now], () => this.#showAll());
   }
@@ -48,7 +56,9 @@ export class Menu {
     return !this.#panel.inert;
   }
 
-  open() {
+  /** @param {HTMLElement} opener gets the focus back */
+  open(opener) {
+    this.#opener = opener;
     this.#turn(true);
     this.#showAll();
     /** @type {HTMLElement} */ (this.#panel.querySelector('.close')).focus({ preventScroll: true });
@@ -56,8 +66,9 @@ export class Menu {
 
   close() {
     if (!this.isOpen) return;
-    // Before it is inert, or the browser takes the focus from it first.
-    this.#button.focus({ preventScroll: true });
+    // What it covers is shown again, and has the focus before the panel is inert, or the browser takes it first.
+    this.#panel.classList.remove('open');
+    this.#opener.focus({ preventScroll: true });
     this.#turn(false);
   }
 
@@ -67,18 +78,30 @@ export class Menu {
     this.#button.ariaExpanded = String(isOpen);
   }
 
+  /** Whether nothing lies on the picture but what has to be said, and the button that ends this. */
+  #clean(isClean) {
+    this.#stage.classList.toggle('clean', isClean);
+    this.#button.title = isClean ? say('menu.unclean') : say('menu.title');
+    this.#button.querySelector('use')?.setAttribute('href', isClean ? '#icon-seen' : '#icon-menu');
+  }
+
   /** Makes everything anew, in the language in force. */
   rebuild() {
     this.#sections = this.#build();
-    this.#button.title = say('menu.title');
-    this.#panel.ariaLabel = this.#button.title;
+    this.#panel.ariaLabel = say('menu.title');
+    this.#clean(this.#stage.classList.contains('clean'));
     const other = language() === 'en' ? 'cs' : 'en';
     const turn = button(say('menu.otherLanguage'), () => this.#setLanguage(other), { quiet: true });
     turn.lang = other;
     const close = tool('close', say('menu.close'), () => this.close());
     close.classList.add('close');
     const full = tool('full', say('menu.fullScreen'), turnFullScreen);
-    const head = element('div', { className: 'head' }, turn, ...(document.fullscreenEnabled ? [full] : []), close);
+    const clean = tool('hidden', say('menu.clean'), () => {
+      this.#opener = this.#button;
+      this.#clean(true);
+      this.close();
+    });
+    const head = element('div', { className: 'head' }, turn, clean, ...(document.fullscreenEnabled ? [full] : []), close);
     this.#panel.replaceChildren(head, ...this.#sections.map(foldable));
     if (this.isOpen) turn.focus({ preventScroll: true });
     this.#showAll();

@@ -2,18 +2,15 @@ import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
-import { choice, selection, toggle } from './controls.js';
+import { toggle } from './controls.js';
 import { stateOf } from './section.js';
+import { nameOf, variantControl, variants } from './variants.js';
 
 /**
- * @import { ServerTree } from '../base/protocol.js'
  * @import { Page, Section } from './section.js'
- *
- * @typedef {ServerTree['nodes'][number]} Node
+ * @import { Node } from './variants.js'
  */
 
-const MOST_SEGMENTS = 5;
-const MOST_SWITCHED = 1000; // by one patch, which so stays below the protocol's 64 KiB
 const MOST_ROWS = 50; // before somebody asks for more, or as a page has them
 const SEARCH_AFTER_MS = 250;
 const SWING_MS = 600;
@@ -172,33 +169,16 @@ export function partsSection({ commands, store }) {
     const switches = await allOf(commands.tree, { only: 'switches' });
     const doors = switches && await allOf(commands.tree, { only: 'hinges' });
     if (!doors || asked !== scene) return;
-    addChoices(say('parts.variants'), variants(switches).map(variant));
+    addChoices(say('parts.variants'), variants(switches).map((variant) => {
+      const { element: made, show } = variantControl(variant, { change, state });
+      return follow(made, show);
+    }));
     addChoices(say('parts.doors'), doors.map(door));
     refresh();
   }
 
   function addChoices(title, controls) {
     if (controls.length > 0) choices.append(element('h3', {}, title), ...controls);
-  }
-
-  function variant({ title, switches }) {
-    const present = () => switches.map(({ id, activeChild }) => state().nodes[id]?.activeChild ?? activeChild);
-    const used = [...present(), ...switches.map(({ activeChild }) => activeChild)];
-    const options = switches[0].choices.map((name, i) => [String(i), name || i + 1]);
-    if (used.includes(-1)) options.push(['-1', say('parts.chooseNone')]);
-    if (used.includes(-2)) options.push(['-2', say('parts.chooseAll')]);
-    const set = async (value) => {
-      for (let i = 0; i < switches.length; i += MOST_SWITCHED) {
-        const some = switches.slice(i, i + MOST_SWITCHED);
-        await change({ nodes: Object.fromEntries(some.map(({ id }) => [id, { activeChild: Number(value) }])) });
-      }
-    };
-    const control = options.length > MOST_SEGMENTS ? selection(title, set) : choice(title, options, set);
-    return follow(control.element, () => {
-      const values = new Set(present());
-      // Where they differ, none of the options is the case.
-      control.show(values.size > 1 ? '' : String(...values), options);
-    });
   }
 
   function door(node) {
@@ -240,33 +220,6 @@ function list(label) {
 
 function tool(icon, label, act) {
   return button(label, act, { icon, quiet: true, only: true });
-}
-
-function nameOf({ id, name }) {
-  return name || `#${id}`;
-}
-
-/**
- * What there is to choose, as {title, switches}: those of the same names together, if none is empty.
- *
- * @param {Node[]} switches
- */
-export function variants(switches) {
-  const groups = new Map();
-  for (const node of switches) {
-    const { id, choices = [] } = node;
-    if (choices.length < 2) continue;
-    const key = choices.every(Boolean) ? JSON.stringify(choices) : id;
-    if (!groups.has(key)) groups.set(key, []);
-    groups.get(key).push(node);
-  }
-  return [...groups.values()].map((group) => ({ title: titleOf(group), switches: group }));
-}
-
-function titleOf(group) {
-  const name = nameOf(group[0]);
-  if (group.every((node) => nameOf(node) === name)) return name;
-  return say('parts.count', { count: group.length });
 }
 
 /**

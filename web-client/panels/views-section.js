@@ -1,8 +1,7 @@
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
-import { byName } from './controls.js';
-import { rows } from './rows.js';
+import { byName, rows } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 
 /**

@@ -127,8 +127,8 @@ export class Input {
   #keyDown(event) {
     const { key, ctrlKey, metaKey, altKey } = event;
     if (ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
-    // The menu and its button have keys of their own.
-    if (event.defaultPrevented || event.target?.closest?.('#menu, button')) return;
+    // The menu and what lies on the picture have keys of their own.
+    if (event.defaultPrevented || event.target?.closest?.('#menu, button, #strip')) return;
     if (!this.#isHeard()) return;
     event.preventDefault();
     if (event.repeat && !REPEATING_KEYS.has(key)) return;

@@ -39,6 +39,16 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
 
       const looks = {
         'the menu closed': async () => {},
+        'a part selected, and the views': async () => {
+          await tablet.say({ type: 'patch', patch: { selection: { node: 100 }, views: { Left: {} } } });
+          await page.locator('#part span').waitFor();
+          await page.locator('#bar').getByRole('button', { name: 'Views' }).tap();
+          await page.locator('#strip').getByRole('button', { name: 'Left' }).waitFor();
+        },
+        'the variants': async () => {
+          await page.locator('#bar').getByRole('button', { name: 'Variants' }).tap();
+          await page.locator('#strip').getByRole('radio').first().waitFor();
+        },
         'the menu open': open,
         'in the dark': () => page.emulateMedia({ colorScheme: 'dark' }),
         'in Czech': async () => {

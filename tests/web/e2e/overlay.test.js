@@ -13,7 +13,7 @@ const SIZES = {
 
 /** Pairs of what lies on the picture and meets, by their ids. */
 function overlaps() {
-  const boxes = [...document.querySelectorAll('#presence, #control, #lines, #selection, #menu-button, #menu.open')]
+  const boxes = [...document.querySelectorAll('#presence, #control, #lines, #selection, #strip, #bar, #menu-button, #menu.open')]
     .filter((element) => element.checkVisibility() && (element.textContent || /menu/.test(element.id)))
     .map((element) => ({ id: element.id, element, ...element.getBoundingClientRect().toJSON() }))
     .filter(({ width, height }) => width > 0 && height > 0);
@@ -61,6 +61,7 @@ describe('what lies on the picture does not cover one another', { skip: browserI
       assert.deepEqual(await page.evaluate(overlaps), []);
       await page.keyboard.press('Escape');
       await page.locator('#menu.open').waitFor({ state: 'detached' });
+      await page.locator('#bar').getByRole('button', { name: 'Pohledy' }).tap();
       await visitor.screenshot(`overlay-${name}`);
       assert.deepEqual(await page.evaluate(overlaps), []);
       assert.deepEqual([...presenter.complaints, ...visitor.complaints], []);

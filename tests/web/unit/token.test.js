@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { afterEach, beforeEach, test } from 'node:test';
 import { recall, remember } from '../../../web-client/base/memory.js';
-import { Token } from '../../../web-client/connection/token.js';
+import { Token } from '../../../web-client/connection/hello.js';
 import { FakeStorage, replaceGlobals } from './fakes.js';
 
 let storage;

@@ -3,6 +3,8 @@ export const cs = {
   'menu.title': 'Nabídka',
   'menu.close': 'Zavřít nabídku',
   'menu.fullScreen': 'Celá obrazovka',
+  'menu.clean': 'Jen obraz',
+  'menu.unclean': 'Zobrazit ovládání',
   'menu.otherLanguage': 'English',
 
   'view.label': 'Scéna vykreslená serverem',
@@ -77,6 +79,15 @@ export const cs = {
   'scenes.label': 'Jiná scéna',
   'scenes.open': 'Otevřít',
   'scenes.none': 'Server nenabízí žádné další scény.',
+
+  'bar.label': 'Rychlé volby',
+  'bar.home': 'Výchozí',
+  'bar.fit': 'Celek',
+  'bar.back': 'Zpět',
+  'bar.more': 'Více',
+  'bar.previous': 'Předchozí pohled',
+  'bar.next': 'Následující pohled',
+  'bar.noVariants': 'Scéna nemá žádné varianty.',
 
   'part.label': 'Vybraný díl',
   'part.clear': 'Zrušit výběr',

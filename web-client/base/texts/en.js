@@ -6,6 +6,8 @@ export const en = {
   'menu.title': 'Menu',
   'menu.close': 'Close the menu',
   'menu.fullScreen': 'Full screen',
+  'menu.clean': 'Only the picture',
+  'menu.unclean': 'Show the controls',
   'menu.otherLanguage': 'Čeština',
 
   'view.label': 'The scene, as the server draws it',
@@ -75,6 +77,15 @@ export const en = {
   'scenes.label': 'Another scene',
   'scenes.open': 'Open',
   'scenes.none': 'The server has no other scenes to offer.',
+
+  'bar.label': 'Quick actions',
+  'bar.home': 'Home',
+  'bar.fit': 'Fit',
+  'bar.back': 'Back',
+  'bar.more': 'More',
+  'bar.previous': 'Previous view',
+  'bar.next': 'Next view',
+  'bar.noVariants': 'The scene has no variants.',
 
   'part.label': 'Selected part',
   'part.clear': 'Clear the selection',

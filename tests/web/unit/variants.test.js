@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
-import { variants } from '../../../web-client/panels/parts-section.js';
+import { variants } from '../../../web-client/panels/variants.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
 
 afterEach(() => setLanguage('en'));

@@ -1,0 +1,205 @@
+import { button, element } from '../base/element.js';
+import { say } from '../base/texts.js';
+import { allOf } from '../connection/commands.js';
+import { byName, rows } from './controls.js';
+import { stateOf } from './section.js';
+import { Trail } from './trail.js';
+import { variantControl, variants } from './variants.js';
+
+/**
+ * @import { StateDocument } from '../base/protocol.js'
+ * @import { Store } from '../base/store.js'
+ * @import { Commands } from '../connection/commands.js'
+ * @import { Menu } from './menu.js'
+ */
+
+/** So long a chosen view counts as the present one, while the camera flies there. */
+const FLIES_MS = 1000;
+
+/** The slim bar at the picture's lower edge, and the strip that two of its buttons open above it. */
+export class Bar {
+  #bar = /** @type {HTMLElement} */ (document.getElementById('bar'));
+  #strip = /** @type {HTMLElement} */ (document.getElementById('strip'));
+  #store;
+  #commands;
+  #menu;
+  #trail = new Trail(() => this.#showBack());
+  /** The button of the strip that is open. @type {?HTMLElement} */
+  #opener = null;
+  #showStrip = () => {};
+  /** @type {?HTMLElement} */
+  #back = null;
+  #chosen = { key: '', at: -Infinity };
+
+  /** Empty until `rebuild`. @param {{store: Store, commands: Commands, menu: Menu}} page */
+  constructor({ store, commands, menu }) {
+    this.#store = store;
+    this.#commands = commands;
+    this.#menu = menu;
+    this.#strip.onkeydown = (event) => {
+      if (event.key === 'Escape') this.#open(null);
+    };
+    store.subscribe(({ role }) => [role], (role) => {
+      if (!role) return; // not connected: what was allowed still is
+      this.#bar.hidden = role !== 'control';
+      if (this.#bar.hidden) this.#open(null);
+    });
+    store.subscribe(({ state }) => [state?.scene?.file, !state], () => this.#trail.forget());
+    store.subscribe(({ state }) => [state?.camera], (camera) => camera && this.#trail.follow(camera));
+    store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
+    store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes], () => this.#showStrip());
+  }
+
+  /** What this page sent. */
+  sent(message) {
+    if (this.#store.now.steers) this.#trail.sent(message);
+  }
+
+  /** Makes everything anew, in the language in force. */
+  rebuild() {
+    const { fly, fit } = this.#commands;
+    const opens = (label, icon, build) => {
+      const made = button(label, () => this.#open(made === this.#opener ? null : made, build), { icon });
+      made.setAttribute('aria-controls', 'strip');
+      made.ariaExpanded = 'false';
+      return made;
+    };
+    const back = button(say('bar.back'), () => {
+      const pose = this.#store.now.steers ? this.#trail.back() : undefined;
+      if (pose) fly(pose);
+    }, { icon: 'back' });
+    this.#back = back;
+    const more = button(say('bar.more'), () => this.#menu.open(more), { icon: 'menu' });
+    this.#open(null);
+    this.#bar.ariaLabel = say('bar.label');
+    this.#bar.replaceChildren(
+      button(say('bar.home'), () => fly(stateOf(this.#store).views.home), { icon: 'home' }),
+      button(say('bar.fit'), () => fit(), { icon: 'fit' }),
+      back,
+      opens(say('views.title'), 'camera', () => this.#views()),
+      opens(say('parts.variants'), 'variants', () => this.#variants()),
+      more,
+    );
+    this.#showBack();
+  }
+
+  #showBack() {
+    if (this.#back) this.#back.ariaDisabled = String(this.#trail.isEmpty);
+  }
+
+  /** The strip of a button, or none. `build` gives its content, and how that follows the state. */
+  #open(opener, build) {
+    if (this.#opener) this.#opener.ariaExpanded = 'false';
+    if (!opener && this.#strip.contains(document.activeElement)) this.#opener?.focus();
+    this.#opener = opener;
+    this.#strip.hidden = !opener;
+    this.#showStrip = () => {};
+    this.#strip.replaceChildren();
+    if (!opener || !this.#store.now.state) return;
+    opener.ariaExpanded = 'true';
+    this.#strip.ariaLabel = opener.textContent;
+    const { content, show } = build();
+    this.#strip.append(...content);
+    this.#showStrip = show;
+    show();
+  }
+
+  #views() {
+    const state = () => stateOf(this.#store);
+    const go = (stop) => {
+      if (!stop) return;
+      const [key, { camera }] = stop;
+      this.#chosen = { key, at: performance.now() };
+      this.#commands.fly(camera);
+    };
+    const present = (all) => {
+      const { key, at } = this.#chosen;
+      return performance.now() - at < FLIES_MS ? key : stopAt(all, state().camera) ?? key;
+    };
+    const step = (by, label) => button(label, () => {
+      const all = stops(state());
+      go(stopFrom(all, present(all), by));
+    }, { icon: 'open', only: true });
+    const list = rows(say('views.title'), say('views.none'), (key) => {
+      const chip = button('', () => go(stops(state()).find(([other]) => other === key)));
+      return {
+        children: [chip],
+        show({ text, used }) {
+          chip.lastChild.data = text;
+          if (used && chip.ariaPressed !== 'true') chip.scrollIntoView({ inline: 'center', block: 'nearest' });
+          chip.ariaPressed = String(used);
+        },
+      };
+    });
+    const before = step(-1, say('bar.previous'));
+    before.classList.add('before');
+    const after = step(1, say('bar.next'));
+    return {
+      content: [before, list.element, after],
+      show: () => {
+        const all = stops(state());
+        const at = stopAt(all, state().camera);
+        before.hidden = after.hidden = all.length < 2;
+        list.show(all.map(([key, { text }]) => [key, { text, used: key === at }]));
+      },
+    };
+  }
+
+  #variants() {
+    const all = element('div', { className: 'choices' });
+    const state = () => stateOf(this.#store);
+    let controls = [];
+    const show = () => {
+      for (const control of controls) control.show();
+    };
+    const load = async () => {
+      const switches = await allOf(this.#commands.tree, { only: 'switches' });
+      if (!switches || !all.isConnected) return;
+      controls = variants(switches).map((variant) => variantControl(variant, { change: this.#commands.change, state }));
+      all.replaceChildren(...controls.map((control) => control.element));
+      if (controls.length === 0) all.append(say('bar.noVariants'));
+      show();
+    };
+    load();
+    return { content: [all], show };
+  }
+}
+
+/**
+ * Where a presentation stops: [key, {text, camera}] of each saved view and then each camera of the scene.
+ *
+ * @param {Pick<StateDocument, 'views'|'cameras'>} state
+ * @returns {[string, {text: string, camera: *}][]}
+ */
+export function stops({ views, cameras }) {
+  const saved = Object.keys(views).filter((name) => name !== 'home').sort(byName);
+  return [
+    ...saved.map((name) => /** @type {[string, *]} */ ([`view ${name}`, { text: name, camera: views[name] }])),
+    ...Object.entries(cameras).map(([id, { name }]) =>
+      /** @type {[string, *]} */ ([`camera ${id}`, { text: name || `#${id}`, camera: { node: Number(id) } }])),
+  ];
+}
+
+/**
+ * The key of the one at which the camera stands; undefined between them.
+ *
+ * @param {ReturnType<typeof stops>} all
+ * @param {StateDocument['camera']} camera
+ */
+export function stopAt(all, camera) {
+  const isThere = ([, { camera: stop }]) => ['node', 'eye', 'focus', 'center', 'fov']
+    .every((member) => !(member in stop) || String(stop[member]) === String(camera[member]));
+  return all.find(isThere)?.[0];
+}
+
+/**
+ * The one so many steps from that of a key, around the end; without a key the first, or the last.
+ *
+ * @param {ReturnType<typeof stops>} all
+ * @param {string|undefined} key
+ * @param {1|-1} by
+ */
+export function stopFrom(all, key, by) {
+  const at = all.findIndex(([other]) => other === key);
+  return at < 0 ? all.at(by > 0 ? 0 : -1) : all[(at + by + all.length) % all.length];
+}
