@@ -57,7 +57,8 @@ const connection = new Connection({
 const report = (error) => stage.report(error);
 const commands = commandsBy({ ask: (message) => connection.ask(message), refused: report });
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
-const page = { store, commands, meter, report };
+const offer = (text, label, act) => stage.offer(text, label, act);
+const page = { store, commands, meter, report, offer };
 /** All of the menu, from top to bottom. */
 const build = () => [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)];
 const menu = new Menu({ store, build, setLanguage: speak });

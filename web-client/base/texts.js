@@ -1,6 +1,8 @@
 import { cs } from './texts/cs.js';
 import { en } from './texts/en.js';
 
+/** @import { StateDocument } from './protocol.js' */
+
 const TABLES = { cs, en };
 /** By a browser's language; who reads Slovak reads Czech. */
 const KNOWN = { cs: 'cs', sk: 'cs', en: 'en' };
@@ -50,4 +52,22 @@ export function written(value, digits = 0) {
   // Making one takes longer than all else that is done for a frame.
   formats[key] ??= new Intl.NumberFormat(current, { maximumFractionDigits: digits });
   return formats[key].format(value);
+}
+
+/**
+ * How people call a client: by the name that it gave in `hello`, or else by its id.
+ *
+ * @param {{client?: string, name?: string}} who
+ */
+export function clientName({ client, name }) {
+  return name || say('connection.client', { id: client });
+}
+
+/**
+ * How people call the holder of `control` of the state.
+ *
+ * @param {Partial<StateDocument['control']>} control
+ */
+export function holderName({ holder, name }) {
+  return clientName({ client: holder, name });
 }

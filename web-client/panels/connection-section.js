@@ -1,7 +1,6 @@
-import { clientName, holderName } from '../base/client-names.js';
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
-import { say, written } from '../base/texts.js';
+import { clientName, holderName, say, written } from '../base/texts.js';
 import { fact, facts, range } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 

@@ -11,7 +11,8 @@ import { onChange } from '../base/store.js';
 /**
  * What a section is given.
  *
- * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void}} Page
+ * @typedef {{store: Store, commands: Commands, meter: Meter, report: (error: *) => void,
+ *   offer: (text: string, label: string, act: () => void) => void}} Page
  *
  * What the page knows once it has a state.
  *

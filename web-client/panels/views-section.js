@@ -15,8 +15,8 @@ import { each, joined, stateOf } from './section.js';
  * @param {Page} page
  * @returns {Section}
  */
-export function viewsSection({ commands, report, store }) {
-  const page = { ...commands, report, state: () => stateOf(store), header: () => store.now.header };
+export function viewsSection({ commands, report, offer, store }) {
+  const page = { ...commands, report, offer, state: () => stateOf(store), header: () => store.now.header };
   const parts = joined([savedViews, cameras, markers].map((part) => part(page)));
   const home = button(say('views.home'), () => commands.fly(page.state().views.home), { icon: 'home' });
   const fit = button('', () => commands.fit(page.state().selection.node), { icon: 'fit' });
@@ -30,16 +30,29 @@ export function viewsSection({ commands, report, store }) {
   };
 }
 
-function savedViews({ fly, change, patch, report, state }) {
-  const list = places(say('views.saved'), say('views.none'),
-    (name) => fly(state().views[name]), (name) => change({ views: { [name]: null } }));
-  const entry = field(say('views.name'), say('views.save'), (name) => {
+function savedViews({ fly, patch, report, offer, state }) {
+  const isFree = (name) => {
+    const isTaken = Object.hasOwn(state().views, name);
     // What is there would stay as it is.
-    if (Object.hasOwn(state().views, name)) {
-      return report(new Error(say('views.nameTaken', { name })));
-    }
-    return patch({ views: { [name]: {} } });
-  });
+    if (isTaken) report(new Error(say('views.nameTaken', { name })));
+    return !isTaken;
+  };
+  const put = async (name, view, text) => {
+    const before = state().views[name];
+    const undo = () => patch({ views: { [name]: before } });
+    if (await patch({ views: { [name]: view } })) offer(text, say('views.undo'), undo);
+  };
+  const rename = (name) => async (to) =>
+    isFree(to) && patch({ views: { [to]: state().views[name], [name]: null } });
+  const overwrite = (name) => put(name, poseOf(state().camera), say('views.overwritten', { name }));
+  const edit = (name) => [
+    field(say('views.newNameOf', { name }), say('views.rename'), rename(name)).element,
+    button(say('views.overwrite'), () => overwrite(name), { icon: 'camera' }),
+  ];
+  const list = places(say('views.saved'), say('views.none'), (name) => fly(state().views[name]),
+    (name) => put(name, null, say('views.deleted', { name })), edit);
+  const entry = field(say('views.name'), say('views.save'),
+    async (name) => isFree(name) && patch({ views: { [name]: {} } }));
   return {
     content: [...list.content, entry.element],
     show: onChange(({ state }) => [state.views], (views) => {
@@ -48,6 +61,11 @@ function savedViews({ fly, change, patch, report, state }) {
       entry.show(unusedName(say('views.newName'), names));
     }),
   };
+}
+
+/** What a saved view has of a camera. @param {StateDocument['camera']} camera */
+export function poseOf({ eye, focus, up, center, fov }) {
+  return { eye, focus, up, center, fov };
 }
 
 function cameras({ change }) {
@@ -104,17 +122,34 @@ export function markerEntries(all, drawn) {
   return Object.entries(all).map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.[name] }]);
 }
 
-/** A list of buttons that go there, and with `remove` those that delete. */
-function places(title, none, go, remove) {
+/** A list of buttons that go there, with `remove` those that delete, and with `edit` those that unfold what it gives. */
+function places(title, none, go, remove, edit) {
   const list = rows(title, none, (key) => {
     const there = button('', () => go(key));
     const away = button('', () => remove(key), { icon: 'remove', quiet: true, only: true });
+    const editor = element('div', { className: 'editor', hidden: true }, ...(edit ? edit(key) : []));
+    const unfold = button('', () => turn(editor.hidden), { icon: 'edit', quiet: true, only: true });
+    const turn = (isOpen) => {
+      editor.hidden = !isOpen;
+      unfold.ariaExpanded = String(isOpen);
+      const input = editor.querySelector('input');
+      if (!input || !isOpen) return unfold.focus();
+      input.value = key;
+      input.select();
+    };
+    editor.onkeydown = (event) => {
+      if (event.key !== 'Escape') return;
+      event.preventDefault(); // the menu stays open
+      turn(false);
+    };
+    unfold.ariaExpanded = 'false';
     const show = ({ text, used, lost = false }) => {
       there.lastChild.data = text;
       Object.assign(there, { ariaPressed: used, disabled: lost });
       away.ariaLabel = away.title = say('views.delete', { text });
+      unfold.ariaLabel = unfold.title = say('views.edit', { text });
     };
-    return { children: remove ? [there, away] : [there], show };
+    return { children: [there, ...(edit ? [unfold] : []), ...(remove ? [away] : []), editor], show };
   });
   return {
     content: [element('h3', {}, title), list.element],

@@ -1,6 +1,5 @@
-import { clientName, holderName } from '../base/client-names.js';
 import { button, element } from '../base/element.js';
-import { say } from '../base/texts.js';
+import { clientName, holderName, say } from '../base/texts.js';
 
 /** @import { ClientControl, ClientHello, StateDocument } from '../base/protocol.js' */
 

@@ -1,8 +1,10 @@
-import { element } from '../base/element.js';
+import { button, element } from '../base/element.js';
 import { errorSentence, say } from '../base/texts.js';
 
 const MOST_LINES = 3;
 const PASSES_AFTER_MS = 6000;
+/** With something to do, for which a hand needs time. */
+const OFFERED_MS = 15_000;
 
 /** Quiet lines over the picture: none while all is well. */
 export class Lines {
@@ -21,26 +23,41 @@ export class Lines {
     this.#show();
   }
 
-  /** Says a sentence for some seconds, not twice at once. */
-  pass(text) {
+  /**
+   * Says a sentence for some seconds, not twice at once; where something can be done about it, with a button.
+   *
+   * @param {string} text
+   * @param {{label: string, act: () => void}} [action]
+   */
+  pass(text, action) {
     const sentence = whole(text);
     this.#passing = this.#passing.filter((line) => line.sentence !== sentence).slice(1 - MOST_LINES);
-    const line = { sentence };
-    this.#passing.push(line);
-    setTimeout(() => {
+    const drop = () => {
       this.#passing = this.#passing.filter((other) => other !== line);
       this.#show();
-    }, PASSES_AFTER_MS);
+    };
+    const act = action && (() => {
+      drop();
+      action.act();
+    });
+    const line = { sentence, label: action?.label, act };
+    this.#passing.push(line);
+    setTimeout(drop, action ? OFFERED_MS : PASSES_AFTER_MS);
     this.#show();
   }
 
   #show() {
     const lines = [...this.#lasting.values(), ...this.#passing];
     while (this.#element.children.length > lines.length) this.#element.lastElementChild.remove();
-    for (const [i, { sentence, fraction }] of lines.entries()) {
+    for (const [i, { sentence, fraction, label, act }] of lines.entries()) {
       const line = this.#element.children[i] ?? this.#element.appendChild(element('p', {}, element('span')));
       // Only a change: a screen reader would read the same words again.
       if (line.firstChild.textContent !== sentence) line.firstChild.textContent = sentence;
+      const offered = line.querySelector('button');
+      if (offered?.onclick !== act) {
+        offered?.remove();
+        if (act) line.append(button(label, act));
+      }
       const bar = line.querySelector('progress');
       if (fraction === undefined) bar?.remove();
       else Object.assign(bar ?? line.appendChild(element('progress')), { ariaLabel: sentence, value: fraction });

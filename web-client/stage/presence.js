@@ -1,5 +1,4 @@
-import { holderName } from '../base/client-names.js';
-import { say } from '../base/texts.js';
+import { holderName, say } from '../base/texts.js';
 
 /**
  * @import { StateDocument } from '../base/protocol.js'

@@ -1,5 +1,4 @@
-import { holderName } from '../base/client-names.js';
-import { errorSentence, say } from '../base/texts.js';
+import { errorSentence, holderName, say } from '../base/texts.js';
 import { ControlBar } from './control.js';
 import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
@@ -129,6 +128,11 @@ export class Stage {
   loading({ scene, fraction, done, refused }) {
     this.#lines.hold('loading', done || refused ? '' : say('view.loading', { scene }), fraction);
     if (refused) this.#lines.pass(refused);
+  }
+
+  /** Says what was done, with a button for what can be done about it. */
+  offer(text, label, act) {
+    this.#lines.pass(text, { label, act });
   }
 
   /** Says why something was refused. */

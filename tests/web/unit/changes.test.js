@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { Changes } from '../../../web-client/connection/changes.js';
+import { Changes } from '../../../web-client/connection/commands.js';
 
 /** Changes, and what became of them: each question waits for the test to settle it. */
 function setUp() {

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { afterEach, beforeEach, describe, test } from 'node:test';
-import { clientName } from '../../../web-client/base/client-names.js';
+import { clientName } from '../../../web-client/base/texts.js';
 import { ControlBar, controlBar } from '../../../web-client/stage/control.js';
 import { FakeClock, FakeElement, fakeDocument, replaceGlobals } from './fakes.js';
 

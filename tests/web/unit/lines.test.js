@@ -78,6 +78,26 @@ test('a lasting one stays, and goes before it; there is one of each matter', () 
   assert.deepEqual(said(), ['Loading car…']);
 });
 
+test('what can be done about it has a button, and stays longer', () => {
+  const { element, clock, lines, said } = setUp();
+  const done = [];
+  const offer = () => lines.pass('Deleted', { label: 'Undo', act: () => done.push('undone') });
+  const buttons = () => element.children.map((line) => line.querySelector('button')?.textContent);
+  offer();
+  lines.pass('Another steers.');
+  assert.deepEqual(buttons(), ['Undo', undefined]);
+  clock.advance(6000);
+  assert.deepEqual(said(), ['Deleted.Undo']);
+  element.children[0].querySelector('button').onclick();
+  assert.deepEqual([done, said()], [['undone'], []]);
+  offer();
+  clock.advance(14_999);
+  assert.deepEqual(said(), ['Deleted.Undo']);
+  clock.advance(1);
+  assert.deepEqual(said(), []);
+  assert.deepEqual(done, ['undone']);
+});
+
 test('what goes on has a bar of its own', () => {
   const { element, bars, lines } = setUp();
   lines.hold('loading', 'Loading car…', 0);

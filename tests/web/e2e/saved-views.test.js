@@ -1,0 +1,107 @@
+import assert from 'node:assert/strict';
+import { after, before, describe, test } from 'node:test';
+import { Server } from './program.js';
+import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
+
+const SIZES = {
+  tablet: { width: 1180, height: 820, pixelRatio: 2 },
+  phone: { width: 390, height: 844, pixelRatio: 3 },
+  desktop: { width: 1440, height: 900, pixelRatio: 1 },
+};
+
+const pose = ({ eye, focus, up, center, fov }) => ({ eye, focus, up, center, fov });
+
+for (const [name, size] of Object.entries(SIZES)) {
+  describe(`saved views in the menu of a ${name}`, { skip: browserIsMissing }, () => {
+    let server;
+    let browser;
+    let tablet;
+    let page;
+    let views;
+
+    before(async () => {
+      server = await Server.start();
+      browser = await launchBrowser();
+      tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
+      ({ page } = tablet);
+      await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.say({ type: 'patch', patch: { views: { 'Left lamp': {}, Wheel: { fov: 20 } } } });
+      await page.locator('#menu-button').tap();
+      views = page.locator('[data-section="views"]');
+      await views.locator('summary').tap();
+    });
+
+    after(async () => {
+      await browser?.close();
+      await server?.stop();
+    });
+
+    const state = () => tablet.wire.state;
+    const until = (what, get) => tablet.wire.until(what, get);
+    const button = (label, where = views) => where.getByRole('button', { name: label, exact: true });
+    const undo = () => page.locator('#lines').getByRole('button', { name: 'Undo' });
+
+    test('one is renamed by one patch, and keeps its members', async () => {
+      const before = state().views['Left lamp'];
+      const sent = tablet.wire.sent.length;
+      await button('Change Left lamp').tap();
+      const field = views.getByRole('textbox', { name: 'New name of Left lamp' });
+      assert.equal(await field.inputValue(), 'Left lamp');
+      for (const label of ['Rename', 'Save the present view here']) {
+        const { x, width } = await button(label).boundingBox();
+        assert.ok(x + width <= size.width - 8, label);
+      }
+      await tablet.screenshot(`views-${name}-edit`);
+      await field.fill('Headlamp');
+      await field.press('Enter');
+      await until('the new name', () => state().views.Headlamp);
+      assert.deepEqual(Object.keys(state().views).sort(), ['Headlamp', 'Wheel', 'home']);
+      assert.deepEqual(state().views.Headlamp, before);
+      assert.equal(tablet.wire.sent.slice(sent).filter(({ type }) => type === 'patch').length, 1);
+      await button('Left lamp').waitFor({ state: 'detached' });
+    });
+
+    test('a name that is taken or too long is refused, and Escape leaves the menu open', async () => {
+      await button('Change Headlamp').tap();
+      const field = views.getByRole('textbox', { name: 'New name of Headlamp' });
+      for (const [taken, line] of [['Wheel', 'There is a view “Wheel” already.'], ['home', 'There is a view “home” already.'], ['é'.repeat(51), /100 bytes/]]) {
+        await field.fill(taken);
+        await button('Rename').tap();
+        await page.locator('#lines').getByText(line).waitFor();
+      }
+      assert.deepEqual(Object.keys(state().views).sort(), ['Headlamp', 'Wheel', 'home']);
+      await field.press('Escape');
+      await field.waitFor({ state: 'hidden' });
+      assert.equal(await page.locator('#menu.open').count(), 1);
+      await page.waitForFunction(() => document.activeElement.ariaLabel === 'Change Headlamp');
+    });
+
+    test('one is overwritten with the present camera, and that is undone', async () => {
+      const before = state().views.Wheel;
+      await button('Change Wheel').tap();
+      await button('Save the present view here').tap();
+      await until('the present view', () => state().views.Wheel.fov === state().camera.fov);
+      assert.deepEqual(state().views.Wheel, pose(state().camera));
+      await undo().tap();
+      await until('the view before', () => state().views.Wheel.fov === before.fov);
+      assert.deepEqual(state().views.Wheel, before);
+      await undo().waitFor({ state: 'detached' });
+    });
+
+    test('one is deleted, and that is undone, by a key, too', async () => {
+      const before = structuredClone(state().views);
+      await button('Delete Wheel').tap();
+      await until('no view', () => !state().views.Wheel);
+      await undo().waitFor();
+      await tablet.screenshot(`views-${name}-deleted`);
+      await undo().focus();
+      await page.keyboard.press('Enter');
+      await until('the view', () => state().views.Wheel);
+      assert.deepEqual(state().views, before);
+    });
+
+    test('in all this the browser had nothing to complain of', () => {
+      assert.deepEqual(tablet.complaints, []);
+    });
+  });
+}
