@@ -62,4 +62,16 @@ export class Store {
   subscribe(select, show) {
     this.#subscribers.push(onChange(select, show));
   }
+  /** Promises the next value of `select` that is another than `last`, and not undefined. */
+  next(select, last) {
+    return new Promise((resolve) => {
+      const look = (now) => {
+        const value = select(now);
+        if (value === last || value === undefined) return;
+        this.#subscribers = this.#subscribers.filter((other) => other !== look);
+        resolve(value);
+      };
+      this.#subscribers.push(look);
+    });
+  }
 }

@@ -22,8 +22,8 @@ const KEEPS_FILE_MS = 60_000;
  * @param {Page} page
  * @returns {Section}
  */
-export function connectionSection({ commands, meter, store }) {
-  const others = scenes(commands);
+export function connectionSection({ commands, meter, store, offer }) {
+  const others = scenes({ commands, store, offer });
   return {
     name: 'connection',
     title: say('connection.title'),
@@ -119,27 +119,71 @@ function files(commands, store) {
   };
 }
 
-/** @param {Commands} commands */
-function scenes(commands) {
-  let isAsked = false;
+/** @param {Pick<Page, 'commands'|'store'|'offer'>} page */
+function scenes({ commands, store, offer }) {
+  let names = /** @type {?string[]} */ (null);
   const select = element('select');
   const label = element('label', { className: 'control' }, say('scenes.label'), select);
-  const open = button(say('scenes.open'), () => commands.open(select.value), { icon: 'open' });
+  const open = button(say('scenes.open'), () => show(select.value), { icon: 'open' });
   const row = element('div', { className: 'entry', hidden: true }, label, open);
   const none = element('p', { className: 'note', hidden: true }, say('scenes.none'));
+  const asInFile = button(say('scenes.asInFile'), () => giveBack(), { icon: 'back' });
+
+  const show = async (scene) => {
+    const { file } = stateOf(store).scene;
+    if (!await commands.open(scene)) return;
+    // Another may be opened meanwhile, and this one be refused.
+    if (await store.next(({ state }) => state?.scene.file, file) === scene) {
+      offer(say('scenes.opened', { name: scene }), say('bar.back'), () => show(file));
+    }
+  };
+  const giveBack = async () => {
+    const before = stateOf(store);
+    if (!await commands.patch({ views: null, markers: null, nodes: null })) return;
+    const undo = () => commands.patch(backTo(before, stateOf(store)));
+    offer(say('scenes.isAsInFile'), say('views.undo'), undo);
+  };
+  const list = () => {
+    const shown = store.now.state?.scene.file;
+    if (!names) return;
+    const text = (name) => (name === shown ? say('scenes.shown', { name }) : name);
+    const chosen = names.includes(select.value) && select.value !== shown ? select.value : shown;
+    select.replaceChildren(...names.map((name) => new Option(text(name), name, false, name === chosen)));
+    row.hidden = !names.some((name) => name !== shown);
+    none.hidden = !row.hidden;
+  };
   const ask = async () => {
-    isAsked = true;
-    const answer = await commands.scenes();
-    if (!answer) return;
-    select.replaceChildren(...answer.scenes.map((name) => new Option(name, name, false, name === select.value)));
-    none.hidden = answer.scenes.length > 0;
-    row.hidden = !none.hidden;
+    names = (await commands.scenes())?.scenes ?? names;
+    list();
   };
   return {
-    content: [row, none],
-    unfolded: () => isAsked && ask(),
-    show: onChange(({ client }) => [client], (client) => client && ask()),
+    content: [row, none, asInFile],
+    unfolded: () => names && ask(),
+    show: each(
+      onChange(({ client }) => [client], (client) => client && ask()),
+      onChange(({ state }) => [state.scene.file], list),
+      onChange(({ state }) => [isAsInFile(state)], (hidden) => Object.assign(asInFile, { hidden }))),
   };
+}
+
+/**
+ * Whether nothing that is kept of a scene differs from its file, as far as a client can tell.
+ *
+ * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} state
+ */
+export function isAsInFile({ views, markers, nodes }) {
+  return !hasMembers(nodes) && !hasMembers(markers) && !Object.keys(views).some((name) => name !== 'home');
+}
+
+/**
+ * The patch that makes what is kept of a scene what it was `before`.
+ *
+ * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} before
+ * @param {Pick<StateDocument, 'views'|'markers'|'nodes'>} now
+ */
+export function backTo(before, now) {
+  const all = (member) => ({ ...Object.fromEntries(Object.keys(now[member]).map((key) => [key, null])), ...before[member] });
+  return { views: all('views'), markers: all('markers'), nodes: all('nodes') };
 }
 
 function hasMembers(object = {}) {

@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import { afterEach, describe, test } from 'node:test';
+import { mergePatch } from '../../../web-client/base/merge-patch.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
 import {
-  bytesWords, holderWords, hostLines, hostWords, pictureFacts, qualityWords, snapshotName, snapshotSize,
+  backTo, bytesWords, holderWords, hostLines, hostWords, isAsInFile, pictureFacts, qualityWords, snapshotName, snapshotSize,
 } from '../../../web-client/panels/connection-section.js';
 import {
   backgroundChoice, backgroundFacts, cameraFacts, lightChoice, lightFacts, rendererFacts,
@@ -86,6 +87,25 @@ describe('views', () => {
     assert.equal(unusedName('View', []), 'View 1');
     assert.equal(unusedName('View', ['View 1', 'Door', 'View 3']), 'View 2');
     assert.equal(unusedName('View', ['View 1', 'View 2']), 'View 3');
+  });
+});
+
+describe('what is kept of a scene', () => {
+  const asInFile = { views: { home: { fov: 40 } }, markers: {}, nodes: {} };
+
+  test('is as in the file without entries and other views', () => {
+    assert.equal(isAsInFile(asInFile), true);
+    assert.equal(isAsInFile({ ...asInFile, nodes: { 1: { active: false } } }), false);
+    assert.equal(isAsInFile({ ...asInFile, markers: { a: {} } }), false);
+    assert.equal(isAsInFile({ ...asInFile, views: { home: {}, 'View 1': {} } }), false);
+  });
+
+  test('comes back as it was, without what has come since', () => {
+    const before = { views: { home: { fov: 30 }, A: { fov: 20 } }, markers: {}, nodes: { 1: { active: false } } };
+    const now = { views: { home: { fov: 40 }, B: { fov: 50 } }, markers: { m: { text: 'x' } }, nodes: {} };
+    const patch = backTo(before, now);
+    assert.deepEqual(patch, { views: { home: { fov: 30 }, A: { fov: 20 }, B: null }, markers: { m: null }, nodes: { 1: { active: false } } });
+    assert.deepEqual(mergePatch(now, patch), before);
   });
 });
 

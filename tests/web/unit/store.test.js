@@ -40,6 +40,16 @@ describe('the store', () => {
     assert.equal(window.displayFrame(), 0);
   });
 
+  test('promises the next value that is another', async () => {
+    const store = new Store();
+    const next = store.next(({ state }) => state?.scene, 'car');
+    for (const state of [null, { scene: 'car' }, { scene: 'house' }, { scene: 'boat' }]) {
+      store.set({ state });
+      window.displayFrame();
+    }
+    assert.equal(await next, 'house');
+  });
+
   test('is silent to who has subscribed to something else', () => {
     const store = new Store();
     const shown = [];

@@ -78,6 +78,10 @@ export const cs = {
   'recording.stop': 'Ukončit nahrávání',
   'scenes.label': 'Jiná scéna',
   'scenes.open': 'Otevřít',
+  'scenes.shown': '{name} (zobrazená)',
+  'scenes.opened': 'Otevřena scéna {name}',
+  'scenes.asInFile': 'Vrátit scénu do stavu ze souboru',
+  'scenes.isAsInFile': 'Scéna je ve stavu ze souboru.',
   'scenes.none': 'Server nenabízí žádné další scény.',
 
   'views.undo': 'Vrátit zpět',

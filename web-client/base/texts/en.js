@@ -76,6 +76,10 @@ export const en = {
   'recording.stop': 'Stop recording',
   'scenes.label': 'Another scene',
   'scenes.open': 'Open',
+  'scenes.shown': '{name} (shown)',
+  'scenes.opened': 'Opened {name}',
+  'scenes.asInFile': 'Give back what the file says',
+  'scenes.isAsInFile': 'The scene is as its file says.',
   'scenes.none': 'The server has no other scenes to offer.',
 
   'views.undo': 'Undo',
