@@ -58,7 +58,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     }
 
     test('all its buttons have names, and room for a finger', async () => {
-      assert.deepEqual(await bar().getByRole('button').allTextContents(), ['Home', 'Fit', 'Back', 'Views', 'Variants', 'More']);
+      assert.deepEqual(await bar().getByRole('button').allTextContents(), ['Home', 'Fit all', 'Back', 'Views', 'Variants', 'More']);
       await assertSlim();
       await tablet.screenshot(`bar-${name}`);
     });
@@ -71,7 +71,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await button('Home').tap();
       await cameraIs(state().views.home);
       await settled();
-      await button('Fit').tap();
+      await button('Fit all').tap();
       await until('the scene to fit', () => saved(state().camera) !== saved(state().views.home));
       await settled();
       for (const pose of [state().views.home, dragged]) {

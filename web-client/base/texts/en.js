@@ -85,7 +85,7 @@ export const en = {
   'views.undo': 'Undo',
   'bar.label': 'Quick actions',
   'bar.home': 'Home',
-  'bar.fit': 'Fit',
+  'bar.fit': 'Fit all',
   'bar.back': 'Back',
   'bar.more': 'More',
   'bar.previous': 'Previous view',
