@@ -6,11 +6,7 @@ import { Connection, socketAddress } from './connection/connection.js';
 import { Token, hello } from './connection/hello.js';
 import { Meter } from './connection/meter.js';
 import { Bar } from './panels/bar.js';
-import { connectionSection } from './panels/connection-section.js';
 import { Menu } from './panels/menu.js';
-import { partsSection } from './panels/parts-section.js';
-import { sceneSections } from './panels/scene-sections.js';
-import { viewsSection } from './panels/views-section.js';
 import { Awake } from './stage/awake.js';
 import { Stage } from './stage/stage.js';
 
@@ -58,10 +54,7 @@ const report = (error) => stage.report(error);
 const commands = commandsBy({ ask: (message) => connection.ask(message), refused: report });
 const stage = new Stage({ store, commands, connection, meter, hasToken: token.inAddress });
 const offer = (text, label, act) => stage.offer(text, label, act);
-const page = { store, commands, meter, report, offer };
-/** All of the menu, from top to bottom. */
-const build = () => [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)];
-const menu = new Menu({ store, build, setLanguage: speak });
+const menu = new Menu({ store, commands, meter, report, offer, setLanguage: speak });
 const bar = new Bar({ store, commands, menu });
 
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));
@@ -76,10 +69,9 @@ function speak(chosen) {
   bar.rebuild();
 }
 
-document.addEventListener('visibilitychange', () => {
-  if (!document.hidden) connection.wake();
-});
-window.addEventListener('online', () => connection.wake());
+for (const type of ['visibilitychange', 'online']) {
+  window.addEventListener(type, () => document.hidden || connection.wake());
+}
 // Another token: another start.
 window.addEventListener('hashchange', () => location.reload());
 

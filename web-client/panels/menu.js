@@ -1,11 +1,12 @@
 import { button, element } from '../base/element.js';
 import { recall, remember } from '../base/memory.js';
 import { language, say } from '../base/texts.js';
+import { connectionSection } from './connection-section.js';
+import { partsSection } from './parts-section.js';
+import { sceneSections } from './scene-sections.js';
+import { viewsSection } from './views-section.js';
 
-/**
- * @import { Store } from '../base/store.js'
- * @import { Section } from './section.js'
- */
+/** @import { Page, Section } from './section.js' */
 
 /** The panel of folding sections, and the button that opens it. */
 export class Menu {
@@ -14,18 +15,13 @@ export class Menu {
   #opener;
   #stage;
   #panel;
-  #build;
-  #setLanguage;
-  #store;
+  #page;
   /** @type {Section[]} */
   #sections = [];
 
-  /**
-   * Empty until `rebuild`; `build` gives the sections in the language in force.
-   *
-   * @param {{store: Store, build: () => Section[], setLanguage: (code: string) => void}} page
-   */
-  constructor({ store, build, setLanguage }) {
+  /** Empty until `rebuild`. @param {Page & {setLanguage: (code: string) => void}} page */
+  constructor(page) {
+    const { store } = page;
     const opener = /** @type {HTMLButtonElement} */ (document.getElementById('menu-button'));
     const panel = /** @type {HTMLElement} */ (document.getElementById('menu'));
     const stage = /** @type {HTMLElement} */ (document.getElementById('stage'));
@@ -33,9 +29,7 @@ export class Menu {
     this.#stage = stage;
     this.#button = opener;
     this.#panel = panel;
-    this.#store = store;
-    this.#build = build;
-    this.#setLanguage = setLanguage;
+    this.#page = page;
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
       // What is typed here is not meant for the view.
@@ -87,11 +81,12 @@ export class Menu {
 
   /** Makes everything anew, in the language in force. */
   rebuild() {
-    this.#sections = this.#build();
+    const page = this.#page;
+    this.#sections = [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)];
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
     const other = language() === 'en' ? 'cs' : 'en';
-    const turn = button(say('menu.otherLanguage'), () => this.#setLanguage(other), { quiet: true });
+    const turn = button(say('menu.otherLanguage'), () => page.setLanguage(other), { quiet: true });
     turn.lang = other;
     const close = tool('close', say('menu.close'), () => this.close());
     close.classList.add('close');
@@ -108,7 +103,7 @@ export class Menu {
   }
 
   #showAll() {
-    const { state, ...now } = this.#store.now;
+    const { state, ...now } = this.#page.store.now;
     if (!this.isOpen || !state) return;
     for (const section of this.#sections) section.show({ ...now, state });
   }
