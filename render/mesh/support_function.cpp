@@ -11,7 +11,7 @@ namespace {
 /// Squares and sums of the points stay finite below it.
 constexpr double kFarthest = 1e150;
 
-/// What d · p is at least off by, in parts of the largest term, however it is summed.
+/// An upper bound of the rounding error of d · p, relative to its largest term, for any order of the sum.
 constexpr double kRounding = 64 * std::numeric_limits<double>::epsilon();
 
 /// A part in a direction: d · (world p) = slope · (p − center) + middle.
@@ -22,7 +22,7 @@ struct Slope {
           middle(glm::dot(direction, glm::dvec3(world * glm::dvec4(center, 1)))) {}
 
     double at(const glm::dvec3& position) const { return glm::dot(slope, position - center) + middle; }
-    /// At least at() of all that lies within `half` of the centre.
+    /// An upper bound of at() for points within `half` of the centre.
     double most(const glm::dvec3& half) const {
         const double reach = glm::dot(glm::abs(slope), half);
         return middle + reach + kRounding * (std::abs(middle) + reach);

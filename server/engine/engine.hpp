@@ -69,7 +69,7 @@ struct EngineOptions {
     scenes::LoadedScene scene;
     scenes::SceneLibrary library;
     std::filesystem::path record_folder;
-    ChangeKeeper::Store keep_changes = {};  ///< none: they go with the scene
+    ChangeKeeper::Store keep_changes = {};  ///< empty: they are lost with the scene
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in

@@ -25,7 +25,7 @@ struct ServerOptions {
     Deadlines deadlines{};
     scenes::SceneLibrary library{};
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
-    /// Of what clients change of scenes; none: it goes with the scene.
+    /// Stores what clients change of a scene. Empty: their changes are lost with the scene.
     engine::ChangeKeeper::Store keep_changes = {};
     /// A thread that has something to do and does not come round for longer is not alive.
     std::chrono::milliseconds longest_busy{30'000};

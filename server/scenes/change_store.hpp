@@ -13,8 +13,8 @@ std::filesystem::path changes_file(const std::string& scene_sha256);
 /// at all. An empty patch leaves no file. Throws std::runtime_error with a sentence. From any thread.
 void store_changes(const std::string& scene_sha256, const std::string& patch);
 
-/// The patch that is kept; empty where none is. Its 30 days begin anew. Files whose 30 days are over are
-/// removed, this one and the others. The log tells of a file that cannot be used. From any thread.
+/// Returns the patch that is kept, or an empty text. Files that were not read or written for 30 days are
+/// removed first. A file that cannot be used is logged. From any thread.
 std::string stored_changes(const std::string& scene_sha256);
 
 }  // namespace vrut::server::scenes

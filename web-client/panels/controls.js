@@ -112,7 +112,7 @@ export function numbers(label, labels, change) {
       if (input.valueAsNumber >= 0) control.during(change(latest = latest.with(i, input.valueAsNumber)));
       else input.value = latest[i];
     };
-    // What was refused goes with the focus.
+    // A value that the server rejected is replaced by the present one when the field loses the focus.
     input.onblur = () => control.during();
   }
   return control;

@@ -231,7 +231,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
           fields[i].dispatchEvent(new Event('change'));
         }
       }), () => key().attenuation.join() === '1,5,3');
-      // What the server refuses goes with the focus.
+      // A value that the server rejects is replaced when the field loses the focus.
       const { errors } = tablet.wire;
       const refused = errors.length;
       await within('light', 'Linear').fill('1e31');
