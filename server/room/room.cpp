@@ -375,10 +375,9 @@ void Room::steer(const Received& received) {
 
 void Room::show_holder() {
     protocol::ControlState& control = state_.control;
-    const auto name_of = [&](const std::string& client) -> std::optional<std::string> {
-        const auto found = clients_.find(client);
-        if (found == clients_.end() || found->second.name.empty()) return std::nullopt;
-        return found->second.name;
+    const auto name_of = [&](const std::string& client) {
+        const std::string& name = client_name(client);
+        return name.empty() ? std::nullopt : std::optional(name);
     };
     if (control.holder != steering_.holder()) {
         if (control.holder) {
