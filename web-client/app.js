@@ -60,10 +60,10 @@ const bar = new Bar({ store, commands, menu });
 store.subscribe(({ role }) => [role === 'control'], (wanted) => Object.assign(awake, { wanted }));
 
 /** What the user chose, or else the browser's. */
-function speak(chosen) {
+async function speak(chosen) {
   if (chosen) remember('language', chosen);
-  setLanguage(chosen ?? recall('language') ?? preferredLanguage(navigator.languages));
-  document.documentElement.lang = language();
+  const wanted = chosen ?? recall('language') ?? preferredLanguage(navigator.languages);
+  await setLanguage(wanted).catch(() => report({ code: 'not-loaded' }));
   store.set({ language: language() });
   menu.rebuild();
   bar.rebuild();

@@ -1,7 +1,9 @@
 # Writes OUT, a C++ source with the bytes of FILES (separated by commas) of FOLDER: the table of page_files.hpp.
 # The references of index.html are changed to lead to the folder named by content, and a modulepreload is added for
-# each module, so that the browser asks for all of them at once instead of level by level of their imports.
+# each module, so that the browser asks for all of them at once instead of level by level of their imports. Those that
+# are loaded when they are needed (`import('…')`) have none.
 find_program(GZIP gzip REQUIRED)
+set(loaded_later "^base/texts/cs\\.js$")
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")
@@ -27,7 +29,7 @@ foreach(file IN LISTS files)
         string(REPLACE "href=\"${file}\"" "href=\"${page}/${file}\"" index "${index}")
         string(REPLACE "src=\"${file}\"" "src=\"${page}/${file}\"" index "${index}")
     endif()
-    if(file MATCHES "\\.js$" AND NOT file STREQUAL "app.js")
+    if(file MATCHES "\\.js$" AND NOT file STREQUAL "app.js" AND NOT file MATCHES "${loaded_later}")
         string(APPEND preloads "  <link rel=\"modulepreload\" href=\"${page}/${file}\">\n")
     endif()
 endforeach()

@@ -1,9 +1,9 @@
-import { cs } from './texts/cs.js';
 import { en } from './texts/en.js';
 
 /** @import { StateDocument } from './protocol.js' */
 
-const TABLES = { cs, en };
+/** By language: English, and what was loaded. @type {Record<string, Record<string, string|Record<string, string>>>} */
+const TABLES = { en };
 /** By a browser's language; who reads Slovak reads Czech. */
 const KNOWN = { cs: 'cs', sk: 'cs', en: 'en' };
 
@@ -16,9 +16,11 @@ export function language() {
   return current;
 }
 
-/** Others than those known are English. */
-export function setLanguage(code) {
-  current = code === 'cs' ? 'cs' : 'en';
+/** Others than those known are English. Promises that its texts are loaded; where they are not, all stays as it is. */
+export async function setLanguage(code) {
+  const known = code === 'cs' ? 'cs' : 'en';
+  if (known === 'cs') TABLES.cs ??= (await import('./texts/cs.js')).cs;
+  current = known;
 }
 
 /** The first known of a browser's languages ('cs-CZ'), or else English. */

@@ -55,7 +55,8 @@ export class Menu {
     this.#opener = opener;
     this.#turn(true);
     this.#showAll();
-    /** @type {HTMLElement} */ (this.#panel.querySelector('.close')).focus({ preventScroll: true });
+    // Its texts may still be on their way.
+    /** @type {?HTMLElement} */ (this.#panel.querySelector('.close'))?.focus({ preventScroll: true });
   }
 
   close() {

@@ -70,7 +70,8 @@ export class Stage {
       this.#move();
     });
 
-    store.subscribe(({ language }) => [language], () => {
+    store.subscribe(({ language }) => [language], (language) => {
+      document.documentElement.lang = language;
       this.#canvas.ariaLabel = say('view.label');
     });
     store.subscribe(({ hasPicture, language }) => [hasPicture, language], () => this.#showPhase());
@@ -135,12 +136,16 @@ export class Stage {
     this.#lines.pass(text, { label, act });
   }
 
-  /** Says why something was refused. */
+  /** Says why something was refused; by the code `not-loaded`, that a part of the page was not. */
   report(error) {
+    const { phase, state } = this.#store.now;
     if (error.code === 'not-in-control') {
-      this.#lines.pass(say('control.other', { name: holderName(this.#store.now.state?.control ?? {}) }));
+      this.#lines.pass(say('control.other', { name: holderName(state?.control ?? {}) }));
       this.#controlBar.offer();
-    } else if (error.code === 'not-sent') {
+    } else if (error.code === 'not-loaded' && phase.name === 'open') {
+      // The server has become another version, or the browser does not try again.
+      this.offer(say('page.notLoaded'), say('page.reload'), () => location.reload());
+    } else if (['not-sent', 'not-loaded'].includes(error.code)) {
       this.#lines.pass(say('phase.notSent'));
     } else if (error.message) {
       this.#lines.pass(errorSentence(error));

@@ -62,25 +62,49 @@ test('all of the page, heads and icons too, takes at most 60 KB over the wire', 
   assert.ok(received <= MOST_BYTES, `${received} bytes`);
 });
 
-test('each module that is imported is asked for at once, and no other', async () => {
-  const references = referencesOf((await get('', BROWSER)).text);
-  const announced = [...references].filter(([, element]) => /modulepreload|type="module"/.test(element)).map(([path]) => path);
-  const [start] = [...references].find(([, element]) => element.includes('type="module"'));
-  const imported = new Set([start]);
-  for (const path of imported) { // a Set goes on with what is added to it
-    const { text } = await get(path, BROWSER);
-    for (const [, module] of text.matchAll(/^(?:import|export)\b[^;]*?from '(.+?)';/gm)) {
-      imported.add(new URL(module, new URL(path, 'http://page/')).pathname.slice(1));
+/** @returns {Promise<Set<string>>} the paths of some modules and of all that they import, as `pattern` finds that */
+async function importedFrom(paths, pattern) {
+  const found = new Set(paths);
+  for (const path of found) { // a Set goes on with what is added to it
+    const { status, text } = await get(path, BROWSER);
+    assert.equal(status, 200, path);
+    for (const [, module] of text.matchAll(pattern)) {
+      found.add(new URL(module, new URL(path, 'http://page/')).pathname.slice(1));
     }
   }
+  return found;
+}
+
+const AT_ONCE = /^(?:import|export)\b[^;]*?from '(.+?)';/gm;
+const AT_ONCE_OR_LATER = /(?:^(?:import|export)\b[^;]*?from |\bimport\()'(.+?)'/gm;
+
+function announcedIn(references) {
+  return [...references].filter(([, element]) => /modulepreload|type="module"/.test(element)).map(([path]) => path);
+}
+
+test('each module that is imported at once is asked for at once, and no other', async () => {
+  const references = referencesOf((await get('', BROWSER)).text);
+  const [start] = [...references].find(([, element]) => element.includes('type="module"'));
+  const imported = await importedFrom([start], AT_ONCE);
   assert.ok(imported.size > 10);
-  assert.deepEqual([...imported].sort(), announced.sort());
+  assert.deepEqual([...imported].sort(), announcedIn(references).sort());
+});
+
+test('modules that are imported later are there, and may be kept for good', async () => {
+  const announced = announcedIn(referencesOf((await get('', BROWSER)).text));
+  const later = [...await importedFrom(announced, AT_ONCE_OR_LATER)].filter((path) => !announced.includes(path));
+  assert.ok(later.some((path) => path.endsWith('/base/texts/cs.js')), later.join());
+  for (const path of later) {
+    const { headers } = await get(path, BROWSER);
+    assert.equal(headers['content-encoding'], 'gzip', path);
+    assert.equal(headers['cache-control'], 'public, max-age=31536000, immutable', path);
+  }
 });
 
 test('modules come without the lines of comment and indentation, and else as they are', async () => {
   const bare = (code) => typescript.transpile(code, { target: 'esnext', removeComments: true });
-  const modules = [...referencesOf((await get('', BROWSER)).text).keys()].filter((path) => path.endsWith('.js'));
-  assert.ok(modules.length > 10);
+  const modules = await importedFrom(announcedIn(referencesOf((await get('', BROWSER)).text)), AT_ONCE_OR_LATER);
+  assert.ok(modules.size > 10);
   for (const path of modules) {
     const { text } = await get(path, BROWSER);
     assert.doesNotMatch(text, /^\s*(\/\/|\/\*\*.*[^/]$)/m, path);

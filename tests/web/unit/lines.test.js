@@ -152,14 +152,14 @@ describe('of the connection', () => {
     assert.equal(say(refused), `The server asks for a token. ${remedy}`);
   });
 
-  test('in Czech, too', () => {
-    setLanguage('cs');
+  test('in Czech, too', async () => {
+    await setLanguage('cs');
     try {
       assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Nový pokus za 2 s.');
       assert.equal(say({ name: 'waiting', retryMs: 0, reason: { code: 'too-many', message: 'the server is full' } }),
         'Nejvyšší povolený počet je překročen (the server is full). Nový pokus…');
     } finally {
-      setLanguage('en');
+      await setLanguage('en');
     }
   });
 });

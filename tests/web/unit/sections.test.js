@@ -122,33 +122,33 @@ describe('connection', () => {
     assert.equal(pictureFacts({ p50: 20.4, p95: 80, framesPerSecond: 0, bytesPerSecond: 0 }).latency, '20 ms, 80 ms');
   });
 
-  test('who steers', () => {
+  test('who steers', async () => {
     assert.equal(holderWords(undefined, 'c1'), 'Nobody');
     assert.equal(holderWords({ kept: false }, 'c1'), 'Nobody');
     assert.equal(holderWords({ holder: 'c1', kept: true, name: 'Eva' }, 'c1'), 'You');
     assert.equal(holderWords({ holder: 'c2', name: 'Eva\'s tablet' }, 'c1'), 'Eva\'s tablet');
     assert.equal(holderWords({ holder: 'c2' }, 'c1'), 'Client c2');
-    setLanguage('cs');
+    await setLanguage('cs');
     assert.equal(holderWords({ holder: 'c2' }, 'c1'), 'Klient c2');
     assert.equal(holderWords({ holder: 'c1', kept: false }, 'c1'), 'vy');
   });
 
-  test('how far behind a wall is', () => {
+  test('how far behind a wall is', async () => {
     assert.equal(hostWords({ revision: 9, lagMs: 12.4 }, 9), 'up to date · 12 ms');
     assert.equal(hostWords({ revision: 5 }, 9), '4 behind');
     assert.equal(hostWords({ revision: 10 }, 9), 'up to date');
-    setLanguage('cs');
+    await setLanguage('cs');
     assert.equal(hostWords({ revision: 5 }, 9), 'pozadu o 4 změny');
   });
 
-  test('which kind of picture it is', () => {
+  test('which kind of picture it is', async () => {
     const still = { level: 'still', scale: 1, samples: 16, detail: 0, jpegQuality: 95 };
     assert.equal(qualityWords(still), 'Still · 16 samples · full size · JPEG 95');
     assert.equal(qualityWords({ ...still, error: 0 }), 'Still · 16 samples · full size · JPEG 95 · error 0');
     assert.match(qualityWords({ ...still, error: 0.0004 }), / · error < 0\.001$/);
     const moving = { level: 'moving', scale: 0.67, samples: 1, detail: 0.5, jpegQuality: 70, error: 0.0314 };
     assert.equal(qualityWords(moving), 'Moving · 67 % size · detail 0.5 px · JPEG 70 · error 0.031');
-    setLanguage('cs');
+    await setLanguage('cs');
     assert.equal(qualityWords(still), 'V klidu · 16 vzorků · plná velikost · JPEG 95');
     assert.equal(qualityWords(moving), 'V pohybu · velikost 67 % · detaily od 0,5 px · JPEG 70 · chyba 0,031');
   });
@@ -164,11 +164,11 @@ describe('connection', () => {
     assert.equal(snapshotName(new Date(2026, 2, 4, 5, 6, 7)), 'scene-20260304-050607.jpg');
   });
 
-  test('bytes in words', () => {
+  test('bytes in words', async () => {
     assert.equal(bytesWords(0), '0 kB');
     assert.equal(bytesWords(148_200), '148 kB');
     assert.equal(bytesWords(2_340_000), '2.3 MB');
-    setLanguage('cs');
+    await setLanguage('cs');
     assert.equal(bytesWords(2_340_000), '2,3 MB');
   });
 });

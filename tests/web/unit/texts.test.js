@@ -28,12 +28,12 @@ const calls = modules.flatMap(({ name, source }) =>
 
 afterEach(() => setLanguage('en'));
 
-test('a text is in the language in force', () => {
+test('a text is in the language in force', async () => {
   assert.equal(say('parts.all'), 'All parts');
-  setLanguage('cs');
+  await setLanguage('cs');
   assert.equal(language(), 'cs');
   assert.equal(say('parts.all'), 'Všechny díly');
-  setLanguage('de');
+  await setLanguage('de');
   assert.equal(language(), 'en');
 });
 
@@ -42,10 +42,10 @@ test('a text holds its values: words as they are, numbers as the language writes
   assert.equal(say('connection.behind', { count: 1234 }), '1,234 behind');
 });
 
-test('a count has the plural form of the language', () => {
+test('a count has the plural form of the language', async () => {
   const said = () => [0, 1, 2, 5].map((count) => say('parts.count', { count }));
   assert.deepEqual(said(), ['0 parts', '1 part', '2 parts', '5 parts']);
-  setLanguage('cs');
+  await setLanguage('cs');
   assert.deepEqual(said(), ['0 dílů', '1 díl', '2 díly', '5 dílů']);
 });
 
@@ -58,20 +58,20 @@ test('the language is the first known of the browser\'s', () => {
   assert.equal(preferredLanguage([]), 'en');
 });
 
-test('an error is told by its code, in English by the server', () => {
+test('an error is told by its code, in English by the server', async () => {
   const error = { code: 'failed', message: 'nothing is being recorded' };
   assert.equal(errorSentence(error), 'nothing is being recorded');
-  setLanguage('cs');
+  await setLanguage('cs');
   assert.equal(errorSentence(error), 'Akce se nezdařila (nothing is being recorded).');
   assert.equal(errorSentence({ code: 'not-in-control', message: 'another client is in control' }), 'Scénu právě řídí někdo jiný.');
   assert.equal(errorSentence({ code: 'of-a-later-version', message: 'something new' }), 'something new');
   assert.equal(errorSentence(new Error('Pohled „A“ už existuje.')), 'Pohled „A“ už existuje.');
 });
 
-test('numbers are written as the language does', () => {
+test('numbers are written as the language does', async () => {
   assert.equal(written(1234.567, 1), '1,234.6');
   assert.equal(written(0.4), '0');
-  setLanguage('cs');
+  await setLanguage('cs');
   assert.equal(written(1234.567, 1), '1\u00a0234,6');
 });
 

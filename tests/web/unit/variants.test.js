@@ -10,13 +10,13 @@ const switchOf = (id, name, choices) => ({ id, name, choices, activeChild: 0 });
 const found = (switches) => variants(switches).map((variant) => [variant.title, variant.switches.map(({ id }) => id)]);
 
 describe('variants', () => {
-  test('switches with the same choices are one, called like all of them, or by their number', () => {
+  test('switches with the same choices are one, called like all of them, or by their number', async () => {
     const rims = ['Five', 'Ten'];
     const car = [
       switchOf(1, 'Panel', paints), switchOf(2, 'Rim', rims), switchOf(3, 'Mirror', paints), switchOf(4, 'Rim', rims),
     ];
     assert.deepEqual(found(car), [['2 parts', [1, 3]], ['Rim', [2, 4]]]);
-    setLanguage('cs');
+    await setLanguage('cs');
     assert.deepEqual(found(car), [['2 díly', [1, 3]], ['Rim', [2, 4]]]);
   });
 

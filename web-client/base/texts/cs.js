@@ -21,6 +21,8 @@ export const cs = {
   'phase.tokenMissing': 'Server vyžaduje přístupový klíč.',
   'phase.notSent': 'Není spojení se serverem, nic se nezměnilo.',
   'phase.openAddress': 'Otevřete adresu, kterou server vypsal.',
+  'page.notLoaded': 'Tuto část stránky se nepodařilo načíst.',
+  'page.reload': 'Načíst stránku znovu',
 
   'presence.connected': 'Připojeno',
   'presence.connecting': 'Připojování',

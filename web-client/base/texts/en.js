@@ -24,6 +24,8 @@ export const en = {
   'phase.tokenMissing': 'The server asks for a token.',
   'phase.notSent': 'There is no connection to the server: nothing was changed.',
   'phase.openAddress': 'Open the address that the server printed.',
+  'page.notLoaded': 'This part of the page could not be loaded.',
+  'page.reload': 'Reload the page',
 
   'presence.connected': 'Connected',
   'presence.connecting': 'Connecting',
