@@ -17,8 +17,8 @@ const LEVEL = { moving: 'quality.moving', still: 'quality.still' };
 const HOLD_MS = 800;
 
 /**
- * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), the picture's
- * kind, and whether the session is recorded.
+ * What is always to be seen: the connection, who is in control (`own`, `other`, `absent` or `nobody`), and the
+ * picture's kind.
  *
  * @param {Pick<Now, 'phase'|'client'|'state'|'header'>} now
  */
@@ -28,7 +28,7 @@ export function presence({ phase, client, state, header }) {
   const others = absent ? 'absent' : 'other';
   const held = holder === client ? 'own' : others;
   const steering = holder ? held : 'nobody';
-  return { connection: 'open', steering, level: header?.quality?.level, recording: state?.recording ? 'on' : '' };
+  return { connection: 'open', steering, level: header?.quality?.level };
 }
 
 /**
@@ -78,18 +78,17 @@ export class Presence {
   }
 
   show(page) {
-    const { connection, steering = '', level = '', recording = '' } = presence(page);
+    const { connection, steering = '', level = '' } = presence(page);
     this.#may = page.role === 'control' && ['other', 'absent'].includes(steering);
     const text = [
       say(CONNECTION[connection]),
       steering && controlWords(steering, page.state),
       level && say(LEVEL[level]),
-      recording && say('recording.name'),
     ].filter(Boolean).join(' · ');
     const title = this.#may ? say('presence.hint') : '';
     if (this.#element.title !== title) Object.assign(this.#element, { title, ariaDisabled: !this.#may });
     if (text === this.#element.textContent) return;
-    Object.assign(this.#element.dataset, { connection, steering, level, recording });
+    Object.assign(this.#element.dataset, { connection, steering, level });
     this.#element.textContent = text;
   }
 }

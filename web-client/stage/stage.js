@@ -77,10 +77,14 @@ export class Stage {
     store.subscribe(({ hasPicture, language }) => [hasPicture, language], () => this.#showPhase());
     store.subscribe(
       ({ phase, role, client, state, hasPicture, header, language }) =>
-        [phase, role, client, state?.control, state?.recording, hasPicture && header?.quality?.level, language],
+        [phase, role, client, state?.control, hasPicture && header?.quality?.level, language],
       () => {
         const { hasPicture, header, ...now } = store.now;
         presence.show({ ...now, header: hasPicture ? header : null });
+      });
+    store.subscribe(({ phase, state, language }) => [phase.name === 'open' && Boolean(state?.recording), language],
+      (isRecorded) => {
+        find('recording').textContent = isRecorded ? say('recording.name') : '';
       });
     store.subscribe(({ role, client, state, language }) => [role, client, state?.control, language],
       (role, client, control) => this.#controlBar.show({ role, client, control }));

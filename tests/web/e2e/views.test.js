@@ -227,11 +227,11 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     await button(connection, 'Record').tap();
     const name = await until('a recording', () => state().recording?.name);
     await fact(connection, 'recording', name);
-    await tablet.page.locator('#presence', { hasText: 'Recording' }).waitFor();
+    await tablet.page.locator('#recording', { hasText: 'Recording' }).waitFor();
     await tablet.screenshot('recording');
     await button(connection, 'Stop recording').tap();
     await until('the recording to end', () => !state().recording);
-    await tablet.page.locator('#presence', { hasText: 'Recording' }).waitFor({ state: 'detached' });
+    await tablet.page.locator('#recording', { hasText: 'Recording' }).waitFor({ state: 'detached' });
     await button(connection, 'Record').waitFor();
     await access(path.join(folder, `${name}.jsonl`));
   });

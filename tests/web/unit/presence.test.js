@@ -25,15 +25,6 @@ test('which kind of picture is seen, once there is one', () => {
   assert.equal(presence({ ...held({}), header: null }).level, undefined);
 });
 
-test('whether the session is recorded', () => {
-  const recorded = { ...OPEN, state: { control: { holder: 'a' }, recording: { name: 'a.jsonl' } } };
-  assert.equal(presence(recorded).recording, 'on');
-  const element = pill();
-  new Presence(element, {}).show(recorded);
-  assert.equal(element.text, 'Connected · You are in control · Still · Recording');
-  assert.equal(element.dataset.recording, 'on');
-});
-
 /** A pill whose words are counted. */
 function pill() {
   return {
@@ -56,14 +47,14 @@ test('all is said in a few words, for eyes and for scripts, and only when it cha
   const corner = new Presence(element, {});
   corner.show(held({ holder: 'a' }));
   assert.equal(element.text, 'Connected · You are in control · Still');
-  assert.deepEqual(element.dataset, { connection: 'open', steering: 'own', level: 'still', recording: '' });
+  assert.deepEqual(element.dataset, { connection: 'open', steering: 'own', level: 'still' });
   corner.show(held({ holder: 'a' }));
   assert.equal(element.writes, 1);
   corner.show(held({ holder: 'b', name: 'Eva’s iPad' }));
   assert.equal(element.text, 'Connected · Eva’s iPad is in control · Still');
   corner.show({ phase: { name: 'waiting' } });
   assert.equal(element.text, 'Not connected');
-  assert.deepEqual(element.dataset, { connection: 'waiting', steering: '', level: '', recording: '' });
+  assert.deepEqual(element.dataset, { connection: 'waiting', steering: '', level: '' });
 });
 
 describe('the pill', () => {
