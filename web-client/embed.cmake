@@ -3,7 +3,7 @@
 # each module, so that the browser asks for all of them at once instead of level by level of their imports. Those that
 # are loaded when they are needed (`import('…')`) have none.
 find_program(GZIP gzip REQUIRED)
-set(loaded_later "^base/texts/cs\\.js$")
+set(loaded_later "^(base/texts/cs|panels/dialogs/[^/]+)\\.js$")
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")

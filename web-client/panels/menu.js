@@ -1,9 +1,9 @@
 import { button, element } from '../base/element.js';
-import { recall, remember } from '../base/memory.js';
 import { language, say } from '../base/texts.js';
-import { connectionSection } from './connection-section.js';
+import { Dialogs } from './dialogs.js';
 import { partsSection } from './parts-section.js';
-import { sceneSections } from './scene-sections.js';
+import { presentationSection } from './presentation-section.js';
+import { foldable } from './section.js';
 import { viewsSection } from './views-section.js';
 
 /** @import { Page, Section } from './section.js' */
@@ -16,6 +16,7 @@ export class Menu {
   #stage;
   #panel;
   #page;
+  #dialogs;
   /** @type {Section[]} */
   #sections = [];
 
@@ -30,6 +31,7 @@ export class Menu {
     this.#button = opener;
     this.#panel = panel;
     this.#page = page;
+    this.#dialogs = new Dialogs(page);
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
       // What is typed here is not meant for the view.
@@ -83,7 +85,7 @@ export class Menu {
   /** Makes everything anew, in the language in force. */
   rebuild() {
     const page = this.#page;
-    this.#sections = [...sceneSections(page), partsSection(page), viewsSection(page), connectionSection(page)];
+    this.#sections = [partsSection(page), viewsSection(page), presentationSection(page)];
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
     const other = language() === 'en' ? 'cs' : 'en';
@@ -97,8 +99,13 @@ export class Menu {
       this.#clean(true);
       this.close();
     });
-    const head = element('div', { className: 'head' }, turn, clean, ...(document.fullscreenEnabled ? [full] : []), close);
-    this.#panel.replaceChildren(head, ...this.#sections.map(foldable));
+    const help = tool('help', say('help.title'), () => this.#dialogs.open('help', help));
+    const settings = button(say('settings.title'), () => this.#dialogs.open('settings', settings),
+      { icon: 'settings', quiet: true });
+    for (const opens of [help, settings]) opens.ariaHasPopup = 'dialog';
+    const tools = [turn, help, clean, ...(document.fullscreenEnabled ? [full] : []), close];
+    const head = element('div', { className: 'head' }, ...tools);
+    this.#panel.replaceChildren(head, ...this.#sections.map(foldable), settings);
     if (this.isOpen) turn.focus({ preventScroll: true });
     this.#showAll();
   }
@@ -117,20 +124,4 @@ function tool(icon, label, act) {
 function turnFullScreen() {
   if (document.fullscreenElement) document.exitFullscreen();
   else document.documentElement.requestFullscreen();
-}
-
-/** @param {Section} section */
-function foldable({ name, title, content, unfolded: opened }) {
-  const details = element('details', { data: { section: name }, open: unfolded().includes(name) },
-    element('summary', {}, element('h2', {}, title)), element('div', { className: 'content' }, ...content));
-  details.ontoggle = () => {
-    const others = unfolded().filter((other) => other !== name);
-    remember('sections', [...others, ...(details.open ? [name] : [])].join(' '));
-    if (details.open) opened?.();
-  };
-  return details;
-}
-
-function unfolded() {
-  return (recall('sections') ?? 'scene renderer').split(' ');
 }

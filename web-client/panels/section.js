@@ -1,3 +1,5 @@
+import { element } from '../base/element.js';
+import { recall, remember } from '../base/memory.js';
 import { onChange } from '../base/store.js';
 
 /**
@@ -18,7 +20,7 @@ import { onChange } from '../base/store.js';
  *
  * @typedef {Now & {state: StateDocument}} Known
  *
- * A folding part of the menu, told when opened.
+ * A folding part of the menu or of the settings, told when opened.
  *
  * @typedef {{name: string, title: string, content: HTMLElement[], show: (now: Known) => void,
  *   unfolded?: () => void}} Section
@@ -38,6 +40,22 @@ export function section(name, title, ...bound) {
     show: onChange((now) => select(now.state, now), model ? (...picked) => show(...model(...picked)) : show),
   }));
   return { name, title, ...joined(parts) };
+}
+
+/** What folds is remembered. @param {Section} section */
+export function foldable({ name, title, content, unfolded: opened }) {
+  const details = element('details', { data: { section: name }, open: unfolded().includes(name) },
+    element('summary', {}, element('h2', {}, title)), element('div', { className: 'content' }, ...content));
+  details.ontoggle = () => {
+    const others = unfolded().filter((other) => other !== name);
+    remember('sections', [...others, ...(details.open ? [name] : [])].join(' '));
+    if (details.open) opened?.();
+  };
+  return details;
+}
+
+function unfolded() {
+  return (recall('sections') ?? 'renderer light background').split(' ');
 }
 
 /** The state, which is there as soon as a section is shown. @param {Store} store */

@@ -93,6 +93,7 @@ test('each module that is imported at once is asked for at once, and no other', 
 test('modules that are imported later are there, and may be kept for good', async () => {
   const announced = announcedIn(referencesOf((await get('', BROWSER)).text));
   const later = [...await importedFrom(announced, AT_ONCE_OR_LATER)].filter((path) => !announced.includes(path));
+  assert.ok(later.some((path) => path.endsWith('/panels/dialogs/settings.js')), later.join());
   assert.ok(later.some((path) => path.endsWith('/base/texts/cs.js')), later.join());
   for (const path of later) {
     const { headers } = await get(path, BROWSER);

@@ -28,7 +28,7 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
       const tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       const { page } = tablet;
       await tablet.shows((await tablet.wire.still()).frame);
-      const unfold = () => page.locator('#menu details').evaluateAll((all) => {
+      const unfold = (where = '#menu') => page.locator(`${where} details`).evaluateAll((all) => {
         for (const details of all) details.open = true;
       });
       const open = async () => {
@@ -50,7 +50,21 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
           await page.locator('#strip').getByRole('radio').first().waitFor();
         },
         'the menu open': open,
-        'in the dark': () => page.emulateMedia({ colorScheme: 'dark' }),
+        'the settings': async () => {
+          await tablet.settings('camera');
+          await unfold('dialog');
+        },
+        'the settings in the dark': () => page.emulateMedia({ colorScheme: 'dark' }),
+        'the help in the dark': async () => {
+          await tablet.closeSettings();
+          await page.keyboard.press('?');
+          await page.locator('dialog.help').waitFor();
+        },
+        'the help': () => page.emulateMedia({ colorScheme: 'light' }),
+        'in the dark': async () => {
+          await tablet.closeSettings();
+          await page.emulateMedia({ colorScheme: 'dark' });
+        },
         'in Czech': async () => {
           await page.locator('.head [lang]').tap();
           await page.locator('html[lang="cs"]').waitFor();

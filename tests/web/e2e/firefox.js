@@ -42,6 +42,9 @@ export class Firefox {
     await this.#ask('session.subscribe', { events: ['log.entryAdded'] });
     const { contexts } = await this.#ask('browsingContext.getTree', {});
     this.#context = contexts[0].context;
+    // The help, which opens by itself on a first visit, has been seen.
+    const functionDeclaration = "() => { try { localStorage.setItem('vrut-preview.help', 'seen'); } catch {} }";
+    await this.#ask('script.addPreloadScript', { functionDeclaration });
   }
 
   #address() {

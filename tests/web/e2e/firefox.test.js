@@ -48,10 +48,12 @@ describe('Firefox', { skip: firefoxIsMissing }, () => {
     });
   }
 
-  test('the menu opens, and a switch in it switches', async () => {
+  test('the menu opens, the settings from it, and a switch in them switches', async () => {
     const revision = await firefox.evaluate(`Number(${view}.dataset.revision)`);
     await firefox.press('#menu-button');
     await firefox.until("document.querySelector('#menu').classList.contains('open') && getComputedStyle(document.querySelector('#menu')).transform === 'none'");
+    await firefox.press('#menu > button');
+    await firefox.until("document.querySelector('dialog')?.open");
     await firefox.press('[data-section="renderer"] [role="switch"]');
     await firefox.until("document.querySelector('[data-section=\"renderer\"] [role=\"switch\"]').checked");
     await firefox.until(`Number(${view}.dataset.revision) > ${revision}`);

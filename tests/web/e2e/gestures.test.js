@@ -213,10 +213,10 @@ for (const [name, size] of Object.entries(SIZES)) {
     test('with an option one finger turns about what it touches', async () => {
       const { page } = tablet;
       const option = page.getByText('Turn about what is touched');
-      await page.locator('#menu-button').tap();
-      await page.locator('[data-section="camera"] > summary').tap();
+      await tablet.settings('camera');
       await moves(() => option.tap(), (now) => now.navigation.turnAbout === 'touched');
       await tablet.screenshot(`turn-about-${name.replaceAll(' ', '-')}`);
+      await tablet.closeSettings();
       await page.getByRole('button', { name: 'Close the menu' }).tap();
 
       const place = across(0.15, 0.05);

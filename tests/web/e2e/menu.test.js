@@ -7,7 +7,9 @@ import { Tablet, browserIsMissing, difference, launchBrowser } from './tablet.js
 const TABLET = { width: 1180, height: 820, pixelRatio: 2 };
 const UPRIGHT = { width: 820, height: 1180, pixelRatio: 2 };
 const PHONE = { width: 390, height: 844, pixelRatio: 3 };
+const IN_MENU = ['parts', 'views', 'presentation'];
 const SECTIONS = ['scene', 'renderer', 'camera', 'light', 'background'];
+const IN_SETTINGS = [...SECTIONS, 'quality', 'recording', 'connection'];
 const LEAST_TARGET = 48;
 /** Of 255: by less than this a picture differs from itself, refined or compressed anew. */
 const VISIBLE = 6;
@@ -22,7 +24,7 @@ before(async () => {
 after(() => browser?.close());
 
 for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tablet': UPRIGHT, 'a phone': PHONE })) {
-  describe(`the menu of ${name}`, { skip: browserIsMissing }, () => {
+  describe(`the menu and the settings of ${name}`, { skip: browserIsMissing }, () => {
     let server;
     let tablet;
     let page;
@@ -45,7 +47,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
     const opens = () => page.locator('#menu.open').waitFor();
     const closes = () => page.locator('#menu.open').waitFor({ state: 'detached' });
     const focused = () => page.evaluate(() => document.activeElement?.id);
-    const section = (key) => page.locator(`#menu [data-section="${key}"]`);
+    const section = (key) => page.locator(`[data-section="${key}"]`);
     const within = (key, label) => section(key).getByLabel(new RegExp(`^${label}`));
 
     /** Does something; waits until the state is as expected, and where it is `seen`, until the picture is another. */
@@ -99,22 +101,30 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       assert.equal(await page.evaluate(() => document.querySelector('#menu').contains(document.activeElement)), false);
     });
 
-    test('its sections unfold and fold', async () => {
-      await page.locator('#menu-button').tap();
-      const names = await page.locator('#menu details').evaluateAll((all) => all.map(({ dataset }) => dataset.section));
-      assert.deepEqual(names.filter((key) => SECTIONS.includes(key)), SECTIONS);
+    async function unfoldsAndFolds(where, expected) {
+      const names = await page.locator(`${where} details`).evaluateAll((all) => all.map(({ dataset }) => dataset.section));
+      assert.deepEqual(names, expected);
       for (const key of names) {
         const was = await section(key).evaluate(({ open }) => open);
         await section(key).locator('summary').tap();
-        await page.locator(`#menu [data-section="${key}"]${was ? ':not([open])' : '[open]'}`).waitFor();
+        await page.locator(`[data-section="${key}"]${was ? ':not([open])' : '[open]'}`).waitFor();
         if (was) await section(key).locator('summary').press('Enter');
-        await page.locator(`#menu [data-section="${key}"][open]`).waitFor();
+        await page.locator(`[data-section="${key}"][open]`).waitFor();
       }
+    }
+
+    test('its sections unfold and fold, and those of the settings', async () => {
+      await page.locator('#menu-button').tap();
+      await unfoldsAndFolds('#menu', IN_MENU);
       await tablet.screenshot(`menu-${size.width}`);
+      await page.getByRole('button', { name: 'Settings' }).tap();
+      await page.locator('dialog').waitFor();
+      await unfoldsAndFolds('dialog', IN_SETTINGS);
+      await tablet.screenshot(`settings-${size.width}`);
     });
 
     test('the scene and what draws it are told', async () => {
-      const told = (key) => page.locator(`#menu [data-fact="${key}"]`).first().textContent();
+      const told = (key) => page.locator(`dialog [data-fact="${key}"]`).first().textContent();
       const { scene, renderer } = tablet.wire.state;
       assert.equal(await told('name'), scene.name);
       for (const key of ['nodes', 'materials', 'geometries']) assert.equal(await told(key), String(scene[key]));
@@ -122,9 +132,9 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       await page.waitForFunction(() => / ms$/.test(document.querySelector('[data-fact="time"]').textContent));
     });
 
-    test('nothing in it is too small for a finger, and nothing sticks out', async () => {
-      const { small, out, targets } = await page.evaluate((least) => {
-        const panel = document.querySelector('#menu');
+    async function assertRoom(where, mostly) {
+      const { small, out, targets } = await page.evaluate(([least, selector]) => {
+        const panel = document.querySelector(selector);
         const { left, right } = panel.getBoundingClientRect();
         const big = (element) => {
           const { width, height } = element.getBoundingClientRect();
@@ -141,10 +151,15 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
             return box.left < left - 0.5 || box.right > right + 0.5;
           }).map(name).concat(panel.scrollWidth > panel.clientWidth ? [`the panel: ${panel.scrollWidth} > ${panel.clientWidth}`] : []),
         };
-      }, LEAST_TARGET);
-      assert.ok(targets > 20, `${targets} targets`);
+      }, [LEAST_TARGET, where]);
+      assert.ok(targets > mostly, `${targets} targets`);
       assert.deepEqual(small, []);
       assert.deepEqual(out, []);
+    }
+
+    test('nothing in them is too small for a finger, and nothing sticks out', async () => {
+      await assertRoom('#menu', 20);
+      await assertRoom('dialog', 20);
     });
 
     test('the renderer', async () => {
@@ -290,22 +305,27 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       const words = () => page.evaluate((keys) => keys.flatMap((key) =>
         [...document.querySelectorAll(`[data-section="${key}"] :is(h2, dt, legend, label > span:not(.value))`)].map(({ textContent }) => textContent)), SECTIONS);
       const english = await words();
+      await tablet.closeSettings();
       await page.getByRole('button', { name: 'Čeština' }).tap();
       await page.locator('html[lang="cs"]').waitFor();
+      await tablet.settings('scene');
       const czech = await words();
       assert.equal(czech.length, english.length);
       assert.deepEqual([...new Set(czech.filter((word, i) => word === english[i]))], ['Id']);
       await page.waitForFunction(() => document.querySelector('#presence').textContent.startsWith('Připojeno'));
+      await tablet.closeSettings();
       await page.keyboard.press('Escape');
       await closes();
 
       await page.reload();
       await tablet.wire.still();
-      assert.equal(await page.evaluate(() => document.documentElement.lang), 'cs');
+      await page.locator('html[lang="cs"]').waitFor();
       await page.getByRole('button', { name: 'Nabídka' }).tap();
       await opens();
-      assert.deepEqual(await words(), czech);
       await tablet.screenshot(`menu-${size.width}-czech`);
+      await tablet.settings('scene');
+      assert.deepEqual(await words(), czech);
+      await tablet.screenshot(`settings-${size.width}-czech`);
     });
 
     test('pinches, double taps and drags do not move the page', async () => {
@@ -335,18 +355,17 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
 
 test('a Czech browser gets Czech, the errors of the server too', { skip: browserIsMissing }, async () => {
   const server = await Server.start();
-  const { page, wire } = await Tablet.open(browser, server.address, PHONE, { locale: 'cs-CZ' });
+  const tablet = await Tablet.open(browser, server.address, PHONE, { locale: 'cs-CZ', reducedMotion: 'reduce' });
+  const { page, wire } = tablet;
   const colleague = await Colleague.join(server.address);
   try {
     await wire.still();
     await page.locator('html[lang="cs"]').waitFor();
     await colleague.ask({ type: 'control', action: 'take' });
-    await page.getByRole('button', { name: 'Nabídka' }).tap();
-    await page.locator('[data-section="renderer"]').getByText('Drátový model').tap();
+    await (await tablet.settings('renderer')).getByText('Drátový model').tap();
     await page.locator('#lines').getByText(`Řídí Klient ${colleague.id}.`).waitFor();
     await colleague.ask({ type: 'control', action: 'release' });
-    await page.locator('[data-section="connection"] > summary').tap();
-    await page.getByRole('button', { name: 'Nahrávat' }).tap(); // the server has no folder for that
+    await (await tablet.settings('recording')).getByRole('button', { name: 'Nahrávat' }).tap(); // the server has no folder for that
     await page.locator('#lines').getByText('Tato akce zde není povolena').waitFor();
   } finally {
     await colleague.leave();

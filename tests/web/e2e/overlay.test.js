@@ -50,10 +50,10 @@ describe('what lies on the picture does not cover one another', { skip: browserI
       await visitor.shows((await visitor.wire.still()).frame);
       await page.locator('#menu-button').tap();
       await page.locator('#menu.open').waitFor();
-      for (const section of ['views', 'connection']) await page.locator(`[data-section="${section}"] > summary`).tap();
+      for (const section of ['views', 'presentation']) await page.locator(`[data-section="${section}"] > summary`).tap();
       await page.getByRole('textbox', { name: 'Název pohledu' }).fill('home');
       await page.getByRole('button', { name: 'Uložit pohled' }).tap();
-      await page.locator('[data-section="connection"]').getByRole('button', { name: 'Nahrávat' }).tap();
+      await page.locator('[data-section="views"]').getByRole('button', { name: 'Označit střed' }).tap();
       await page.locator('#control').getByRole('button', { name: 'Požádat o řízení' }).waitFor();
       await page.locator('#lines').getByText('Řídí Windows.').waitFor();
       await page.evaluate(() => Promise.allSettled(document.getAnimations().map((animation) => animation.finished)));

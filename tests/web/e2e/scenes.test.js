@@ -26,7 +26,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
       await page.locator('#menu-button').tap();
-      section = page.locator('[data-section="connection"]');
+      section = page.locator('[data-section="presentation"]');
       await section.locator('summary').tap();
     });
 

@@ -61,8 +61,8 @@ describe('a slow link', { skip: browserIsMissing }, () => {
     assert.ok(final <= 1.5 * first + 100, `from ${first} ms to ${final} ms`);
   });
 
-  test('the menu works meanwhile', async () => {
-    await tablet.page.locator('#menu-button').tap();
+  test('the settings work meanwhile', async () => {
+    await tablet.settings('renderer');
     await tablet.page.getByLabel('Wireframe').tap();
     await tablet.wire.until('the change', () => tablet.wire.state.renderer.wireframe);
     await tablet.page.waitForFunction((revision) => Number(document.querySelector('#view').dataset.revision) >= revision, tablet.wire.revision);

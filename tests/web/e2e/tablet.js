@@ -28,6 +28,15 @@ function rememberSockets() {
   };
 }
 
+/** Runs there, too: the help, which opens by itself on a first visit, has been seen. */
+function rememberHelp() {
+  try {
+    localStorage.setItem('vrut-preview.help', 'seen');
+  } catch {
+    // A blank page has no storage.
+  }
+}
+
 /** @returns {number} by how much, of 255, two glances differ where they differ most */
 export function difference(a, b) {
   return Math.max(...a.map((value, i) => Math.abs(value - b[i])));
@@ -44,9 +53,9 @@ export class Tablet {
    * @param {import('playwright-core').Browser} browser
    * @param {string} address
    * @param {{width: number, height: number, pixelRatio: number}} size
-   * @param {import('playwright-core').BrowserContextOptions} [options] more of the browser's
+   * @param {import('playwright-core').BrowserContextOptions & {isFirstVisit?: boolean}} [options] more of the browser's
    */
-  static async open(browser, address, { width, height, pixelRatio }, options = {}) {
+  static async open(browser, address, { width, height, pixelRatio }, { isFirstVisit = false, ...options } = {}) {
     const tablet = new Tablet();
     const context = await browser.newContext({
       viewport: { width, height },
@@ -57,6 +66,7 @@ export class Tablet {
     });
     context.setDefaultTimeout(LIMIT_MS);
     await context.addInitScript(rememberSockets);
+    if (!isFirstVisit) await context.addInitScript(rememberHelp);
     tablet.page = await context.newPage();
     tablet.wire = new Wire(tablet.page);
     tablet.page.on('pageerror', (error) => tablet.complaints.push(String(error)));
@@ -137,6 +147,22 @@ export class Tablet {
       await mouse.move(...(place ?? [width / 2, height / 2]));
       await mouse.wheel(0, deltaY);
     }, { type: 'wheel' });
+  }
+
+  /** Opens the settings with a section of them unfolded, and gives that. */
+  async settings(name) {
+    const { page } = this;
+    if (!(await page.locator('#menu.open').count())) await page.locator('#menu-button').tap();
+    if (!(await page.locator('dialog').count())) await page.locator('#menu > button').tap();
+    const section = page.locator(`dialog [data-section="${name}"]`);
+    await section.waitFor();
+    if (!(await section.evaluate((details) => details.open))) await section.locator('summary').tap();
+    return section;
+  }
+
+  async closeSettings() {
+    await this.page.keyboard.press('Escape');
+    await this.page.locator('dialog').waitFor({ state: 'detached' });
   }
 
   /** What lies at a place of the view, as another client hears it. */

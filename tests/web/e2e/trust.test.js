@@ -32,16 +32,19 @@ describe('what can go wrong', { skip: browserIsMissing }, () => {
     await server?.stop('SIGKILL');
   });
 
-  const unfolded = () => page.locator('#menu details[open]').evaluateAll((all) => all.map(({ dataset }) => dataset.section));
+  const unfolded = () => page.locator('details[open]').evaluateAll((all) => all.map(({ dataset }) => dataset.section));
   const corner = (words, on = page) => on.locator('#presence', { hasText: words }).waitFor();
   const greys = (on = page) => on.waitForFunction(() => document.querySelector('#view').classList.contains('stale'));
   const glows = (on = page) => on.waitForFunction(() => !document.querySelector('#view').classList.contains('stale'));
 
   test('the server dies in mid-drag and comes back, and the menu is open', async () => {
     await page.locator('#menu-button').tap();
-    await page.locator('[data-section="scene"] summary').tap();
-    await page.locator('[data-section="light"] summary').tap();
+    await page.locator('[data-section="views"] summary').tap();
+    await page.locator('[data-section="presentation"] summary').tap();
     const before = await unfolded();
+    assert.deepEqual(before, ['views', 'presentation']);
+    await tablet.settings('renderer');
+    await tablet.closeSettings();
     await tablet.wire.still();
     const mark = tablet.wire.sent.length;
     await tablet.finger('touchStart', [{ x: 300, y: 400 }]);
@@ -54,11 +57,13 @@ describe('what can go wrong', { skip: browserIsMissing }, () => {
     await greys();
     await corner('Not connected');
     await page.waitForFunction(() => /connection to the server is lost|does not answer/.test(document.querySelector('#lines').textContent));
+    await tablet.finger('touchMove', [{ x: 360, y: 420 }]);
+    await page.locator('#menu > button').click();
     const wireframe = page.locator('[data-section="renderer"]').getByRole('switch', { name: 'Wireframe' });
     await wireframe.click();
-    await page.locator('#lines').getByText('There is no connection to the server: nothing was changed.').waitFor();
+    await page.locator('dialog #lines').getByText('There is no connection to the server: nothing was changed.').waitFor();
     await page.waitForFunction((input) => !input.checked, await wireframe.elementHandle());
-    await tablet.finger('touchMove', [{ x: 360, y: 420 }]);
+    await tablet.closeSettings();
     const { connections } = tablet.wire;
     server = await Server.start(server.port);
     await glows();

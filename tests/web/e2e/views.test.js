@@ -22,7 +22,7 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
   let tablet;
   let phone;
   let views;
-  let connection;
+  let presentation;
 
   /** Opens the menu with one section, and gives it. */
   async function unfold({ page }, name) {
@@ -49,7 +49,7 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     tablet = await Tablet.open(browser, server.address, TABLET);
     await tablet.wire.still();
     views = await unfold(tablet, 'views');
-    connection = await unfold(tablet, 'connection');
+    presentation = await unfold(tablet, 'presentation');
   });
 
   after(async () => {
@@ -185,18 +185,20 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
 
   test('the page measures, and measures nothing when nothing comes', async () => {
     await tablet.touch([{ from: [500, 400], to: [420, 400] }]);
+    const connection = await tablet.settings('connection');
     await connection.locator('[data-fact="latency"]').getByText(/^[\d,]+ ms, [\d,]+ ms$/).waitFor();
     await connection.locator('[data-fact="level"]').getByText(/^Still · \d+ samples · full size · JPEG \d+$/).waitFor();
     await fact(connection, 'frames', '0');
     await fact(connection, 'data', '0 kB / s');
+    await tablet.closeSettings();
   });
 
   test('control is taken and given away in the menu', async () => {
     phone = await Tablet.open(browser, server.address, PHONE);
     await phone.wire.still();
-    const onPhone = await unfold(phone, 'connection');
-    await fact(connection, 'clients', '2');
-    await fact(connection, 'holder', 'You');
+    const onPhone = await unfold(phone, 'presentation');
+    await fact(presentation, 'clients', '2');
+    await fact(presentation, 'holder', 'You');
     const { holder, name } = state().control;
     assert.ok(name);
     await fact(onPhone, 'holder', name);
@@ -204,41 +206,44 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
 
     await button(onPhone, 'Take control').tap();
     await fact(onPhone, 'holder', 'You');
-    await fact(connection, 'holder', state().control.name);
+    await fact(presentation, 'holder', state().control.name);
     assert.notEqual(state().control.holder, holder);
     await button(views, 'Home').tap();
     await says(/in control|steers/);
 
-    await phone.screenshot('phone-connection');
+    await phone.screenshot('phone-presentation');
     await button(onPhone, 'Give control away').tap();
-    await fact(connection, 'holder', 'You');
+    await fact(presentation, 'holder', 'You');
     await fact(onPhone, 'holder', name);
     await phone.page.close();
   });
 
   test('speed and accuracy', async () => {
-    await connection.getByRole('slider', { name: 'Speed or accuracy' }).fill('0.9');
+    const quality = await tablet.settings('quality');
+    await quality.getByRole('slider', { name: 'Speed or accuracy' }).fill('0.9');
     await until('the preference', () => state().quality.preference === 0.9);
-    await connection.getByText('90 % accuracy').waitFor();
-    await tablet.screenshot('tablet-connection');
+    await quality.getByText('90 % accuracy').waitFor();
   });
 
   test('a session is recorded', async () => {
-    await button(connection, 'Record').tap();
+    const recording = await tablet.settings('recording');
+    const dot = tablet.page.locator('#recording', { hasText: 'Recording' });
+    await button(recording, 'Record').tap();
     const name = await until('a recording', () => state().recording?.name);
-    await fact(connection, 'recording', name);
-    await tablet.page.locator('#recording', { hasText: 'Recording' }).waitFor();
+    await fact(recording, 'recording', name);
+    await dot.waitFor();
     await tablet.screenshot('recording');
-    await button(connection, 'Stop recording').tap();
+    await button(recording, 'Stop recording').tap();
     await until('the recording to end', () => !state().recording);
-    await tablet.page.locator('#recording', { hasText: 'Recording' }).waitFor({ state: 'detached' });
-    await button(connection, 'Record').waitFor();
+    await dot.waitFor({ state: 'detached' });
+    await button(recording, 'Record').waitFor();
+    await tablet.closeSettings();
     await access(path.join(folder, `${name}.jsonl`));
   });
 
   test('the picture is saved with all its pixels', async () => {
     const download = tablet.page.waitForEvent('download');
-    await button(connection, 'Save picture').tap();
+    await button(presentation, 'Save picture').tap();
     const file = await download;
     assert.match(file.suggestedFilename(), /^scene-\d{8}-\d{6}\.jpg$/);
     const header = frameHeader(Uint8Array.from(await readFile(await file.path())).buffer);
@@ -247,13 +252,13 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     assert.equal(header.height, Math.round(view.height * view.pixelRatio));
     assert.equal(header.quality.jpegQuality, 95);
     assert.deepEqual(header.camera.eye, state().camera.eye);
-    await button(connection, 'Save picture').waitFor();
+    await button(presentation, 'Save picture').waitFor();
   });
 
   test('another scene is opened', async () => {
-    await connection.getByRole('combobox', { name: 'Another scene' }).selectOption('glass.vrut');
+    await presentation.getByRole('combobox', { name: 'Another scene' }).selectOption('glass.vrut');
     const { name } = state().scene;
-    await button(connection, 'Open').tap();
+    await button(presentation, 'Open').tap();
     await until('the other scene', () => state().scene.name !== name && state().scene);
     await tablet.wire.still();
     await button(views, 'Home').tap();
@@ -265,9 +270,9 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
     try {
       const page = await Tablet.open(browser, bare.address, TABLET);
       await page.wire.still();
-      const section = await unfold(page, 'connection');
+      const section = await unfold(page, 'presentation');
       await section.getByText('The server has no other scenes to offer.').waitFor();
-      await button(section, 'Record').tap();
+      await button(await page.settings('recording'), 'Record').tap();
       await says(/no folder for recordings/, page);
       assert.equal(page.wire.state.recording, undefined);
       await page.page.close();

@@ -3,11 +3,14 @@ import { afterEach, describe, test } from 'node:test';
 import { mergePatch } from '../../../web-client/base/merge-patch.js';
 import { setLanguage } from '../../../web-client/base/texts.js';
 import {
-  backTo, bytesWords, holderWords, hostLines, hostWords, isAsInFile, pictureFacts, qualityWords, snapshotName, snapshotSize,
-} from '../../../web-client/panels/connection-section.js';
+  bytesWords, hostLines, hostWords, pictureFacts, qualityWords,
+} from '../../../web-client/panels/dialogs/connection-sections.js';
 import {
   backgroundChoice, backgroundFacts, cameraFacts, lightChoice, lightFacts, rendererFacts,
-} from '../../../web-client/panels/scene-sections.js';
+} from '../../../web-client/panels/dialogs/scene-sections.js';
+import {
+  backTo, holderWords, isAsInFile, snapshotName, snapshotSize,
+} from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
   cameraEntries, lookingAt, markerEntries, placeOf, unusedName,

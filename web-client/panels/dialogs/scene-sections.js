@@ -1,11 +1,11 @@
-import { say, written } from '../base/texts.js';
-import { byName, choice, color, facts, numbers, range, selection, toggle } from './controls.js';
-import { section, stateOf } from './section.js';
+import { say, written } from '../../base/texts.js';
+import { byName, choice, color, facts, numbers, range, selection, toggle } from '../controls.js';
+import { section, stateOf } from '../section.js';
 
 /**
- * @import { StateDocument } from '../base/protocol.js'
- * @import { Control } from './controls.js'
- * @import { Page } from './section.js'
+ * @import { StateDocument } from '../../base/protocol.js'
+ * @import { Control } from '../controls.js'
+ * @import { Page } from '../section.js'
  */
 
 /** @type {Record<StateDocument['navigation']['style'], string>} */

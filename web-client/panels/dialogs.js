@@ -1,0 +1,64 @@
+import { recall, remember } from '../base/memory.js';
+
+/** @import { Page } from './section.js' */
+
+/** What gives a dialog's content, by name: its modules are loaded when it is opened first. */
+const LOADS = {
+  settings: async () => (await import('./dialogs/settings.js')).settings,
+  help: async () => (await import('./dialogs/help.js')).help,
+};
+
+/** The dialogs over all else, one at a time: the settings, and the help, which a browser's first visit opens. */
+export class Dialogs {
+  #page;
+  /** @type {?HTMLDialogElement} */
+  #open = null;
+  /** @type {(now: *) => void} */
+  #show = () => {};
+
+  /** @param {Page} page */
+  constructor(page) {
+    const { store } = page;
+    this.#page = page;
+    store.subscribe(({ role }) => [role], (role) => {
+      if (role === 'view') this.#open?.close();
+    });
+    store.subscribe(({ role, hasPicture }) => [role === 'control' && hasPicture], (may) => {
+      if (may && !recall('help')) this.open('help');
+    });
+    store.subscribe((now) => [now], () => this.#showAll());
+    // Before the menu, which keeps its keys to itself.
+    document.addEventListener('keydown', (event) => {
+      const { key, ctrlKey, metaKey, target } = event;
+      const types = target instanceof Element && target.closest('input, select');
+      if (key !== '?' || ctrlKey || metaKey || types || store.now.role !== 'control') return;
+      event.preventDefault();
+      this.open('help');
+    }, { capture: true });
+  }
+
+  /**
+   * @param {keyof typeof LOADS} name
+   * @param {HTMLElement} [opener] gets the focus back, or else what has it now
+   */
+  async open(name, opener) {
+    const loaded = await Promise.all([import('./dialogs/dialog.js'), LOADS[name]()]).catch(() => null);
+    if (!loaded) return this.#page.report({ code: 'not-loaded' });
+    if (this.#open) return;
+    const [{ showDialog }, build] = loaded;
+    const { show, ...about } = build(this.#page);
+    this.#open = showDialog({ name, ...about }, () => {
+      this.#open = null;
+      this.#show = () => {};
+      opener?.focus({ preventScroll: true });
+    });
+    this.#show = show;
+    this.#showAll();
+    if (name === 'help') remember('help', 'seen');
+  }
+
+  #showAll() {
+    const { now } = this.#page.store;
+    if (now.state) this.#show(now);
+  }
+}
