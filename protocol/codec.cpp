@@ -98,6 +98,7 @@ std::string encode(const Picked& message) { return encode_as("picked", message);
 std::string encode(const Flown& message) { return encode_as("flown", message); }
 std::string encode(const TreePage& message) { return encode_as("tree", message); }
 std::string encode(const SceneList& message) { return encode_as("scenes", message); }
+std::string encode(const SharedAddress& message) { return encode_as("shared", message); }
 std::string encode(const Loading& message) { return encode_as("loading", message); }
 std::string encode(const Stats& message) { return encode_as("stats", message); }
 std::string encode(const Error& message) { return encode_as("error", message); }

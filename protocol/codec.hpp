@@ -19,6 +19,7 @@ std::string encode(const Picked& message);
 std::string encode(const Flown& message);
 std::string encode(const TreePage& message);
 std::string encode(const SceneList& message);
+std::string encode(const SharedAddress& message);
 std::string encode(const Loading& message);
 std::string encode(const Stats& message);
 std::string encode(const Error& message);

@@ -27,6 +27,7 @@ inline constexpr Vector<glm::dvec4> kLightColor{0, kHuge};  // light may be brig
 inline constexpr Vector<glm::dvec3> kAttenuation{0, kHuge};
 inline constexpr Number kFov{1, 170};
 inline constexpr Number kSpeed{0.01, 100};
+inline constexpr Number kOrder{-1e9, 1e9};
 inline constexpr Matrix kMatrix{kHuge};
 inline constexpr Integer kId{};
 inline constexpr Integer kPixels{1, 8192};
@@ -34,6 +35,7 @@ inline constexpr Integer kJpegQuality{1, 100};
 inline constexpr Text kName{std::numeric_limits<std::uint32_t>::max()};
 inline constexpr Text kClientName{kMaxClientName};
 inline constexpr std::size_t kMaxKeyframes = 1000;
+inline constexpr std::size_t kMaxQrSize = 177;  // modules of a side, in version 40
 
 inline constexpr Integer kActiveChild{-2, std::numeric_limits<int>::max()};
 inline constexpr auto kRole = word("control", "view", "host");
@@ -200,6 +202,11 @@ void describe(V& v, const Control*) {
 }
 
 template <class V>
+void describe(V& v, const Share*) {
+    v.optional("page", &Share::page, Text{1000});
+}
+
+template <class V>
 void describe(V& v, const Shown*) {
     v.required("revision", &Shown::revision, kId);
 }
@@ -285,6 +292,14 @@ template <class V>
 void describe(V& v, const SceneList*) {
     v.required("id", &SceneList::id, kId);
     v.required("scenes", &SceneList::scenes, List<Text>{Text{kMaxSceneName}, 0, kMaxScenes});
+}
+
+template <class V>
+void describe(V& v, const SharedAddress*) {
+    v.required("id", &SharedAddress::id, kId);
+    v.required("address", &SharedAddress::address, kName);
+    v.required("qr", &SharedAddress::qr, List<Text>{Text{kMaxQrSize}, 0, kMaxQrSize});
+    v.required("loopback", &SharedAddress::loopback, Flag{});
 }
 
 template <class V>
@@ -454,6 +469,7 @@ void describe(V& v, const ViewState*) {
     v.writable("up", &ViewState::up, kPosition);
     v.writable("center", &ViewState::center, kPosition);
     v.writable("fov", &ViewState::fov, kFov);
+    v.writable("order", &ViewState::order, kOrder);
 }
 
 template <class V>
@@ -478,6 +494,12 @@ void describe(V& v, const ControlState*) {
 }
 
 template <class V>
+void describe(V& v, const ClientState*) {
+    v.fixed("name", &ClientState::name, kName);
+    v.fixed("role", &ClientState::role, kRole);
+}
+
+template <class V>
 void describe(V& v, const RecordingState*) {
     v.fixed("name", &RecordingState::name, kName);
 }
@@ -498,6 +520,7 @@ void describe(V& v, const State*) {
     v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}});
     v.writable("quality", &State::quality, Section<QualityState>{});
     v.fixed("control", &State::control, Object<ControlState>{});
+    v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{});
     v.fixed("recording", &State::recording, Object<RecordingState>{});
     v.fixed("notices", &State::notices, List<Text>{kName, 0, kMaxNotices});
 }

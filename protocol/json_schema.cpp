@@ -50,6 +50,7 @@ void add_server_messages(Json& defs) {
     add_server_message<Flown>(defs, "flown");
     add_server_message<TreePage>(defs, "tree");
     add_server_message<SceneList>(defs, "scenes");
+    add_server_message<SharedAddress>(defs, "shared");
     add_server_message<Loading>(defs, "loading");
     add_server_message<Stats>(defs, "stats");
     add_server_message<Error>(defs, "error");

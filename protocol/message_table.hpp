@@ -64,6 +64,7 @@ void for_each_client_type(Use use) {
     use(MessageTraits{"scenes",        all,              no,         true,  request}, Scenes{});
     use(MessageTraits{"record",        control,          yes,        true,  request}, Record{});
     use(MessageTraits{"control",       control,          no,         true,  request}, Control{});
+    use(MessageTraits{"share",         control,          no,         false, request}, Share{});
     use(MessageTraits{"shown",         host,             no,         true,  request}, Shown{});
     // clang-format on
 }

@@ -179,10 +179,15 @@ struct Shown {
     std::int64_t revision = 0;
 };
 
+/// An address for those who only watch.
+struct Share {
+    std::string page;  ///< where the client has opened the page; empty: nowhere
+};
+
 struct ClientMessage {
     std::optional<std::int64_t> id;
     std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Patch, Pick, Snapshot, Fly,
-                 Tree, Open, Scenes, Record, Control, Shown>
+                 Tree, Open, Scenes, Record, Control, Shown, Share>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
 };
@@ -260,6 +265,14 @@ struct TreePage {
 struct SceneList {
     std::int64_t id = 0;
     std::vector<std::string> scenes;  ///< names for `open`, sorted
+};
+
+/// Where others open the page, to watch only.
+struct SharedAddress {
+    std::int64_t id = 0;
+    std::string address;
+    std::vector<std::string> qr;  ///< it as a QR code: rows of 0 (light) and 1 (dark), without a quiet zone
+    bool loopback = false;        ///< no other machine reaches it
 };
 
 /// How far the loading of a scene is; once at the end either `done` or `refused`.

@@ -25,7 +25,7 @@ State patched_or_throw(const State& state, const State& starting, const Json& pa
         CameraState camera = state.camera;
         if (const auto named = patch.find("camera"); named != patch.end() && named->is_object())
             patch_struct(camera, starting.camera, *named, "camera");
-        const ViewState saved{camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+        const ViewState saved{camera.eye, camera.focus, camera.up, camera.center, camera.fov, {}};
         auto at_start = *starting.views, present = *state.views;
         for (const auto& [name, value] : views->items()) {
             if (!value.is_object() || starting.views->contains(name)) continue;

@@ -144,6 +144,7 @@ struct Marker {
 struct ViewState {
     glm::dvec3 eye{0, 0, 5}, focus{0}, up{0, 1, 0}, center{0};
     double fov = 40;
+    std::optional<double> order = {};  ///< among the views: the lowest first, then those without one
     bool operator==(const ViewState&) const = default;
 };
 
@@ -168,6 +169,13 @@ struct ControlState {  // r
     bool operator==(const ControlState&) const = default;
 };
 
+/// Somebody who is connected.
+struct ClientState {                  // r
+    std::optional<std::string> name;  ///< as others see it
+    Role role = Role::view;
+    bool operator==(const ClientState&) const = default;
+};
+
 struct RecordingState {  // r
     std::string name;
     bool operator==(const RecordingState&) const = default;
@@ -189,6 +197,7 @@ struct State {
     SharedMap<ViewState> views;
     QualityState quality;
     ControlState control;
+    SharedMap<ClientState> clients;  // r: the first kMaxListedClients
     std::optional<RecordingState> recording;
     std::vector<std::string> notices;  // r: what has gone wrong in the server, the newest last
     bool operator==(const State&) const = default;
@@ -196,6 +205,8 @@ struct State {
 
 /// Most markers, and most views.
 inline constexpr std::size_t kMaxEntries = 256;
+/// Most clients that the state names; `stats` counts all.
+inline constexpr std::size_t kMaxListedClients = 64;
 /// Most notices of the server; older ones are forgotten.
 inline constexpr std::size_t kMaxNotices = 16;
 /// Most nodes that differ from the file.

@@ -19,25 +19,8 @@ namespace vrut::server::commands {
 
 namespace {
 
-/// RFC 3986: all but unreserved characters as %XX.
-std::string percent_encoded(const std::string& text) {
-    constexpr char kDigits[] = "0123456789ABCDEF";
-    std::string result;
-    for (const char c : text) {
-        const auto byte = static_cast<unsigned char>(c);
-        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-        if (letter || c == '-' || c == '.' || c == '_' || c == '~')
-            result += c;
-        else
-            result += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
-    }
-    return result;
-}
-
 std::string url(const std::string& host, std::uint16_t port, const std::string& token) {
-    const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
-    return "http://" + name + ":" + std::to_string(port) + "/" +
-           (token.empty() ? "" : "#token=" + percent_encoded(token));
+    return net::page_address(host, port) + (token.empty() ? "" : "#token=" + net::percent_encoded(token));
 }
 
 /// An empty path stays one. Throws std::runtime_error where there is no such folder.
@@ -49,11 +32,7 @@ std::filesystem::path existing_folder(const std::string& option, const std::file
 
 void announce(const net::ListenAddress& listen, std::uint16_t port, const net::Access& access) {
     const std::string& token = access.control_token.empty() ? access.view_token : access.control_token;
-    std::vector<std::string> hosts{listen.host};
-    if (net::is_any(listen.host)) {
-        hosts = net::network_addresses();
-        if (hosts.empty()) hosts = {"127.0.0.1"};
-    }
+    const std::vector<std::string> hosts = net::page_hosts(listen.host);
     if (!net::is_loopback(hosts[0])) {
         std::cout << net::qr_code(url(hosts[0], port, token))
                   << "Scan it with the tablet, or open the address.\n";

@@ -55,6 +55,7 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
                EngineCallbacks callbacks)
     : library_(std::move(options.library)),
       record_folder_(std::move(options.record_folder)),
+      share_(std::move(options.share)),
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
       file_results_(
@@ -157,6 +158,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     read_levels(scene);
     room::RoomOptions options;
     connect_files(options);
+    options.share = share_;
     room_.emplace(prepared(scene), std::move(options));
     note_kept();
     try {

@@ -70,6 +70,7 @@ struct EngineOptions {
     scenes::SceneLibrary library;
     std::filesystem::path record_folder;
     ChangeKeeper::Store keep_changes = {};  ///< empty: they are lost with the scene
+    room::ShareAddress share = {};
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
@@ -231,6 +232,7 @@ private:
 
     scenes::SceneLibrary library_;
     std::filesystem::path record_folder_;
+    room::ShareAddress share_;
     observe::Metrics& metrics_;
     EngineCallbacks callbacks_;
     PictureLimits limits_;

@@ -1,6 +1,5 @@
 #include "net/access.hpp"
 
-#include <arpa/inet.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 
@@ -12,6 +11,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "net/addresses.hpp"
 #include "tokens.hpp"
 
 namespace vrut::server::net {
@@ -48,13 +48,7 @@ std::optional<protocol::Role> Access::role_for(protocol::Role wanted, std::strin
 
 bool Access::accepts_host(std::string_view host) const {
     if (needs_token()) return true;
-    const std::size_t colon = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
-    const std::string_view name = host.substr(0, colon);
-    in_addr address{};
-    // Only a number is one: "127.example.org" is a name, and may lead anywhere.
-    const bool loopback_number =
-        ::inet_pton(AF_INET, std::string(name).c_str(), &address) == 1 && ntohl(address.s_addr) >> 24 == 127;
-    return name == "localhost" || name == "[::1]" || loopback_number;
+    return names_loopback(host);
 }
 
 bool Access::accepts_origin(std::string_view origin, std::string_view host) const {

@@ -58,19 +58,65 @@ std::vector<std::string> network_addresses() {
     return addresses;
 }
 
-std::string qr_code(const std::string& text) {
+std::vector<std::string> page_hosts(const std::string& listen) {
+    if (!is_any(listen)) return {listen};
+    std::vector<std::string> hosts = network_addresses();
+    if (hosts.empty()) hosts = {"127.0.0.1"};
+    return hosts;
+}
+
+std::string page_address(const std::string& host, std::uint16_t port) {
+    const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
+    return "http://" + name + ":" + std::to_string(port) + "/";
+}
+
+bool names_loopback(std::string_view host) {
+    const std::size_t colon = host.starts_with('[') ? host.find(']') + 1 : host.find(':');
+    const std::string_view name = host.substr(0, colon);
+    in_addr address{};
+    // Only a number is one: "127.example.org" is a name, and may lead anywhere.
+    const bool loopback_number =
+        inet_pton(AF_INET, std::string(name).c_str(), &address) == 1 && ntohl(address.s_addr) >> 24 == 127;
+    return name == "localhost" || name == "[::1]" || loopback_number;
+}
+
+std::string percent_encoded(const std::string& text) {
+    constexpr char kDigits[] = "0123456789ABCDEF";
+    std::string result;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+        if (letter || c == '-' || c == '.' || c == '_' || c == '~')
+            result += c;
+        else
+            result += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+    return result;
+}
+
+std::vector<std::string> qr_rows(const std::string& text) {
     const std::unique_ptr<QRcode, void (*)(QRcode*)> code(
         QRcode_encodeString8bit(text.c_str(), 0, QR_ECLEVEL_L), QRcode_free);
     if (!code) throw std::runtime_error("the address does not fit into a QR code");
+    const auto width = static_cast<std::size_t>(code->width);
+    std::vector<std::string> rows(width, std::string(width, '0'));
+    for (std::size_t i = 0; i < width * width; ++i)
+        if ((code->data[i] & 1) != 0) rows[i / width][i % width] = '1';
+    return rows;
+}
+
+std::string qr_code(const std::string& text) {
+    const std::vector<std::string> rows = qr_rows(text);
     constexpr int kQuietZone = 2;
+    const int width = static_cast<int>(rows.size());
     const auto dark = [&](int x, int y) {
-        const bool inside = x >= 0 && y >= 0 && x < code->width && y < code->width;
-        return inside && (code->data[y * code->width + x] & 1) != 0;
+        const bool inside = x >= 0 && y >= 0 && x < width && y < width;
+        return inside && rows[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] == '1';
     };
     std::string out;
-    for (int y = -kQuietZone; y < code->width + kQuietZone; y += 2) {
+    for (int y = -kQuietZone; y < width + kQuietZone; y += 2) {
         out += "\x1b[30;107m";  // black on white
-        for (int x = -kQuietZone; x < code->width + kQuietZone; ++x) {
+        for (int x = -kQuietZone; x < width + kQuietZone; ++x) {
             const bool upper = dark(x, y), lower = dark(x, y + 1);
             out += upper && lower ? "█" : upper ? "▀" : lower ? "▄" : " ";
         }

@@ -21,6 +21,18 @@ bool is_any(const std::string& host);
 /// Numeric IPv4 addresses under which others reach this machine, as its interfaces say.
 std::vector<std::string> network_addresses();
 
+/// Hosts under which the page is reached where the server listens at `listen`, the best one first.
+std::vector<std::string> page_hosts(const std::string& listen);
+/// "http://HOST:PORT/".
+std::string page_address(const std::string& host, std::uint16_t port);
+/// True if a request's host, with or without a port, is the loopback interface: "localhost:8080".
+bool names_loopback(std::string_view host);
+/// RFC 3986: all but unreserved characters as %XX.
+std::string percent_encoded(const std::string& text);
+
+/// A QR code: rows of 0 (light) and 1 (dark), without a quiet zone. Throws std::runtime_error where the text
+/// does not fit.
+std::vector<std::string> qr_rows(const std::string& text);
 /// A QR code for a terminal, in half blocks, dark on light whatever the terminal's colours.
 std::string qr_code(const std::string& text);
 

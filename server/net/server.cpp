@@ -11,6 +11,7 @@
 #include "net/connection.hpp"
 #include "net/descriptors.hpp"
 #include "net/http_connection.hpp"
+#include "net/share_address.hpp"
 #include "observe/log.hpp"
 
 namespace vrut::server::net {
@@ -47,8 +48,9 @@ struct Server::Impl {
                 stop();
             });
         };
-        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder,
-                                             options.keep_changes};
+        engine::EngineOptions engine_options{
+            std::move(scene), options.library, options.record_folder, options.keep_changes,
+            share_address(options.listen, acceptor.local_endpoint().port(), options.access)};
         engine = std::make_unique<engine::Engine>(std::move(engine_options), renderer, metrics,
                                                   std::move(callbacks));
         registry.engine = engine.get();

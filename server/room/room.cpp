@@ -39,12 +39,32 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     advance(at);
     document();
     changing_.clear();  // who holds control is the server's doing
-    clients_[client] = {role, {}, own_name(name, resume_key), resume_key};
+    add_client(client, {role, {}, own_name(name, resume_key), resume_key});
+    list_clients();
     record(client, protocol::LogLine::Connected{role, clients_[client].name});
     if (role != Role::control || options_.replaying) return;
     steering_.join(client, resume_key);
     show_holder();
     record_holder();
+}
+
+void Room::add_client(const std::string& client, const Client& added) {
+    clients_[client] = added;
+    clients_[client].arrival = ++arrivals_;
+}
+
+void Room::list_clients() {
+    using Entry = decltype(clients_)::const_pointer;
+    std::vector<Entry> listed;
+    for (const auto& entry : clients_)
+        if (entry.second.role != Role::view || !entry.second.name.empty()) listed.push_back(&entry);
+    std::ranges::sort(listed, {}, [](Entry entry) {
+        return std::pair(entry->second.role == Role::view, entry->second.arrival);
+    });
+    listed.resize(std::min(listed.size(), protocol::kMaxListedClients));
+    std::map<std::string, protocol::ClientState> clients;
+    for (const Entry entry : listed) clients[entry->first] = {shown_name(entry->first), entry->second.role};
+    state_.clients.set(std::move(clients));
 }
 
 std::string Room::own_name(const std::string& name, const std::string& resume_key) const {
@@ -72,6 +92,11 @@ const std::string& Room::client_name(const std::string& client) const {
     return found == clients_.end() ? none : found->second.name;
 }
 
+std::optional<std::string> Room::shown_name(const std::string& client) const {
+    const std::string& name = client_name(client);
+    return name.empty() ? std::nullopt : std::optional(name);
+}
+
 void Room::leave(const std::string& client, SessionTime at) {
     advance(at);
     document();  // what was before is others' doing, or the client's own
@@ -85,6 +110,7 @@ void Room::leave(const std::string& client, SessionTime at) {
     }
     steering_.leave(client, time_, options_.replaying);
     clients_.erase(client);
+    list_clients();
     show_holder();
     record_holder();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
@@ -210,6 +236,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     next.renderer.show_selection = state_.renderer.show_selection;
     next.quality = state_.quality;
     next.control = state_.control;
+    next.clients = state_.clients;
     next.recording = state_.recording;
     next.notices = state_.notices;
     state_ = std::move(next);
@@ -314,6 +341,13 @@ void Room::apply(const Received& received, const protocol::Shown& shown) {
     answer(received);
 }
 
+void Room::apply(const Received& received, const protocol::Share& share) {
+    if (!options_.share) return reject(received, code::failed, "there is no address to watch at");
+    const auto shared = options_.share(share.page);
+    if (!shared) return reject(received, shared.error().code.c_str(), shared.error().message);
+    answer_with(received, *shared);
+}
+
 void Room::answer(const Received& received, std::optional<std::string> name) {
     accepted_ = true;
     if (!received.message.id) return;
@@ -375,24 +409,21 @@ void Room::steer(const Received& received) {
 
 void Room::show_holder() {
     protocol::ControlState& control = state_.control;
-    const auto name_of = [&](const std::string& client) {
-        const std::string& name = client_name(client);
-        return name.empty() ? std::nullopt : std::optional(name);
-    };
     if (control.holder != steering_.holder()) {
         if (control.holder) {
             gestures_.lift(*control.holder, camera());
             clicks_.lift(*control.holder);
         }
         control.holder = steering_.holder();
-        control.name = control.holder ? name_of(*control.holder) : std::nullopt;
+        control.name = control.holder ? shown_name(*control.holder) : std::nullopt;
         if (!size_waits_) use_holders_size();
         update_visible();
     }
     control.kept = control.holder.has_value();
     control.absent = steering_.is_absent();
     control.asking.clear();
-    for (const std::string& client : steering_.asking()) control.asking.push_back({client, name_of(client)});
+    for (const std::string& client : steering_.asking())
+        control.asking.push_back({client, shown_name(client)});
 }
 
 void Room::record_holder() {

@@ -44,12 +44,17 @@ struct PictureOrder {
     int jpeg_quality = 90;
 };
 
+/// Where others may watch, for a client that has opened the page at this address; empty: it has not.
+using ShareAddress =
+    std::function<tl::expected<protocol::SharedAddress, protocol::Error>(const std::string& page)>;
+
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
     /// Begins to load a scene of this name; Room::load_answered() reports whether it has begun.
     std::function<void(std::int64_t request, const std::string& name)> load = {};
     /// Looks up the scenes that can be loaded; Room::scenes_listed() takes them.
     std::function<void(std::int64_t request)> scenes = {};
+    ShareAddress share = {};  ///< none: nowhere
     /// What is said was accepted before: it is not judged again by revisions or by who holds control, nor
     /// recorded. Control passes on as the log says.
     bool replaying = false;
@@ -130,6 +135,7 @@ private:
         std::optional<protocol::Resize> wanted;
         std::string name = {};           ///< as others see it
         std::string resume_key = {};     ///< as it gave it; empty: none
+        std::uint64_t arrival = 0;       ///< rises
         bool knows_not_allowed = false;  ///< of input without an id
     };
     /// The message in hand.
@@ -167,6 +173,7 @@ private:
     void apply(const Received& received, const protocol::Record& record);
     void apply(const Received& received, const protocol::Control& control);
     void apply(const Received& received, const protocol::Shown& shown);
+    void apply(const Received& received, const protocol::Share& share);
 
     /// Does what a message does; whether it was accepted.
     template <class Apply>
@@ -188,6 +195,12 @@ private:
 
     /// `name`, with the first free number behind it where another client has that name.
     std::string own_name(const std::string& name, const std::string& resume_key) const;
+
+    /// The same for the state: none where it has none.
+    std::optional<std::string> shown_name(const std::string& client) const;
+    void add_client(const std::string& client, const Client& added);
+    /// Brings the state in line with who is here: control clients and hosts first, then viewers with a name.
+    void list_clients();
 
     // --- who steers
     /// Returns true if its client's role is one of these; else it is rejected.
@@ -270,6 +283,7 @@ private:
     std::vector<Answer> answers_;
     std::vector<PictureOrder> orders_;
     std::map<std::string, Client> clients_;
+    std::uint64_t arrivals_ = 0;
     Steering steering_;
     navigation::Gestures gestures_;
     navigation::Clicks clicks_;

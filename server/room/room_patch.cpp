@@ -124,7 +124,9 @@ std::optional<Error> Room::use_views(protocol::State& next, const scene::PlacedS
                          code::out_of_range,
                          "'views." + name.substr(0, 40) +
                              "': eye and focus must be apart, and up neither zero nor along the view"};
+        const std::optional<double> order = view.order;
         view = view_state_of(scene::with_orthogonal_up(pose));
+        view.order = order;
     }
     next.views.set(std::move(views));
     return std::nullopt;

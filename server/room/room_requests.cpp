@@ -21,6 +21,7 @@ void Room::answer_with(const Received& received, const Message& message) {
 }
 template void Room::answer_with(const Received&, const protocol::Picked&);
 template void Room::answer_with(const Received&, const protocol::SceneList&);
+template void Room::answer_with(const Received&, const protocol::SharedAddress&);
 
 void Room::apply(const Received& received, const protocol::Navigate& navigate) {
     steer(received);
@@ -161,7 +162,8 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     if (state_.control.holder) steering_.take(*state_.control.holder);
     for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
     for (const protocol::LogHeader::Client& client : header.clients)
-        clients_[client.client] = {client.role, client.wanted, client.name};
+        add_client(client.client, {client.role, client.wanted, client.name});
+    list_clients();
     for (const protocol::LoggedFrame& frame : header.frames)
         frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
     if (const auto& flight = header.flight) {

@@ -189,7 +189,7 @@ scene::Camera camera_of(const protocol::ViewState& view) {
 }
 
 protocol::ViewState view_state_of(const scene::Camera& camera) {
-    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+    return {camera.eye, camera.focus, camera.up, camera.center, camera.fov, {}};
 }
 
 protocol::CameraState state_of(const scene::Camera& camera, const math::Bounds& bounds) {

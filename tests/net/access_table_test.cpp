@@ -242,6 +242,7 @@ std::vector<MessageType> message_types() {
         {"control ask", "control", {{"type", "control"}, {"action", "ask"}}},
         {"control cancel", "control", {{"type", "control"}, {"action", "cancel"}}},
         {"control decline", "control", {{"type", "control"}, {"action", "decline"}, {"client", "c0"}}},
+        {"share", "control", {{"type", "share"}}},
         {"shown", "host", {{"type", "shown"}, {"revision", 1}}},
         {"open", "control", {{"type", "open"}, {"scene", "other.vrut"}}},
     };

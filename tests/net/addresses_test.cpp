@@ -25,6 +25,18 @@ TEST_CASE("which addresses are whose") {
     for (const std::string& address : network_addresses()) CHECK_FALSE(is_loopback(address));
 }
 
+TEST_CASE("the addresses of a page") {
+    CHECK(page_address("192.0.2.7", 80) == "http://192.0.2.7:80/");
+    CHECK(page_address("::1", 8080) == "http://[::1]:8080/");
+    CHECK(page_hosts("192.0.2.7") == std::vector<std::string>{"192.0.2.7"});
+    CHECK_FALSE(page_hosts("0.0.0.0").empty());
+    CHECK_FALSE(is_any(page_hosts("0.0.0.0").front()));
+    for (const char* host : {"localhost", "localhost:8080", "127.0.0.1", "127.3.2.1:80", "[::1]", "[::1]:80"})
+        CHECK_MESSAGE(names_loopback(host), host);
+    for (const char* host : {"", "192.0.2.7:8080", "127.example.org", "localhost.example.org", "[::2]"})
+        CHECK_FALSE_MESSAGE(names_loopback(host), host);
+}
+
 TEST_CASE("a QR code is a square of half blocks") {
     const std::string code = qr_code("http://192.0.2.7:8080/#token=0123456789abcdef0123456789abcdef");
     std::size_t lines = 0, columns = 0;

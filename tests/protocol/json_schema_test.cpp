@@ -122,9 +122,9 @@ TEST_CASE("the examples have all members that the schema has") {
         }
         CHECK(described == all);
     }
-    CHECK(types.size() == 22);
-    CHECK(defs["clientMessage"]["oneOf"].size() == 22);
-    CHECK(defs["serverMessage"]["oneOf"].size() == 11);
+    CHECK(types.size() == 23);
+    CHECK(defs["clientMessage"]["oneOf"].size() == 23);
+    CHECK(defs["serverMessage"]["oneOf"].size() == 12);
 }
 
 TEST_CASE("what the server says, for the schema to be tried on") {
@@ -139,6 +139,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
     state.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
     state.control = {"c1", "Bea", true};
+    state.clients.set({{"c1", {"Bea", Role::control}}, {"c2", {{}, Role::host}}});
     state.recording = RecordingState{"drive"};
     state.notices = {"The recording 'drive' has ended: No space left on device"};
     auto background = state.backgrounds.items->at("11");
@@ -168,6 +169,7 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     add(encode(hinged));
     add(encode(SceneList{8, {}}));
     add(encode(SceneList{8, {"car.vrut", "more/bus.vrut"}}));
+    add(encode(SharedAddress{9, "http://192.0.2.7:8080/#watch", {"101", "010", "111"}, false}));
     add(encode(Loading{"car", 0.5, {}, {}}));
     add(encode(Loading{"car", 1, true, {}}));
     add(encode(Loading{"car", 0, {}, "no such file"}));

@@ -85,6 +85,7 @@ TEST_CASE("every writable member can be patched and given back") {
         R"({"views":{"home":{"up":[1,2,3]}}})",
         R"({"views":{"home":{"center":[1,2,3]}}})",
         R"({"views":{"home":{"fov":1}}})",
+        R"({"views":{"home":{"order":1}}})",
         R"({"quality":{"preference":0}})",
         R"({"quality":{"latencyTargetMs":10000}})",
         R"({"lights":{"items":{"headlight":{"color":[1,0.5,0,1]}}}})",
@@ -124,7 +125,7 @@ TEST_CASE("what is patched has the value that was given") {
         "nodes": {"5": {"active": false, "activeChild": -1, "matrix": [1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16],
                         "material": 3}},
         "markers": {"Scratch": {"point": [1,2,3], "node": 5, "text": "here"}},
-        "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60}},
+        "views": {"side": {"eye": [5,0,0], "focus": [1,0,0], "up": [0,0,1], "center": [2,0,0], "fov": 60, "order": -1.5}},
         "quality": {"preference": 0.25, "latencyTargetMs": 20}})");
     State expected = start();
     expected.camera.node = 4;
@@ -143,7 +144,7 @@ TEST_CASE("what is patched has the value that was given") {
     const glm::dmat4 matrix{{1, 5, 9, 13}, {2, 6, 10, 14}, {3, 7, 11, 15}, {4, 8, 12, 16}};
     expected.nodes.set("5", {false, -1, matrix, 3});
     expected.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
-    expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60});
+    expected.views.set("side", {{5, 0, 0}, {1, 0, 0}, {0, 0, 1}, {2, 0, 0}, 60, -1.5});
     expected.quality = {0.25, 20};
     CHECK(state == expected);
 }
@@ -215,6 +216,7 @@ const std::vector<Member> kMembers = {
     {"/views/home/up", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/views/home/center", {"[1e30,-1e30,0]"}, kNoVector, kNoPosition},
     {"/views/home/fov", {"1", "170"}, kNoNumber, kNoFov},
+    {"/views/home/order", {"-1e9", "0.5", "1e9"}, kNoNumber, {"-1.1e9", "1.1e9"}},
     {"/quality/preference", {"0", "1"}, kNoNumber, {"-0.01", "1.01"}},
     {"/quality/latencyTargetMs", {"1", "10000"}, kNoNumber, {"0.9", "10001"}},
 };
@@ -372,7 +374,10 @@ TEST_CASE("views are added, changed and removed; those of the start come back") 
     // With the camera in the same patch it is that one that is saved.
     state = after(state, R"({"camera":{"eye":[0,0,2]},"views":{"both":{}}})");
     CHECK(state.views->at("both").eye == glm::dvec3(0, 0, 2));
-    state = after(state, R"({"views":{"home":{"fov":20},"low":null}})");
+    state = after(state, R"({"views":{"home":{"fov":20},"low":null,"both":{"order":2}}})");
+    CHECK(state.views->at("both").order == 2);
+    CHECK(state.views->at("both").eye == glm::dvec3(0, 0, 2));
+    CHECK_FALSE(after(state, R"({"views":{"both":{"order":null}}})").views->at("both").order.has_value());
     CHECK(state.views->at("home").fov == 20);
     CHECK_FALSE(state.views->contains("low"));
     CHECK(after(state, R"({"views":{"home":null}})").views->at("home") == start().views->at("home"));
@@ -434,6 +439,7 @@ TEST_CASE("what is wrong with a patch is named, and nothing is changed") {
         {R"({"camera":{"near":null}})", "read-only", "'camera.near'"},
         {R"({"scene":{"name":"x"}})", "read-only", "'scene'"},
         {R"({"control":null})", "read-only", "'control'"},
+        {R"({"clients":{"c1":null}})", "read-only", "'clients'"},
         {R"({"camera":5})", "bad-message", "'camera'"},
         {R"({"camera":{"eye":5}})", "bad-message", "'camera.eye'"},
         {R"({"camera":{"eye":[1,2]}})", "out-of-range", "'camera.eye'"},

@@ -197,7 +197,7 @@ private:
             default:
                 return one_of({R"({"type":"patch","patch":{"navigation":{"style":"cinema4d"}}})",
                                R"({"type":"patch","patch":{"navigation":{"keepUpright":false}}})",
-                               R"({"type":"patch","patch":{"navigation":null,"views":{"v":{}}}})",
+                               R"({"type":"patch","patch":{"navigation":null,"views":{"v":{"order":3}}}})",
                                R"({"type":"patch","patch":{"camera":{"eye":[1,2,9]}}})",
                                R"({"type":"patch","patch":{"camera":null}})",
                                R"({"type":"patch","patch":{"nodes":null}})", kMoveHinge});

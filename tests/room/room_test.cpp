@@ -90,6 +90,59 @@ TEST_CASE("clients of one name are told apart by a number") {
     CHECK(stage.room.client_name("nobody").empty());
 }
 
+TEST_CASE("the state tells who is here: those who may steer, hosts, and viewers who say a name") {
+    Stage stage("bvh");
+    CHECK(stage.state()["clients"] ==
+          json::parse(R"({"b":{"name":"Bea","role":"control"},"h":{"role":"host"}})"));
+    stage.room.join("w", protocol::Role::view, stage.now, "Bea");
+    CHECK(stage.state()["clients"]["w"] == json::parse(R"({"name":"Bea 2","role":"view"})"));
+    CHECK(stage.room.changed_by().empty());
+    stage.room.show(other_scene(), stage.now);
+    CHECK(stage.state()["clients"].size() == 3);
+    const std::int64_t revision = stage.revision();
+    stage.room.leave("v", stage.now);
+    CHECK(stage.revision() == revision);
+    stage.room.leave("w", stage.now);
+    CHECK(stage.state()["clients"].size() == 2);
+}
+
+TEST_CASE("the state names 64 at most, viewers last: beyond that a viewer changes nothing") {
+    Stage stage("b");
+    const auto come = [&](int number, protocol::Role role) {
+        stage.room.join("c" + std::to_string(number), role, stage.now, "Client " + std::to_string(number));
+    };
+    for (int i = 1; i <= 63; ++i) come(i, protocol::Role::view);
+    const std::int64_t full = stage.revision();
+    CHECK(stage.state()["clients"].size() == 64);
+    come(64, protocol::Role::view);
+    CHECK(stage.revision() == full);
+    come(65, protocol::Role::control);
+    CHECK(stage.state()["clients"].contains("c65"));
+    CHECK_FALSE(stage.state()["clients"].contains("c63"));
+    CHECK(stage.state()["clients"].size() == 64);
+    stage.room.leave("c2", stage.now);  // the one who has waited longest takes the place
+    CHECK(stage.state()["clients"].contains("c63"));
+    CHECK_FALSE(stage.state()["clients"].contains("c64"));
+}
+
+TEST_CASE("an address to watch at is told to control clients, for where they have opened the page") {
+    RoomOptions options;
+    options.share = [](const std::string& page) -> tl::expected<protocol::SharedAddress, protocol::Error> {
+        if (page == "?") return tl::unexpected(protocol::Error{{}, "out-of-range", "no address"});
+        return protocol::SharedAddress{0, page + "#watch", {"10", "01"}, true};
+    };
+    Stage stage("bavh", first_scene(), options);
+    stage.told();
+    CHECK(stage.say("a", R"({"type":"share","id":1,"page":"http://x/"})"));  // who does not steer, too
+    CHECK(stage.told().at(0) == json::parse(R"({"type":"shared","id":1,"address":"http://x/#watch",)"
+                                            R"("qr":["10","01"],"loopback":true,"to":"a"})"));
+    CHECK(stage.rejection("b", R"({"type":"share","id":2,"page":"?"})") == "out-of-range");
+    for (const char* who : {"v", "h"})
+        CHECK(stage.rejection(who, R"({"type":"share","id":3})") == "not-allowed");
+    Stage without("a");
+    CHECK(without.rejection("a", R"({"type":"share","id":1})") == "failed");
+}
+
 TEST_CASE("control is asked for, given, declined and taken back") {
     Stage stage("abc");
     stage.say("b", control("ask"));

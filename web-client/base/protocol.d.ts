@@ -69,7 +69,7 @@ export type ClientKeyup = {
   type: 'keyup';
 };
 
-export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShown;
+export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown;
 
 export type ClientNavigate = {
   id?: number;
@@ -188,6 +188,12 @@ export type ClientResize = {
 export type ClientScenes = {
   id?: number;
   type: 'scenes';
+};
+
+export type ClientShare = {
+  id?: number;
+  page?: string;
+  type: 'share';
 };
 
 export type ClientShown = {
@@ -312,7 +318,7 @@ export type ServerLoading = {
   type: 'loading';
 };
 
-export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerFlown | ServerTree | ServerScenes | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
+export type ServerMessage = ServerWelcome | ServerOk | ServerPicked | ServerFlown | ServerTree | ServerScenes | ServerShared | ServerLoading | ServerStats | ServerError | ServerState | ServerPatch;
 
 export type ServerOk = {
   id: number;
@@ -344,6 +350,14 @@ export type ServerScenes = {
   id: number;
   scenes: Array<string>;
   type: 'scenes';
+};
+
+export type ServerShared = {
+  address: string;
+  id: number;
+  loopback: boolean;
+  qr: Array<string>;
+  type: 'shared';
 };
 
 export type ServerState = {
@@ -444,6 +458,10 @@ export type StateDocument = {
   cameras: Record<string, {
     name: string;
   }>;
+  clients: Record<string, {
+    name?: string;
+    role: 'control' | 'view' | 'host';
+  }>;
   control: {
     absent: boolean;
     asking: Array<{
@@ -525,6 +543,7 @@ export type StateDocument = {
     eye: Array<number>;
     focus: Array<number>;
     fov: number;
+    order?: number;
     up: Array<number>;
   }>;
 };
@@ -588,6 +607,7 @@ export type StatePatch = {
     eye?: null | Array<number>;
     focus?: null | Array<number>;
     fov?: null | number;
+    order?: null | number;
     up?: null | Array<number>;
   }>;
 };

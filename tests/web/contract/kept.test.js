@@ -7,7 +7,7 @@ import { SCENES, Server, temporaryFolder } from './server.js';
 import { holder } from './stage.js';
 
 const CHANGES = {
-  views: { front: { eye: [0, 1, 9], focus: [0, 0, 0], fov: 25 }, home: { fov: 33 } },
+  views: { front: { eye: [0, 1, 9], focus: [0, 0, 0], fov: 25, order: 2 }, home: { fov: 33 } },
   markers: { bump: { point: [1, 2, 3], text: 'here' } },
   nodes: { 4: { active: false } },
 };

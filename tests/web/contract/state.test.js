@@ -55,7 +55,7 @@ const WRITABLE = {
 const READ_ONLY = [
   'scene', 'scene/name', 'scene/nodes', 'scene/bounds', 'scene/notices', 'camera/name', 'camera/near', 'camera/far', 'cameras', 'cameras/11/name',
   'renderer/solid', 'renderer/transparent', 'renderer/reflective', 'lights/items/9/name', 'lights/items/9/type', 'materials', 'materials/1/name',
-  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'recording',
+  'backgrounds/items/13/name', 'selection/name', 'selection/path', 'control', 'control/holder', 'control/kept', 'control/absent', 'control/asking', 'clients', 'recording',
 ];
 const UNKNOWN = [
   'weather', 'camera/roll', 'navigation/speed', 'renderer/shadow', 'lights/ambient', 'lights/items/9/angle', 'backgrounds/image',
@@ -344,6 +344,11 @@ describe('views', () => {
     await client.patch({ views: { Front: { fov: 31 } } });
     assert.equal(client.state.views.Front.fov, 31);
     assert.deepEqual(client.state.views.Front.eye, VIEW.eye);
+    await client.patch({ views: { Front: { order: -1.5, eye: [1, 0, 5] } } });
+    assert.equal(client.state.views.Front.order, -1.5);
+    await client.patch({ views: { Front: { order: null } } });
+    assert.equal(client.state.views.Front.order, undefined);
+    assert.deepEqual(client.state.views.Front.eye, [1, 0, 5]);
     await client.patch({ views: { Front: null } });
     assert.equal(client.state.views.Front, undefined);
     assert.ok(client.state.views.home, 'home is still there');
