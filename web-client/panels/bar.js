@@ -1,10 +1,11 @@
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
-import { byName, rows } from './controls.js';
+import { rows } from './controls.js';
 import { stateOf } from './section.js';
 import { Trail } from './trail.js';
 import { variantControl, variants } from './variants.js';
+import { viewNames } from './views-section.js';
 
 /**
  * @import { StateDocument } from '../base/protocol.js'
@@ -172,9 +173,8 @@ export class Bar {
  * @returns {[string, {text: string, camera: *}][]}
  */
 export function stops({ views, cameras }) {
-  const saved = Object.keys(views).filter((name) => name !== 'home').sort(byName);
   return [
-    ...saved.map((name) => /** @type {[string, *]} */ ([`view ${name}`, { text: name, camera: views[name] }])),
+    ...viewNames(views).map((name) => /** @type {[string, *]} */ ([`view ${name}`, { text: name, camera: views[name] }])),
     ...Object.entries(cameras).map(([id, { name }]) =>
       /** @type {[string, *]} */ ([`camera ${id}`, { text: name || `#${id}`, camera: { node: Number(id) } }])),
   ];

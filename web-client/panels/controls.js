@@ -166,6 +166,7 @@ export function rows(label, none, make) {
   return {
     element: element('div', {}, list, empty),
     show(entries) {
+      const focused = /** @type {?HTMLElement} */ (document.activeElement);
       const keys = new Set(entries.map(([key]) => key));
       for (const [key, { row }] of made) {
         if (keys.has(key)) continue;
@@ -183,6 +184,8 @@ export function rows(label, none, make) {
         if (list.children[i] !== row) list.insertBefore(row, list.children[i] ?? null);
         show(item);
       }
+      // What is moved loses it.
+      if (list.contains(focused)) focused?.focus();
       empty.hidden = entries.length > 0;
     },
   };

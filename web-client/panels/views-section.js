@@ -45,10 +45,25 @@ function savedViews({ fly, patch, report, offer, state }) {
   const rename = (name) => async (to) =>
     isFree(to) && patch({ views: { [to]: state().views[name], [name]: null } });
   const overwrite = (name) => put(name, poseOf(state().camera), say('views.overwritten', { name }));
-  const edit = (name) => [
-    field(say('views.newNameOf', { name }), say('views.rename'), rename(name)).element,
-    button(say('views.overwrite'), () => overwrite(name), { icon: 'camera' }),
-  ];
+  const move = (name, by) => {
+    const views = movedView(state().views, name, by);
+    if (views) patch({ views });
+  };
+  const edit = (name) => {
+    const earlier = button(say('views.earlier'), () => move(name, -1));
+    const later = button(say('views.later'), () => move(name, 1));
+    return {
+      content: [
+        field(say('views.newNameOf', { name }), say('views.rename'), rename(name)).element,
+        element('div', { className: 'buttons' }, earlier, later),
+        button(say('views.overwrite'), () => overwrite(name), { icon: 'camera' }),
+      ],
+      show({ order, last }) {
+        earlier.ariaDisabled = String(order === 0);
+        later.ariaDisabled = String(order === last);
+      },
+    };
+  };
   const list = places(say('views.saved'), say('views.none'), (name) => fly(state().views[name]),
     (name) => put(name, null, say('views.deleted', { name })), edit);
   const entry = field(say('views.name'), say('views.save'),
@@ -56,11 +71,40 @@ function savedViews({ fly, patch, report, offer, state }) {
   return {
     content: [...list.content, entry.element],
     show: onChange(({ state }) => [state.views], (views) => {
-      const names = Object.keys(views).filter((name) => name !== 'home');
-      list.show(names.map((name) => [name, { text: name }]));
+      const names = viewNames(views);
+      list.show(names.map((name, order) => [name, { text: name, order, last: names.length - 1 }]));
       entry.show(unusedName(say('views.newName'), names));
     }),
   };
+}
+
+/**
+ * The saved views: those with an `order` first, by that, then the others, by name.
+ *
+ * @param {StateDocument['views']} views
+ */
+export function viewNames(views) {
+  const orderOf = (name) => views[name].order ?? Infinity;
+  return Object.keys(views).filter((name) => name !== 'home')
+    .sort((a, b) => orderOf(a) - orderOf(b) || byName(a, b));
+}
+
+/**
+ * What of the views is to be changed for one to change places with the one before or after it; null at the ends.
+ *
+ * @param {StateDocument['views']} views
+ * @param {string} name
+ * @param {1|-1} by
+ */
+export function movedView(views, name, by) {
+  const names = viewNames(views);
+  const at = names.indexOf(name);
+  const other = names[at + by];
+  if (other === undefined) return null;
+  names[at] = other;
+  names[at + by] = name;
+  const changed = names.map((one, order) => ({ one, order })).filter(({ one, order }) => views[one].order !== order);
+  return Object.fromEntries(changed.map(({ one, order }) => [one, { order }]));
 }
 
 /** What a saved view has of a camera. @param {StateDocument['camera']} camera */
@@ -122,12 +166,16 @@ export function markerEntries(all, drawn) {
   return Object.entries(all).map(([name, { text }]) => [name, { text: text || name, lost: !drawn?.[name] }]);
 }
 
-/** A list of buttons that go there, with `remove` those that delete, and with `edit` those that unfold what it gives. */
+/**
+ * A list of buttons that go there, with `remove` those that delete, and with `edit` those that unfold what it gives:
+ * {content, show(item)}. Items are in their `order`, if they have one, and by name.
+ */
 function places(title, none, go, remove, edit) {
   const list = rows(title, none, (key) => {
     const there = button('', () => go(key));
     const away = button('', () => remove(key), { icon: 'remove', quiet: true, only: true });
-    const editor = element('div', { className: 'editor', hidden: true }, ...(edit ? edit(key) : []));
+    const edited = edit?.(key);
+    const editor = element('div', { className: 'editor', hidden: true }, ...(edited?.content ?? []));
     const unfold = button('', () => turn(editor.hidden), { icon: 'edit', quiet: true, only: true });
     const turn = (isOpen) => {
       editor.hidden = !isOpen;
@@ -143,7 +191,9 @@ function places(title, none, go, remove, edit) {
       turn(false);
     };
     unfold.ariaExpanded = 'false';
-    const show = ({ text, used, lost = false }) => {
+    const show = (item) => {
+      const { text, used, lost = false } = item;
+      edited?.show(item);
       there.lastChild.data = text;
       Object.assign(there, { ariaPressed: used, disabled: lost });
       away.ariaLabel = away.title = say('views.delete', { text });
@@ -153,7 +203,7 @@ function places(title, none, go, remove, edit) {
   });
   return {
     content: [element('h3', {}, title), list.element],
-    show: (entries) => list.show(entries.sort(([, a], [, b]) => byName(a.text, b.text))),
+    show: (entries) => list.show(entries.sort(([, a], [, b]) => (a.order ?? 0) - (b.order ?? 0) || byName(a.text, b.text))),
   };
 }
 

@@ -88,6 +88,26 @@ for (const [name, size] of Object.entries(SIZES)) {
       await undo().waitFor({ state: 'detached' });
     });
 
+    test('they are put in order, by a finger and by keys', async () => {
+      const names = () => views.getByRole('list', { name: 'Saved views' }).locator('li > :first-child').allTextContents();
+      await tablet.say({ type: 'patch', patch: { views: { Antenna: {} } } });
+      await button('Change Antenna').tap();
+      assert.deepEqual(await names(), ['Antenna', 'Headlamp', 'Wheel']);
+      const row = views.locator('li').filter({ has: button('Antenna', page) });
+      assert.equal(await button('Move up', row).getAttribute('aria-disabled'), 'true');
+      await button('Move down', row).tap();
+      await until('the order', () => state().views.Antenna.order === 1);
+      await row.locator('[aria-disabled="false"]', { hasText: 'Move up' }).waitFor();
+      assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Move down');
+      await tablet.screenshot(`views-${name}-order`);
+      await page.keyboard.press('Enter');
+      await row.locator('[aria-disabled="true"]', { hasText: 'Move down' }).waitFor();
+      assert.deepEqual(await names(), ['Headlamp', 'Wheel', 'Antenna']);
+      assert.deepEqual((await names()).map((one) => state().views[one].order), [0, 1, 2]);
+      await tablet.say({ type: 'patch', patch: { views: { Antenna: null } } });
+      await button('Antenna').waitFor({ state: 'detached' });
+    });
+
     test('one is deleted, and that is undone, by a key, too', async () => {
       const before = structuredClone(state().views);
       await button('Delete Wheel').tap();

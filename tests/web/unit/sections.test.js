@@ -13,7 +13,7 @@ import {
 } from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
-  cameraEntries, lookingAt, markerEntries, placeOf, unusedName,
+  cameraEntries, lookingAt, markerEntries, movedView, placeOf, unusedName, viewNames,
 } from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
@@ -84,6 +84,20 @@ describe('views', () => {
     const picked = { node: 7, name: 'Door', point: [1, 2, 3], normal: [0, 0, 1], distance: 4 };
     assert.deepEqual(placeOf(picked), { point: [1, 2, 3] });
     assert.deepEqual(placeOf({ ...picked, local: [0.5, 0, 0] }), { node: 7, point: [0.5, 0, 0] });
+  });
+
+  test('views stand by their order, those without one last and by name', () => {
+    const views = { home: { order: 0 }, B: {}, A: {}, 'View 10': { order: 1 }, 'View 9': { order: 1 }, C: { order: -2.5 } };
+    assert.deepEqual(viewNames(views), ['C', 'View 9', 'View 10', 'A', 'B']);
+  });
+
+  test('a view changes places with its neighbour, and no more changes than has to', () => {
+    const views = { home: {}, A: {}, B: {}, C: {} };
+    assert.deepEqual(movedView(views, 'B', -1), { B: { order: 0 }, A: { order: 1 }, C: { order: 2 } });
+    const ordered = { home: {}, B: { order: 0 }, A: { order: 1 }, C: { order: 2 } };
+    assert.deepEqual(movedView(ordered, 'A', 1), { C: { order: 1 }, A: { order: 2 } });
+    assert.equal(movedView(ordered, 'B', -1), null);
+    assert.equal(movedView(ordered, 'C', 1), null);
   });
 
   test('a name that nothing has yet', () => {

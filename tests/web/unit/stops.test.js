@@ -11,6 +11,11 @@ test('a presentation stops at the saved views, by name, and at the cameras', () 
   assert.deepEqual(all.map(([, { camera }]) => camera), [pose(9), pose(10), { node: 3 }, { node: 5 }]);
 });
 
+test('the views stand in their order, and those without one behind', () => {
+  const views = { ...state.views, A: pose(1), 'View 10': { ...pose(10), order: 2 }, B: { ...pose(2), order: -1 } };
+  assert.deepEqual(stops({ views, cameras: {} }).map(([, { text }]) => text), ['B', 'View 10', 'A', 'View 9']);
+});
+
 test('it knows at which of them the camera stands', () => {
   assert.equal(stopAt(all, { ...pose(10), near: 1, far: 2 }), 'view View 10');
   assert.equal(stopAt(all, { ...pose(1), node: 5, near: 1, far: 2 }), 'camera 5');

@@ -156,6 +156,8 @@ export const cs = {
   'views.edit': 'Upravit „{text}“',
   'views.newNameOf': 'Nový název pohledu „{name}“',
   'views.rename': 'Přejmenovat',
+  'views.earlier': 'Posunout nahoru',
+  'views.later': 'Posunout dolů',
   'views.overwrite': 'Uložit sem současný pohled',
   'views.overwritten': 'Pohled „{name}“ je přepsaný současným.',
   'views.deleted': 'Pohled „{name}“ je smazaný.',

@@ -154,6 +154,8 @@ export const en = {
   'views.edit': 'Change {text}',
   'views.newNameOf': 'New name of {name}',
   'views.rename': 'Rename',
+  'views.earlier': 'Move up',
+  'views.later': 'Move down',
   'views.overwrite': 'Save the present view here',
   'views.overwritten': '“{name}” is the present view now.',
   'views.deleted': '“{name}” is deleted.',
