@@ -2,7 +2,7 @@ import { mergePatch } from '../base/merge-patch.js';
 
 /**
  * @import {
- *   ClientControl, ClientMessage, ClientPick, ClientTree, ServerTree, StatePatch,
+ *   ClientControl, ClientMessage, ClientPick, ClientTree, ServerShared, ServerTree, StatePatch,
  * } from '../base/protocol.js'
  */
 
@@ -38,6 +38,8 @@ export function commandsBy({ ask, refused }) {
     /** @param {'start'|'stop'} action */
     record: (action) => tell({ type: 'record', action }),
     scenes: () => tell({ type: 'scenes' }),
+    /** @param {string} page its address @returns {Promise<ServerShared|undefined>} */
+    share: (page) => tell({ type: 'share', page }),
     /** @param {string} scene */
     open: (scene) => tell({ type: 'open', scene }),
   };

@@ -6,6 +6,7 @@ import { recall, remember } from '../base/memory.js';
 const LOADS = {
   settings: async () => (await import('./dialogs/settings.js')).settings,
   help: async () => (await import('./dialogs/help.js')).help,
+  people: async () => (await import('./dialogs/people.js')).people,
 };
 
 /** The dialogs over all else, one at a time: the settings, and the help, which a browser's first visit opens. */

@@ -5,6 +5,7 @@ import { partsSection } from './parts-section.js';
 import { presentationSection } from './presentation-section.js';
 import { foldable } from './section.js';
 import { viewsSection } from './views-section.js';
+import { Watching } from './watching.js';
 
 /** @import { Page, Section } from './section.js' */
 
@@ -17,6 +18,7 @@ export class Menu {
   #panel;
   #page;
   #dialogs;
+  #watching;
   /** @type {Section[]} */
   #sections = [];
 
@@ -32,6 +34,7 @@ export class Menu {
     this.#panel = panel;
     this.#page = page;
     this.#dialogs = new Dialogs(page);
+    this.#watching = new Watching(store);
     opener.onclick = () => (stage.classList.contains('clean') ? this.#clean(false) : this.open(opener));
     panel.onkeydown = (event) => {
       // What is typed here is not meant for the view.
@@ -88,25 +91,24 @@ export class Menu {
     this.#sections = [partsSection(page), viewsSection(page), presentationSection(page)];
     this.#panel.ariaLabel = say('menu.title');
     this.#clean(this.#stage.classList.contains('clean'));
-    const other = language() === 'en' ? 'cs' : 'en';
-    const turn = button(say('menu.otherLanguage'), () => page.setLanguage(other), { quiet: true });
-    turn.lang = other;
     const close = tool('close', say('menu.close'), () => this.close());
     close.classList.add('close');
-    const full = tool('full', say('menu.fullScreen'), turnFullScreen);
     const clean = tool('hidden', say('menu.clean'), () => {
       this.#opener = this.#button;
       this.#clean(true);
       this.close();
     });
+    const turn = languageButton(page.setLanguage);
+    const people = tool('people', say('people.title'), () => this.#dialogs.open('people', people));
     const help = tool('help', say('help.title'), () => this.#dialogs.open('help', help));
     const settings = button(say('settings.title'), () => this.#dialogs.open('settings', settings),
       { icon: 'settings', quiet: true });
-    for (const opens of [help, settings]) opens.ariaHasPopup = 'dialog';
-    const tools = [turn, help, clean, ...(document.fullscreenEnabled ? [full] : []), close];
+    for (const opens of [people, help, settings]) opens.ariaHasPopup = 'dialog';
+    const tools = [turn, people, help, clean, ...fullScreenButtons(), close];
     const head = element('div', { className: 'head' }, ...tools);
     this.#panel.replaceChildren(head, ...this.#sections.map(foldable), settings);
     if (this.isOpen) turn.focus({ preventScroll: true });
+    this.#watching.rebuild([languageButton(page.setLanguage), ...fullScreenButtons()]);
     this.#showAll();
   }
 
@@ -119,6 +121,19 @@ export class Menu {
 
 function tool(icon, label, act) {
   return button(label, act, { icon, quiet: true, only: true });
+}
+
+/** @param {(code: string) => void} setLanguage */
+function languageButton(setLanguage) {
+  const other = language() === 'en' ? 'cs' : 'en';
+  const made = button(say('menu.otherLanguage'), () => setLanguage(other), { quiet: true });
+  made.lang = other;
+  return made;
+}
+
+/** None where the browser has no full screen, as on an iPhone. */
+function fullScreenButtons() {
+  return document.fullscreenEnabled ? [tool('full', say('menu.fullScreen'), turnFullScreen)] : [];
 }
 
 function turnFullScreen() {

@@ -9,6 +9,18 @@ import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 const SIZES = { 'a tablet': { width: 1180, height: 820, pixelRatio: 1 }, 'a phone': { width: 390, height: 844, pixelRatio: 1 } };
 const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 
+async function assertClean(page) {
+  const { passes, violations: found } = await page.evaluate(async (source) => {
+    if (!window.axe) (0, eval)(source);
+    // What fades is looked at when it has.
+    await Promise.allSettled(document.getAnimations().map((animation) => animation.finished));
+    const { violations, passes } = await window.axe.run(document, { resultTypes: ['violations'] });
+    return { passes: passes.length, violations: violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(({ html, failureSummary }) => [html, failureSummary]) })) };
+  }, axe);
+  assert.deepEqual(found, []);
+  assert.ok(passes > 10, `${passes} rules passed`);
+}
+
 describe('axe finds nothing', { skip: browserIsMissing }, () => {
   let server;
   let browser;
@@ -61,6 +73,16 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
           await page.locator('dialog.help').waitFor();
         },
         'the help': () => page.emulateMedia({ colorScheme: 'light' }),
+        'the people': async () => {
+          await tablet.closeSettings();
+          await page.locator('#menu').getByRole('button', { name: 'People' }).tap();
+          await page.locator('.code path').waitFor({ state: 'attached' });
+        },
+        'the people, and the code alone': () => page.locator('.code').tap(),
+        'the people in the dark': async () => {
+          await page.locator('.code').tap();
+          await page.emulateMedia({ colorScheme: 'dark' });
+        },
         'in the dark': async () => {
           await tablet.closeSettings();
           await page.emulateMedia({ colorScheme: 'dark' });
@@ -78,18 +100,16 @@ describe('axe finds nothing', { skip: browserIsMissing }, () => {
         },
         'and in the light': () => page.emulateMedia({ colorScheme: 'light' }),
       };
+      await t.test('of who only watches', async () => {
+        const watcher = await Tablet.open(browser, `${server.address}#watch`, size, { reducedMotion: 'reduce' });
+        await watcher.page.locator('#watching p').waitFor();
+        await assertClean(watcher.page);
+        await watcher.page.context().close();
+      });
       for (const [look, act] of Object.entries(looks)) {
         await t.test(look, async () => {
           await act();
-          const found = await page.evaluate(async (source) => {
-            if (!window.axe) (0, eval)(source);
-            // What fades is looked at when it has.
-            await Promise.allSettled(document.getAnimations().map((animation) => animation.finished));
-            const { violations, passes } = await window.axe.run(document, { resultTypes: ['violations'] });
-            return { passes: passes.length, violations: violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(({ html, failureSummary }) => [html, failureSummary]) })) };
-          }, axe);
-          assert.deepEqual(found.violations, []);
-          assert.ok(found.passes > 10, `${found.passes} rules passed`);
+          await assertClean(page);
         });
       }
       assert.deepEqual(tablet.complaints, []);

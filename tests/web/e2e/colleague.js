@@ -11,8 +11,11 @@ export class Colleague {
   #lastId = 0;
   #asked = new Map();
 
-  /** @param {string} address of the page */
-  static async join(address) {
+  /**
+   * @param {string} address of the page
+   * @param {{role?: string, name?: string}} [hello]
+   */
+  static async join(address, hello = {}) {
     const colleague = new Colleague();
     const socket = new WebSocket(socketAddress(address), 'vrut-preview.v1');
     colleague.#socket = socket;
@@ -24,7 +27,7 @@ export class Colleague {
         if (colleague.state) resolve();
       });
     });
-    socket.send(JSON.stringify({ type: 'hello', role: 'control' }));
+    socket.send(JSON.stringify({ type: 'hello', role: 'control', ...hello }));
     await joined;
     return colleague;
   }

@@ -22,9 +22,10 @@ test('each command is a message of the protocol', async () => {
   await commands.snapshot({ width: 10, height: 20 });
   await commands.record('start');
   await commands.scenes();
+  await commands.share('https://preview.example/');
   await commands.open('car');
   assert.deepEqual(asked.map(({ type }) => type),
-    ['patch', 'patch', 'control', 'fit', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'open']);
+    ['patch', 'patch', 'control', 'fit', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'share', 'open']);
   for (const message of asked) {
     assert.ok(isClientMessage(JSON.parse(JSON.stringify(message))), `${JSON.stringify(message)}: ${ajv.errorsText(isClientMessage.errors)}`);
   }
