@@ -91,6 +91,9 @@ tl::expected<ClientMessage, Error> decode(std::string_view text) {
 std::string encode(const ClientMessage& message) { return dump(to_json(message)); }
 
 const char* name_of(Role role) { return kRole.words[static_cast<std::size_t>(role)].data(); }
+const char* name_of(NavigationState::Style style) {
+    return kStyle.words[static_cast<std::size_t>(style)].data();
+}
 
 std::string encode(const Welcome& message) { return encode_as("welcome", message); }
 std::string encode(const Ok& message) { return encode_as("ok", message); }

@@ -5,6 +5,7 @@
 #include <tl/expected.hpp>
 
 #include "messages.hpp"
+#include "state.hpp"
 
 namespace vrut::protocol {
 
@@ -25,6 +26,7 @@ std::string encode(const Stats& message);
 std::string encode(const Error& message);
 
 const char* name_of(Role role);
+const char* name_of(NavigationState::Style style);
 
 /// The JSON Schema (draft 2020-12) of everything that travels. Its $defs hold each message, and
 /// `clientMessage`, `serverMessage`, `frameHeader`, `stateDocument` and `statePatch`.

@@ -55,10 +55,19 @@ void describe(V& v, const Hello*) {
 }
 
 template <class V>
+void describe(V& v, const Inset*) {
+    v.optional("top", &Inset::top, Number{0, 8192});
+    v.optional("right", &Inset::right, Number{0, 8192});
+    v.optional("bottom", &Inset::bottom, Number{0, 8192});
+    v.optional("left", &Inset::left, Number{0, 8192});
+}
+
+template <class V>
 void describe(V& v, const Resize*) {
     v.required("width", &Resize::width, Number{1, 8192});
     v.required("height", &Resize::height, Number{1, 8192});
     v.required("pixelRatio", &Resize::pixel_ratio, Number{0.25, 4});
+    v.optional("inset", &Resize::inset, Object<Inset>{});
 }
 
 template <class V>
@@ -116,6 +125,13 @@ void describe(V& v, const Navigate*) {
 template <class V>
 void describe(V& v, const Fit*) {
     v.optional("node", &Fit::node, kId);
+}
+
+template <class V>
+void describe(V& v, const Swing*) {
+    v.required("node", &Swing::node, kId);
+    v.optional("open", &Swing::open, Number{0, 1});
+    v.optional("ms", &Swing::ms, Number{0, 60'000});
 }
 
 template <class V>
@@ -224,6 +240,16 @@ void describe(V& v, const Limits*) {
 }
 
 template <class V>
+void describe(V& v, const InputRules*) {
+    v.required("wheelSteps", &InputRules::wheel_steps, Vector<glm::dvec3>{kDuration.min, kDuration.max});
+    v.required("wheelZoom", &InputRules::wheel_zoom, kDuration);
+    v.required("dragZoom", &InputRules::drag_zoom, kDuration);
+    v.required("drags", &InputRules::drags, ValuesByName<ValuesByName<Text>>{{kName}});
+    v.required("keys", &InputRules::keys, List<Text>{kName, 0, kMaxInteger});
+    v.required("repeatingKeys", &InputRules::repeating_keys, List<Text>{kName, 0, kMaxInteger});
+}
+
+template <class V>
 void describe(V& v, const Welcome*) {
     v.required("id", &Welcome::id, kId);
     v.required("version", &Welcome::version, Integer{kVersion, kVersion});
@@ -231,6 +257,7 @@ void describe(V& v, const Welcome*) {
     v.required("client", &Welcome::client, kName);
     v.required("role", &Welcome::role, kRole);
     v.required("limits", &Welcome::limits, Object<Limits>{});
+    v.required("input", &Welcome::input, Object<InputRules>{});
 }
 
 template <class V>
@@ -317,6 +344,16 @@ void describe(V& v, const Error*) {
     v.required("message", &Error::message, Text{300});
 }
 
+struct NoticeCode : Text {
+    Json schema() const { return {{"enum", notice_code::all}}; }
+};
+
+template <class V>
+void describe(V& v, const Notice*) {
+    v.fixed("code", &Notice::code, NoticeCode{kName});
+    v.fixed("message", &Notice::message, kName);
+}
+
 template <class V>
 void describe(V& v, const Quality*) {
     v.required("level", &Quality::level, word("moving", "still"));
@@ -370,7 +407,7 @@ void describe(V& v, const SceneState*) {
     v.fixed("geometries", &SceneState::geometries, kId);
     v.fixed("triangles", &SceneState::triangles, kId);
     v.fixed("bounds", &SceneState::bounds, Object<SceneState::Bounds>{});
-    v.fixed("notices", &SceneState::notices, List<Text>{kName, 0, kMaxInteger});
+    v.fixed("notices", &SceneState::notices, List<Object<Notice>>{{}, 0, kMaxInteger});
 }
 
 template <class V>
@@ -399,6 +436,7 @@ void describe(V& v, const NavigationState*) {
     v.writable("rotateSpeed", &NavigationState::rotate_speed, kSpeed);
     v.writable("panSpeed", &NavigationState::pan_speed, kSpeed);
     v.writable("zoomSpeed", &NavigationState::zoom_speed, kSpeed);
+    v.writable("tapSwings", &NavigationState::tap_swings, Flag{});
 }
 
 template <class V>
@@ -445,6 +483,7 @@ void describe(V& v, const SelectionState*) {
     v.fixed("name", &SelectionState::name, kName);
     v.fixed("path", &SelectionState::path, List<Text>{kName, 0, 32});
     v.fixed("pathIds", &SelectionState::path_ids, List<Integer>{kId, 0, 32});
+    v.fixed("hinge", &SelectionState::hinge, kId);
 }
 
 template <class V>
@@ -453,6 +492,11 @@ void describe(V& v, const NodeOverride*) {
     v.writable("activeChild", &NodeOverride::active_child, kActiveChild);
     v.writable("matrix", &NodeOverride::matrix, kMatrix);
     v.writable("material", &NodeOverride::material, kId);
+}
+
+template <class V>
+void describe(V& v, const SwingState*) {
+    v.fixed("to", &SwingState::to, Number{0, 1});
 }
 
 template <class V>
@@ -516,13 +560,14 @@ void describe(V& v, const State*) {
     v.writable("backgrounds", &State::backgrounds, Section<BackgroundsState>{});
     v.writable("selection", &State::selection, Section<SelectionState>{});
     v.writable("nodes", &State::nodes, SharedTable<Entries<NodeOverride>>{{{}, kMaxNodes, nullptr}});
+    v.fixed("swings", &State::swings, SharedTable<Table<SwingState>>{});
     v.writable("markers", &State::markers, SharedTable<Entries<Marker>>{{{}, kMaxEntries, "point"}});
     v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}});
     v.writable("quality", &State::quality, Section<QualityState>{});
     v.fixed("control", &State::control, Object<ControlState>{});
     v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{});
     v.fixed("recording", &State::recording, Object<RecordingState>{});
-    v.fixed("notices", &State::notices, List<Text>{kName, 0, kMaxNotices});
+    v.fixed("notices", &State::notices, List<Object<Notice>>{{}, 0, kMaxNotices});
 }
 
 // --- the frame header
@@ -549,6 +594,19 @@ void describe(V& v, const FrameHeader::Timing*) {
     v.required("sinceInputMs", &FrameHeader::Timing::since_input_ms, kDuration);
 }
 
+/// Without the inset, which is the client's own business.
+struct SizeAlone : Object<Resize> {
+    Json write(Resize size) const {
+        size.inset = {};
+        return Object::write(size);
+    }
+    Json schema() const {
+        Json schema = Object::schema();
+        schema["properties"].erase("inset");
+        return schema;
+    }
+};
+
 template <class V>
 void describe(V& v, const FrameHeader*) {
     v.required("frame", &FrameHeader::frame, kId);
@@ -558,7 +616,7 @@ void describe(V& v, const FrameHeader*) {
     v.required("camera", &FrameHeader::camera, Object<FrameHeader::Camera>{});
     v.required("width", &FrameHeader::width, kId);
     v.required("height", &FrameHeader::height, kId);
-    v.required("view", &FrameHeader::view, Object<Resize>{});
+    v.required("view", &FrameHeader::view, SizeAlone{});
     v.required("renderer", &FrameHeader::renderer, Object<FrameHeader::Renderer>{});
     v.required("quality", &FrameHeader::quality, Object<Quality>{});
     v.required("timing", &FrameHeader::timing, Object<FrameHeader::Timing>{});

@@ -55,6 +55,7 @@ void for_each_client_type(Use use) {
     use(MessageTraits{"keyup",         all,              no,         true,  stream},  key(false));
     use(MessageTraits{"navigate",      control,          yes,        true,  request}, Navigate{});
     use(MessageTraits{"fit",           control,          yes,        true,  request}, Fit{});
+    use(MessageTraits{"swing",         control,          yes,        true,  request}, Swing{});
     use(MessageTraits{"patch",         control_and_host, by_content, true,  request}, Patch{});
     use(MessageTraits{"pick",          all,              by_content, true,  request}, Pick{});
     use(MessageTraits{"snapshot",      all,              no,         true,  request}, Snapshot{});

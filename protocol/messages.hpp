@@ -42,9 +42,16 @@ struct Hello {
     std::string resume;
 };
 
+/// What lies on the view's sides and covers it, in CSS pixels.
+struct Inset {
+    double top = 0, right = 0, bottom = 0, left = 0;
+    bool operator==(const Inset&) const = default;
+};
+
 struct Resize {
     double width = 1280, height = 720;  ///< CSS pixels
     double pixel_ratio = 1;
+    Inset inset = {};
     bool operator==(const Resize&) const = default;
 };
 
@@ -100,6 +107,13 @@ struct Navigate {
 
 struct Fit {
     std::optional<std::int64_t> node;  ///< none: the whole scene
+};
+
+/// Opens or closes what turns about a hinge.
+struct Swing {
+    std::int64_t node = 0;       ///< with the hinge, or part of what has one
+    std::optional<double> open;  ///< 0 closed, 1 as far as it goes; none: the other of the two
+    double ms = 700;             ///< from one end to the other
 };
 
 struct Control {
@@ -186,8 +200,8 @@ struct Share {
 
 struct ClientMessage {
     std::optional<std::int64_t> id;
-    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Patch, Pick, Snapshot, Fly,
-                 Tree, Open, Scenes, Record, Control, Shown, Share>
+    std::variant<Hello, Resize, FrameGrant, Pointer, Wheel, Key, Navigate, Fit, Swing, Patch, Pick, Snapshot,
+                 Fly, Tree, Open, Scenes, Record, Control, Shown, Share>
         payload;
     std::string text = {};  ///< as it came over the wire; empty where it did not
 };
@@ -203,12 +217,25 @@ struct Limits {
     std::size_t max_server_message = kMaxServerMessageBytes;
 };
 
+/// What a client needs to foretell what input does to the view.
+struct InputRules {
+    glm::dvec3 wheel_steps{1};  ///< what is one step, in pixels, lines and pages
+    double wheel_zoom = 1;      ///< a step away from the user divides the distance by it
+    double drag_zoom = 1;       ///< and so does a zooming drag over the view's height, upwards
+    /// What a drag does by the buttons held, as of `PointerEvent.buttons`: `rotate`, `pan`, `zoom`. By
+    /// navigation style, of those in which no key has a part in it.
+    std::map<std::string, std::map<std::string, std::string>> drags;
+    std::vector<std::string> keys;            ///< `KeyboardEvent.key` of those with a meaning
+    std::vector<std::string> repeating_keys;  ///< of these, those that go on while they are held
+};
+
 struct Welcome {
     int version = kVersion;
     std::string server;  ///< the program's version
     std::string client;
     Role role = Role::view;
     Limits limits;
+    InputRules input;
     std::optional<std::int64_t> id = {};  ///< of the `hello`, where it had one
 };
 
@@ -288,6 +315,26 @@ struct Error {
     std::optional<std::int64_t> id;
     std::string code, message;
 };
+
+/// What people should know, as an Error.
+struct Notice {
+    std::string code, message;
+    bool operator==(const Notice&) const = default;
+};
+
+namespace notice_code {
+inline constexpr const char *scene = "scene",                              // of the scene's file
+    *software = "software",                                                // drawn without a graphics card
+        *not_kept = "not-kept", *unusable_changes = "unusable-changes",    // what clients change of a scene
+                                    *recording_ended = "recording-ended",  //
+                                        *not_drawn = "not-drawn",
+                            *not_encoded = "not-encoded",  // what is to be seen now
+                                *no_memory = "no-memory",
+                            *smaller = "smaller",  // to draw it; to draw it whole
+                                *driver_restarted = "driver-restarted";
+inline constexpr std::array all{scene,     software,    not_kept,  unusable_changes, recording_ended,
+                                not_drawn, not_encoded, no_memory, smaller,          driver_restarted};
+}  // namespace notice_code
 
 namespace error_code {
 inline constexpr const char *bad_message = "bad-message", *out_of_range = "out-of-range",

@@ -54,7 +54,7 @@ struct SceneState {          // r
     struct Bounds {
         glm::dvec3 min{0}, max{0};
     } bounds;
-    std::vector<std::string> notices;
+    std::vector<Notice> notices;
 };
 
 struct CameraState {
@@ -79,6 +79,7 @@ struct NavigationState {
     enum class TurnAbout { center, touched };
     TurnAbout turn_about = TurnAbout::center;
     double rotate_speed = 1, pan_speed = 1, zoom_speed = 1;
+    bool tap_swings = false;  ///< a tap opens or closes what turns about a hinge
     bool operator==(const NavigationState&) const = default;
 };
 
@@ -121,6 +122,7 @@ struct SelectionState {
     std::optional<std::string> name;                    // r
     std::optional<std::vector<std::string>> path;       // r: names from the root, the last 32
     std::optional<std::vector<std::int64_t>> path_ids;  // r: the same nodes
+    std::optional<std::int64_t> hinge;                  // r: the innermost of these that has one
     bool operator==(const SelectionState&) const = default;
 };
 
@@ -181,6 +183,12 @@ struct RecordingState {  // r
     bool operator==(const RecordingState&) const = default;
 };
 
+/// A node on its way about its hinge.
+struct SwingState {  // r
+    double to = 0;   ///< 0 closed, 1 open
+    bool operator==(const SwingState&) const = default;
+};
+
 /// What all clients share.
 struct State {
     Shared<SceneState> scene;
@@ -193,13 +201,14 @@ struct State {
     BackgroundsState backgrounds;
     SelectionState selection;
     SharedMap<NodeOverride> nodes;
+    SharedMap<SwingState> swings;  // r: by the node's id
     SharedMap<Marker> markers;
     SharedMap<ViewState> views;
     QualityState quality;
     ControlState control;
     SharedMap<ClientState> clients;  // r: the first kMaxListedClients
     std::optional<RecordingState> recording;
-    std::vector<std::string> notices;  // r: what has gone wrong in the server, the newest last
+    std::vector<Notice> notices;  // r: what has gone wrong in the server, the newest last
     bool operator==(const State&) const = default;
 };
 

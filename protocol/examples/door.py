@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Opens a door of the car within a second, holds it, and closes it: gives it back to the scene's file.
+"""Opens a door of the car, holds it, and closes it.
 
 Needs python3-websockets (Debian) or `pip install websockets`. The environment may give the server's address
 and token as VRUT_PREVIEW_URL and VRUT_PREVIEW_TOKEN."""
@@ -7,7 +7,6 @@ import argparse
 import asyncio
 import itertools
 import json
-import math
 import os
 import urllib.parse
 
@@ -45,20 +44,6 @@ async def node_at(server, path):
     return node
 
 
-def turned(closed, axis, degrees):
-    """A door's matrix, turned about an axis (unit) through its own origin, where its hinge is."""
-    x, y, z = axis
-    c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    k = 1 - c
-    turn = [
-        c + k * x * x, k * x * y - s * z, k * x * z + s * y, 0,
-        k * x * y + s * z, c + k * y * y, k * y * z - s * x, 0,
-        k * x * z - s * y, k * y * z + s * x, c + k * z * z, 0,
-        0, 0, 0, 1,
-    ]
-    return [sum(closed[4 * row + k] * turn[4 * k + column] for k in range(4)) for row in range(4) for column in range(4)]
-
-
 async def main():
     home = os.environ.get("VRUT_PREVIEW_URL", "http://127.0.0.1:8080/")
     token = os.environ.get("VRUT_PREVIEW_TOKEN", "")
@@ -66,7 +51,8 @@ async def main():
     arguments.add_argument("--url", default=home, help="as the server prints it")
     arguments.add_argument("--token", default=token, help="if the URL has none")
     arguments.add_argument("--door", default="Body/Doors/Front left", help="its path (default 'Body/Doors/Front left')")
-    arguments.add_argument("--angle", type=float, help="degrees (default as far as its hinge goes)")
+    arguments.add_argument("--open", type=float, default=1, help="how far, from 0 to 1 (default 1)")
+    arguments.add_argument("--seconds", type=float, default=1, help="to open it (default 1)")
     arguments.add_argument("--hold", type=float, default=1, help="seconds (default 1)")
     options = arguments.parse_args()
     page = urllib.parse.urlsplit(options.url)
@@ -77,14 +63,11 @@ async def main():
         door = await node_at(server, options.door)
         if "hinge" not in door:
             raise SystemExit(f"door.py: '{options.door}' has no hinge")
-        hinge = door["hinge"]
-        angle = hinge["degrees"] if options.angle is None else options.angle
         # Whoever holds control now has it again when this ends.
         await ask(server, {"type": "control", "action": "take"})
-        steps = 25
-        matrices = [turned(hinge["closed"], hinge["axis"], angle * step / steps) for step in range(1, steps + 1)]
-        for matrix in matrices + [None]:  # None: as the file has it
-            await asyncio.sleep(1 / steps if matrix else options.hold)
-            await ask(server, {"type": "patch", "patch": {"nodes": {str(door["id"]): {"matrix": matrix}}}})
+        swing = {"type": "swing", "node": door["id"], "ms": 1000 * options.seconds}
+        await ask(server, {**swing, "open": options.open})
+        await asyncio.sleep(options.seconds + options.hold)
+        await ask(server, {**swing, "open": 0})
 
 asyncio.run(main())

@@ -299,6 +299,7 @@ void serialize_data(Stream& stream, scene::Node& node, const scene::SceneParts& 
             auto& data = data_of<scene::CameraData>(node);
             for (glm::dvec3* point : {&data.eye, &data.focus, &data.up}) serialize_vector(stream, *point);
             stream.number(data.fov, 1, 170);
+            stream.number(data.look_radius, 0, kMostNumber);
             break;
         }
         case scene::NodeType::light: {

@@ -40,6 +40,17 @@ double clamp_pitch(const scene::Camera& camera, double radians) {
     return std::clamp(radians, std::min(peak - quarter, 0.0), std::max(peak + quarter, 0.0));
 }
 
+/// Of tangents, along one axis of the view.
+struct Span {
+    double low, high;
+};
+
+/// Its middle part.
+Span filled(const Span& span, double part) {
+    const double middle = (span.low + span.high) / 2, half = (span.high - span.low) / 2 * part;
+    return {middle - half, middle + half};
+}
+
 }  // namespace
 
 FitTarget fit_target(const math::Bounds& box) {
@@ -49,36 +60,43 @@ FitTarget fit_target(const math::Bounds& box) {
             }};
 }
 
-scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect) {
-    constexpr double kFilled = 0.84;     // of the view's width or height
+scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect,
+                     const Cover& cover) {
+    constexpr double kFilled = 0.84;     // of the free width or height
     constexpr double kLeastDepth = 0.1;  // of the nearest point, in radii
     const glm::dvec3 middle = target.box.center();
     const double radius = target.box.radius();
     const double least = std::max(radius == 0 ? 1.0 : 0.0, closest_at(middle));
-    if (radius < least) return fitted(camera, fit_target({middle - least, middle + least}), aspect);
+    if (radius < least) return fitted(camera, fit_target({middle - least, middle + least}), aspect, cover);
 
     const glm::dvec3 right = scene::right_direction(camera), back = -scene::view_direction(camera);
-    const math::Projection projection = scene::projection_of(camera, aspect);
-    const double x = projection.right * kFilled, y = projection.top * kFilled;  // tangents
-    // A point p is within the view's right side where p · (right + x back) is at most the eye's; the other
-    // sides alike.
+    const math::Projection view = scene::projection_of(camera, aspect);
+    const Span x =
+        filled({view.left + cover.left * view.width(), view.right - cover.right * view.width()}, kFilled);
+    const Span y =
+        filled({view.bottom + cover.bottom * view.height(), view.top - cover.top * view.height()}, kFilled);
+    // A point p is within the right side where p · (right + x back) is at most the eye's; the others alike.
     const auto reach = [&](const glm::dvec3& side) { return target.support(side) - glm::dot(side, middle); };
-    const double to_right = reach(x * back + right), to_left = reach(x * back - right);
-    const double to_top = reach(y * back + camera.up), to_bottom = reach(y * back - camera.up);
-    const double distance = std::max(
-        {(to_right + to_left) / (2 * x), (to_top + to_bottom) / (2 * y), reach(back) + kLeastDepth * radius});
+    const double to_right = reach(x.high * back + right), to_left = reach(-x.low * back - right);
+    const double to_top = reach(y.high * back + camera.up), to_bottom = reach(-y.low * back - camera.up);
+    const double distance =
+        std::max({(to_right + to_left) / (x.high - x.low), (to_top + to_bottom) / (y.high - y.low),
+                  reach(back) + kLeastDepth * radius});
+    // As far from one side as from the other.
+    const double across = (to_right - to_left - (x.high + x.low) * distance) / 2;
+    const double upwards = (to_top - to_bottom - (y.high + y.low) * distance) / 2;
     scene::Camera result = camera;
     result.center = middle;
-    result.focus = middle + right * ((to_right - to_left) / 2) + camera.up * ((to_top - to_bottom) / 2);
+    result.focus = middle + right * across + camera.up * upwards;
     result.eye = result.focus + back * distance;
     return result;
 }
 
-scene::Camera home_camera(const FitTarget& target, double aspect) {
+scene::Camera home_camera(const FitTarget& target, double aspect, const Cover& cover) {
     scene::Camera camera;
     camera.focus = {0, 0, 0};
     camera.eye = {1, 0.45, 1.25};
-    return fitted(scene::with_orthogonal_up(camera), target, aspect);
+    return fitted(scene::with_orthogonal_up(camera), target, aspect, cover);
 }
 
 scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright) {
@@ -98,6 +116,15 @@ scene::Camera rotated(const scene::Camera& camera, double right, double down, bo
     result.focus = camera.center + turn(camera.focus - camera.center);
     result.up = turn(camera.up);
     return if_valid(scene::with_orthogonal_up(result), camera);
+}
+
+scene::Camera looked_around(const scene::Camera& camera, double right, double down, bool keep_upright) {
+    scene::Camera result = camera;
+    result.center = camera.eye;  // the scene turns about it, the other way
+    result = rotated(result, right, down, keep_upright);
+    result.eye = camera.eye;
+    result.center = camera.center;
+    return result;
 }
 
 scene::Camera panned(const scene::Camera& camera, double right, double down, double depth) {

@@ -16,13 +16,19 @@ struct FitTarget {
 };
 FitTarget fit_target(const math::Bounds& box);
 
-/// The camera, looking along the same direction, from where the target just fits into a view of `aspect`: in
-/// its middle, with a margin of 8 % on all sides, and no nearer than a tenth of its box's radius. `focus`
-/// lies on the view's axis at the depth of the box's centre, which `center` is. An empty or pointlike target
-/// counts as a cube of side 2.
-scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect);
+/// What covers a view's sides, in parts of its width and height. The rest of it is free.
+struct Cover {
+    double left = 0, right = 0, top = 0, bottom = 0;
+};
+
+/// The camera, looking along the same direction, from where the target just fits into what is free of a view
+/// of `aspect`: in its middle, with a margin of 8 % on all sides, and no nearer than a tenth of its box's
+/// radius. `focus` lies on the view's axis at the depth of the box's centre, which `center` is. An empty or
+/// pointlike target counts as a cube of side 2.
+scene::Camera fitted(const scene::Camera& camera, const FitTarget& target, double aspect,
+                     const Cover& cover = {});
 /// The view of a scene without a camera node: three quarters from the front and above, fitted.
-scene::Camera home_camera(const FitTarget& target, double aspect);
+scene::Camera home_camera(const FitTarget& target, double aspect, const Cover& cover = {});
 
 // Camera moves. Each returns the camera bit-identical if the move is zero or its result is not finite.
 
@@ -30,6 +36,8 @@ scene::Camera home_camera(const FitTarget& target, double aspect);
 /// `keep_upright` about the scene's vertical, and `down` stops at the poles, so that the scene never stands
 /// on its head; else about the camera's own up.
 scene::Camera rotated(const scene::Camera& camera, double right, double down, bool keep_upright);
+/// The view turns by `right` and `down` degrees about the eye.
+scene::Camera looked_around(const scene::Camera& camera, double right, double down, bool keep_upright);
 /// The image moves right and down by fractions of the view's height in the plane at `depth`, or through
 /// `focus`.
 scene::Camera panned(const scene::Camera& camera, double right, double down, double depth);

@@ -101,6 +101,11 @@ std::optional<Click> Clicks::released(const Press& press, std::chrono::microseco
     return operation ? std::optional(Click{*operation, press.place.x, press.place.y}) : std::nullopt;
 }
 
+std::optional<glm::dvec2> Clicks::tap() const {
+    if (!last_ || (last_->device != Device::touch && last_->button != left_button)) return std::nullopt;
+    return last_->place;
+}
+
 bool Clicks::is_pressed(const std::string& client, std::int64_t pointer) const {
     return std::any_of(pressed_.begin(), pressed_.end(), [&](const Press& press) {
         return press.pointer == pointer && press.client == client;

@@ -48,6 +48,8 @@ public:
     /// Returns the click that `input` completes, if any.
     std::optional<Click> pointer(const PointerInput& input, const EventTime& when,
                                  NavigationStyle style = NavigationStyle::vrut);
+    /// Where the last release completed a click, by touch or the left button, that may become a double one.
+    std::optional<glm::dvec2> tap() const;
     void lift(const std::string& client);
     bool is_pressed(const std::string& client, std::int64_t pointer) const;
 

@@ -68,6 +68,10 @@ double span(const glm::dvec2& a, const glm::dvec2& b) { return std::max(glm::dis
 
 }  // namespace
 
+bool looks_around(const scene::Camera& camera, const NavigationContext& context) {
+    return context.looks_around_from && context.looks_around_from(camera.eye);
+}
+
 bool Gestures::is_pressed(const std::string& client, std::int64_t pointer) const {
     return std::any_of(pressed_.begin(), pressed_.end(),
                        [&](const Pressed& p) { return p.pointer == pointer && p.client == client; });
@@ -194,10 +198,17 @@ glm::dvec3 Gestures::point_at_start(const glm::dvec2& place, const NavigationCon
 }
 
 scene::Camera Gestures::turned(const Pressed& pressed, const NavigationContext& context) {
+    const glm::dvec2 moved = pressed.now - pressed.start;
     scene::Camera start = start_;
+    if (looks_around(start, context)) {
+        const double height = scene::projection_of(start, 1).height();
+        const glm::dvec2 degrees =
+            moved * (height * context.rotate_speed / (context.height * scene::kRadiansPerDegree));
+        return looked_around(start, -degrees.x, -degrees.y, context.keep_upright);
+    }
     if (context.turn_about_touched)
         start.center = surface_at_start(pressed.start, context).value_or(start_.center);
-    scene::Camera result = rotate_by(start, pressed.now - pressed.start, context);
+    scene::Camera result = rotate_by(start, moved, context);
     result.center = start_.center;
     return result;
 }
@@ -221,7 +232,7 @@ scene::Camera Gestures::dragged(const NavigationContext& context) {
         case DragOperation::pan:
             return pan_by(start_, moved, point_at_start(pressed.start, context), context);
         case DragOperation::zoom:
-            return zoom_by(start_, std::pow(4, -moved.y / context.height), start_.focus, context);
+            return zoom_by(start_, std::pow(kDragZoom, -moved.y / context.height), start_.focus, context);
         case DragOperation::none:
             break;
     }
@@ -229,12 +240,10 @@ scene::Camera Gestures::dragged(const NavigationContext& context) {
 }
 
 scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context) {
-    const double step = input.unit == WheelInput::Unit::pixel  ? 100.0
-                        : input.unit == WheelInput::Unit::line ? 3.0
-                                                               : 1.0 / 3;
+    const double step = kWheelSteps[static_cast<std::size_t>(input.unit)];
     const glm::dvec2 place(input.x, input.y);
     const glm::dvec3 point = surface_at(camera, place, context).value_or(point_at(camera, place, context));
-    return zoom_by(camera, std::pow(1.1, -input.delta_y / step), point, context);
+    return zoom_by(camera, std::pow(kWheelZoom, -input.delta_y / step), point, context);
 }
 
 }  // namespace vrut::navigation

@@ -51,13 +51,24 @@ struct NavigationContext {
     /// Empty: nothing is anywhere.
     std::function<std::optional<glm::dvec3>(const scene::Camera& camera, const glm::dvec2& place)>
         surface_at = {};
+    /// Returns whether drags look around from an eye, instead of turning the scene. Empty: from none.
+    std::function<bool(const glm::dvec3& eye)> looks_around_from = {};
 };
+
+bool looks_around(const scene::Camera& camera, const NavigationContext& context);
+
+/// A wheel's step away from the user divides the distance by it, and so does a zooming drag of the view's
+/// height upwards.
+inline constexpr double kWheelZoom = 1.1, kDragZoom = 4;
+/// What is one step of a wheel, by WheelInput::Unit.
+inline constexpr double kWheelSteps[] = {100, 3, 1.0 / 3};
 
 /// Drags by mouse, pen and touch as a pure function of the input. The camera is computed from the camera at
 /// the start of the drag and the pointers' positions since, so that dropped or coalesced moves give a
 /// bit-identical camera. What was touched at the start stays under the pointer, or between two fingers, while
-/// they pan and zoom; where nothing is, that is the point at the focus' depth. A move (`button` is -1) may be
-/// replaced by a later one of the same pointer with the same buttons if nothing else came between.
+/// they pan and zoom; where nothing is, that is the point at the focus' depth. A view that turns about its
+/// eye goes with the pointer in its middle. A move (`button` is -1) may be replaced by a later one of the
+/// same pointer with the same buttons if nothing else came between.
 class Gestures {
 public:
     struct HeldKey {
@@ -113,8 +124,7 @@ private:
     std::optional<std::optional<glm::dvec3>> surface_;  // at the start; none: not looked for yet
 };
 
-/// Returns the camera after a wheel event: a step (100 pixels, 3 lines, ⅓ page) away from the user divides
-/// the distance by 1.1. What lies under the pointer stays there, as in a drag.
+/// Returns the camera after a wheel event. What lies under the pointer stays there, as in a drag.
 scene::Camera wheel(const WheelInput& input, const scene::Camera& camera, const NavigationContext& context);
 
 }  // namespace vrut::navigation

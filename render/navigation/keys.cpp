@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string_view>
 
 #include "navigation/camera_moves.hpp"
 
@@ -38,7 +37,19 @@ const KeyRow kKeys[] = {
     {"Escape", Shift::any, {Kind::escape, {}}},
 };
 
+bool repeats(Kind kind) { return kind == Kind::rotate || kind == Kind::pan || kind == Kind::zoom; }
+
 }  // namespace
+
+std::vector<KeyName> key_names() {
+    std::vector<KeyName> names;
+    for (const KeyRow& row : kKeys)
+        if (std::none_of(names.begin(), names.end(),
+                         [&](const KeyName& name) { return name.key == row.key; }))
+            names.push_back({row.key, repeats(row.operation.kind)});
+    for (const char* digit : {"1", "2", "3"}) names.push_back({digit, false});
+    return names;
+}
 
 std::optional<KeyOperation> key_operation(const KeyInput& input) {
     const auto* row = std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeyRow& candidate) {
@@ -53,7 +64,8 @@ scene::Camera apply_key_operation(const KeyOperation& operation, const scene::Ca
     const glm::dvec2& by = operation.by;
     switch (operation.kind) {
         case Kind::rotate:
-            return rotated(camera, by.x, by.y, context.keep_upright);
+            return looks_around(camera, context) ? looked_around(camera, by.x, by.y, context.keep_upright)
+                                                 : rotated(camera, by.x, by.y, context.keep_upright);
         case Kind::pan:
             return panned(camera, by.x, by.y);
         case Kind::zoom:

@@ -3,6 +3,8 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "navigation/gestures.hpp"
 
@@ -16,6 +18,13 @@ struct KeyOperation {
     /// distance.
     glm::dvec2 by{0};
 };
+
+struct KeyName {
+    std::string_view key;  ///< `KeyboardEvent.key`
+    bool repeats = false;  ///< goes on while it is held
+};
+/// All keys with a meaning; the number keys of the navigation styles come last.
+std::vector<KeyName> key_names();
 
 /// Returns none for keys without a binding. All key names are here, except the number keys of the navigation
 /// styles.

@@ -76,6 +76,14 @@ unsigned button_mask(int button) {
     }
 }
 
+std::vector<PlainDrag> plain_drags() {
+    std::vector<PlainDrag> drags;
+    for (const DragRow& row : kDragRows)
+        if (!row.alt && row.number == 0 && row.chord == Chord::last)
+            drags.push_back({row.style, button_mask(row.button), row.operation});
+    return drags;
+}
+
 DragOperation drag_operation(NavigationStyle style, const Grip& grip) {
     const auto* row = std::find_if(std::begin(kDragRows), std::end(kDragRows), [&](const DragRow& candidate) {
         return candidate.style == style && (!candidate.alt || grip.modifiers.alt) &&

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace vrut::navigation {
 
 /// The program whose mouse bindings are used. Touch and wheel are the same in all styles.
@@ -26,6 +28,13 @@ struct Grip {
     int number = 0;  ///< the number key held, the newest of several; 0 none
 };
 
+/// A drag that needs no key, by a single button.
+struct PlainDrag {
+    NavigationStyle style = NavigationStyle::vrut;
+    unsigned buttons = 0;  ///< as `PointerEvent.buttons`
+    DragOperation operation = DragOperation::none;
+};
+std::vector<PlainDrag> plain_drags();
 /// Returns the operation of a drag.
 DragOperation drag_operation(NavigationStyle style, const Grip& grip);
 /// Returns true if, with these keys held, a press starts a drag and never a click.

@@ -107,6 +107,16 @@ std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node) {
     return with_orthogonal_up(camera);
 }
 
+bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye) {
+    for (const Index node : placed.scene->looking_cameras()) {
+        const double radius =
+            std::get<CameraData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data).look_radius;
+        const std::optional<Camera> camera = camera_at(placed, node);
+        if (camera && glm::distance(camera->eye, eye) <= radius) return true;
+    }
+    return false;
+}
+
 Index first_camera_node(const PlacedScene& placed) {
     const auto& nodes = placed.scene->nodes();
     std::size_t first = nodes.size();

@@ -57,6 +57,8 @@ glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dve
 
 /// Returns the present pose of a camera node in world space; none if it is not valid (is_valid_pose).
 std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
+/// Returns whether `eye` is where drags look around (CameraData::look_radius).
+bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye);
 /// Returns the scene's initial camera: the camera node with the lowest id if there is one and its pose is
 /// valid; else kNone.
 Index first_camera_node(const PlacedScene& placed);

@@ -134,6 +134,22 @@ std::vector<std::optional<math::Plane>> fitted_planes(const std::vector<Geometry
     return planes;
 }
 
+/// Of the nodes' children.
+void link_parents(std::vector<Node>& nodes) {
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        for (const Index child : nodes[i].children)
+            nodes[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
+}
+
+std::vector<Index> looking_cameras_of(const std::vector<Node>& nodes) {
+    std::vector<Index> looking;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const auto* camera = std::get_if<CameraData>(&nodes[i].data);
+        if (camera && camera->look_radius > 0) looking.push_back(static_cast<Index>(i));
+    }
+    return looking;
+}
+
 /// For each node whether it or one above it is marked; parents come before their children.
 std::vector<bool> presentation_of(const std::vector<Node>& nodes) {
     std::vector<bool> marked;
@@ -197,10 +213,9 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
         scene.index_by_id_.emplace_back(node.id, static_cast<Index>(scene.nodes_.size() - 1));
     }
     std::sort(scene.index_by_id_.begin(), scene.index_by_id_.end());
-    for (std::size_t i = 0; i < scene.nodes_.size(); ++i)
-        for (Index child : scene.nodes_[i].children)
-            scene.nodes_[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
+    link_parents(scene.nodes_);
     scene.is_presentation_ = presentation_of(scene.nodes_);
+    scene.looking_cameras_ = looking_cameras_of(scene.nodes_);
     scene.extents_ = extents_of(scene);
     return scene;
 }

@@ -73,6 +73,8 @@ struct GeometryData {
 struct CameraData {
     glm::dvec3 eye{0, 0, 0}, focus{0, 0, -1}, up{0, 1, 0};
     double fov = 40;
+    /// Within this distance from its eye, in world space, drags look around; 0: nowhere.
+    double look_radius = 0;
 };
 
 struct LightData {
@@ -188,6 +190,8 @@ public:
     bool is_mirror(const Material& material, Index geometry) const;
     /// Returns true if the node or one above it is marked as presentation.
     bool is_presentation(Index node) const { return is_presentation_[static_cast<std::size_t>(node)]; }
+    /// Camera nodes with a CameraData::look_radius.
+    const std::vector<Index>& looking_cameras() const { return looking_cameras_; }
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;
@@ -205,6 +209,7 @@ private:
     std::vector<double> extents_;  // of geometries, in metres
     std::vector<Node> nodes_;
     std::vector<bool> is_presentation_;  // one for each node
+    std::vector<Index> looking_cameras_;
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;
 };

@@ -57,7 +57,7 @@ def lights(car, group):
 def cameras(car, group):
     """The first is where a viewer starts."""
     car.node("camera", "Outside", group, eye=[4.2, 1.5, 4.9], focus=[0.02, 0.64, 0.12], fov=28)
-    car.node("camera", "Driver's seat", group, eye=[0.36, 1.17, -0.20], focus=[0.29, 1.0, 0.8], fov=65)
+    car.node("camera", "Driver's seat", group, eye=[0.36, 1.17, -0.20], focus=[0.29, 1.0, 0.8], fov=65, look=0.6)
 
 
 def backgrounds(car, group):

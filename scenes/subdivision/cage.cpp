@@ -434,6 +434,7 @@ private:
                 members.read("focus", camera.focus);
                 members.read("up", camera.up);
                 members.read("fov", camera.fov, {1, 170});
+                members.read("look", camera.look_radius, {0, 1e6});
                 break;
             }
             case scene::NodeType::background:

@@ -56,7 +56,7 @@ void print(const protocol::SceneState& scene, const std::vector<protocol::NodeRe
               << "bounds " << scene.bounds.min.x << " " << scene.bounds.min.y << " " << scene.bounds.min.z
               << " to " << scene.bounds.max.x << " " << scene.bounds.max.y << " " << scene.bounds.max.z
               << "\n";
-    for (const std::string& notice : scene.notices) std::cout << "notice: " << notice << "\n";
+    for (const protocol::Notice& notice : scene.notices) std::cout << "notice: " << notice.message << "\n";
     for (const protocol::NodeReport& node : nodes) {
         // Deep trees keep to the width of a terminal.
         std::cout << std::string(static_cast<std::size_t>(std::min(node.depth, 30)) * 2, ' ') << node.id

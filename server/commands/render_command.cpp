@@ -63,7 +63,8 @@ plan::View view_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name));
     if (!scene) throw std::runtime_error(scene.error());
-    for (const std::string& notice : scene->notices) observe::log_warning("notice", {{"text", notice}});
+    for (const protocol::Notice& notice : scene->notices)
+        observe::log_warning("notice", {{"text", notice.message}});
     room::Room room(*std::move(scene));
     room.join("render", protocol::Role::control, room::SessionTime(0));
     const protocol::Resize size{static_cast<double>(arguments.width), static_cast<double>(arguments.height),

@@ -91,8 +91,8 @@ void serve_command(const ServeArguments& arguments) {
     scene->changes = scenes::stored_changes(scene->sha256);
     options.keep_changes = scenes::store_changes;
     const scene::Scene& read = *scene->placed->scene;
-    for (const std::string& notice : scene->notices)
-        observe::log_warning("notice", {{"scene", name}, {"text", notice}});
+    for (const protocol::Notice& notice : scene->notices)
+        observe::log_warning("notice", {{"scene", name}, {"text", notice.message}});
     observe::log_info(
         "scene_read",
         {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});

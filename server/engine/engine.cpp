@@ -78,7 +78,9 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
                   {}),
       change_keeper_(
           std::move(options.keep_changes), file_results_,
-          [this](const std::string& why) { notice("Views, markers and parts cannot be kept: " + why); }),
+          [this](const std::string& why) {
+              notice({protocol::notice_code::not_kept, "Views, markers and parts cannot be kept: " + why});
+          }),
       encoder_(
           metrics,
           [this](std::shared_ptr<const EncodedPicture> picture) {
@@ -144,7 +146,9 @@ Engine::~Engine() {
 scenes::LoadedScene Engine::prepared(scenes::LoadedScene scene) const {
     scene.picking_trees = std::make_shared<const mesh::PickingTrees>(scene.placed->scene);
     if (renderer_.software)
-        scene.notices.push_back("Drawn in software, without a graphics card: expect fewer pictures a second");
+        scene.notices.push_back(
+            {protocol::notice_code::software,
+             "Drawn in software, without a graphics card: expect fewer pictures a second"});
     return scene;
 }
 
@@ -191,7 +195,7 @@ void Engine::run() {
 
 void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(earlier(until, stats_.due()), files_due());
-    if (room_->flies()) until = earlier(until, base::Clock::now() + kFlightStep);
+    if (room_->moves()) until = earlier(until, base::Clock::now() + kFlightStep);
     if (const auto deadline = room_->deadline()) until = earlier(until, start_ + *deadline);
     if (!waiting_.empty() || (arrived_ && !renewal_)) until = base::Clock::now();
     watchdog_.idle();
@@ -254,7 +258,7 @@ void Engine::advance_room() {
     const base::Clock::time_point now = base::Clock::now();
     const auto deadline = room_->deadline();
     // Else what waits would count as later than it arrived.
-    if (!room_->flies() && !(deadline && *deadline <= time_of(now))) return;
+    if (!room_->moves() && !(deadline && *deadline <= time_of(now))) return;
     last_change_ = now;
     room_->advance(time_of(now));
 }
@@ -317,7 +321,7 @@ void Engine::handle(const PictureFailed& failed) {
     if (picture.header.frame != newest_.frame) return;  // a newer one may do better
     failed_ = Failed{newest_.visible, newest_.view_size};
     newest_ = before_newest_;
-    notice("What is to be seen now cannot be encoded: " + failed.why);
+    notice({protocol::notice_code::not_encoded, "What is to be seen now cannot be encoded: " + failed.why});
 }
 
 /// The first frame of a scene is not kept waiting by coarser surfaces that are made for later ones.

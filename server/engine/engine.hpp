@@ -220,7 +220,7 @@ private:
     void reject(const Snapshot& snapshot, const std::string& sentence);
     void reject(const std::string& client, std::optional<std::int64_t> id, const std::string& sentence);
     /// Tells all clients; the log, too.
-    void notice(const std::string& sentence);
+    void notice(const protocol::Notice& notice);
     void use(const protocol::LevelTable& table);
     void make_detail_levels();
     bool has_slow_link() const;

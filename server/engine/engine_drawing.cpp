@@ -229,7 +229,8 @@ void Engine::draw_frame() {
     } catch (const std::exception& error) {
         failed_ = Failed{frame_->visible, frame_->view_size};
         frame_.reset();
-        notice(std::string("What is to be seen now cannot be drawn: ") + error.what());
+        notice({protocol::notice_code::not_drawn,
+                std::string("What is to be seen now cannot be drawn: ") + error.what()});
     }
 }
 

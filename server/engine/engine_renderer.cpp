@@ -57,7 +57,8 @@ void Engine::renew_renderer() {
         return lose_renderer(error.what());
     }
     renewal_.reset();
-    notice("The graphics driver had to be started again; drawing goes on with " + renderer_.description);
+    notice({protocol::notice_code::driver_restarted,
+            "The graphics driver had to be started again; drawing goes on with " + renderer_.description});
 }
 
 /// Uploads one step of the scene that has arrived, and shows it once all is there: until then frames of the
@@ -114,10 +115,10 @@ void Engine::draw_smaller(const Failed& what, const PictureSize& size, const std
                          {{"width", size.width}, {"height", size.height}, {"reason", why}});
     if (pixels >= kFewestPixels) {
         pixel_budget_.max_pixels = pixels;
-        return notice("Memory is short: pictures are drawn smaller");
+        return notice({protocol::notice_code::smaller, "Memory is short: pictures are drawn smaller"});
     }
     failed_ = what;
-    notice("Memory is short: what is to be seen now cannot be drawn");
+    notice({protocol::notice_code::no_memory, "Memory is short: what is to be seen now cannot be drawn"});
 }
 
 bool Engine::has_failed() const {
@@ -138,9 +139,9 @@ void Engine::reject(const std::string& client, std::optional<std::int64_t> id, c
     }
 }
 
-void Engine::notice(const std::string& sentence) {
-    observe::log_warning("notice", {{"text", sentence}});
-    room_->notice(sentence);
+void Engine::notice(const protocol::Notice& notice) {
+    observe::log_warning("notice", {{"code", notice.code}, {"text", notice.message}});
+    room_->notice(notice);
 }
 
 }  // namespace vrut::server::engine

@@ -8,6 +8,7 @@
 #include "codec.hpp"
 #include "engine/images.hpp"
 #include "observe/log.hpp"
+#include "room/input_rules.hpp"
 
 namespace vrut::server::net {
 
@@ -257,6 +258,7 @@ void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64
     welcome.role = *role;
     welcome.limits.max_pixels = registry_.engine->limits().max_pixels;
     welcome.limits.messages_per_second = kMessagesPerSecond;
+    welcome.input = room::input_rules();
     answer({client_, protocol::encode(welcome), 0});
 }
 

@@ -197,13 +197,18 @@ void Room::scenes_listed(std::int64_t request, std::vector<std::string> names) {
 
 void Room::advance(SessionTime at) {
     time_ = std::max(time_, at);
-    if (deadline() && !options_.replaying && *deadline() <= time_) {
+    if (const auto due = steering_.deadline(); due && !options_.replaying && *due <= time_) {
         document();
         changing_.clear();
         steering_.advance(time_);
         show_holder();
         record_holder();
     }
+    if (tap_ && tap_->due <= time_) {
+        const Tap tap = *std::exchange(tap_, std::nullopt);
+        begin_swing(tap.node, {}, protocol::Swing{}.ms, tap.due);
+    }
+    advance_swings();
     if (!flight_) return;
     if (!changing_.empty()) document();
     changing_.clear();  // what flies is nobody's doing
@@ -225,10 +230,12 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     document();
     changing_.clear();
     end_flight(false);
+    swings_.clear();
+    tap_.reset();
     record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
-    starting_ = starting_state(loaded_, aspect());
+    starting_ = starting_state(loaded_, aspect(), cover());
     protocol::State next = starting_;
     next.navigation = state_.navigation;
     next.renderer.mode = state_.renderer.mode;
@@ -249,20 +256,21 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
 void Room::lay_changes() {
     if (loaded_.changes.empty()) return;
     if (const auto error = use_changes())
-        add_notice("What was kept of " + loaded_.name + " cannot be used: " + error->message);
+        add_notice({protocol::notice_code::unusable_changes,
+                    "What was kept of " + loaded_.name + " cannot be used: " + error->message});
 }
 
 std::string Room::changes() const { return protocol::kept_changes(starting_, state_); }
 
-void Room::notice(const std::string& sentence) {
+void Room::notice(const protocol::Notice& notice) {
     document();
     changing_.clear();  // the server's doing
-    add_notice(sentence);
+    add_notice(notice);
 }
 
-void Room::add_notice(const std::string& sentence) {
-    std::erase(state_.notices, sentence);
-    state_.notices.push_back(sentence);
+void Room::add_notice(const protocol::Notice& notice) {
+    std::erase(state_.notices, notice);
+    state_.notices.push_back(notice);
     if (state_.notices.size() > protocol::kMaxNotices) state_.notices.erase(state_.notices.begin());
 }
 
@@ -397,7 +405,9 @@ void Room::reject_not_in_control(const Received& received) {
 void Room::steer(const Received& received) {
     accepted_ = true;
     const auto& payload = received.message.payload;
-    if (!std::holds_alternative<protocol::Record>(payload)) end_flight(false);
+    const bool is_beside_flights =
+        std::holds_alternative<protocol::Record>(payload) || std::holds_alternative<protocol::Swing>(payload);
+    if (!is_beside_flights) end_flight(false);
     if (clients_[received.client].role == Role::host) return;
     steering_.steer(time_);
     if (!options_.replaying) return;
@@ -414,6 +424,7 @@ void Room::show_holder() {
             gestures_.lift(*control.holder, camera());
             clicks_.lift(*control.holder);
         }
+        tap_.reset();
         control.holder = steering_.holder();
         control.name = control.holder ? shown_name(*control.holder) : std::nullopt;
         if (!size_waits_) use_holders_size();
@@ -436,9 +447,13 @@ void Room::use_holders_size() {
     size_waits_ = false;
     const auto holder = state_.control.holder ? clients_.find(*state_.control.holder) : clients_.end();
     if (holder == clients_.end() || !holder->second.wanted || *holder->second.wanted == view_size_) return;
-    view_size_ = *holder->second.wanted;
-    if (at_home_) {
-        const protocol::ViewState home = home_view(*scene_, aspect(), loaded_.picking_trees.get());
+    const protocol::Resize before = std::exchange(view_size_, *holder->second.wanted);
+    protocol::Resize same_size = before;
+    same_size.inset = view_size_.inset;
+    // What opens above the picture later does not move it.
+    const bool fits_anew = same_size != view_size_ || before.inset == protocol::Inset{};
+    if (at_home_ && fits_anew) {
+        const protocol::ViewState home = home_view(*scene_, aspect(), cover(), loaded_.picking_trees.get());
         for (protocol::State* state : {&starting_, &state_}) {
             state->views.set("home", home);
             state->camera = state_of(camera_of(home), scene_->bounds);
@@ -467,7 +482,25 @@ navigation::NavigationContext Room::navigation_context() const {
         const std::optional<mesh::Hit> hit = hit_at(seen, place.x, place.y, false);
         return hit ? std::optional(hit->point) : std::nullopt;
     };
+    context.looks_around_from = [this](const glm::dvec3& eye) {
+        return scene::looks_around_from(*scene_, eye);
+    };
     return context;
+}
+
+navigation::Cover Room::cover() const {
+    constexpr double kMost = 0.7;  // else nothing useful is left
+    const protocol::Inset& inset = view_size_.inset;
+    navigation::Cover cover;
+    if (inset.left + inset.right <= kMost * view_size_.width) {
+        cover.left = inset.left / view_size_.width;
+        cover.right = inset.right / view_size_.width;
+    }
+    if (inset.top + inset.bottom <= kMost * view_size_.height) {
+        cover.top = inset.top / view_size_.height;
+        cover.bottom = inset.bottom / view_size_.height;
+    }
+    return cover;
 }
 
 void Room::drag_camera(const scene::Camera& moved) {

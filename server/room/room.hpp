@@ -75,16 +75,16 @@ public:
     /// Any message but `hello` and `frame`. Some are answered later, when a disk has answered. What is
     /// rejected changes nothing, and not who steers either; then false comes back.
     bool handle_message(const std::string& client, const protocol::ClientMessage& message, SessionTime at);
-    /// A flight goes on to where it is then; control passes on from who has been gone too long.
+    /// What moves goes on to where it is then; control passes on from who has been gone too long.
     void advance(SessionTime at);
-    /// When advance() has to be called at the latest, but for flights; none: never.
-    std::optional<SessionTime> deadline() const { return steering_.deadline(); }
+    /// When advance() has to be called at the latest, but while something moves; none: never.
+    std::optional<SessionTime> deadline() const;
     /// For replays: `client` holds control from then on; empty: nobody.
     void pass_control(const std::string& client, SessionTime at);
     /// Shows another scene from here on; control, navigation, drawing mode and quality stay.
     void show(scenes::LoadedScene scene, SessionTime at);
     /// Tells all clients what has gone wrong in the server, until newer notices take its place.
-    void notice(const std::string& sentence);
+    void notice(const protocol::Notice& notice);
     /// Loading has begun, or why not; once for each call of RoomOptions::load.
     void load_answered(std::int64_t request, const std::optional<protocol::Error>& rejection, SessionTime at);
     /// Once for each call of RoomOptions::scenes.
@@ -107,6 +107,8 @@ public:
     /// What is to be seen, but for size and samples.
     const plan::View& visible() const { return visible_; }
     bool flies() const { return flight_.has_value(); }
+    /// The camera flies, or something turns about its hinge.
+    bool moves() const { return flies() || !swings_.empty(); }
     const std::optional<std::string>& holder() const { return steering_.holder(); }
     /// As others see it: with a number where another client has the same name. Empty where it has none.
     const std::string& client_name(const std::string& client) const;
@@ -155,6 +157,20 @@ private:
         protocol::Fly asked;
     };
 
+    /// A node that turns about its hinge.
+    struct InSwing {
+        scene::Index node = scene::kNone;
+        double from = 0, to = 1;  ///< parts of the hinge's degrees
+        SessionTime start{0};
+        double ms = 0;
+        double part_at(SessionTime time) const;
+    };
+    /// It may still become a double one.
+    struct Tap {
+        scene::Index node = scene::kNone;  ///< with a hinge
+        SessionTime due{0};
+    };
+
     void apply(const Received& received, const protocol::Hello& hello);
     void apply(const Received& received, const protocol::FrameGrant& grant);
     void apply(const Received& received, const protocol::Resize& resize);
@@ -163,6 +179,7 @@ private:
     void apply(const Received& received, const protocol::Key& key);
     void apply(const Received& received, const protocol::Navigate& navigate);
     void apply(const Received& received, const protocol::Fit& fit);
+    void apply(const Received& received, const protocol::Swing& swing);
     void apply(const Received& received, const protocol::Patch& patch);
     void apply(const Received& received, const protocol::Pick& pick);
     void apply(const Received& received, const protocol::Snapshot& snapshot);
@@ -239,6 +256,19 @@ private:
     };
     Path path_of(scene::Index node) const;
 
+    // --- hinges
+    /// The node or the innermost above it that has a hinge; kNone where none has.
+    scene::Index hinged(scene::Index node) const;
+    /// `open`: how far, from 0 to 1; none: closed, or else open.
+    void begin_swing(scene::Index node, std::optional<double> open, double ms, SessionTime start);
+    void advance_swings();
+    std::map<std::string, protocol::SwingState> swing_states() const;
+    /// At once.
+    void end_swings();
+    /// Of nodes to which a patch gives another matrix.
+    void end_swings_of(protocol::State& next);
+    void use_tap(const std::optional<mesh::Hit>& hit, SessionTime at);
+
     // --- patches
     /// Lays what is kept of the scene over what its file says. Where it cannot be used, nothing of it counts,
     /// and a notice says so.
@@ -247,7 +277,7 @@ private:
     std::optional<protocol::Error> use_nodes(protocol::State& next,
                                              std::shared_ptr<const scene::PlacedScene>& placed);
     std::optional<protocol::Error> use_camera(protocol::State& next, const scene::PlacedScene& placed,
-                                              const nlohmann::json& patch);
+                                              const protocol::NamedCameraMembers& named);
     std::optional<protocol::Error> use_views(protocol::State& next, const scene::PlacedScene& placed) const;
     std::optional<protocol::Error> check_names(const protocol::State& next) const;
 
@@ -263,6 +293,8 @@ private:
     // --- the camera
     scene::Camera camera() const { return camera_of(state_.camera); }
     double aspect() const { return view_size_.width / view_size_.height; }
+    /// What is fitted avoids it.
+    navigation::Cover cover() const;
     navigation::NavigationContext navigation_context() const;
     /// From a drag: it goes on from where it began.
     void drag_camera(const scene::Camera& camera);
@@ -270,7 +302,7 @@ private:
     void move_camera(const scene::Camera& camera);
     void fit_selection();
     void end_flight(bool completed);
-    void add_notice(const std::string& sentence);
+    void add_notice(const protocol::Notice& notice);
 
     RoomOptions options_;
     scenes::LoadedScene loaded_;
@@ -288,6 +320,8 @@ private:
     navigation::Gestures gestures_;
     navigation::Clicks clicks_;
     std::optional<InFlight> flight_;
+    std::vector<InSwing> swings_;
+    std::optional<Tap> tap_;
     SessionTime time_{0};    ///< of what happens now
     bool accepted_ = false;  ///< the message in hand
     /// Who holds control by the lines of a log up to here, and whether that client is absent.

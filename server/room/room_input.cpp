@@ -41,15 +41,20 @@ void Room::apply(const Received& received, const protocol::Pointer& pointer) {
                        clicks_.is_pressed(received.client, pointer.pointer_id);
     if (!known || !may_steer(received)) return;
     steer(received);
+    if (press) tap_.reset();
     const navigation::PointerInput input = input_of(received.client, pointer);
     const navigation::NavigationContext context = navigation_context();
     drag_camera(gestures_.pointer(input, camera(), context));
-    if (const std::optional<navigation::Click> click =
-            clicks_.pointer(input, {pointer.time_stamp, time_}, context.style)) {
-        const Frame* seen = pointer.frame ? find_frame(*pointer.frame) : nullptr;
-        if (!seen && !frames_.empty()) seen = &frames_.back();  // not told, or long forgotten
-        apply(click->operation, hit_at(seen ? *seen : present(), click->x, click->y, false));
-    }
+    const auto click = clicks_.pointer(input, {pointer.time_stamp, time_}, context.style);
+    const bool taps = state_.navigation.tap_swings && pointer.event == protocol::Pointer::Event::up;
+    const auto tap = taps ? clicks_.tap() : std::nullopt;
+    if (!click && !tap) return;
+    const Frame* seen = pointer.frame ? find_frame(*pointer.frame) : nullptr;
+    if (!seen && !frames_.empty()) seen = &frames_.back();  // not told, or long forgotten
+    const glm::dvec2 place = click ? glm::dvec2(click->x, click->y) : *tap;
+    const std::optional<mesh::Hit> hit = hit_at(seen ? *seen : present(), place.x, place.y, false);
+    if (click) return apply(click->operation, hit);
+    use_tap(hit, time_);
 }
 
 void Room::apply(const Received& received, const protocol::Wheel& wheel) {
@@ -87,7 +92,7 @@ void Room::fit_selection() {
     const scene::Index node = selected();
     navigation::FitTarget target = fit_target(*scene_, node == scene::kNone ? 0 : node, trees);
     if (target.box.empty()) target = fit_target(*scene_, 0, trees);
-    move_camera(navigation::fitted(camera(), target, aspect()));
+    move_camera(navigation::fitted(camera(), target, aspect(), cover()));
 }
 
 void Room::apply(const Received& received, const protocol::Pick& pick) {
@@ -158,7 +163,9 @@ void Room::select(scene::Index node) {
     if (node == scene::kNone) return;
     const scene::Node& selected = scene_->scene->nodes()[static_cast<std::size_t>(node)];
     const auto [names, ids] = path_of(node);
-    state_.selection = {selected.id, selected.name, names, ids};
+    state_.selection = {selected.id, selected.name, names, ids, {}};
+    if (const scene::Index turns = hinged(node); turns != scene::kNone)
+        state_.selection.hinge = scene_->scene->nodes()[static_cast<std::size_t>(turns)].id;
 }
 
 Room::Path Room::path_of(scene::Index index) const {

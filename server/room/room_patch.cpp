@@ -24,7 +24,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (!next) return reject(received, next.error().code.c_str(), next.error().message);
     std::shared_ptr<const scene::PlacedScene> placed = scene_;
     auto error = use_nodes(*next, placed);
-    if (!error) error = use_camera(*next, *placed, *patch.patch);
+    if (!error) error = use_camera(*next, *placed, protocol::named_camera_members(*patch.patch));
     if (!error) error = use_views(*next, *placed);
     if (!error) error = check_names(*next);
     if (error) return reject(received, error->code.c_str(), error->message);
@@ -36,6 +36,7 @@ void Room::apply(const Received& received, const protocol::Patch& patch) {
     if (at_home_) next->camera = state_of(camera(), placed->bounds);
     if (next->views->at("home") == home) next->views.set("home", state_.views->at("home"));
     next->control = state_.control;
+    end_swings_of(*next);
     state_ = *std::move(next);
     scene_ = std::move(placed);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
@@ -83,8 +84,7 @@ std::optional<Error> Room::use_nodes(protocol::State& next,
 /// The camera node that is named first, what else is named over it. A camera that stands at a node goes on
 /// to where that is moved.
 std::optional<Error> Room::use_camera(protocol::State& next, const scene::PlacedScene& placed,
-                                      const nlohmann::json& patch) {
-    const protocol::NamedCameraMembers named = protocol::named_camera_members(patch);
+                                      const protocol::NamedCameraMembers& named) {
     const bool pose_named = named.eye || named.focus || named.up || named.center || named.fov;
     const auto given = [](bool is_named, const auto& value) {
         return is_named ? std::optional(value) : std::nullopt;

@@ -31,6 +31,8 @@ void Room::start_recording(const Received& received, const std::string& name) {
                       active->name.empty() ? "a recording is being begun already"
                                            : "a recording is going on: '" + active->name + "'");
     steer(received);
+    end_swings();  // a log's header knows nothing of them
+    tap_.reset();
     options_.recordings->begin(++newest_recording_, name, log_header());
     recordings_[newest_recording_] = {time_, {}, {received.client, received.message}};
     press_anew(received.client);
@@ -75,7 +77,7 @@ void Room::recording_ended(std::int64_t recording, const std::optional<std::stri
     const std::string& name = found.mapped().name;
     const auto& stop = found.mapped().stop;
     if (why) {
-        notice("The recording '" + name + "' has ended: " + *why);
+        notice({protocol::notice_code::recording_ended, "The recording '" + name + "' has ended: " + *why});
         if (!stop) state_.recording.reset();
     }
     if (!stop || !is_here(*stop)) return;

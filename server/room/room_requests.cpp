@@ -40,7 +40,7 @@ void Room::apply(const Received& received, const protocol::Fit& fit) {
     if (fit.node && target.box.empty())
         return reject(received, code::failed, "nothing of " + name + " is to be seen");
     steer(received);
-    move_camera(navigation::fitted(camera(), target, aspect()));
+    move_camera(navigation::fitted(camera(), target, aspect(), cover()));
     answer(received);
 }
 

@@ -133,7 +133,8 @@ std::optional<Error> apply(protocol::NodeOverride& change, const scene::Scene& s
 
 }  // namespace
 
-protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect) {
+protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
+                               const navigation::Cover& cover) {
     protocol::State state;
     const scene::PlacedScene& placed = *loaded.placed;
     const scene::Scene& scene = *placed.scene;
@@ -149,7 +150,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect)
                              .notices = loaded.notices});
     state.cameras = camera_names(scene);
     state.materials = material_names(scene);
-    state.views.set("home", home_view(placed, aspect, loaded.picking_trees.get()));
+    state.views.set("home", home_view(placed, aspect, cover, loaded.picking_trees.get()));
     const scene::Index node = scene::first_camera_node(placed);
     state.camera = node != scene::kNone ? state_at_node(*scene::camera_at(placed, node), placed, node)
                                         : state_of(camera_of(state.views->at("home")), placed.bounds);
@@ -166,12 +167,12 @@ void count_classes(protocol::State& state, const scene::PlacedScene& placed) {
     state.renderer.reflective = counts.reflective;
 }
 
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect,
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
                               const mesh::PickingTrees* trees) {
     const scene::Index node = scene::first_camera_node(placed);
     return view_state_of(node != scene::kNone
                              ? *scene::camera_at(placed, node)
-                             : navigation::home_camera(fit_target(placed, 0, trees), aspect));
+                             : navigation::home_camera(fit_target(placed, 0, trees), aspect, cover));
 }
 
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,

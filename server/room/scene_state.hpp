@@ -13,10 +13,11 @@
 namespace vrut::server::room {
 
 /// The state of a scene as its file says, its camera at home for a view of `aspect`.
-protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect);
+protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
+                               const navigation::Cover& cover = {});
 /// The view with which a scene opens: its first camera node's, or else the scene fitted to the view. `trees`
 /// change the time that it takes; null: none.
-protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect,
+protocol::ViewState home_view(const scene::PlacedScene& placed, double aspect, const navigation::Cover& cover,
                               const mesh::PickingTrees* trees);
 /// What is shown at and below a node, less what presents it.
 navigation::FitTarget fit_target(const scene::PlacedScene& placed, scene::Index node,

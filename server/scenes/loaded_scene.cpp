@@ -6,16 +6,18 @@
 
 namespace vrut::server::scenes {
 
-std::vector<std::string> all_notices(const scene::Scene& scene) {
-    std::vector<std::string> notices = scene.notices();
-    for (std::string& notice : plan::unsupported_features(scene)) notices.push_back(std::move(notice));
+std::vector<protocol::Notice> all_notices(const scene::Scene& scene) {
+    std::vector<protocol::Notice> notices;
+    for (const auto& sentences : {scene.notices(), plan::unsupported_features(scene)})
+        for (const std::string& sentence : sentences)
+            notices.push_back({protocol::notice_code::scene, sentence});
     return notices;
 }
 
 namespace {
 
 // The state names these by their ids, a number has at most 24 characters, a colour has four.
-constexpr std::size_t kNameBytes = 40, kLightBytes = 300, kBackgroundBytes = 180;
+constexpr std::size_t kNameBytes = 40, kLightBytes = 300, kBackgroundBytes = 180, kNoticeBytes = 40;
 
 std::size_t json_bytes(std::string_view text) {
     std::size_t bytes = 2;  // quotation marks
@@ -41,7 +43,7 @@ std::size_t most_state_bytes(const LoadedScene& loaded) {
     std::size_t bytes = 0;
     for (const scene::Node& node : scene.nodes()) bytes += bytes_of(node, scene);
     for (const scene::Material& material : scene.materials()) bytes += kNameBytes + json_bytes(material.name);
-    for (const std::string& notice : loaded.notices) bytes += json_bytes(notice) + 1;
+    for (const protocol::Notice& notice : loaded.notices) bytes += kNoticeBytes + json_bytes(notice.message);
     return bytes;
 }
 

@@ -16,14 +16,14 @@ struct LoadedScene {
     std::string name;    ///< by which it was asked for
     std::string sha256;  ///< of its file, in hexadecimal
     std::shared_ptr<const scene::PlacedScene> placed;
-    std::vector<std::string> notices;
+    std::vector<protocol::Notice> notices;
     /// A patch of the state that is laid over what the file says (stored_changes()); empty: none.
     std::string changes = {};
     std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
 };
 
 /// What the reader reported about a scene, and which of its features are not drawn.
-std::vector<std::string> all_notices(const scene::Scene& scene);
+std::vector<protocol::Notice> all_notices(const scene::Scene& scene);
 
 /// An upper bound of the bytes that cameras, lights, materials, backgrounds and notices take in `state`.
 std::size_t most_state_bytes(const LoadedScene& scene);

@@ -68,8 +68,9 @@ struct Running {
 };
 
 std::size_t notices_about(const Json& state, const std::string& what) {
-    const auto notices = state["notices"].get<std::vector<std::string>>();
-    return static_cast<std::size_t>(std::count_if(notices.begin(), notices.end(), [&](const auto& notice) {
+    const auto& notices = state["notices"];
+    return static_cast<std::size_t>(std::count_if(notices.begin(), notices.end(), [&](const auto& entry) {
+        const auto notice = entry["message"].template get<std::string>();
         return notice.find(what) != std::string::npos;
     }));
 }

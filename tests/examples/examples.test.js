@@ -143,7 +143,7 @@ function png(name) {
 
 test('each script tells its usage', async () => {
   assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
-  assert.match(await succeeds(python('door.py', '--help')), /--angle/);
+  assert.match(await succeeds(python('door.py', '--help')), /--open/);
   assert.match(await succeeds(snapshot('--help')), /--camera/);
   assert.match(await succeeds(picture('--help')), /VRUT_PREVIEW_TOKEN/);
   assert.match(await succeeds(run(VRUT_EXAMPLE_HOST, ['--help'])), /--lead/);
@@ -226,7 +226,7 @@ test('door.py opens a door about its own hinge, and closes it', async () => {
   // The closed door has no rotation: open, it has that of -65°, cos 0.42261826, sin -0.90630779.
   const expected = [...closed];
   [expected[0], expected[2], expected[8], expected[10]] = [0.42261826, -0.90630779, 0.90630779, 0.42261826];
-  expected.forEach((value, i) => assert.ok(Math.abs(matrices.at(-1)[i] - value) < 1e-7, `${matrices.at(-1)}`));
+  assert.ok(matrices.some((matrix) => expected.every((value, i) => Math.abs(matrix[i] - value) < 1e-7)), `${matrices}`);
   await watcher.until(() => !(id in (watcher.state.nodes ?? {})));
   assert.match((await python('door.py', '--door', 'Body/Nose')).stderr, /^door\.py: .*'Body\/Nose'\n$/);
   assert.equal((await python('door.py', '--door', 'Body/Roof')).stderr, "door.py: 'Body/Roof' has no hinge\n");
@@ -238,14 +238,14 @@ test('door.py opens what turns about another axis, and as far as it is told to',
   await watcher.until(() => watcher.tree);
   const { id, hinge } = watcher.tree.find((node) => node.hinge);
   assert.deepEqual([hinge.axis, hinge.degrees], [[1, 0, 0], 70]);
-  for (const [args, degrees] of [[[], 70], [['--angle', '30'], 30]]) {
+  for (const [args, degrees] of [[[], 70], [['--open', '0.5'], 35]]) {
     watcher.patches.length = 0;
     await succeeds(python('door.py', '--door', 'Body/Boot lid', '--hold', '0.1', ...args));
-    const last = watcher.patches.map((patch) => patch.nodes?.[id]?.matrix).filter(Boolean).at(-1);
+    const matrices = watcher.patches.map((patch) => patch.nodes?.[id]?.matrix).filter(Boolean);
     const [c, s] = [Math.cos((degrees * Math.PI) / 180), Math.sin((degrees * Math.PI) / 180)];
     const expected = [...hinge.closed];
     [expected[5], expected[6], expected[9], expected[10]] = [c, -s, s, c];
-    expected.forEach((value, i) => assert.ok(Math.abs(last[i] - value) < 1e-12, `${last}`));
+    assert.ok(matrices.some((matrix) => expected.every((value, i) => Math.abs(matrix[i] - value) < 1e-12)), `${matrices}`);
     await watcher.until(() => !(id in (watcher.state.nodes ?? {})));
   }});
 

@@ -27,7 +27,7 @@ geometry 8 vertices 0 triangles 0 end
 node 0 "Estate" root end
 node 4 "Body" assembly active 0 matrix 1 2 3 4  5 6 7 8  9 10 11 12  0 0 0 1 end
 node 5 "Door" geometry parent 4 presentation 1 geometry 7 hinge 0 2 0 -65.5 material 3 end
-node 6 "Presenter" camera eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 end
+node 6 "Presenter" camera eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 look 0.75 end
 node 8 "Lamp" light type spot color 0.1 0.2 0.3 1 attenuation 4 5 6 angle 33 end
 node 9 "Wheels" switch parent 4 active-child -2 end
 node 10 "Far or near" lod parent 4 ranges 10 40.5 end

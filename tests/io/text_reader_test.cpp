@@ -32,7 +32,7 @@ node 4 "Body" assembly
 end
 node 0 "Estate" root end
 node 5 "Door" geometry   parent 4   geometry 7   hinge 0 2 0 -65.5   material 3   end
-node 6 "Presenter" camera parent 0   eye 3 1 4   focus 0 0.7 0.5   up 1 2 3   fov 41   end
+node 6 "Presenter" camera parent 0   eye 3 1 4   focus 0 0.7 0.5   up 1 2 3   fov 41   look 0.75   end
 node 8 "Lamp" light      parent 0   type spot   color 0.1 0.2 0.3 1   attenuation 4 5 6   angle 33   end
 node 9 "Wheels" switch   parent 4   active-child -2   end
 node 10 "Far or near" lod parent 4  ranges 10 40.5   end
@@ -155,6 +155,7 @@ TEST_CASE("nodes of every type") {
     CHECK(camera.focus == glm::dvec3(0, 0.7, 0.5));
     CHECK(camera.up == glm::dvec3(1, 2, 3));
     CHECK(camera.fov == 41);
+    CHECK(camera.look_radius == 0.75);
     const auto& light = data_of<scene::LightData>(scene, 8);
     CHECK(light.type == scene::LightData::Type::spot);
     CHECK(light.color == glm::dvec4(0.1, 0.2, 0.3, 1));
@@ -188,6 +189,7 @@ TEST_CASE("what a node leaves out") {
     CHECK(camera.focus == glm::dvec3(0, 0, -1));
     CHECK(camera.up == glm::dvec3(0, 1, 0));
     CHECK(camera.fov == 40);
+    CHECK(camera.look_radius == 0);
     const auto& light = data_of<scene::LightData>(scene, 3);
     CHECK(light.type == scene::LightData::Type::point);
     CHECK(light.color == glm::dvec4(1));
@@ -400,6 +402,7 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
          "color's alpha (a number from 0 to 1), found '1.1'"},
         {h + "node 1 \"x\" camera\nfov 171\nend", 3, "fov (a number from 1 to 170), found '171'"},
         {h + "node 1 \"x\" camera\nfov 0.5\nend", 3, "fov"},
+        {h + "node 1 \"x\" camera\nlook -1\nend", 3, "the radius of looking around"},
         {h + "node 1 \"x\" switch\nactive-child -3 end", 3, "active-child"},
         {h + "node 1 \"x\" switch\nactive-child 0.5 end", 3, "active-child"},
         {h + "node 1 \"x\" lod\nranges 10 -4 end", 3, "a range"},

@@ -48,7 +48,9 @@ bool same(const scene::Geometry& a, const scene::Geometry& b) {
 
 auto members(const scene::GroupData&) { return std::tuple<>(); }
 auto members(const scene::GeometryData& data) { return std::tie(data.geometry, data.material); }
-auto members(const scene::CameraData& data) { return std::tie(data.eye, data.focus, data.up, data.fov); }
+auto members(const scene::CameraData& data) {
+    return std::tie(data.eye, data.focus, data.up, data.fov, data.look_radius);
+}
 auto members(const scene::LightData& data) {
     return std::tie(data.type, data.color, data.attenuation, data.angle);
 }
@@ -285,7 +287,7 @@ node 4 "Grüße" assembly active 0 matrix 1 2 3 4 5 6 7 8 9 10 11 12.5 0 0 0 1 h
 node 5 "Door" geometry parent 4 geometry 7 material 3 hinge 0.1 0.2 0.30000000000000004 64.99999999999999 end
 node 51 "Lid" geometry parent 4 presentation 1 hinge 1 0 0 360 end
 node 50 "Nothing" geometry parent 4 end
-node 6 "Eye" camera parent 0 eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 end
+node 6 "Eye" camera parent 0 eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 look 0.75 end
 node 8 "Lamp" light parent 0 type spot color 0.1 0.2 0.3 1 attenuation 4 5 6 angle 33 end
 node 80 "Sun" light type directional end
 node 9 "Wheels" switch parent 4 active-child -2 end

@@ -103,6 +103,53 @@ TEST_CASE("fit: the box fills 84 % of the width or the height, in the middle") {
         }
 }
 
+TEST_CASE("fit: the box fills 84 % of what is free of the view, in its middle") {
+    Random random(6);
+    for (const navigation::Cover& cover :
+         {navigation::Cover{0.3, 0.1, 0, 0.25}, {0, 0.5, 0, 0}, {0, 0, 0.6, 0.1}})
+        for (const double aspect : {0.5, 1.0, 16.0 / 9}) {
+            math::Bounds box;
+            box.add(random.vector(5));
+            box.add(random.vector(50));
+            const scene::Camera after =
+                navigation::fitted(random.camera(), navigation::fit_target(box), aspect, cover);
+            glm::dvec2 low(kInfinity), high(-kInfinity);  // from 0 to 1 over the view
+            for (const glm::dvec3& corner : math::corners(box)) {
+                const glm::dvec3 place = seen(after, corner);
+                low = glm::min(low, glm::dvec2(place.x / aspect, place.y) * 0.5 + 0.5);
+                high = glm::max(high, glm::dvec2(place.x / aspect, place.y) * 0.5 + 0.5);
+            }
+            const glm::dvec2 free_low(cover.left, cover.bottom), free_high(1 - cover.right, 1 - cover.top);
+            const glm::dvec2 margin = 0.08 * (free_high - free_low);
+            CAPTURE(aspect);
+            const glm::dvec2 below = low - free_low - margin, above = free_high - margin - high;
+            for (const double rest : {below.x, below.y, above.x, above.y}) CHECK(rest > -1e-9);
+            const bool full_width = below.x < 1e-9 && above.x < 1e-9,
+                       full_height = below.y < 1e-9 && above.y < 1e-9;
+            const bool nearest =
+                seen(after, box.center()).z > 0 && !full_width && !full_height;  // a tenth of the radius
+            CHECK((full_width || full_height || nearest));
+            CHECK(near(seen(after, after.focus), {0, 0, seen(after, box.center()).z}, 1e-9 * box.radius()));
+        }
+}
+
+TEST_CASE("looking around turns the view about the eye, and goes back to the same") {
+    Random random(7);
+    for (int round = 0; round < 200; ++round) {
+        const scene::Camera before = random.camera();
+        const scene::Camera right = navigation::looked_around(before, 30, 0, false);
+        CHECK(right.eye == before.eye);
+        CHECK(right.center == before.center);
+        check_frame(right);
+        const glm::dvec3 view = scene::view_direction(before), now = scene::view_direction(right);
+        CHECK(glm::dot(view, now) == doctest::Approx(std::cos(degrees(30))));
+        CHECK(glm::dot(now, scene::right_direction(before)) == doctest::Approx(0.5));
+        const scene::Camera down = navigation::looked_around(before, 0, 30, false);
+        CHECK(glm::dot(scene::view_direction(down), before.up) == doctest::Approx(-0.5));
+        CHECK(near(navigation::looked_around(right, -30, 0, false).focus, before.focus, 1e-9 * 20));
+    }
+}
+
 TEST_CASE("fit: nothing, a point, and a box far from the origin") {
     const scene::Camera camera;  // looks along -z
     const auto fitted = [&](const math::Bounds& box) {

@@ -83,6 +83,26 @@ TEST_CASE("double clicks and taps do what the table says, at the second press's 
     }
 }
 
+TEST_CASE("a first click by touch or the left button is a tap, until anything follows it") {
+    for (const auto& [device, button] : {std::pair(Device::touch, 0), {Device::mouse, 0}, {Device::pen, 0}}) {
+        Hand hand(device, button);
+        hand.down(0, 100, 100);
+        CHECK_FALSE(hand.clicks().tap());
+        hand.up(100, 103, 100);
+        CHECK(hand.clicks().tap() == glm::dvec2(100, 100));
+        hand.down(200, 100, 100);
+        hand.up(300, 100, 100);  // a double one
+        CHECK_FALSE(hand.clicks().tap());
+        hand.down(1000, 100, 100);
+        hand.up(1300, 100, 100);  // too long
+        CHECK_FALSE(hand.clicks().tap());
+    }
+    Hand right(Device::mouse, 2);
+    right.down(0, 100, 100);
+    right.up(100, 100, 100);
+    CHECK_FALSE(right.clicks().tap());
+}
+
 TEST_CASE("what is almost a double click is none") {
     struct Row {
         std::string name;

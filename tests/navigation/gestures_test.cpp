@@ -103,6 +103,42 @@ public:
 
 }  // namespace
 
+TEST_CASE("where drags look around, what is in the middle goes with the pointer, and the eye stays") {
+    for (const bool touch : {false, true}) {
+        Hands hands;
+        hands.context.looks_around_from = [](const glm::dvec3& eye) { return eye.z > 4; };
+        const scene::Camera before = hands.camera;
+        const Device device = touch ? Device::touch : Device::mouse;
+        hands.send(Action::down, 640, 360, 0, 1, device);
+        hands.send(Action::move, 641, 362, -1, 1, device);
+        CHECK(hands.camera.eye == before.eye);
+        CHECK(hands.camera.center == before.center);
+        const glm::dvec3 view = scene::view_direction(hands.camera);
+        const double height = scene::projection_of(before, 1).height() / 720;  // of a pixel, at distance 1
+        CHECK(view.x == doctest::Approx(-height).epsilon(1e-3));
+        CHECK(view.y == doctest::Approx(2 * height).epsilon(1e-3));
+    }
+    Hands outside;
+    outside.context.looks_around_from = [](const glm::dvec3& eye) { return eye.z > 6; };
+    outside.mouse_down(640, 360, 0, 1);
+    outside.mouse_move(641, 362, 1);
+    CHECK(outside.camera.eye != glm::dvec3(0, 0, 5));
+}
+
+TEST_CASE("keys turn the view about the eye there, the way they point") {
+    Hands hands;
+    hands.context.looks_around_from = [](const glm::dvec3&) { return true; };
+    const auto pressed = [&](const char* key) {
+        return navigation::apply_key_operation(*navigation::key_operation({key}), hands.camera, hands.camera,
+                                               hands.context);
+    };
+    CHECK(pressed("ArrowRight").eye == hands.camera.eye);
+    CHECK(scene::view_direction(pressed("ArrowRight")).x ==
+          doctest::Approx(std::sin(5 * scene::kRadiansPerDegree)));
+    CHECK(scene::view_direction(pressed("ArrowUp")).y ==
+          doctest::Approx(std::sin(5 * scene::kRadiansPerDegree)));
+}
+
 TEST_CASE("left drag turns around the centre: the view's shorter side is half a turn") {
     Hands hands;
     SUBCASE("landscape") {

@@ -225,6 +225,7 @@ std::vector<MessageType> message_types() {
         {"keyup", "everybody", keyed("keyup")},  // it does nothing
         {"navigate", "control", {{"type", "navigate"}, {"rotate", {1, 0}}}},
         {"fit", "control", {{"type", "fit"}}},
+        {"swing", "control", {{"type", "swing"}, {"node", 1}, {"ms", 0}}},
         {"fly",
          "control",
          {{"type", "fly"}, {"keyframes", Json::array({{{"at", 1}, {"camera", {{"fov", 30}}}}})}}},

@@ -58,7 +58,7 @@ TEST_CASE("an update is encoded once for all who know the same") {
 
 TEST_CASE("a large state is kept only while somebody is being sent it") {
     Updated u;
-    u.state.notices.push_back(std::string(2'000'000, 'x'));
+    u.state.notices.push_back({"test", std::string(2'000'000, 'x')});
     u.look_from(1, "", 1);
     Text whole = u.updates.update_from(nullptr, u.metrics);
     CHECK(u.updates.update_from(nullptr, u.metrics) == whole);

@@ -416,10 +416,14 @@ TEST_CASE("messages to clients") {
         encode(Picked{4, 7, "Door", {{"Car", "Door"}}, {{1, 2, 3}}, {{0, 0, 1}}, 5, {{1, 2, 0}}}) ==
         R"({"distance":5.0,"id":4,"local":[1.0,2.0,0.0],"name":"Door","node":7,"normal":[0.0,0.0,1.0],"path":["Car","Door"],)"
         R"("point":[1.0,2.0,3.0],"type":"picked"})");
-    CHECK(encode(Welcome{1, "0.1", "c1", Role::control, {65536, 32, 2, 16'000'000, 10'000, 1'000'000}}) ==
-          R"({"client":"c1","limits":{"maxDepth":32,"maxGrants":2,"maxMessage":65536,"maxPixels":16000000,)"
-          R"("maxServerMessage":1000000,"messagesPerSecond":10000},"role":"control","server":"0.1",)"
-          R"("type":"welcome","version":1})");
+    const InputRules input{{100, 3, 0.5}, 1.5, 4, {{"vrut", {{"2", "pan"}}}}, {"f", "+"}, {"+"}};
+    CHECK(
+        encode(
+            Welcome{1, "0.1", "c1", Role::control, {65536, 32, 2, 16'000'000, 10'000, 1'000'000}, input}) ==
+        R"({"client":"c1","input":{"dragZoom":4.0,"drags":{"vrut":{"2":"pan"}},"keys":["f","+"],"repeatingKeys":["+"],)"
+        R"("wheelSteps":[100.0,3.0,0.5],"wheelZoom":1.5},"limits":{"maxDepth":32,"maxGrants":2,"maxMessage":65536,"maxPixels":16000000,)"
+        R"("maxServerMessage":1000000,"messagesPerSecond":10000},"role":"control","server":"0.1",)"
+        R"("type":"welcome","version":1})");
     CHECK(encode(Flown{6, true}) == R"({"completed":true,"id":6,"type":"flown"})");
     CHECK(encode(TreePage{7, {}, {}}) == R"({"id":7,"nodes":[],"type":"tree"})");
     CHECK(

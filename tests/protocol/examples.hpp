@@ -25,7 +25,7 @@ inline vrut::protocol::State make_start() {
     vrut::protocol::State state;
     auto scene = std::make_shared<vrut::protocol::SceneState>();
     scene->name = "car";
-    scene->notices = {"one"};
+    scene->notices = {{"scene", "one"}};
     state.scene.value = scene;
     state.lights.items.set("headlight", {"Headlight", "point", {1, 1, 1, 1}, {1, 0, 0}});
     state.lights.items.set("7", {"Sun", "directional", {1, 1, 0.5, 1}, {1, 0.25, 0}});

@@ -122,8 +122,8 @@ TEST_CASE("the examples have all members that the schema has") {
         }
         CHECK(described == all);
     }
-    CHECK(types.size() == 23);
-    CHECK(defs["clientMessage"]["oneOf"].size() == 23);
+    CHECK(types.size() == 24);
+    CHECK(defs["clientMessage"]["oneOf"].size() == 24);
     CHECK(defs["serverMessage"]["oneOf"].size() == 12);
 }
 
@@ -132,16 +132,22 @@ TEST_CASE("what the server says, for the schema to be tried on") {
     const auto first = StateDocument::next({}, state);
     json messages = json::array();
     const auto add = [&](const std::string& text) { messages.push_back(json::parse(text)); };
-    add(encode(Welcome{1, "0.1", "c1", Role::control, {65536, 32, 2, 16'000'000, 10'000, 1'000'000}}));
+    add(encode(Welcome{1,
+                       "0.1",
+                       "c1",
+                       Role::control,
+                       {65536, 32, 2, 16'000'000, 10'000, 1'000'000},
+                       {{100, 3, 0.5}, 1.1, 4, {{"vrut", {{"2", "pan"}}}}, {"f", "+"}, {"+"}}}));
     add(first->encode());
     state.camera.node = 4, state.camera.name = "Driver";
-    state.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}};
+    state.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}, 5};
     state.nodes.set("5", {false, -1, glm::dmat4(1), 3});
     state.markers.set("Scratch", {{1, 2, 3}, 5, "here"});
     state.control = {"c1", "Bea", true};
     state.clients.set({{"c1", {"Bea", Role::control}}, {"c2", {{}, Role::host}}});
     state.recording = RecordingState{"drive"};
-    state.notices = {"The recording 'drive' has ended: No space left on device"};
+    state.swings.set("5", {0.5});
+    state.notices = {{"recording-ended", "The recording 'drive' has ended: No space left on device"}};
     auto background = state.backgrounds.items->at("11");
     background.texture = "sky.png";
     state.backgrounds.items.set("11", background);

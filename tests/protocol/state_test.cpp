@@ -185,6 +185,7 @@ const std::vector<Member> kMembers = {
      {"\"\"", "\"Maya\""}},
     {"/navigation/keepUpright", {"true", "false"}, kNoFlag, {}},
     {"/navigation/turnAbout", {"\"center\"", "\"touched\""}, kNoText, {"\"\"", "\"Center\""}},
+    {"/navigation/tapSwings", {"true", "false"}, kNoFlag, {}},
     {"/navigation/rotateSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
     {"/navigation/panSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
     {"/navigation/zoomSpeed", {"0.01", "100"}, kNoNumber, kNoSpeed},
@@ -541,7 +542,7 @@ public:
                 result.control.holder.reset();
                 break;
             case 4:
-                result.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}};
+                result.selection = {5, "Door", {{"Car", "Door"}}, {{0, 5}}, {}};
                 break;
             case 5:
                 result.camera.name = "Driver";

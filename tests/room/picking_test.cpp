@@ -73,8 +73,11 @@ TEST_CASE("a pick may select, set the centre of rotation, and look at the point"
         return client.wait_for("picked");
     };
     picked(640, "select");
-    CHECK(client.state["selection"] ==
-          Json({{"node", 1}, {"name", "Triangle"}, {"path", {"", "Triangle"}}, {"pathIds", {0, 1}}}));
+    CHECK(client.state["selection"] == Json({{"node", 1},
+                                             {"name", "Triangle"},
+                                             {"path", {"", "Triangle"}},
+                                             {"pathIds", {0, 1}},
+                                             {"hinge", 1}}));
     picked(5, "select");
     CHECK(client.state["selection"] == Json::object());
 

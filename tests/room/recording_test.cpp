@@ -50,7 +50,9 @@ TEST_CASE("a full disk ends the recording, and nothing else") {
     CHECK(accepted);
     CHECK(stage.told().at(0)["type"] == "ok");
     CHECK_FALSE(stage.state().contains("recording"));
-    CHECK(stage.state()["notices"] == json{"The recording 'take-1' has ended: File too large"});
+    CHECK(stage.state()["notices"] ==
+          json::array({{{"code", "recording-ended"},
+                        {"message", "The recording 'take-1' has ended: File too large"}}}));
     CHECK(std::filesystem::file_size(folder.path() / "take-1.jsonl") <= size + 10);
     const auto log = log_in(folder.path() / "take-1.jsonl");
     REQUIRE_MESSAGE(log, log.error());
@@ -75,7 +77,9 @@ int fill_a_small_disk(const std::filesystem::path& folder) {
         ++received;
         if (!stage.say("a", kTurn)) return 2;  // nobody is refused for it
     }
-    if (stage.state()["notices"] != json{"The recording 'take-1' has ended: No space left on device"})
+    if (stage.state()["notices"] !=
+        json::array({{{"code", "recording-ended"},
+                      {"message", "The recording 'take-1' has ended: No space left on device"}}}))
         return 3;
     const auto log = log_in(folder / "take-1.jsonl");
     if (!log) return 4;
@@ -244,7 +248,9 @@ TEST_CASE("the end is answered when all is written; meanwhile another may begin"
     CHECK(stage.state()["recording"]["name"] == "take-2");
     stage.room.recording_ended(sink.begun, "its disk is too slow", stage.now);
     CHECK_FALSE(stage.state().contains("recording"));
-    CHECK(stage.state()["notices"] == json{"The recording 'take-2' has ended: its disk is too slow"});
+    CHECK(stage.state()["notices"] ==
+          json::array({{{"code", "recording-ended"},
+                        {"message", "The recording 'take-2' has ended: its disk is too slow"}}}));
 }
 
 TEST_CASE("an end that cannot be written is refused, with a notice") {

@@ -18,7 +18,9 @@ namespace {
 
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
                                                                   const std::string& sha256) {
-    server::scenes::LoadedScene found = name == "other.vrut" ? other_scene() : first_scene();
+    server::scenes::LoadedScene found = name == "other.vrut"  ? other_scene()
+                                        : name == "door.vrut" ? scene_with_a_door()
+                                                              : first_scene();
     if (found.sha256 != sha256) return tl::unexpected(name + " is another one now");
     return found;
 }
@@ -80,9 +82,7 @@ private:
 class RandomSession {
 public:
     explicit RandomSession(unsigned seed)
-        : dice_(seed),
-          recorded("ab", number(0, 1) == 0 ? first_scene() : other_scene()),
-          begins_(number(0, 30)) {}
+        : dice_(seed), recorded("ab", any_scene()), begins_(number(0, 30)) {}
 
     void play() {
         for (int step = 0; step < 80; ++step) {
@@ -101,6 +101,10 @@ private:
     int number(int from, int to) {
         return from + static_cast<int>(dice_() % static_cast<unsigned>(to - from + 1));
     }
+    server::scenes::LoadedScene any_scene() {
+        const int which = number(0, 2);
+        return which == 0 ? first_scene() : which == 1 ? other_scene() : scene_with_a_door();
+    }
     std::string one_of(std::initializer_list<const char*> texts) {
         return texts.begin()[dice_() % texts.size()];
     }
@@ -117,7 +121,7 @@ private:
             stage.room.join(second_, protocol::Role::control, stage.now, "Bea",
                             number(0, 1) == 0 ? "" : "secret");
         } else if (what == 5 && number(0, 3) == 0) {
-            stage.room.show(number(0, 1) == 0 ? first_scene() : other_scene(), stage.now);
+            stage.room.show(any_scene(), stage.now);
         } else {
             stage.say(one_of({"a", "a", second_.c_str()}), number(0, 1) == 0 ? input() : request());
         }
@@ -200,7 +204,10 @@ private:
                                R"({"type":"patch","patch":{"navigation":null,"views":{"v":{"order":3}}}})",
                                R"({"type":"patch","patch":{"camera":{"eye":[1,2,9]}}})",
                                R"({"type":"patch","patch":{"camera":null}})",
-                               R"({"type":"patch","patch":{"nodes":null}})", kMoveHinge});
+                               R"({"type":"patch","patch":{"nodes":null}})", kMoveHinge,
+                               R"({"type":"swing","node":1})",
+                               R"({"type":"swing","node":2,"open":1,"ms":90})",
+                               R"({"type":"patch","patch":{"navigation":{"tapSwings":true}}})"});
         }
     }
 

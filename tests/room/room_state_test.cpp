@@ -400,8 +400,9 @@ TEST_CASE("what is kept and cannot be used: nothing of it counts, and a notice s
         CHECK(stage.room.changes() == "{}");
         const json notices = stage.state()["notices"];
         REQUIRE(notices.size() == 1);
-        CHECK(contains(notices[0], "stage.vrut cannot be used"));
-        CHECK(contains(notices[0], culprit));
+        CHECK(notices[0]["code"] == "unusable-changes");
+        CHECK(contains(notices[0]["message"], "stage.vrut cannot be used"));
+        CHECK(contains(notices[0]["message"], culprit));
     }
 }
 
@@ -719,4 +720,65 @@ TEST_CASE("every section of every scene's state can be patched back as it came, 
 
 TEST_CASE("the states of other programs' models can be patched back, too" * NeedsFolder{"VRUT_TEST_MODELS"}) {
     CHECK(check_states_of(folder_of("VRUT_TEST_MODELS")) > 0);
+}
+
+TEST_CASE("what is fitted avoids what covers the view, and home does once") {
+    Stage stage("a", other_scene());
+    const auto resize = [&](int bottom) {
+        stage.say("a", json{{"type", "resize"},
+                            {"width", 400},
+                            {"height", 400},
+                            {"pixelRatio", 1},
+                            {"inset", {{"bottom", bottom}}}}
+                           .dump());
+    };
+    const auto middle = [&] {  // of the square, from 0 at the view's lower end to 1
+        const scene::Camera camera = camera_of(stage.camera());
+        const glm::dvec4 place = math::clip_from_view(scene::projection_of(camera, 1), 0.1, 100) *
+                                 scene::view_from_world(camera) * glm::dvec4(0, 0, 0, 1);
+        return place.y / place.w * 0.5 + 0.5;
+    };
+    resize(0);
+    const double whole = middle();  // a little above the middle, as it is seen from above
+    resize(100);  // the page's bar
+    CHECK(middle() == doctest::Approx(0.25 + 0.75 * whole).epsilon(0.01));
+    const glm::dvec3 home = stage.camera().eye;
+    resize(200);  // something opens above it
+    CHECK(stage.camera().eye == home);
+    stage.say("a", R"({"type":"fit"})");
+    CHECK(middle() == doctest::Approx(0.5 + 0.5 * whole).epsilon(0.01));
+    resize(300);  // nothing useful is left
+    stage.say("a", R"({"type":"fit"})");
+    CHECK(middle() == doctest::Approx(whole));
+    CHECK_FALSE(json::parse(protocol::encode(stage.room.order(10, 10).header))["view"].contains("inset"));
+}
+
+TEST_CASE("drags look around from the seat that the scene marks") {
+    Stage stage("a", scene_of(R"(vrut-text 1
+geometry 1
+  vertices 4  -0.5 -0.5 0   0.5 -0.5 0   0.5 0.5 0   -0.5 0.5 0
+  triangles 2  0 1 2   0 2 3
+end
+node 0 "Room" root end
+node 1 "Square" geometry parent 0 geometry 1 end
+node 2 "Seat" camera parent 0 eye 0 0 5 focus 0 0 0 up 0 1 0 fov 40 look 0.5 end
+)",
+                              "seat.vrut"));
+    const auto drag = [&] {
+        for (const char* what : {"down", "move", "up"})
+            stage.say("a", json{{"type", std::string("pointer") + what},
+                                {"pointerId", 1},
+                                {"pointerType", "touch"},
+                                {"x", what[0] == 'd' ? 100 : 200},
+                                {"y", 100},
+                                {"button", 0},
+                                {"buttons", what[0] == 'u' ? 0 : 1}}
+                               .dump());
+    };
+    drag();
+    CHECK(stage.camera().eye == glm::dvec3(0, 0, 5));
+    CHECK(stage.camera().focus.x < -0.1);
+    stage.say("a", R"({"type":"patch","patch":{"camera":{"eye":[0,0,5.6]}}})");
+    drag();
+    CHECK_FALSE(near_to(stage.camera().eye, {0, 0, 5.6}, 0.1));
 }

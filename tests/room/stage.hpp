@@ -62,6 +62,24 @@ node 1 "Square" geometry parent 0 geometry 1 end
                     "other.vrut");
 }
 
+/// A door of 90° about the y axis through the origin, that holds its handle; a wall without a hinge. The
+/// camera looks at the door's middle.
+inline LoadedScene scene_with_a_door() {
+    return scene_of(R"(vrut-text 1
+geometry 1
+  vertices 4  0 -0.5 0   1 -0.5 0   1 0.5 0   0 0.5 0
+  triangles 2  0 1 2   0 2 3
+end
+node 0 "Room" root end
+node 1 "Door" assembly parent 0 hinge 0 2 0 90 end
+node 2 "Leaf" geometry parent 1 geometry 1 end
+node 3 "Wall" geometry parent 0 geometry 1  matrix 1 0 0 -1  0 1 0 0  0 0 1 0  0 0 0 1 end
+node 4 "Camera" camera parent 0 eye 0.5 0 8 focus 0.5 0 0 up 0 1 0 fov 40 end
+node 5 "On the door" camera parent 1 eye 0.5 0 3 focus 0.5 0 0 up 0 1 0 fov 40 end
+)",
+                    "door.vrut");
+}
+
 inline const char* const kMoveHinge =
     R"({"type":"patch","patch":{"nodes":{"1":{"matrix":[1,0,0,3, 0,1,0,0, 0,0,1,0, 0,0,0,1]}}}})";
 

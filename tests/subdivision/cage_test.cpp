@@ -20,7 +20,7 @@ const std::string kGood = R"({"unit": 0.001,
   {"id": 5, "name": "Paint", "type": "switch", "activeChild": -1},
   {"id": 6, "name": "Far", "type": "lod", "ranges": [1, 2.5]},
   {"id": 7, "name": "Lamp", "type": "light", "lightType": "spot", "color": [1, 1, 0, 1], "angle": 30},
-  {"id": 8, "name": "Eye", "type": "camera", "eye": [1, 2, 3], "fov": 50},
+  {"id": 8, "name": "Eye", "type": "camera", "eye": [1, 2, 3], "fov": 50, "look": 0.5},
   {"id": 9, "name": "Sky", "type": "background", "image": "sky.png", "cubeMap": ["a","b","c","d","e","f"]}]})";
 
 /// What is said of the good file with one piece of it replaced.

@@ -29,7 +29,7 @@ namespace {
 
 constexpr const char* kScene = R"(vrut-text 1
 geometry 1 vertices 3 -1 -1 0  1 -1 0  0 1 1 triangles 1 0 1 2 end
-node 1 "Triangle" geometry geometry 1 end
+node 1 "Triangle" geometry geometry 1 hinge 0 1 0 90 end
 node 2 "Studio" background active 0 end
 )";
 
@@ -224,7 +224,7 @@ void TestClient::wait_for_notice(const std::string& sentence) {
     const auto has_come = [&] {
         const Json notices = state.value("notices", Json::array());
         return std::any_of(notices.begin(), notices.end(), [&](const Json& notice) {
-            return notice.get<std::string>().starts_with(sentence);
+            return notice["message"].get<std::string>().starts_with(sentence);
         });
     };
     while (!has_come()) wait_for("patch");

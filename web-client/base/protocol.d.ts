@@ -69,7 +69,7 @@ export type ClientKeyup = {
   type: 'keyup';
 };
 
-export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown;
+export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPointerdown | ClientPointermove | ClientPointerup | ClientPointercancel | ClientWheel | ClientKeydown | ClientKeyup | ClientNavigate | ClientFit | ClientSwing | ClientPatch | ClientPick | ClientSnapshot | ClientFly | ClientTree | ClientOpen | ClientScenes | ClientRecord | ClientControl | ClientShare | ClientShown;
 
 export type ClientNavigate = {
   id?: number;
@@ -180,6 +180,12 @@ export type ClientRecord = {
 export type ClientResize = {
   height: number;
   id?: number;
+  inset?: {
+    bottom?: number;
+    left?: number;
+    right?: number;
+    top?: number;
+  };
   pixelRatio: number;
   type: 'resize';
   width: number;
@@ -222,6 +228,14 @@ export type ClientSnapshot = {
   };
   type: 'snapshot';
   width: number;
+};
+
+export type ClientSwing = {
+  id?: number;
+  ms?: number;
+  node: number;
+  open?: number;
+  type: 'swing';
 };
 
 export type ClientTree = {
@@ -420,6 +434,14 @@ export type ServerTree = {
 export type ServerWelcome = {
   client: string;
   id?: number;
+  input: {
+    dragZoom: number;
+    drags: Record<string, Record<string, string>>;
+    keys: Array<string>;
+    repeatingKeys: Array<string>;
+    wheelSteps: Array<number>;
+    wheelZoom: number;
+  };
   limits: {
     maxDepth: number;
     maxGrants: number;
@@ -494,6 +516,7 @@ export type StateDocument = {
     panSpeed: number;
     rotateSpeed: number;
     style: 'vrut' | 'maya' | 'catia' | 'cinema4d';
+    tapSwings: boolean;
     turnAbout: 'center' | 'touched';
     zoomSpeed: number;
   };
@@ -503,7 +526,10 @@ export type StateDocument = {
     material?: number;
     matrix?: Array<number>;
   }>;
-  notices: Array<string>;
+  notices: Array<{
+    code: 'scene' | 'software' | 'not-kept' | 'unusable-changes' | 'recording-ended' | 'not-drawn' | 'not-encoded' | 'no-memory' | 'smaller' | 'driver-restarted';
+    message: string;
+  }>;
   quality: {
     latencyTargetMs: number;
     preference: number;
@@ -529,15 +555,22 @@ export type StateDocument = {
     materials: number;
     name: string;
     nodes: number;
-    notices: Array<string>;
+    notices: Array<{
+      code: 'scene' | 'software' | 'not-kept' | 'unusable-changes' | 'recording-ended' | 'not-drawn' | 'not-encoded' | 'no-memory' | 'smaller' | 'driver-restarted';
+      message: string;
+    }>;
     triangles: number;
   };
   selection: {
+    hinge?: number;
     name?: string;
     node?: number;
     path?: Array<string>;
     pathIds?: Array<number>;
   };
+  swings: Record<string, {
+    to: number;
+  }>;
   views: Record<string, {
     center: Array<number>;
     eye: Array<number>;
@@ -581,6 +614,7 @@ export type StatePatch = {
     panSpeed?: null | number;
     rotateSpeed?: null | number;
     style?: null | 'vrut' | 'maya' | 'catia' | 'cinema4d';
+    tapSwings?: null | boolean;
     turnAbout?: null | 'center' | 'touched';
     zoomSpeed?: null | number;
   };

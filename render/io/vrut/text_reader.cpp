@@ -287,6 +287,17 @@ private:
         hinge.degrees = tokens_.take_number("the hinge's degrees", -360, 360);
     }
 
+    void add_camera_members(scene::CameraData& camera, std::vector<BlockMember>& members) {
+        members.push_back({"eye", [&] { camera.eye = take_point("the eye"); }});
+        members.push_back({"focus", [&] { camera.focus = take_point("the focus"); }});
+        members.push_back({"up", [&] { camera.up = take_point("up"); }});
+        members.push_back({"fov", [&] { camera.fov = tokens_.take_number("fov", 1, 170); }});
+        members.push_back({"look", [&] {
+                               camera.look_radius =
+                                   tokens_.take_number("the radius of looking around", 0, kMaxCoordinate);
+                           }});
+    }
+
     void add_members_of_type(scene::Node& node, References& references, std::vector<BlockMember>& members) {
         const auto material = [&] { references.material = take_id("the material's id"); };
         switch (node.type) {
@@ -295,14 +306,9 @@ private:
                 members.push_back({"geometry", [&] { references.geometry = take_id("the geometry's id"); }});
                 members.push_back({"material", material});
                 break;
-            case scene::NodeType::camera: {
-                auto& camera = node.data.emplace<scene::CameraData>();
-                members.push_back({"eye", [&] { camera.eye = take_point("the eye"); }});
-                members.push_back({"focus", [&] { camera.focus = take_point("the focus"); }});
-                members.push_back({"up", [&] { camera.up = take_point("up"); }});
-                members.push_back({"fov", [&] { camera.fov = tokens_.take_number("fov", 1, 170); }});
+            case scene::NodeType::camera:
+                add_camera_members(node.data.emplace<scene::CameraData>(), members);
                 break;
-            }
             case scene::NodeType::light: {
                 auto& light = node.data.emplace<scene::LightData>();
                 members.push_back({"type", [&] { light.type = take_light_type(); }});

@@ -9,7 +9,8 @@ namespace vrut::io {
 /// Returns the scene of a text in the format `vrut-text 1`, or a sentence about the text's first error:
 /// "FILE:LINE: expected …". `file` is the name in errors and notices. A word, number or string longer than
 /// kMaxTokenBytes is an error. Nodes of type assembly and geometry may have a hinge: `hinge X Y Z DEGREES`,
-/// see Hinge, and be marked as presentation: `presentation 1`, see Node. `threads` threads tokenize the text;
+/// see Hinge, and be marked as presentation: `presentation 1`, see Node. A camera may have `look RADIUS`, see
+/// CameraData. `threads` threads tokenize the text;
 /// 0 uses all of the processor's, up to a few. The result does not depend on their number. Memory: at most
 /// 100 bytes for each byte of text, which empty nodes need, and 20 MB. Geometry needs hardly more than its
 /// arrays.

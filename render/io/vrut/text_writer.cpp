@@ -157,6 +157,7 @@ private:
     void write_data(const scene::Scene&, const scene::CameraData& camera) {
         text("  eye").numbers(camera.eye).text("  focus").numbers(camera.focus);
         text("  up").numbers(camera.up).text("  fov").number(camera.fov);
+        if (camera.look_radius > 0) text("  look").number(camera.look_radius);
     }
 
     void write_data(const scene::Scene&, const scene::LightData& light) {

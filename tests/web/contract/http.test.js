@@ -46,7 +46,7 @@ describe('routes', () => {
     const schema = await answer.json();
     assert.equal(schema.$schema, 'https://json-schema.org/draft/2020-12/schema');
     const text = JSON.stringify(schema);
-    for (const name of ['hello', 'resize', 'frame', 'pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'wheel', 'keydown', 'keyup', 'navigate', 'fit', 'patch', 'pick', 'snapshot', 'fly', 'tree', 'open', 'record', 'control', 'shown', 'welcome', 'state', 'stats', 'loading', 'ok', 'picked', 'flown', 'error']) {
+    for (const name of ['hello', 'resize', 'frame', 'pointerdown', 'pointermove', 'pointerup', 'pointercancel', 'wheel', 'keydown', 'keyup', 'navigate', 'fit', 'swing', 'patch', 'pick', 'snapshot', 'fly', 'tree', 'open', 'record', 'control', 'shown', 'welcome', 'state', 'stats', 'loading', 'ok', 'picked', 'flown', 'error']) {
       assert.ok(text.includes(`"${name}"`), name);
     }
   });

@@ -70,7 +70,7 @@ describe('what is kept of a scene', () => {
   test('a folder that takes nothing is told in a notice, and all else goes on', async (t) => {
     const { client } = await start(t, '/dev/null/none');
     await client.patch(CHANGES);
-    await client.until('the notice', () => client.state.notices.some((notice) => /cannot be kept/.test(notice)), 10000);
+    await client.until('the notice', () => client.state.notices.some(({ code, message }) => code === 'not-kept' && /cannot be kept/.test(message)), 10000);
     await client.patch({ markers: { second: { point: [0, 0, 0] } } });
   });
 });

@@ -79,8 +79,10 @@ describe('fit', () => {
   const DOOR = square([1, 0, 0], 1);
   const SHOWN = [...square([0, 0, -1], 4), ...DOOR, ...square([-1, 0, 1], 1), ...square([0, 1.5, 0], 0.5), ...square([0, -1.5, 0], 0.5)];
   /** The points fill the free part of the view, in its middle. */
-  const fills = (camera, view, points) => {
-    const seen = points.map((point) => projected(camera, view, point));
+  const fills = (camera, view, points, { left = 0, right = 0, top = 0, bottom = 0 } = {}) => {
+    const whole = points.map((point) => projected(camera, view, point));
+    const seen = whole.map(([x, y]) => [x - left, y - top]);
+    view = { width: view.width - left - right, height: view.height - top - bottom };
     for (const point of points) assert.ok(dot(sub(point, camera.eye), axes(camera).view) > 0);
     const sides = [view.width, view.height].map((size, i) => {
       const low = Math.min(...seen.map((p) => p[i])) / size - 0.5;
@@ -103,6 +105,20 @@ describe('fit', () => {
       near(axes(camera).view, before, 'direction');
     });
   }
+
+  test('what covers the view is left free', async (t) => {
+    const client = await steering(t, server, ASKEW);
+    for (const inset of [{ bottom: 120 }, { right: 200, top: 30 }, { left: 50, right: 10, bottom: 60 }]) {
+      await client.ask({ type: 'resize', ...VIEW, inset });
+      await client.ask({ type: 'fit' });
+      fills(client.state.camera, VIEW, SHOWN, inset);
+    }
+    await client.ask({ type: 'resize', ...VIEW, inset: { left: 200, right: 100 } });
+    await client.ask({ type: 'fit' });
+    fills(client.state.camera, VIEW, SHOWN);
+    assert.equal((await client.frameOfNow()).header.view.inset, undefined);
+    await client.ask({ type: 'resize', ...VIEW });
+  });
 
   test('what is hidden does not count', async (t) => {
     const client = await steering(t, server, ASKEW);
@@ -142,6 +158,49 @@ describe('fit', () => {
       near(axes(client.state.camera).view, before, 'direction');
     }
     await client.refused({ type: 'fit', node: 999 }, 'unknown-node', { valid: true });
+  });
+});
+
+describe('swing', () => {
+  /** About (1, 0, 0), by -90 degrees about y: closed times that rotation. */
+  const OPEN = [0, 0, -1, 1, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1];
+  const matrixIn = (client) => client.state.nodes[3]?.matrix;
+
+  test('opens and closes what has a hinge, or is part of it, for everybody', async (t) => {
+    const client = await steering(t, server);
+    const watcher = await ContractClient.join(t, server, { role: 'view' });
+    await client.ask({ type: 'swing', node: 4, ms: 0 });
+    await watcher.until('the door to open', () => matrixIn(watcher));
+    near(matrixIn(watcher), OPEN, 'open');
+    await client.ask({ type: 'swing', node: 3, open: 0.5, ms: 200 });
+    assert.deepEqual(client.state.swings, { 3: { to: 0.5 } });
+    await client.until('its end', () => Object.keys(client.state.swings).length === 0);
+    near(matrixIn(client).slice(0, 3), [Math.SQRT1_2, 0, -Math.SQRT1_2], 'half open');
+    await client.ask({ type: 'swing', node: 3, ms: 0 });
+    await watcher.until('the door to close', () => matrixIn(watcher) === undefined);
+  });
+
+  test('a patch of the matrix ends it, and what has no hinge is refused', async (t) => {
+    const client = await steering(t, server);
+    await client.ask({ type: 'swing', node: 3, ms: 60000 });
+    await client.patch({ nodes: null });
+    assert.deepEqual(client.state.swings, {});
+    await client.refused({ type: 'swing', node: 2 }, 'failed', { valid: true });
+    await client.refused({ type: 'swing', node: 999 }, 'unknown-node', { valid: true });
+    await client.refused({ type: 'swing', node: 3, open: 2 }, 'out-of-range');
+  });
+
+  test('a tap does it where that is wanted', async (t) => {
+    const client = await steering(t, server);
+    await client.patch({ navigation: { tapSwings: true }, selection: { node: 4 } });
+    assert.equal(client.state.selection.hinge, 3);
+    const [x, y] = SEEN.door;
+    for (const type of ['pointerdown', 'pointerup']) {
+      client.send({ type, pointerId: 1, pointerType: 'touch', x, y, button: 0, buttons: type === 'pointerdown' ? 1 : 0 });
+    }
+    await client.until('the door to open', () => matrixIn(client) && Object.keys(client.state.swings).length === 0);
+    near(matrixIn(client), OPEN, 'open');
+    await client.patch({ navigation: null, nodes: null });
   });
 });
 

@@ -8,6 +8,7 @@ import { ContractClient } from './contract-client.js';
 import { schemaTest } from './schema.js';
 import { sceneFile, SCENES, Server, temporaryFolder } from './server.js';
 import { holder, Input, POSE, SEEN, steering, VIEW } from './stage.js';
+import { INPUT_RULES } from '../input-rules.js';
 
 const server = await Server.start({ options: ['--scenes', SCENES, '--record', temporaryFolder()] });
 after(() => server.stop());
@@ -30,6 +31,7 @@ async function join(t, hello) {
 const STEERING = [
   { type: 'navigate', rotate: [1, 0] },
   { type: 'fit' },
+  { type: 'swing', node: 3 },
   { type: 'fly', keyframes: [{ at: 10, camera: { fov: 41 } }] },
   PATCH,
   { type: 'open', scene: 'stage.vrut' },
@@ -287,18 +289,20 @@ describe('a flight', () => {
     assert.deepEqual(first.state.camera.eye, FAR.eye);
   });
 
-  test('record does not stop it', async (t) => {
+  test('record and swing do not stop it', async (t) => {
     const client = await steering(t, server);
     const id = client.send({ type: 'fly', keyframes: [{ at: 300, camera: FAR }] });
     await client.answer(id);
     await client.ask({ type: 'record', action: 'start', name: 'flight' });
+    await client.ask({ type: 'swing', node: 3, ms: 0 });
     const flown = await client.texted('flown');
     assert.deepEqual([flown.id, flown.completed], [id, true]);
     assert.deepEqual(client.state.camera.eye, FAR.eye);
     await client.ask({ type: 'record', action: 'stop' });
+    await client.patch({ nodes: null });
   });
 
-  for (const message of [...STEERING.filter((m) => !['open', 'record'].includes(m.type)), ...INPUT]) {
+  for (const message of [...STEERING.filter((m) => !['open', 'record', 'swing'].includes(m.type)), ...INPUT]) {
     test(`${message.type} stops it`, async (t) => {
       const client = await steering(t, server);
       const id = client.send({ type: 'fly', keyframes: [{ at: 20000, camera: FAR }] });
@@ -429,6 +433,10 @@ describe('tokens', () => {
       assert.equal(client.welcome.role, expected, `${role} with the ${expected} token`);
     }
   });
+});
+
+test('the welcome tells what input does', async (t) => {
+  assert.deepEqual((await ContractClient.join(t, server)).welcome.input, INPUT_RULES);
 });
 
 test('a pick at nothing selects nothing', async (t) => {
