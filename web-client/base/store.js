@@ -7,10 +7,11 @@
  *   reason?: {code?: string, message: string}}} Phase
  *
  * What the page knows: what the server made it while connected, the state as last heard, the header last drawn, whether
- * that frame is of this connection, what the server measures.
+ * that frame is of this connection, what covers the view's sides, what the server measures.
  *
  * @typedef {{phase: Phase, role?: ClientHello['role'], client?: string, steers: boolean, state: ?StateDocument,
- *   revision: number, header: ?FrameHeader, hasPicture: boolean, stats: ?ServerStats, language: string}} Now
+ *   revision: number, header: ?FrameHeader, hasPicture: boolean,
+ *   inset: {top: number, right: number, bottom: number, left: number}, stats: ?ServerStats, language: string}} Now
  */
 
 /**
@@ -35,7 +36,8 @@ export function onChange(select, show) {
 export class Store {
   /** @type {Now} */
   now = {
-    phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false, stats: null,
+    phase: { name: 'starting' }, steers: false, state: null, revision: 0, header: null, hasPicture: false,
+    inset: { top: 0, right: 0, bottom: 0, left: 0 }, stats: null,
     language: 'en',
   };
   /** @type {((now: Now) => void)[]} */

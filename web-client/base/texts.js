@@ -48,6 +48,12 @@ export function errorSentence({ code, message }) {
   return key in TABLES[current] ? say(key, { message }) : message;
 }
 
+/** The same for a notice. @param {StateDocument['notices'][number]} notice */
+export function noticeSentence({ code, message }) {
+  const key = `notice.${code}`;
+  return key in TABLES[current] ? say(key, { message }) : message;
+}
+
 /** A number as the language writes it; `digits` behind the decimal sign, at most. */
 export function written(value, digits = 0) {
   const key = `${current} ${digits}`;

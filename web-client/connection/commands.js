@@ -26,6 +26,13 @@ export function commandsBy({ ask, refused }) {
     patch: (patch) => tell({ type: 'patch', patch }),
     /** @param {Omit<ClientControl, 'type'>} action */
     control: (action) => tell({ type: 'control', ...action }),
+    /**
+     * Closes or opens what turns about a hinge.
+     *
+     * @param {number} node
+     * @param {0|1} [open] the other of the two if left out
+     */
+    swing: (node, open) => tell({ type: 'swing', node, open, ...(movesLittle() ? { ms: 0 } : {}) }),
     /** @param {number} [node] the whole scene if left out */
     fit: (node) => tell({ type: 'fit', node }),
     fly: (camera) => tell({ type: 'fly', keyframes: [{ at: FLIGHT_MS, camera }] }),
@@ -43,6 +50,10 @@ export function commandsBy({ ask, refused }) {
     /** @param {string} scene */
     open: (scene) => tell({ type: 'open', scene }),
   };
+}
+
+function movesLittle() {
+  return globalThis.matchMedia?.('(prefers-reduced-motion: reduce)').matches;
 }
 
 /**

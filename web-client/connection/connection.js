@@ -3,7 +3,7 @@ import { mergePatch } from '../base/merge-patch.js';
 
 /**
  * @import {
- *   ClientHello, ClientMessage, FrameHeader, ServerError, ServerMessage, StateDocument,
+ *   ClientHello, ClientMessage, ClientResize, FrameHeader, ServerError, ServerMessage, ServerWelcome, StateDocument,
  * } from '../base/protocol.js'
  * @import { Phase } from '../base/store.js'
  *
@@ -31,6 +31,8 @@ export class Connection {
   role;
   /** @type {string|undefined} the same */
   client;
+  /** @type {ServerWelcome['input']|undefined} what input does, kept over a lost connection */
+  input;
 
   #url;
   #hello;
@@ -39,7 +41,7 @@ export class Connection {
   /** @type {?WebSocket} */
   #socket = null;
   #phase = 'waiting';
-  /** @type {?{width: number, height: number, pixelRatio: number}} */
+  /** @type {?Omit<ClientResize, 'type'>} */
   #size = null;
   #lastId = 0;
   /** @type {Map<number, {resolve: Function, reject: Function}>} how to settle what is not answered yet, by id */
@@ -95,7 +97,7 @@ export class Connection {
     else if (this.#phase !== 'connecting') this.start();
   }
 
-  /** The {width, height, pixelRatio} that this page wants, now and after every reconnect. */
+  /** What this page wants, now and after every reconnect. @param {Omit<ClientResize, 'type'>} size */
   resize(size) {
     this.#size = size;
     this.send({ type: 'resize', ...size });
@@ -173,6 +175,7 @@ export class Connection {
       case 'welcome':
         this.role = message.role;
         this.client = message.client;
+        this.input = message.input;
         break;
       case 'state':
       case 'patch':

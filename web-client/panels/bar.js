@@ -1,10 +1,10 @@
 import { button, element } from '../base/element.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
-import { rows } from './controls.js';
+import { rows, toggle } from './controls.js';
 import { stateOf } from './section.js';
 import { Trail } from './trail.js';
-import { variantControl, variants } from './variants.js';
+import { doorControl, variantControl, variants } from './variants.js';
 import { viewNames } from './views-section.js';
 
 /**
@@ -48,7 +48,8 @@ export class Bar {
     store.subscribe(({ state }) => [state?.scene?.file, !state], () => this.#trail.forget());
     store.subscribe(({ state }) => [state?.camera], (camera) => camera && this.#trail.follow(camera));
     store.subscribe(({ state }) => [state?.scene], () => this.#open(null));
-    store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes], () => this.#showStrip());
+    store.subscribe(({ state }) => [state?.camera, state?.views, state?.nodes, state?.swings, state?.navigation],
+      () => this.#showStrip());
   }
 
   /** What this page sent. */
@@ -79,6 +80,7 @@ export class Bar {
       back,
       opens(say('views.title'), 'camera', () => this.#views()),
       opens(say('parts.variants'), 'variants', () => this.#variants()),
+      opens(say('parts.doors'), 'door', () => this.#doors()),
       more,
     );
     this.#showBack();
@@ -147,18 +149,34 @@ export class Bar {
   }
 
   #variants() {
-    const all = element('div', { className: 'choices' });
+    const { change } = this.#commands;
     const state = () => stateOf(this.#store);
+    return this.#found('switches', say('bar.noVariants'),
+      (switches) => variants(switches).map((variant) => variantControl(variant, { change, state })));
+  }
+
+  #doors() {
+    const commands = this.#commands;
+    const state = () => stateOf(this.#store);
+    const option = toggle(say('bar.tapOpens'), (tapSwings) => commands.change({ navigation: { tapSwings } }));
+    const taps = { element: option.element, show: () => option.show(state().navigation.tapSwings) };
+    return this.#found('hinges', say('bar.noDoors'),
+      (doors) => (doors.length > 0 ? [taps, ...doors.map((door) => doorControl(door, { commands, state }))] : []));
+  }
+
+  /** The controls that `build` makes of the nodes of a kind, or the words `none`. */
+  #found(only, none, build) {
+    const all = element('div', { className: 'choices' });
     let controls = [];
     const show = () => {
       for (const control of controls) control.show();
     };
     const load = async () => {
-      const switches = await allOf(this.#commands.tree, { only: 'switches' });
-      if (!switches || !all.isConnected) return;
-      controls = variants(switches).map((variant) => variantControl(variant, { change: this.#commands.change, state }));
+      const nodes = await allOf(this.#commands.tree, { only });
+      if (!nodes || !all.isConnected) return;
+      controls = build(nodes);
       all.replaceChildren(...controls.map((control) => control.element));
-      if (controls.length === 0) all.append(say('bar.noVariants'));
+      if (controls.length === 0) all.append(none);
       show();
     };
     load();

@@ -2,9 +2,8 @@ import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
-import { toggle } from './controls.js';
 import { stateOf } from './section.js';
-import { nameOf, variantControl, variants } from './variants.js';
+import { doorControl, nameOf, variantControl, variants } from './variants.js';
 
 /**
  * @import { Page, Section } from './section.js'
@@ -13,7 +12,6 @@ import { nameOf, variantControl, variants } from './variants.js';
 
 const MOST_ROWS = 50; // before somebody asks for more, or as a page has them
 const SEARCH_AFTER_MS = 250;
-const SWING_MS = 600;
 
 /**
  * The scene's variants, doors and parts, asked for when looked at, and anew with each whole state.
@@ -32,7 +30,6 @@ export function partsSection({ commands, store }) {
   const choices = element('div', { className: 'choices' });
   const tree = element('div');
   const asInFile = button(say('parts.asInFile'), async () => {
-    swings.clear();
     await change({}); // by itself, or what waits with it would take its place
     commands.patch({ nodes: null });
   });
@@ -42,8 +39,7 @@ export function partsSection({ commands, store }) {
     if (!present || !choices.closest('details').open) return;
     if (scene !== present) {
       scene = present;
-      swings.clear();
-      choices.replaceChildren();
+        choices.replaceChildren();
       listParts();
       loadChoices();
     }
@@ -182,27 +178,8 @@ export function partsSection({ commands, store }) {
   }
 
   function door(node) {
-    const control = toggle(nameOf(node), (open) => swing(node, Number(open)));
-    return follow(control.element, ({ nodes }) => control.show(Boolean(nodes[node.id]?.matrix)));
-  }
-
-  /** The last swing of each door, by id: {part}, how far it got, from 0 closed to 1. */
-  const swings = new Map();
-
-  async function swing({ id, hinge }, to) {
-    const from = state().nodes[id]?.matrix ? swings.get(id)?.part ?? 1 : 0;
-    const mine = { part: from };
-    swings.set(id, mine);
-    const start = performance.now();
-    const lasts = matchMedia('(prefers-reduced-motion: reduce)').matches ? 1 : SWING_MS;
-    let share = 0;
-    while (share < 1) {
-      const now = await new Promise(requestAnimationFrame);
-      if (swings.get(id) !== mine || state().scene !== scene) return;
-      share = Math.min(Math.max((now - start) / lasts, 0), 1);
-      mine.part = from + (to - from) * share * share * (3 - 2 * share);
-      await change({ nodes: { [id]: { matrix: mine.part > 0 ? opened(hinge, mine.part) : null } } });
-    }
+    const { element: made, show } = doorControl(node, { commands, state });
+    return follow(made, show);
   }
 
   return {
@@ -220,20 +197,4 @@ function list(label) {
 
 function tool(icon, label, act) {
   return button(label, act, { icon, quiet: true, only: true });
-}
-
-/**
- * The matrix of a node with that hinge, opened by a part from 0 to 1: closed · rotation, 16 numbers, row by row.
- *
- * @param {NonNullable<Node['hinge']>} hinge
- * @param {number} part
- */
-export function opened({ axis, degrees, closed }, part) {
-  const matrix = new DOMMatrix(transposed(closed)).rotateAxisAngleSelf(...axis, part * degrees);
-  return transposed([...matrix.toFloat64Array()]);
-}
-
-/** A DOMMatrix is read and told column by column. */
-function transposed(matrix) {
-  return matrix.map((_, i) => matrix[4 * (i % 4) + Math.floor(i / 4)]);
 }

@@ -1,5 +1,6 @@
+import { isOpen } from '../base/hinges.js';
 import { say } from '../base/texts.js';
-import { choice, selection } from './controls.js';
+import { choice, selection, toggle } from './controls.js';
 
 /**
  * @import { ServerTree, StateDocument } from '../base/protocol.js'
@@ -66,4 +67,16 @@ export function variantControl({ title, switches }, { state, change }) {
       control.show(values.size > 1 ? '' : String(...values), options);
     },
   };
+}
+
+/**
+ * Opens and closes what turns about a hinge.
+ *
+ * @param {Node} node
+ * @param {{state: () => StateDocument, commands: Pick<Commands, 'swing'>}} page
+ * @returns {{element: HTMLElement, show: () => void}} shows the state
+ */
+export function doorControl(node, { state, commands }) {
+  const control = toggle(nameOf(node), (open) => commands.swing(node.id, open ? 1 : 0));
+  return { element: control.element, show: () => control.show(isOpen(node.id, state())) };
 }

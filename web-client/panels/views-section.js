@@ -6,6 +6,7 @@ import { each, joined, stateOf } from './section.js';
 
 /**
  * @import { FrameHeader, ServerPicked, StateDocument } from '../base/protocol.js'
+ * @import { Now } from '../base/store.js'
  * @import { Page, Section } from './section.js'
  */
 
@@ -16,7 +17,10 @@ import { each, joined, stateOf } from './section.js';
  * @returns {Section}
  */
 export function viewsSection({ commands, report, offer, store }) {
-  const page = { ...commands, report, offer, state: () => stateOf(store), header: () => store.now.header };
+  const page = {
+    ...commands, report, offer,
+    state: () => stateOf(store), header: () => store.now.header, inset: () => store.now.inset,
+  };
   const parts = joined([savedViews, cameras, markers].map((part) => part(page)));
   const home = button(say('views.home'), () => commands.fly(page.state().views.home), { icon: 'home' });
   const fit = button('', () => commands.fit(page.state().selection.node), { icon: 'fit' });
@@ -132,12 +136,15 @@ export function cameraEntries(all, node) {
   return Object.entries(all).map(([id, { name }]) => [id, { text: name || `#${id}`, used: node === Number(id) }]);
 }
 
-function markers({ pick, patch, fly, change, report, state, header }) {
-  const list = places(say('markers.title'), say('markers.none'),
-    (name) => fly(lookingAt(state().camera, header().markers[name])), (name) => change({ markers: { [name]: null } }));
+function markers({ pick, patch, fly, change, report, state, header, inset }) {
+  const show = (name) => {
+    const { view, markers: places } = header();
+    return fly(lookingAt(state().camera, places[name], middleOf(view, inset()), view));
+  };
+  const list = places(say('markers.title'), say('markers.none'), show, (name) => change({ markers: { [name]: null } }));
   const mark = async (text) => {
     const { frame, view } = header() ?? {};
-    const picked = view && await pick({ x: view.width / 2, y: view.height / 2, frame });
+    const picked = view && await pick({ ...middleOf(view, inset()), frame });
     if (!picked) return false;
     if (!picked.point) return report(new Error(say('markers.noPart')));
     const name = unusedName('marker', Object.keys(state().markers));
@@ -228,13 +235,30 @@ export function placeOf({ node, point, local }) {
 }
 
 /**
- * The camera looking at a place and turning about it, in the same direction and from as far.
+ * The middle of what is free of a view, in CSS pixels.
+ *
+ * @param {{width: number, height: number}} view
+ * @param {Now['inset']} inset
+ */
+export function middleOf({ width, height }, { top, right, bottom, left }) {
+  return { x: (left + width - right) / 2, y: (top + height - bottom) / 2 };
+}
+
+/**
+ * The camera that turns about a place and shows it at `at` of the view, in the same direction and from as far.
  *
  * @param {StateDocument['camera']} camera
  * @param {number[]} place
+ * @param {{x: number, y: number}} at
+ * @param {{width: number, height: number}} view
  */
-export function lookingAt({ eye, focus }, place) {
-  return { eye: eye.map((x, i) => x + (place[i] - focus[i])), focus: place, center: place };
+export function lookingAt({ eye, focus, up, fov }, place, at, { width, height }) {
+  const ahead = focus.map((x, i) => x - eye[i]);
+  const pixel = (2 * Math.tan((fov * Math.PI) / 360)) / height; // in parts of the distance
+  const across = [1, 2, 0].map((j, i) => ahead[j] * up[(i + 2) % 3] - ahead[(i + 2) % 3] * up[j]); // as long as `ahead`
+  const aside = across.map((x, i) => (x * (at.x - width / 2) - up[i] * Math.hypot(...ahead) * (at.y - height / 2)) * pixel);
+  const seen = place.map((x, i) => x - aside[i]);
+  return { eye: seen.map((x, i) => x - ahead[i]), focus: seen, center: place };
 }
 
 /** A word with the first number that none of the names has. */

@@ -1,7 +1,3 @@
-const REPEATING_KEYS = new Set(['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', '+', '-']);
-/** A held `w` must not flicker; digits are held in drags of one navigation style. */
-const KEYS = new Set([...REPEATING_KEYS, 'f', 'Home', 'w', 's', 'Escape', '1', '2', '3']);
-
 /**
  * Passes pointer, wheel and key events on to the server, which alone knows what they mean. Each pointer's moves are
  * thinned to the last when `soon` comes; everything else goes out at once and in order.
@@ -18,8 +14,8 @@ export class Input {
   #toView;
 
   /**
-   * The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, `marks`: FingerMarks, and `unheard`
-   * for what would be passed on were it enabled.
+   * The page's `send`, `soon`, `mapping` like Picture's, `frame`: the number drawn, `rules`: the welcome's `input`,
+   * `marks`: FingerMarks, and `unheard` for what would be passed on were it enabled.
    */
   constructor(element, page) {
     this.#page = { window: globalThis.window, ...page };
@@ -126,12 +122,14 @@ export class Input {
 
   #keyDown(event) {
     const { key, ctrlKey, metaKey, altKey } = event;
-    if (ctrlKey || metaKey || altKey || !KEYS.has(key)) return;
+    const { keys = [], repeatingKeys = [] } = this.#page.rules() ?? {};
+    if (ctrlKey || metaKey || altKey || !keys.includes(key)) return;
     // The menu and what lies on the picture have keys of their own.
     if (event.defaultPrevented || event.target?.closest?.('#menu, button, #strip')) return;
     if (!this.#isHeard()) return;
     event.preventDefault();
-    if (event.repeat && !REPEATING_KEYS.has(key)) return;
+    // A held `w` must not flicker.
+    if (event.repeat && !repeatingKeys.includes(key)) return;
     this.#keys.add(event.code);
     this.#send(members(event, 'key', 'code'));
   }

@@ -1,4 +1,5 @@
 import { button, element } from '../base/element.js';
+import { isOpen } from '../base/hinges.js';
 import { say } from '../base/texts.js';
 import { allOf } from '../connection/commands.js';
 
@@ -46,14 +47,16 @@ export class PartBar {
     const steps = levels(state?.selection ?? {});
     const may = role === 'control';
     const back = may && Object.keys(this.#hidden.back(state?.nodes ?? {})).length > 0;
-    const shown = JSON.stringify([steps, may, back, language]);
+    const hinge = state?.selection?.hinge;
+    const open = hinge !== undefined && isOpen(hinge, /** @type {StateDocument} */ (state));
+    const shown = JSON.stringify([steps, may, back, hinge, open, language]);
     if (shown === this.#shown) return;
     this.#shown = shown;
     const hadFocus = this.#element.contains(document.activeElement);
     this.#element.ariaLabel = say('part.label');
     this.#showPath(steps, may);
     while (this.#path.nextSibling) this.#path.nextSibling.remove();
-    if (may && steps.length > 0) this.#element.append(...this.#actions());
+    if (may && steps.length > 0) this.#element.append(...this.#actions(hinge, open));
     if (back) this.#element.append(button(say('part.showAll'), () => this.#showHidden(), { icon: 'seen' }));
     this.#shorten();
     if (hadFocus) (this.#element.querySelector('button') ?? { focus: this.#leave }).focus();
@@ -69,13 +72,16 @@ export class PartBar {
     else for (const [i, part] of parts.entries()) this.#path.children[i].replaceWith(part);
   }
 
-  #actions() {
+  /** @param {number|undefined} hinge the part's, or that of what it belongs to @param {boolean} open */
+  #actions(hinge, open) {
     const { node } = /** @type {StateDocument} */ (this.#now.state).selection;
     return [
       button(say('part.clear'), () => this.#select(null), { icon: 'close', quiet: true, only: true }),
       button(say('part.fit'), () => this.#commands.fit(node)),
       button(say('part.hide'), () => this.#hide([node], { selection: { node: null } })),
       button(say('part.isolate'), () => this.#isolate()),
+      ...(hinge === undefined ? []
+        : [button(say(open ? 'part.close' : 'part.open'), () => this.#commands.swing(hinge, open ? 0 : 1))]),
     ];
   }
 

@@ -1,10 +1,5 @@
-/** @import { FrameHeader, StateDocument } from '../base/protocol.js' */
+/** @import { FrameHeader, ServerWelcome, StateDocument } from '../base/protocol.js' */
 
-const RIGHT = 2; // of `buttons`
-const MIDDLE = 4;
-
-/** A wheel's step in pixels, lines, pages. */
-const WHEEL_STEPS = [100, 3, 1 / 3];
 /** What moves the camera otherwise: drags begin anew there. */
 const OTHER_MOVES = new Set(['keydown', 'patch', 'fit', 'fly']);
 
@@ -15,13 +10,16 @@ const OTHER_MOVES = new Set(['keydown', 'patch', 'fit', 'fly']);
 const NONE = { scale: 1, x: 0, y: 0 };
 
 /**
- * What messages will do to the picture that does not show them yet: two fingers, the wheel, and in the style `vrut`
- * right and middle drags, as in the server's Gestures but without limits. It is exact at the depth of what is touched.
+ * What messages will do to the picture that does not show them yet: two fingers, the wheel, and drags that pan
+ * or zoom by a button alone, by the server's rules of input but without limits. It is exact at the depth of what is
+ * touched.
  * All else waits for the next picture.
  */
 export class Prediction {
   /** @type {Partial<StateDocument['navigation']>} */
   #navigation = {};
+  /** @type {ServerWelcome['input']|undefined} */
+  #rules;
   #steers = false;
   /** @type {?FrameHeader} of the picture shown */
   #shown = null;
@@ -44,9 +42,10 @@ export class Prediction {
     return isMoved && isTold ? this.#now : null;
   }
 
-  /** The state document as last heard, and whether this page steers. */
-  follow({ navigation = {} }, steers) {
+  /** The state document as last heard, whether this page steers, and the welcome's `input`. */
+  follow({ navigation = {} }, steers, rules) {
     this.#navigation = navigation;
+    this.#rules = rules;
     if (this.#steers && !steers) this.forget();
     this.#steers = steers;
   }
@@ -56,8 +55,9 @@ export class Prediction {
     this.#lastId = id;
     const before = this.#now;
     if (type.startsWith('pointer')) this.#pointer(message);
-    if (type === 'wheel') {
-      this.#now = this.#zoomed(before, 1.1 ** (-deltaY / WHEEL_STEPS[deltaMode]), { x, y });
+    if (type === 'wheel' && this.#rules) {
+      const { wheelZoom, wheelSteps } = this.#rules;
+      this.#now = this.#zoomed(before, wheelZoom ** (-deltaY / wheelSteps[deltaMode]), { x, y });
     }
     if (type === 'wheel' || OTHER_MOVES.has(type)) this.#restart();
     if (this.#now !== before) this.#pending.push({ id, now: this.#now });
@@ -131,9 +131,10 @@ export class Prediction {
       const pinched = this.#zoomed(this.#start, span(a.place, b.place) / span(a.start, b.start), middle);
       return panned(pinched, (x + b.place.x - b.start.x) / 2, (y + b.place.y - b.start.y) / 2, panSpeed);
     }
-    if (b || style !== 'vrut') return this.#start;
-    if (a.buttons === RIGHT) return panned(this.#start, x, y, panSpeed);
-    if (a.buttons === MIDDLE) return this.#zoomed(this.#start, 4 ** (-y / this.#view.height));
+    const { drags = {}, dragZoom = 1 } = this.#rules ?? {};
+    const drag = b || style === undefined ? undefined : drags[style]?.[a.buttons];
+    if (drag === 'pan') return panned(this.#start, x, y, panSpeed);
+    if (drag === 'zoom') return this.#zoomed(this.#start, dragZoom ** (-y / this.#view.height));
     return this.#start;
   }
 

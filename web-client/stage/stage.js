@@ -1,4 +1,4 @@
-import { errorSentence, holderName, say } from '../base/texts.js';
+import { errorSentence, holderName, noticeSentence, say } from '../base/texts.js';
 import { ControlBar } from './control.js';
 import { FingerMarks } from './finger-marks.js';
 import { Input } from './input.js';
@@ -26,6 +26,7 @@ const THINNED_MS = 250;
 export class Stage {
   #store;
   #hasToken;
+  #connection;
   #canvas = find('view');
   #picture = new Picture(this.#canvas);
   #prediction = new Prediction();
@@ -39,6 +40,7 @@ export class Stage {
   constructor({ store, commands, connection, meter, hasToken }) {
     this.#store = store;
     this.#hasToken = hasToken;
+    this.#connection = connection;
     const presence = new Presence(find('presence'), {
       ask: () => commands.control({ action: 'ask' }),
       take: () => commands.control({ action: 'take' }),
@@ -52,6 +54,7 @@ export class Stage {
       send: (message) => connection.send(message),
       mapping: () => this.#picture.mapping(),
       // A server that has begun anew knows nothing of the frames before.
+      rules: () => connection.input,
       frame: () => (store.now.hasPicture ? store.now.header?.frame : undefined),
       soon: (action) =>
         (meter.lateMs(performance.now()) > LATE_MS ? setTimeout(action, THINNED_MS) : requestAnimationFrame(action)),
@@ -64,9 +67,11 @@ export class Stage {
       this.#canvas.focus({ preventScroll: true });
     });
     document.addEventListener('keydown', () => this.#canvas.classList.remove('by-pointer'), { capture: true });
-    watchViewSize(this.#canvas, (size) => {
+    const rows = ['selection', 'strip', 'bar'].map(find);
+    watchViewSize(this.#canvas, { over: find('over'), rows }, (size) => {
       this.#picture.layout();
       connection.resize(size);
+      store.set({ inset: size.inset });
       this.#move();
     });
 
@@ -126,13 +131,13 @@ export class Stage {
   follow(state) {
     const { steers } = this.#store.now;
     this.#input.enabled = steers;
-    this.#prediction.follow(state, steers);
+    this.#prediction.follow(state, steers, this.#connection.input);
   }
 
   /** @param {ServerLoading} message */
   loading({ scene, fraction, done, refused }) {
     this.#lines.hold('loading', done || refused ? '' : say('view.loading', { scene }), fraction);
-    if (refused) this.#lines.pass(refused);
+    if (refused) this.#lines.pass(errorSentence({ code: 'refused-scene', message: refused }));
   }
 
   /** Says what was done, with a button for what can be done about it. */
@@ -179,8 +184,8 @@ export class Stage {
 
   #passNotices(notices) {
     for (const notice of notices) {
-      if (!this.#noticesSeen.has(notice)) this.#lines.pass(notice);
-      this.#noticesSeen.add(notice);
+      if (!this.#noticesSeen.has(notice.message)) this.#lines.pass(noticeSentence(notice));
+      this.#noticesSeen.add(notice.message);
     }
   }
 }

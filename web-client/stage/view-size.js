@@ -1,17 +1,28 @@
 const LARGEST_SIDE = 8192;
 
-/** Tells an element's {width, height} in CSS pixels and pixelRatio, within the protocol's limits, and changes. */
-export function watchViewSize(element, tell, window = globalThis.window) {
+/** @typedef {{top: number, right: number, bottom: number, left: number}} Sides in CSS pixels */
+
+/**
+ * Tells the view's {width, height, inset} in CSS pixels and pixelRatio, within the protocol's limits, and changes.
+ *
+ * @param {HTMLElement} view
+ * @param {{over: Element, rows: Element[]}} covers the column on the view that leaves room for what lies beside it, and
+ *   those of its rows that lie at its lower end
+ * @param {(size: {width: number, height: number, pixelRatio: number, inset: Sides}) => void} tell
+ */
+export function watchViewSize(view, { over, rows }, tell, window = globalThis.window) {
   let last = '';
 
   const measure = () => {
-    const width = Math.min(element.clientWidth, LARGEST_SIDE);
-    const height = Math.min(element.clientHeight, LARGEST_SIDE);
+    const width = Math.min(view.clientWidth, LARGEST_SIDE);
+    const height = Math.min(view.clientHeight, LARGEST_SIDE);
     const pixelRatio = Math.min(Math.max(window.devicePixelRatio, 0.25), 4);
-    const size = String([width, height, pixelRatio]);
-    if (width === 0 || height === 0 || size === last) return;
-    last = size;
-    tell({ width, height, pixelRatio });
+    const inset = insetOf({ width, height }, over.getBoundingClientRect(), rows.filter(({ textContent }) => textContent !== '').map((row) => row.getBoundingClientRect()));
+    const size = { width, height, pixelRatio, inset };
+    const text = JSON.stringify(size);
+    if (width === 0 || height === 0 || text === last) return;
+    last = text;
+    tell(size);
   };
   // A query holds for one ratio only.
   const watchRatio = () => {
@@ -21,5 +32,26 @@ export function watchViewSize(element, tell, window = globalThis.window) {
   };
 
   watchRatio();
-  new window.ResizeObserver(measure).observe(element);
+  const observer = new window.ResizeObserver(measure);
+  for (const element of [view, over, ...rows]) observer.observe(element);
+}
+
+/**
+ * What of a view is covered at its sides: by what lies beside the column on it, and by the column's lower rows.
+ *
+ * @param {{width: number, height: number}} view
+ * @param {Sides} column from the view's left and top
+ * @param {{top: number, height: number}[]} rows of no height where they are not shown
+ * @returns {Sides}
+ */
+export function insetOf(view, column, rows) {
+  const shown = rows.filter(({ height }) => height > 0);
+  const bottom = Math.min(column.bottom, ...shown.map(({ top }) => top));
+  const within = (side) => Math.round(Math.min(Math.max(side, 0), LARGEST_SIDE));
+  return {
+    top: within(column.top),
+    right: within(view.width - column.right),
+    bottom: within(view.height - bottom),
+    left: within(column.left),
+  };
 }

@@ -58,7 +58,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     }
 
     test('all its buttons have names, and room for a finger', async () => {
-      assert.deepEqual(await bar().getByRole('button').allTextContents(), ['Home', 'Fit all', 'Back', 'Views', 'Variants', 'More']);
+      assert.deepEqual(await bar().getByRole('button').allTextContents(), ['Home', 'Fit all', 'Back', 'Views', 'Variants', 'Doors', 'More']);
       await assertSlim();
       await tablet.screenshot(`bar-${name}`);
     });

@@ -122,7 +122,10 @@ for (const [name, size] of Object.entries(SIZES)) {
       await changes(() => press('f'));
       const steps = Array.from({ length: 49 }, (_, i) => (i + 1) / 50);
       const met = async (places) => {
-        const hits = await tablet.picks(places.map(([across, down]) => [across * width, down * height]));
+        // Of what is free of the view.
+        const { top, right, bottom, left } = tablet.wire.sent.findLast(({ type }) => type === 'resize').inset;
+        const place = ([across, down]) => [left + across * (width - left - right), top + down * (height - top - bottom)];
+        const hits = await tablet.picks(places.map(place));
         return hits.some(({ node }) => node !== undefined);
       };
       const sides = async (part) => ({

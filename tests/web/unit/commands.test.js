@@ -16,6 +16,7 @@ test('each command is a message of the protocol', async () => {
   await commands.patch({ nodes: null });
   await commands.control({ action: 'give', client: 'c2' });
   await commands.fit();
+  await commands.swing(7);
   await commands.fly({ eye: [1, 2, 3], focus: [0, 0, 0] });
   await commands.pick({ x: 1, y: 2, frame: 3 });
   await commands.tree({ only: 'switches' });
@@ -25,7 +26,7 @@ test('each command is a message of the protocol', async () => {
   await commands.share('https://preview.example/');
   await commands.open('car');
   assert.deepEqual(asked.map(({ type }) => type),
-    ['patch', 'patch', 'control', 'fit', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'share', 'open']);
+    ['patch', 'patch', 'control', 'fit', 'swing', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'share', 'open']);
   for (const message of asked) {
     assert.ok(isClientMessage(JSON.parse(JSON.stringify(message))), `${JSON.stringify(message)}: ${ajv.errorsText(isClientMessage.errors)}`);
   }

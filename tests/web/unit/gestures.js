@@ -2,6 +2,7 @@ import { readFileSync, readdirSync } from 'node:fs';
 import { Input } from '../../../web-client/stage/input.js';
 import { viewMapping } from '../../../web-client/stage/picture.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
+import { INPUT_RULES } from '../input-rules.js';
 
 const FOLDER = new URL('../../data/gestures/', import.meta.url);
 const ON_WINDOW = new Set(['keydown', 'keyup', 'blur']);
@@ -26,6 +27,7 @@ export function messagesOf({ box, view, events }) {
   const element = Object.assign(new EventTarget(), { setPointerCapture() {} });
   const sent = [];
   new Input(element, {
+    rules: () => INPUT_RULES,
     window,
     send: (message) => sent.push(message),
     mapping: () => viewMapping(box, view),

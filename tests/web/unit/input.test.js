@@ -3,6 +3,7 @@ import { describe, test } from 'node:test';
 import { Input } from '../../../web-client/stage/input.js';
 import { FakeWindow, fakeEvent } from './fakes.js';
 import { gestures, messagesOf } from './gestures.js';
+import { INPUT_RULES } from '../input-rules.js';
 
 const NO_KEYS = { ctrlKey: false, shiftKey: false, altKey: false, metaKey: false };
 
@@ -13,6 +14,7 @@ function setUp() {
   const page = { window, element, captured, sent: [], marked: [], unheard: 0, frame: 12, scale: 1 };
   const mark = (what) => (...told) => page.marked.push([what, ...told]);
   page.input = new Input(element, {
+    rules: () => INPUT_RULES,
     window,
     send: (message) => page.sent.push(message),
     mapping: () => {

@@ -3,6 +3,7 @@ import { describe, test } from 'node:test';
 import { Prediction } from '../../../web-client/stage/prediction.js';
 import { axes, distance, focalLength } from '../projection.js';
 import { gestures } from './gestures.js';
+import { INPUT_RULES } from '../input-rules.js';
 
 /** What the page promises at the depth of what is touched is 2 pixels; as the server's arithmetic is known, it is exact. */
 const WITHIN_PX = 0.01;
@@ -60,7 +61,7 @@ class Follower {
     const { camera } = gesture;
     this.cameras = [camera, ...gesture.cameras.map((pose) => ({ ...camera, ...pose }))];
     this.prediction = new Prediction();
-    this.prediction.follow({ navigation: gesture.navigation }, true);
+    this.prediction.follow({ navigation: gesture.navigation }, true, INPUT_RULES);
     this.draw(0);
   }
 
@@ -174,7 +175,7 @@ const finger = (what, pointerId, x, y) => ({
 function setUp() {
   const prediction = new Prediction();
   const page = { prediction, id: 0 };
-  page.follow = (steers = true) => prediction.follow({ navigation: NAVIGATION }, steers);
+  page.follow = (steers = true) => prediction.follow({ navigation: NAVIGATION }, steers, INPUT_RULES);
   page.draw = (handled, members) => prediction.drawn({ handled, camera: CAMERA, view: VIEW, ...members });
   page.send = (...messages) => {
     for (const message of messages) {
@@ -199,7 +200,7 @@ test('a pan moves the picture as far as the fingers went', () => {
 test('before the first picture there is nothing to move, and what came before it is left to the next ones', () => {
   const prediction = new Prediction();
   const page = { ...setUp(), prediction };
-  prediction.follow({ navigation: NAVIGATION }, true);
+  prediction.follow({ navigation: NAVIGATION }, true, INPUT_RULES);
   prediction.sent({ ...finger('down', 1, 100, 100), id: 1 });
   prediction.sent({ ...finger('down', 2, 300, 100), id: 2 });
   prediction.sent({ ...finger('move', 1, 140, 100), id: 3 });

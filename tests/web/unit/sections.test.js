@@ -13,7 +13,7 @@ import {
 } from '../../../web-client/panels/presentation-section.js';
 import { section } from '../../../web-client/panels/section.js';
 import {
-  cameraEntries, lookingAt, markerEntries, movedView, placeOf, unusedName, viewNames,
+  cameraEntries, lookingAt, markerEntries, middleOf, movedView, placeOf, unusedName, viewNames,
 } from '../../../web-client/panels/views-section.js';
 
 afterEach(() => setLanguage('en'));
@@ -74,10 +74,22 @@ describe('views', () => {
   });
 
   test('a look at a place keeps direction and distance', () => {
-    const camera = lookingAt({ eye: [1, 2, 3], focus: [1, 2, -7] }, [5, 0, 0.1]);
+    const before = { eye: [1, 2, 3], focus: [1, 2, -7], up: [0, 1, 0], fov: 90 };
+    const view = { width: 400, height: 200 };
+    const camera = lookingAt(before, [5, 0, 0.1], { x: 200, y: 100 }, view);
     assert.deepEqual(camera.focus, [5, 0, 0.1]);
     assert.deepEqual(camera.center, [5, 0, 0.1]);
     assert.deepEqual(camera.eye, [5, 0, 3 + (0.1 - -7)]);
+    // Right of the middle and above it: the camera goes left and down, by the height of 20 that it sees there.
+    const aside = lookingAt(before, [5, 0, 0.1], { x: 250, y: 80 }, view);
+    assert.deepEqual(aside.focus.map((x) => Math.round(x * 1e9) / 1e9), [0, -2, 0.1]);
+    assert.deepEqual(aside.center, [5, 0, 0.1]);
+  });
+
+  test('the middle of a view is that of what is free of it', () => {
+    const view = { width: 1000, height: 800 };
+    assert.deepEqual(middleOf(view, { top: 0, right: 0, bottom: 0, left: 0 }), { x: 500, y: 400 });
+    assert.deepEqual(middleOf(view, { top: 20, right: 400, bottom: 120, left: 0 }), { x: 300, y: 350 });
   });
 
   test('a marker goes with its part where the server tells the place in the part\'s space', () => {

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, readdirSync } from 'node:fs';
 import { afterEach, test } from 'node:test';
-import { errorSentence, language, preferredLanguage, say, setLanguage, written } from '../../../web-client/base/texts.js';
+import { errorSentence, language, noticeSentence, preferredLanguage, say, setLanguage, written } from '../../../web-client/base/texts.js';
 import { cs } from '../../../web-client/base/texts/cs.js';
 import { en } from '../../../web-client/base/texts/en.js';
 
@@ -10,10 +10,14 @@ const tables = Object.entries({ en, cs });
 const modules = readdirSync(new URL('../../../web-client/', import.meta.url), { recursive: true })
   .filter((name) => name.endsWith('.js') && !name.includes('texts/'))
   .map((name) => ({ name, source: read(`web-client/${name}`) }));
-const codes = JSON.parse(read('protocol/protocol.schema.json')).$defs.serverError.properties.code.enum;
+const { serverError, stateDocument } = JSON.parse(read('protocol/protocol.schema.json')).$defs;
+const codes = [
+  ...serverError.properties.code.enum.map((code) => `error.${code}`),
+  ...stateDocument.properties.notices.items.properties.code.enum.map((code) => `notice.${code}`),
+].sort();
 
-const isError = (key) => key.startsWith('error.');
-const keysOf = (table) => Object.keys(table).filter((key) => !isError(key)).sort();
+const isOfServer = (key) => /^(error|notice)\./.test(key);
+const keysOf = (table) => Object.keys(table).filter((key) => !isOfServer(key)).sort();
 const forms = (entry) => (typeof entry === 'string' ? [entry] : Object.values(entry));
 const sorted = (words) => [...new Set(words)].sort();
 const placeholders = (text) => sorted([...text.matchAll(/\{(\w+)\}/g)].map(([, name]) => name));
@@ -68,6 +72,14 @@ test('an error is told by its code, in English by the server', async () => {
   assert.equal(errorSentence(new Error('Pohled „A“ už existuje.')), 'Pohled „A“ už existuje.');
 });
 
+test('a notice is told by its code, in English by the server', async () => {
+  const notice = { code: 'not-drawn', message: 'What is to be seen now cannot be drawn: no memory' };
+  assert.equal(noticeSentence(notice), notice.message);
+  await setLanguage('cs');
+  assert.equal(noticeSentence(notice), `Tento pohled nelze vykreslit (${notice.message}).`);
+  assert.equal(noticeSentence({ ...notice, code: 'software' }), 'Kreslí se bez grafické karty, obrázků za sekundu bude méně.');
+});
+
 test('numbers are written as the language does', async () => {
   assert.equal(written(1234.567, 1), '1,234.6');
   assert.equal(written(0.4), '0');
@@ -116,11 +128,11 @@ test('each text is a text', () => {
   }
 });
 
-test('each code of an error has a sentence, but in English, which the server speaks', () => {
+test('each code of the server\'s has a sentence, but in English, which the server speaks', () => {
   assert.ok(codes.length > 10);
   for (const [name, table] of tables) {
-    const sentences = Object.entries(table).filter(([key]) => isError(key));
-    assert.deepEqual(sentences.map(([key]) => key).sort(), name === 'en' ? [] : codes.map((code) => `error.${code}`).sort());
+    const sentences = Object.entries(table).filter(([key]) => isOfServer(key));
+    assert.deepEqual(sentences.map(([key]) => key).sort(), name === 'en' ? [] : codes);
     for (const [key, text] of sentences) {
       assert.match(text, /^\p{Lu}.*\.$/u, `${name}: ${key}`);
       assert.ok(['', 'message'].includes(placeholders(text).join()), `${name}: ${key}`);

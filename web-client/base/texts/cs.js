@@ -1,4 +1,4 @@
-/** What the page says in Czech, as en.js; and a sentence for each code of the server's errors. */
+/** What the page says in Czech, as en.js; and a sentence for each code of the server's errors and notices. */
 export const cs = {
   'menu.title': 'Nabídka',
   'menu.close': 'Zavřít nabídku',
@@ -123,12 +123,16 @@ export const cs = {
   'bar.previous': 'Předchozí pohled',
   'bar.next': 'Následující pohled',
   'bar.noVariants': 'Scéna nemá žádné varianty.',
+  'bar.noDoors': 'Ve scéně se nic neotevírá.',
+  'bar.tapOpens': 'Otevírat klepnutím',
 
   'part.label': 'Vybraný díl',
   'part.clear': 'Zrušit výběr',
   'part.fit': 'Přiblížit',
   'part.hide': 'Skrýt',
   'part.isolate': 'Izolovat',
+  'part.open': 'Otevřít',
+  'part.close': 'Zavřít',
   'part.showAll': 'Zobrazit vše',
 
   'people.title': 'Účastníci',
@@ -249,6 +253,17 @@ export const cs = {
   'background.active': 'Aktivní pozadí',
   'background.plain': 'Jednobarevné',
   'background.texture': 'Textura',
+
+  'notice.scene': 'Ze souboru scény: {message}.',
+  'notice.software': 'Kreslí se bez grafické karty, obrázků za sekundu bude méně.',
+  'notice.not-kept': 'Pohledy, značky a díly se nedaří ukládat ({message}).',
+  'notice.unusable-changes': 'Uložené změny této scény nelze použít ({message}).',
+  'notice.recording-ended': 'Nahrávání skončilo ({message}).',
+  'notice.not-drawn': 'Tento pohled nelze vykreslit ({message}).',
+  'notice.not-encoded': 'Tento obraz nelze zakódovat ({message}).',
+  'notice.no-memory': 'Na vykreslení tohoto pohledu nestačí paměť.',
+  'notice.smaller': 'Dochází paměť, obrázky se kreslí menší.',
+  'notice.driver-restarted': 'Grafický ovladač se musel spustit znovu ({message}).',
 
   'error.bad-message': 'Server stránce nerozuměl ({message}).',
   'error.out-of-range': 'Zadaná hodnota není přípustná ({message}).',

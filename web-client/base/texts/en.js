@@ -1,6 +1,6 @@
 /**
  * What the page says in English: a text by key, with {values}, or its plural forms by Intl's category of `count`.
- * Errors are missing: the server's own sentences are English.
+ * Errors and notices are missing: the server's own sentences are English.
  */
 export const en = {
   'menu.title': 'Menu',
@@ -121,12 +121,16 @@ export const en = {
   'bar.previous': 'Previous view',
   'bar.next': 'Next view',
   'bar.noVariants': 'The scene has no variants.',
+  'bar.noDoors': 'Nothing in the scene opens.',
+  'bar.tapOpens': 'A tap opens',
 
   'part.label': 'Selected part',
   'part.clear': 'Clear the selection',
   'part.fit': 'Fit',
   'part.hide': 'Hide',
   'part.isolate': 'Isolate',
+  'part.open': 'Open',
+  'part.close': 'Close',
   'part.showAll': 'Show all',
 
   'people.title': 'People',
