@@ -26,6 +26,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
       await tablet.say({ type: 'patch', patch: { views: { 'Left lamp': {}, Wheel: { fov: 20 } } } });
+      await tablet.wire.until('the views', () => tablet.wire.state.views.Wheel);
       await page.locator('#menu-button').tap();
       views = page.locator('[data-section="views"]');
       await views.locator('summary').tap();
@@ -104,6 +105,10 @@ for (const [name, size] of Object.entries(SIZES)) {
       await row.locator('[aria-disabled="true"]', { hasText: 'Move down' }).waitFor();
       assert.deepEqual(await names(), ['Headlamp', 'Wheel', 'Antenna']);
       assert.deepEqual((await names()).map((one) => state().views[one].order), [0, 1, 2]);
+      await button('Move up', row).press('Enter');
+      await row.locator('[aria-disabled="false"]', { hasText: 'Move down' }).waitFor();
+      assert.deepEqual(await names(), ['Headlamp', 'Antenna', 'Wheel']);
+      assert.equal(await page.evaluate(() => document.activeElement.textContent), 'Move up');
       await tablet.say({ type: 'patch', patch: { views: { Antenna: null } } });
       await button('Antenna').waitFor({ state: 'detached' });
     });
