@@ -740,7 +740,7 @@ TEST_CASE("what is fitted avoids what covers the view, and home does once") {
     };
     resize(0);
     const double whole = middle();  // a little above the middle, as it is seen from above
-    resize(100);  // the page's bar
+    resize(100);                    // the page's bar
     CHECK(middle() == doctest::Approx(0.25 + 0.75 * whole).epsilon(0.01));
     const glm::dvec3 home = stage.camera().eye;
     resize(200);  // something opens above it

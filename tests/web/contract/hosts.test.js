@@ -27,6 +27,9 @@ describe('a host', () => {
         await host.frame();
         grant();
         await host.ask({ type: 'shown', revision: host.revision });
+      } else {
+        // They wait until the server knows that it has taken the state, as changes do.
+        await host.until('stats', () => newestStats(host));
       }
       const expected = [];
       for (let i = 1; i <= 100; ++i) {
