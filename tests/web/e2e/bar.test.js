@@ -27,6 +27,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.pictures(false);
     });
 
     after(async () => {
@@ -39,7 +40,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     const bar = () => page.locator('#bar');
     const strip = () => page.locator('#strip');
     const button = (label, where = bar()) => where.getByRole('button', { name: label, exact: true });
-    const drag = () => tablet.touch([{ from: [size.width / 2, size.height / 2], to: [size.width / 2 + 90, size.height / 2 + 20] }]);
+    const drag = () => tablet.stroke([{ from: [size.width / 2, size.height / 2], to: [size.width / 2 + 90, size.height / 2 + 20] }]);
     const settled = () => page.waitForTimeout(SETTLED_MS);
     const cameraIs = (pose) => until('that camera', () => saved(state().camera) === saved(pose));
 
@@ -66,8 +67,10 @@ for (const [name, size] of Object.entries(SIZES)) {
     test('Home and Fit move the camera, and Back leads through what was before', async () => {
       assert.equal(await button('Back').getAttribute('aria-disabled'), 'true');
       const first = structuredClone(state().camera);
-      const { after: dragged } = await drag();
+      await drag();
       await page.locator('#bar [aria-disabled="false"]').waitFor();
+      await settled();
+      const dragged = structuredClone(state().camera);
       await button('Home').tap();
       await cameraIs(state().views.home);
       await settled();
@@ -99,7 +102,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       await strip().getByRole('button', { name: 'Driver\'s seat', pressed: true }).waitFor();
       await button('Next view', strip()).tap();
       await cameraIs(state().views['Left lamp']);
-      await tablet.glance();
+      await tablet.glance(tablet.wire.revision);
       await tablet.screenshot(`bar-${name}-views`);
       await button('Next view', strip()).tap();
       await button('Next view', strip()).tap();
@@ -128,8 +131,8 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('green', () => Object.values(state().nodes).some(({ activeChild }) => activeChild === 2));
       await tablet.say({ type: 'pick', x: size.width / 2, y: size.height / 2, then: 'select' });
       await page.locator('#part span').waitFor();
-      await tablet.glance();
       await assertSlim();
+      await tablet.glance(tablet.wire.revision);
       await tablet.screenshot(`bar-${name}-variants`);
       await tablet.say({ type: 'patch', patch: { selection: { node: null } } });
       await button('Variants').tap();

@@ -26,6 +26,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.pictures(false);
       other = await Colleague.join(server.address);
       for (const part of ['Body', 'Interior', 'Wheels', 'Presentation', 'Floor shadow', 'Bonnet', 'Spoiler', 'Boot lid']) {
         const { nodes } = await other.ask({ type: 'tree', search: part });

@@ -41,6 +41,7 @@ describe('people', { skip: browserIsMissing }, () => {
         tablet = await Tablet.open(browser, server.address, size, { userAgent: 'Presenter (Windows)', reducedMotion: 'reduce' });
         ({ page } = tablet);
         await tablet.shows((await tablet.wire.until('a frame', () => tablet.wire.frames.at(-1))).frame);
+        await tablet.pictures(false);
         await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
         eva = await Colleague.join(server.address, { name: 'Eva' });
         others = [

@@ -25,6 +25,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.pictures(false);
       await tablet.say({ type: 'patch', patch: { views: { 'Left lamp': {}, Wheel: { fov: 20 } } } });
       await tablet.wire.until('the views', () => tablet.wire.state.views.Wheel);
       await page.locator('#menu-button').tap();

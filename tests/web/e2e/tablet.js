@@ -17,13 +17,19 @@ export function launchBrowser() {
   return chromium.launch({ executablePath: BROWSER, headless: true, chromiumSandbox: false, args: ARGUMENTS });
 }
 
-/** Runs in the page, before it: keeps its WebSockets where a test finds them. */
+/** Runs in the page, before it: keeps its WebSockets where a test finds them, and grants while it wants no pictures. */
 function rememberSockets() {
   window.sockets = [];
+  window.keptGrants = null;
   window.WebSocket = class extends WebSocket {
     constructor(...about) {
       super(...about);
       window.sockets.push(this);
+    }
+
+    send(text) {
+      if (window.keptGrants && text.startsWith('{"type":"frame"')) window.keptGrants.push(text);
+      else super.send(text);
     }
   };
 }
@@ -48,6 +54,7 @@ export class Tablet {
   complaints = [];
   /** While the server is known to be away, the browser may say that it cannot be reached. */
   serverAway = false;
+  #wantsPictures = true;
 
   /**
    * @param {import('playwright-core').Browser} browser
@@ -207,14 +214,27 @@ export class Tablet {
    * @returns {Promise<number[]>} what it looks like from far away: 24 × 16 mean colours
    */
   async glance(revision = 0) {
+    const wanted = this.#wantsPictures;
+    if (!wanted) await this.pictures(true);
     const { frame } = await this.wire.stillOf(revision);
     await this.shows(frame);
+    if (!wanted) await this.pictures(false);
     return this.page.evaluate(() => {
       const context = new OffscreenCanvas(24, 16).getContext('2d', { willReadFrequently: true });
       context.imageSmoothingQuality = 'high';
       context.drawImage(document.querySelector('#view'), 0, 0, 24, 16);
       return [...context.getImageData(0, 0, 24, 16).data];
     });
+  }
+
+  /** Without pictures the server draws none, and tests that look at none are so much faster. A glance has one. */
+  pictures(wanted) {
+    this.#wantsPictures = wanted;
+    return this.page.evaluate((wants) => {
+      const kept = window.keptGrants ?? [];
+      window.keptGrants = wants ? null : kept;
+      if (wants) for (const text of kept) window.sockets.at(-1).send(text);
+    }, wanted);
   }
 
   /** What a script sees of the page. */
