@@ -66,9 +66,9 @@ inline constexpr double kWheelSteps[] = {100, 3, 1.0 / 3};
 /// Drags by mouse, pen and touch as a pure function of the input. The camera is computed from the camera at
 /// the start of the drag and the pointers' positions since, so that dropped or coalesced moves give a
 /// bit-identical camera. What was touched at the start stays under the pointer, or between two fingers, while
-/// they pan and zoom; where nothing is, that is the point at the focus' depth. A view that turns about its
-/// eye goes with the pointer in its middle. A move (`button` is -1) may be replaced by a later one of the
-/// same pointer with the same buttons if nothing else came between.
+/// they pan and zoom; where nothing is, that is the point at the focus' depth. Where drags look around, what
+/// is in the middle of the view follows the pointer. A move (`button` is -1) may be replaced by a later one
+/// of the same pointer with the same buttons if nothing else came between.
 class Gestures {
 public:
     struct HeldKey {

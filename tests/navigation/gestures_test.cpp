@@ -103,7 +103,7 @@ public:
 
 }  // namespace
 
-TEST_CASE("where drags look around, what is in the middle goes with the pointer, and the eye stays") {
+TEST_CASE("a drag that looks around keeps the eye, and the middle of the view follows the pointer") {
     for (const bool touch : {false, true}) {
         Hands hands;
         hands.context.looks_around_from = [](const glm::dvec3& eye) { return eye.z > 4; };

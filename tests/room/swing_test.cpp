@@ -123,7 +123,7 @@ TEST_CASE("a matrix that a patch gives ends the way there; any other patch does 
     CHECK(is_closed(stage));
 }
 
-TEST_CASE("a flight goes on beside it, and a camera on the door goes with it") {
+TEST_CASE("it does not stop a flight, and a camera on the door moves with it") {
     Stage stage("a", scene_with_a_door());
     stage.say("a", R"({"type":"fly","id":9,"keyframes":[{"at":1000,"camera":{"eye":[1,0,4]}}]})");
     stage.say("a", kSwing);

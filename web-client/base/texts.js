@@ -8,6 +8,8 @@ const TABLES = { en };
 const KNOWN = { cs: 'cs', sk: 'cs', en: 'en' };
 
 let current = 'en';
+/** The last that was chosen, whose texts may not be loaded yet. */
+let wanted = current;
 /** @type {Record<string, Intl.NumberFormat>} by language and digits */
 const formats = {};
 
@@ -19,8 +21,9 @@ export function language() {
 /** Others than those known are English. Promises that its texts are loaded; where they are not, all stays as it is. */
 export async function setLanguage(code) {
   const known = code === 'cs' ? 'cs' : 'en';
+  wanted = known;
   if (known === 'cs') TABLES.cs ??= (await import('./texts/cs.js')).cs;
-  current = known;
+  if (wanted === known) current = known;
 }
 
 /** The first known of a browser's languages ('cs-CZ'), or else English. */

@@ -40,7 +40,7 @@ export class Dialogs {
 
   /**
    * @param {keyof typeof LOADS} name
-   * @param {HTMLElement} [opener] gets the focus back, or else what has it now
+   * @param {HTMLElement} [opener] gets the focus when the dialog is closed
    */
   async open(name, opener) {
     const loaded = await Promise.all([import('./dialogs/dialog.js'), LOADS[name]()]).catch(() => null);

@@ -12,8 +12,7 @@ const NONE = { scale: 1, x: 0, y: 0 };
 /**
  * What messages will do to the picture that does not show them yet: two fingers, the wheel, and drags that pan
  * or zoom by a button alone, by the server's rules of input but without limits. It is exact at the depth of what is
- * touched.
- * All else waits for the next picture.
+ * touched. All else waits for the next picture.
  */
 export class Prediction {
   /** @type {Partial<StateDocument['navigation']>} */

@@ -53,8 +53,8 @@ export class Stage {
     this.#input = new Input(this.#canvas, {
       send: (message) => connection.send(message),
       mapping: () => this.#picture.mapping(),
-      // A server that has begun anew knows nothing of the frames before.
       rules: () => connection.input,
+      // A server that has begun anew knows nothing of the frames before.
       frame: () => (store.now.hasPicture ? store.now.header?.frame : undefined),
       soon: (action) =>
         (meter.lateMs(performance.now()) > LATE_MS ? setTimeout(action, THINNED_MS) : requestAnimationFrame(action)),

@@ -6,8 +6,8 @@ const LARGEST_SIDE = 8192;
  * Tells the view's {width, height, inset} in CSS pixels and pixelRatio, within the protocol's limits, and changes.
  *
  * @param {HTMLElement} view
- * @param {{over: Element, rows: Element[]}} covers the column on the view that leaves room for what lies beside it, and
- *   those of its rows that lie at its lower end
+ * @param {{over: Element, rows: Element[]}} covers `over` lies on the view, beside an open menu; `rows` are its parts at
+ *   the view's lower end
  * @param {(size: {width: number, height: number, pixelRatio: number, inset: Sides}) => void} tell
  */
 export function watchViewSize(view, { over, rows }, tell, window = globalThis.window) {
@@ -17,7 +17,8 @@ export function watchViewSize(view, { over, rows }, tell, window = globalThis.wi
     const width = Math.min(view.clientWidth, LARGEST_SIDE);
     const height = Math.min(view.clientHeight, LARGEST_SIDE);
     const pixelRatio = Math.min(Math.max(window.devicePixelRatio, 0.25), 4);
-    const inset = insetOf({ width, height }, over.getBoundingClientRect(), rows.filter(({ textContent }) => textContent !== '').map((row) => row.getBoundingClientRect()));
+    const shown = rows.filter(({ textContent }) => textContent !== '').map((row) => row.getBoundingClientRect());
+    const inset = insetOf({ width, height }, over.getBoundingClientRect(), shown);
     const size = { width, height, pixelRatio, inset };
     const text = JSON.stringify(size);
     if (width === 0 || height === 0 || text === last) return;
@@ -37,7 +38,7 @@ export function watchViewSize(view, { over, rows }, tell, window = globalThis.wi
 }
 
 /**
- * What of a view is covered at its sides: by what lies beside the column on it, and by the column's lower rows.
+ * How far a view is covered from each side.
  *
  * @param {{width: number, height: number}} view
  * @param {Sides} column from the view's left and top

@@ -41,6 +41,14 @@ test('a text is in the language in force', async () => {
   assert.equal(language(), 'en');
 });
 
+test('the language chosen last counts, however long the texts of another take', async () => {
+  const fresh = await import('../../../web-client/base/texts.js?fresh');
+  const czech = fresh.setLanguage('cs');
+  await fresh.setLanguage('en');
+  await czech;
+  assert.equal(fresh.language(), 'en');
+});
+
 test('a text holds its values: words as they are, numbers as the language writes them', () => {
   assert.equal(say('views.nameTaken', { name: '{name} $& 1000' }), 'There is a view “{name} $& 1000” already.');
   assert.equal(say('connection.behind', { count: 1234 }), '1,234 behind');
