@@ -15,7 +15,8 @@ namespace vrut::stability {
 
 /// Draws shaded balls, turned with the camera: as much to encode as in a picture of the car.
 server::engine::FrameRenderer renderer_of_balls();
-inline constexpr double kSmallest = 8450;  ///< bytes of its smallest picture for the page, with the header
+inline constexpr double kSmallestScale = 0.25;  ///< of its smallest frame for the page to the view
+inline constexpr double kSmallest = 8450;       ///< bytes of such a frame as the drag begins, with the header
 
 /// A server, a slow link, and the page at its other end, with a finger that turns the view on and on; and
 /// somebody who watches without a link between.

@@ -107,8 +107,7 @@ struct PageClient::Impl : std::enable_shared_from_this<PageClient::Impl> {
         retries = 0;
         const std::string header(file.substr(0, kHeader));
         shown.push_back({server::base::Clock::now(), static_cast<std::int64_t>(number(header, "handled")),
-                         file.size(), number(header, "scale"),
-                         header.find(R"("moving")") != std::string::npos});
+                         number(header, "scale"), header.find(R"("moving")") != std::string::npos});
         say(protocol::FrameGrant{static_cast<std::int64_t>(number(header, "frame"))});
     }
 

@@ -22,7 +22,6 @@ public:
     struct Shown {
         server::base::Clock::time_point at;
         std::int64_t handled = 0;  ///< the last of its messages that the picture shows
-        std::size_t bytes = 0;
         double scale = 0;  ///< of the picture to the view
         bool moving = false;
     };
