@@ -73,6 +73,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       // Were it opening, its module would be on its way.
       await page.waitForLoadState('networkidle');
       assert.equal(await page.locator('dialog').count(), 0);
+      await tablet.pictures(false);
     });
 
     test('a key opens it, but not while something is typed; its keys do not steer', async () => {

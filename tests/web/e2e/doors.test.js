@@ -25,6 +25,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       ({ page } = tablet);
       await until('control', () => state()?.control.holder);
       await page.locator('#bar').waitFor();
+      await tablet.pictures(false);
     });
 
     after(async () => {
@@ -106,6 +107,7 @@ for (const [name, size] of Object.entries(SIZES)) {
       const [seat] = Object.entries(state().cameras).find(([, camera]) => camera.name === 'Driver\'s seat');
       await stand({ node: Number(seat) });
       const [x, y] = [size.width / 3, size.height / 2];
+      await tablet.pictures(true);
       const was = structuredClone(state().camera);
       const { after: now } = await tablet.touch([{ from: [x, y], to: [2 * x, y] }]);
       assert.deepEqual(now.eye, was.eye);

@@ -35,6 +35,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
       await tablet.wire.still();
+      await tablet.pictures(false);
       colleague = await Colleague.join(server.address);
     });
 
