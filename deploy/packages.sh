@@ -10,7 +10,7 @@ BUILD_PACKAGES=(
     g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
     libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
     libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev zlib1g-dev libssl-dev libqrencode-dev
-    libosd-dev libassimp-dev libmeshoptimizer-dev
+    libosd-dev libassimp-dev libmeshoptimizer-dev esbuild:esbuild
 )
 # To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; and the libraries that the
 # program is linked with.
