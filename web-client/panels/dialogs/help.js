@@ -16,36 +16,49 @@ const HELD = '<rect class="pressed" x="6" y="11" width="34" height="18" rx="9"/>
 const finger = (x, y) => `<circle class="pressed" cx="${x}" cy="${y}" r="4.5"/>`;
 const TAP = `${finger(32, 20)}<circle cx="32" cy="20" r="10"/>`;
 
-/** What a hand can do, drawn: with fingers, the mouse and keys. */
-export function help() {
-  const gestures = [
-    [say('help.turn'),
+/**
+ * What a hand can do, by fingers, the mouse or a button of the page, and keys.
+ *
+ * @returns {{title: string, ways: ({words: string, picture: string} | {words: string, icon: string} | {keys: string[]})[]}[]}
+ *   `picture` is SVG within 64 × 40, `icon` the name of one of the page's
+ */
+export function gestures() {
+  const gesture = (title, ...ways) => ({ title, ways });
+  const drawn = (words, picture) => ({ words, picture });
+  const shown = (words, icon) => ({ words, icon });
+  const keys = (...names) => ({ keys: names });
+  return [
+    gesture(say('help.turn'),
       drawn(say('help.oneFinger'), `${finger(12, 28)}<path d="M20 24C28 12 40 9 52 13M45 7l7 6-8 5"/>`),
       drawn(say('help.leftButton'), MOUSE + LEFT + DRAG),
-      keys(ARROWS)],
-    [say('help.move'),
+      keys(ARROWS)),
+    gesture(say('help.move'),
       drawn(say('help.twoFingers'), `${finger(10, 27)}${finger(21, 15)}<path d="M29 21h25M47 14l7 7-7 7"/>`),
       drawn(say('help.rightButton'), MOUSE + RIGHT + DRAG),
-      keys('Shift', ARROWS)],
-    [say('help.zoom'),
+      keys('Shift', ARROWS)),
+    gesture(say('help.zoom'),
       drawn(say('help.apart'), `${finger(23, 26)}${finger(41, 14)}<path d="${APART}"/>`),
       drawn(say('help.wheel'), MOUSE + TURNS_WHEEL),
-      keys('+', '−')],
-    [say('help.select'),
+      keys('+', '−')),
+    gesture(say('help.select'),
       drawn(say('help.doubleTap'), TAP + TWICE),
-      drawn(say('help.doubleClick'), MOUSE + LEFT + TWICE)],
-    [say('help.deeper'),
+      drawn(say('help.doubleClick'), MOUSE + LEFT + TWICE)),
+    gesture(say('help.deeper'),
       drawn(say('help.anotherTap'), `<path d="M10 4h32v32H10zM17 11h18v18H17z"/>${finger(26, 20)}${TWICE}`),
-      drawn(say('help.anotherClick'), MOUSE + LEFT + TWICE)],
-    [say('part.clear'), shown('close', say('part.label')), keys('Esc')],
-    [say('help.fit'), shown('fit', say('bar.fit')), keys('F')],
-    [say('views.home'), shown('home', say('bar.home')), keys('Home')],
-    [say('help.control'),
+      drawn(say('help.anotherClick'), MOUSE + LEFT + TWICE)),
+    gesture(say('part.clear'), shown(say('part.label'), 'close'), keys('Esc')),
+    gesture(say('help.fit'), shown(say('bar.fit'), 'fit'), keys('F')),
+    gesture(say('views.home'), shown(say('bar.home'), 'home'), keys('Home')),
+    gesture(say('help.control'),
       drawn(say('help.tapPill'), PILL + finger(32, 20)),
-      drawn(say('help.holdPill'), HELD + PILL)],
-    [say('help.title'), shown('help', say('menu.title')), keys('?')],
+      drawn(say('help.holdPill'), HELD + PILL)),
+    gesture(say('help.title'), shown(say('menu.title'), 'help'), keys('?')),
   ];
-  const rows = gestures.map(([title, ...ways]) => element('li', {}, element('h3', {}, title), ...ways));
+}
+
+/** The gestures, as a dialog. */
+export function help() {
+  const rows = gestures().map(({ title, ways }) => element('li', {}, element('h3', {}, title), ...ways.map(shown)));
   return {
     title: say('help.title'),
     content: [
@@ -56,21 +69,12 @@ export function help() {
   };
 }
 
-function drawn(words, picture) {
-  const made = element('p');
-  made.innerHTML = `<svg viewBox="0 0 64 40" aria-hidden="true">${picture}</svg>`;
+function shown({ words, picture, icon, keys }) {
+  if (keys) return element('p', { className: 'keys' }, ...keys.map((name) => element('kbd', {}, name)));
+  const made = element('p', { className: icon ? 'shown' : '' });
+  made.innerHTML = icon
+    ? `<svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><use href="#icon-${icon}"/></svg>`
+    : `<svg viewBox="0 0 64 40" aria-hidden="true">${picture}</svg>`;
   made.append(words);
   return made;
-}
-
-/** A button of the page, for fingers and mouse. */
-function shown(icon, label) {
-  const made = element('p', { className: 'shown' });
-  made.innerHTML = `<svg class="icon" viewBox="0 0 24 24" aria-hidden="true"><use href="#icon-${icon}"/></svg>`;
-  made.append(label);
-  return made;
-}
-
-function keys(...names) {
-  return element('p', { className: 'keys' }, ...names.map((name) => element('kbd', {}, name)));
 }
