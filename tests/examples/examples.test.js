@@ -141,6 +141,15 @@ function png(name) {
   };
 }
 
+test('the script of the README moves the camera, and gives control back', async () => {
+  const [, script] = /```python\n(.*?)```/s.exec(fs.readFileSync(path.join(__dirname, '../../README.md'), 'utf8'));
+  fs.writeFileSync(file('readme.py'), script.replace('127.0.0.1:8080', `127.0.0.1:${port}`)
+    .replace('role="control"', `role="control", token="${TOKEN}"`));
+  const { holder } = watcher.state.control;
+  await succeeds(run(PYTHON, [file('readme.py')]));
+  await watcher.until(() => String(watcher.state.camera.eye) === '3,2,5' && watcher.state.control.holder === holder);
+});
+
 test('each script tells its usage', async () => {
   assert.match(await succeeds(python('orbit.py', '--help')), /--steps/);
   assert.match(await succeeds(python('door.py', '--help')), /--open/);

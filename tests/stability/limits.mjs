@@ -1,16 +1,16 @@
-// README's table of limits, from what the studies gave.
+// The table of limits in LIMITS.md, from what the studies gave.
 //
 //   node tests/stability/limits.mjs [RESULTS...]
 //
 // RESULTS, written by the program `stability`, replace those that are kept in data/, study by study; then the table in
-// README.md is written anew. Nothing is written where a study failed.
+// LIMITS.md is written anew. Nothing is written where a study failed.
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
 
 export const root = path.join(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const kept = path.join(root, 'tests/stability/data/results.json');
-const readme = path.join(root, 'README.md');
+export const PAGE = path.join(root, 'tests/stability/LIMITS.md');
 const BEGIN = '<!-- Written by tests/stability/limits.mjs. -->\n';
 const END = '<!-- End of the table of limits. -->\n';
 
@@ -134,10 +134,10 @@ export function table(results) {
   return `| what | holds | beyond |\n|---|---|---|\n${ROWS.map(line).join('')}`;
 }
 
-/** README's text, with `rows` for its table. */
+/** The page's text, with `rows` for its table. */
 export function withTable(text, rows) {
   const [begin, end] = [text.indexOf(BEGIN), text.indexOf(END)];
-  if (begin < 0 || end < begin) throw new Error('README.md lacks the marks around its table of limits.');
+  if (begin < 0 || end < begin) throw new Error('LIMITS.md lacks the marks around its table.');
   return text.slice(0, begin + BEGIN.length) + rows + text.slice(end);
 }
 
@@ -167,7 +167,7 @@ function seconds(ms) {
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const results = process.argv.slice(2).reduce((studies, file) => new Map([...studies, ...read(file)]), read());
   for (const study of results.keys()) held(results, study);
-  const text = withTable(readFileSync(readme, 'utf8'), table(results));
+  const text = withTable(readFileSync(PAGE, 'utf8'), table(results));
   writeFileSync(kept, `[\n${[...results.values()].map((study) => JSON.stringify(study)).join(',\n')}\n]\n`);
-  writeFileSync(readme, text);
+  writeFileSync(PAGE, text);
 }

@@ -22,7 +22,7 @@ public:
     struct Shown {
         server::base::Clock::time_point at;
         std::int64_t handled = 0;  ///< the last of its messages that the picture shows
-        double scale = 0;  ///< of the picture to the view
+        double scale = 0;          ///< of the picture to the view
         bool moving = false;
     };
 

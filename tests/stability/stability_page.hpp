@@ -18,7 +18,7 @@ server::measure::Section section_of(const Study& study);
 std::vector<std::string> write_page(const std::vector<Study>& studies, const std::string& renderer,
                                     const std::string& machine, const std::filesystem::path& folder);
 
-/// Writes what README's table of limits is made from, a line for each study: its bound, its limit and the
+/// Writes what the table of LIMITS.md is made from, a line for each study: its bound, its limit and the
 /// points of its method. Throws std::runtime_error.
 void write_results(const std::vector<Study>& studies, const std::filesystem::path& file);
 

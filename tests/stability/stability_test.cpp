@@ -14,7 +14,7 @@ using namespace vrut::stability;
 
 namespace {
 
-/// The results that README's table is made from, by the names of their studies.
+/// The results that the table of LIMITS.md is made from, by the names of their studies.
 std::map<std::string, nlohmann::json> kept_results() {
     std::map<std::string, nlohmann::json> results;
     std::ifstream file(VRUT_TEST_DATA "/results.json");
