@@ -24,11 +24,12 @@ RUN_PACKAGES=(
 TEST_PACKAGES=(
     doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
 )
-# To test all: another browser, what the charts, the examples and deploy/ work with, and what checks the source.
+# To test all: another browser, what the charts, the examples and deploy/ work with, and what checks the source and its
+# comments.
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(
     firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy openssl:openssl
-    bubblewrap:bwrap clang-tidy-14:clang-tidy-14
+    bubblewrap:bwrap clang-tidy-14:clang-tidy-14 doxygen:doxygen
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.
 # shellcheck disable=SC2034

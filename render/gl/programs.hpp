@@ -72,7 +72,7 @@ std::vector<SurfaceVariant> reachable_surface_variants();
 /// of its lights or none, and its environment map or none.
 std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const plan::Methods& methods);
 
-/// GLSL, with the version and all that it #includes and #defines.
+/// GLSL, with its version and all that it includes and defines.
 struct ProgramSource {
     std::string vertex, fragment;
 };
