@@ -19,6 +19,9 @@ RUN_PACKAGES=(
     libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
     libassimp5 libmeshoptimizer2d libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 zlib1g libssl3 libqrencode4
 )
+# To make the Debian packages (cpack).
+# shellcheck disable=SC2034
+PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file)
 # To test: doctest, a browser and what steers it, and what checks the source's format and the shaders.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
@@ -29,7 +32,7 @@ TEST_PACKAGES=(
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(
     firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy openssl:openssl
-    bubblewrap:bwrap clang-tidy-14:clang-tidy-14 doxygen:doxygen
+    bubblewrap:bwrap clang-tidy-14:clang-tidy-14 doxygen:doxygen lintian:lintian
 )
 # To fuzz: clang, libFuzzer and the sanitizers' runtime.
 # shellcheck disable=SC2034

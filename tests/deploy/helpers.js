@@ -1,10 +1,12 @@
 // Processes and clients for the tests of deploy/.
 'use strict';
+const assert = require('node:assert/strict');
 const { spawn, spawnSync } = require('node:child_process');
 const { once } = require('node:events');
 const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
+const { after } = require('node:test');
 const WebSocket = require('../web/node_modules/ws');
 
 const LIMIT_MS = 30_000;
@@ -38,27 +40,70 @@ function output(command, args, options = {}) {
   return stdout + stderr;
 }
 
+/** Files below a folder, by their paths in it. */
+const files = (top) => fs.readdirSync(top, { recursive: true, withFileTypes: true })
+  .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.parentPath ?? entry.path, entry.name))).sort();
+
+/** Makes the Debian packages in a folder. @returns {object} their files, by their names */
+function debs(folder) {
+  output('cpack', ['--config', path.join(process.env.VRUT_BUILD, 'CPackConfig.cmake'), '-B', folder]);
+  const made = fs.readdirSync(folder).filter((name) => name.endsWith('.deb'));
+  return Object.fromEntries(made.map((name) => [name.split('_')[0], path.join(folder, name)]));
+}
+
+/** A function that tells what the Containerfile's instructions of a name say. */
+function containerfile() {
+  const text = fs.readFileSync(path.join(DEPLOY, 'Containerfile'), 'utf8').replace(/\\\n\s*/g, '').replace(/^#.*\n/gm, '');
+  const instructions = text.trim().split(/\n+/).map((line) => /^([A-Z]+) (.*)$/.exec(line).slice(1));
+  return (name) => instructions.filter(([instruction]) => instruction === name).map(([, words]) => words);
+}
+
+/** Why no sandbox can be made here, or false. */
+const cannotSandbox = (...commands) => missing('bwrap', ...commands) ||
+  (spawnSync('bwrap', ['--unshare-user', '--unshare-pid', '--ro-bind', '/', '/', '--dev', '/dev', '--proc', '/proc', '/bin/true']).status === 0
+    ? false : 'bwrap may not make namespaces here');
+
+/** The libraries that a program itself is linked with. */
+function linkedLibraries(program) {
+  const paths = new Map([...output('ldd', [program]).matchAll(/(\S+) => (\S+)/g)].map(([, name, file]) => [name, file]));
+  return [...output('readelf', ['--dynamic', program]).matchAll(/\(NEEDED\).*\[(.*)\]/g)].map(([, name]) => paths.get(name)).filter(Boolean);
+}
+
+/** The Debian packages that brought files. */
+function packagesOf(paths) {
+  // Where /lib is a link to /usr/lib, a package may name either.
+  const asked = new Map(paths.map((file) => fs.realpathSync(file)).flatMap((file) => [[file, file], [file.replace(/^\/usr\/lib\//, '/lib/'), file]]));
+  const { stdout } = spawnSync('dpkg-query', ['--search', ...asked.keys()], { encoding: 'utf8', maxBuffer: 1 << 26 });
+  const found = [...stdout.matchAll(/^([^:,\s]+)(?::\w+)?(?:, .*)?: (\/.*)$/gm)];
+  const owned = new Set(found.map(([, , file]) => asked.get(file)));
+  assert.deepEqual([...new Set(asked.values())].filter((file) => !owned.has(file)), [], 'of no package');
+  return new Set(found.map(([, name]) => name));
+}
+
+const running = [];
+after(() => running.forEach(({ child }) => child.kill('SIGKILL')));
+
 /** A process that ends with the tests, and what it has printed. */
 class Running {
   text = '';
 
   constructor(command, args, options = {}) {
     this.child = spawn(command, args, options);
-    process.on('exit', () => this.child.kill('SIGKILL'));
+    running.push(this);
     for (const stream of [this.child.stdout, this.child.stderr]) stream?.setEncoding('utf8').on('data', (data) => (this.text += data));
     this.ended = new Promise((resolve) => this.child.once('close', (status) => resolve(status)));
     this.child.once('error', (error) => (this.text += error));
   }
 
   /** What a pattern finds in what it prints. */
-  async printed(pattern) {
+  async printed(pattern, limitMs = LIMIT_MS) {
     let over = false;
     this.ended.then(() => (over = true));
     return eventually(`${pattern} in ${this.child.spawnfile}'s output`, () => {
       const found = pattern.exec(this.text);
       if (!found && over) throw new Error(`ended without ${pattern}: ${this.text}`);
       return found;
-    });
+    }, limitMs);
   }
 
   /** @returns {Promise<number>} its status */
@@ -68,8 +113,8 @@ class Running {
   }
 }
 
-async function eventually(what, look) {
-  for (const end = Date.now() + LIMIT_MS; Date.now() < end; ) {
+async function eventually(what, look, limitMs = LIMIT_MS) {
+  for (const end = Date.now() + limitMs; Date.now() < end; ) {
     const seen = await look();
     if (seen) return seen;
     await new Promise((resolve) => setTimeout(resolve, 20));
@@ -137,4 +182,4 @@ class Client {
   }
 }
 
-module.exports = { Client, DEPLOY, Running, TOKENS, eventually, missing, output, temporaryFolder, tokenFile };
+module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, containerfile, debs, eventually, files, linkedLibraries, missing, output, packagesOf, temporaryFolder, tokenFile };

@@ -4,16 +4,12 @@ const assert = require('node:assert/strict');
 const fs = require('node:fs');
 const path = require('node:path');
 const { before, test } = require('node:test');
-const { Client, DEPLOY, Running, output, missing, temporaryFolder } = require('./helpers.js');
+const { Client, DEPLOY, Running, files, linkedLibraries, missing, output, packagesOf, temporaryFolder } = require('./helpers.js');
 
 const { VRUT_BUILD, VRUT_CMAKE } = process.env;
 const SOURCE = path.dirname(DEPLOY);
 const folder = temporaryFolder();
 const prefix = path.join(folder, 'moved');
-
-/** Files below a folder, by their paths in it. */
-const files = (top) => fs.readdirSync(top, { recursive: true, withFileTypes: true })
-  .filter((entry) => !entry.isDirectory()).map((entry) => path.relative(top, path.join(entry.parentPath ?? entry.path, entry.name))).sort();
 
 before(() => {
   // As packages are made: installed as if into /usr, which lies somewhere else meanwhile.
@@ -26,7 +22,7 @@ test('what a server needs is installed, and nothing else', () => {
   const scenes = path.join(SOURCE, 'scenes');
   const expected = [
     'bin/vrut-preview', 'lib/systemd/system/vrut-preview.service',
-    ...['LICENSE', 'README.md', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
+    ...['CHANGELOG.md', 'README.md', 'copyright', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
     ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
     ...files(path.join(scenes, 'car/textures')).map((name) => `share/vrut-preview/scenes/car/textures/${name}`),
     ...files(path.join(scenes, 'teaching')).filter((name) => !name.endsWith('.py')).map((name) => `share/vrut-preview/scenes/teaching/${name}`),
@@ -56,15 +52,10 @@ test('the unit starts the program where it is installed to', () => {
 test('the packages to run bring every library that it is linked with', { skip: missing('dpkg-query') }, () => {
   const listed = output('bash', ['-c', `source ${DEPLOY}/packages.sh; printf '%s\\n' "\${RUN_PACKAGES[@]}"`]).trim().split('\n');
   const program = path.join(prefix, 'bin/vrut-preview');
-  const dynamic = output('readelf', ['--dynamic', program]);
-  const paths = new Map([...output('ldd', [program]).matchAll(/(\S+) => (\S+)/g)].map(([, name, file]) => [name, fs.realpathSync(file)]));
-  const needed = [...dynamic.matchAll(/\(NEEDED\).*\[(.*)\]/g)].map(([, name]) => paths.get(name)).filter(Boolean);
-  assert.ok(needed.length > 5);
-  // Where /lib is a link to /usr/lib, a package may name either.
-  const owners = output('dpkg-query', ['--search', ...needed.map((file) => file.replace(/^(\/usr)?/, '*'))]);
-  for (const [, owner, file] of owners.matchAll(/^([^:]+):.* (\S+)$/gm))
-    assert.ok(['libc6', 'libstdc++6', 'libgcc-s1', ...listed].includes(owner), `${file} is of ${owner}`);
-  assert.doesNotMatch(dynamic, /R(UN)?PATH/);
+  const libraries = linkedLibraries(program);
+  assert.ok(libraries.length > 5);
+  for (const owner of packagesOf(libraries)) assert.ok(['libc6', 'libstdc++6', 'libgcc-s1', ...listed].includes(owner), owner);
+  assert.doesNotMatch(output('readelf', ['--dynamic', program]), /R(UN)?PATH/);
 });
 
 test('it draws and serves the car from where it was moved to', async () => {
