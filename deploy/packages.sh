@@ -19,9 +19,9 @@ RUN_PACKAGES=(
     libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
     libassimp5 libmeshoptimizer2d libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 zlib1g libssl3 libqrencode4
 )
-# To make the Debian packages (cpack).
+# To make the Debian packages (cpack), and of them a container's root (container.sh).
 # shellcheck disable=SC2034
-PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file)
+PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file mmdebstrap:mmdebstrap)
 # To test: doctest, a browser and what steers it, and what checks the source's format and the shaders.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(

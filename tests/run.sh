@@ -17,7 +17,7 @@ that are missing are installed first.
   --ci      also the rest of the tests, clang-tidy without its analyzer on the program, and the address and undefined
             behaviour sanitizers on the tests that need no renderer: within an hour on two cores
   --all     also clang-tidy's analyzer, and clang-tidy on the tests, the same sanitizers with the real renderer, the
-            thread sanitizer, the soak tests, the benchmarks and the fuzzers: hours
+            thread sanitizer, the packages in a bare Debian, the soak tests, the benchmarks and the fuzzers: hours
   --help    this text
 TEXT
 }
@@ -167,7 +167,7 @@ step "format" "Run clang-format-14 -i on the files named above." format
 if $ci; then
     step "build release" "$compile_remedy" build release
     if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
-    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE '^(soak|fuzz|bench)$'
+    step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE '^(soak|fuzz|bench|bare)$'
     step "build asan" "$compile_remedy" build asan --target tests_without_gpu
     step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
     step "clang-tidy" "Mend what it names above." end_tidy
@@ -180,6 +180,7 @@ if $all; then
     step "tests of asan with the renderer" "Again alone: ctest --preset asan -R NAME." tests asan -R '^(renderer|gl_faults|soak)$'
     step "build tsan" "$compile_remedy" build tsan --target tests_without_gpu
     step "tests of tsan" "Again alone: ctest --preset tsan -R NAME." tests tsan -L '^(unit|net)$'
+    step "packages in a bare Debian" "Again alone: ctest --preset release -R NAME." tests release -L '^bare$'
     step "soak tests" "Again alone: ctest --preset release -R NAME." tests release -L '^soak$'
     step "benchmarks" "Again alone: ctest --preset release -R NAME." tests release -L '^bench$'
     step "build fuzz" "$compile_remedy" build fuzz

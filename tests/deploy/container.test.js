@@ -1,24 +1,18 @@
-// The Containerfile: it names no package itself, and its commands are ones that the program and bash understand.
+// The Containerfile: it takes nothing from a registry, and its commands are ones that the program and bash understand.
 'use strict';
 const assert = require('node:assert/strict');
 const { spawnSync } = require('node:child_process');
 const fs = require('node:fs');
 const path = require('node:path');
 const { test } = require('node:test');
-const { DEPLOY, Running, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { DEPLOY, Running, containerfile, output, temporaryFolder, tokenFile } = require('./helpers.js');
 
 const { VRUT_PREVIEW, VRUT_CAR } = process.env;
-const text = fs.readFileSync(path.join(DEPLOY, 'Containerfile'), 'utf8').replace(/\\\n\s*/g, '').replace(/^#.*\n/gm, '');
-const instructions = text.trim().split(/\n+/).map((line) => /^([A-Z]+) (.*)$/.exec(line).slice(1));
-const all = (name) => instructions.filter(([instruction]) => instruction === name).map(([, words]) => words);
+const all = containerfile();
 
-test('what is installed is named in packages.sh alone', () => {
-  const listed = output('bash', ['-c', `source ${DEPLOY}/packages.sh; printf '%s\\n' "\${BUILD_PACKAGES[@]%%:*}" "\${RUN_PACKAGES[@]}"`]);
-  const words = new Set(text.split(/[^\w.+-]+/));
-  for (const name of listed.trim().split('\n')) if (name !== 'cmake') assert.ok(!words.has(name), name);
-  assert.doesNotMatch(text, /apt-get|apt install|dpkg/);
-  for (const list of ['BUILD_PACKAGES', 'RUN_PACKAGES'])
-    assert.equal(all('RUN').filter((command) => command.includes(`install_packages \\"\${${list}[@]}\\"`)).length, 1, list);
+test('it is made of the root that container.sh makes, and needs nothing from elsewhere', () => {
+  assert.deepEqual([all('FROM'), all('ADD'), all('COPY'), all('RUN')], [['scratch'], ['root.tar /'], [], []]);
+  assert.match(fs.readFileSync(path.join(DEPLOY, 'container.sh'), 'utf8'), /"\$folder\/root\.tar"/);
 });
 
 test('it runs as nobody in particular, with options that there are', () => {
