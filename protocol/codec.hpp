@@ -28,8 +28,9 @@ std::string encode(const Error& message);
 const char* name_of(Role role);
 const char* name_of(NavigationState::Style style);
 
-/// The JSON Schema (draft 2020-12) of everything that travels. Its $defs hold each message, and
-/// `clientMessage`, `serverMessage`, `frameHeader`, `stateDocument` and `statePatch`.
+/// The JSON Schema (draft 2020-12) of everything that travels, and of what is kept in files. Its $defs hold
+/// each message, and `clientMessage`, `serverMessage`, `frameHeader`, `stateDocument`, `statePatch`,
+/// `eventLogHeader`, `eventLogLine` and `levelTable`.
 std::string json_schema();
 
 }  // namespace vrut::protocol

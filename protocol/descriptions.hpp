@@ -4,6 +4,7 @@
 
 #include "fields.hpp"
 #include "frame_header.hpp"
+#include "level_table.hpp"
 #include "messages.hpp"
 #include "state.hpp"
 #include "state_fields.hpp"
@@ -44,162 +45,198 @@ inline constexpr auto kFormat = word("jpeg", "png");
 inline constexpr auto kStyle = word("vrut", "maya", "catia", "cinema4d");
 inline constexpr auto kTurnAbout = word("center", "touched");
 
+// Definitions of the schema's own.
+inline constexpr Defined<Object<CameraOverlay>> kCameraOverlay{{}, "cameraOverlay"};
+inline constexpr Defined<Object<Quality>> kQuality{{}, "quality"};
+inline constexpr Defined<Object<Notice>> kNotice{{}, "notice"};
+inline constexpr Defined<Section<CameraState>> kCamera{{}, "camera"};
+
 // --- client to server
 
 template <class V>
 void describe(V& v, const Hello*) {
-    v.required("role", &Hello::role, kRole);
-    v.optional("name", &Hello::name, kClientName);
-    v.optional("token", &Hello::token, Text{1000});
-    v.optional("resume", &Hello::resume, Text{100});
+    v.required("role", &Hello::role, kRole,
+               "The role asked for; `welcome` tells the one given, which the token decides.");
+    v.optional("name", &Hello::name, kClientName,
+               "How others see the client; of two of the same name one gets a number, as \"iPad 2\".");
+    v.optional("token", &Hello::token, Text{1000},
+               "The control token or the view token, where the server has tokens.");
+    v.optional("resume", &Hello::resume, Text{100},
+               "A secret of the client's own, by which it gets control back after a lost connection.");
 }
 
 template <class V>
 void describe(V& v, const Inset*) {
-    v.optional("top", &Inset::top, Number{0, 8192});
-    v.optional("right", &Inset::right, Number{0, 8192});
-    v.optional("bottom", &Inset::bottom, Number{0, 8192});
-    v.optional("left", &Inset::left, Number{0, 8192});
+    v.optional("top", &Inset::top, Number{0, 8192}, "Covered at the top.");
+    v.optional("right", &Inset::right, Number{0, 8192}, "Covered at the right.");
+    v.optional("bottom", &Inset::bottom, Number{0, 8192}, "Covered at the bottom.");
+    v.optional("left", &Inset::left, Number{0, 8192}, "Covered at the left.");
 }
 
 template <class V>
 void describe(V& v, const Resize*) {
-    v.required("width", &Resize::width, Number{1, 8192});
-    v.required("height", &Resize::height, Number{1, 8192});
-    v.required("pixelRatio", &Resize::pixel_ratio, Number{0.25, 4});
-    v.optional("inset", &Resize::inset, Object<Inset>{});
+    v.required("width", &Resize::width, Number{1, 8192}, "CSS pixels; fractions are allowed.");
+    v.required("height", &Resize::height, Number{1, 8192}, "CSS pixels; fractions are allowed.");
+    v.required("pixelRatio", &Resize::pixel_ratio, Number{0.25, 4}, "Pixels of the picture to a CSS pixel.");
+    v.optional("inset", &Resize::inset, Object<Inset>{},
+               "What lies on the view's sides and covers it, in CSS pixels.");
 }
 
 template <class V>
 void describe(V& v, const FrameGrant*) {
-    v.optional("shown", &FrameGrant::shown, Integer{1, kMaxInteger});
+    v.optional(
+        "shown", &FrameGrant::shown, Integer{1, kMaxInteger},
+        "Number of the newest frame that the client has displayed: acknowledges it and all before it.");
 }
 
 template <class V>
 void describe(V& v, const Modifiers*) {
-    v.optional("ctrlKey", &Modifiers::ctrl, Flag{});
-    v.optional("shiftKey", &Modifiers::shift, Flag{});
-    v.optional("altKey", &Modifiers::alt, Flag{});
-    v.optional("metaKey", &Modifiers::meta, Flag{});
+    v.optional("ctrlKey", &Modifiers::ctrl, Flag{}, "Control is held.");
+    v.optional("shiftKey", &Modifiers::shift, Flag{}, "Shift is held.");
+    v.optional("altKey", &Modifiers::alt, Flag{}, "Alt is held.");
+    v.optional("metaKey", &Modifiers::meta, Flag{}, "Meta is held.");
 }
 
 template <class V>
 void describe(V& v, const Pointer*) {
-    v.required("pointerId", &Pointer::pointer_id, Integer{-kMaxInteger, kMaxInteger});
-    v.required("pointerType", &Pointer::pointer_type, word("mouse", "touch", "pen"));
-    v.required("x", &Pointer::x, kCoordinate);
-    v.required("y", &Pointer::y, kCoordinate);
-    v.required("button", &Pointer::button, Integer{-1, 31});
-    v.required("buttons", &Pointer::buttons, Integer{0, std::numeric_limits<std::uint32_t>::max()});
+    v.required("pointerId", &Pointer::pointer_id, Integer{-kMaxInteger, kMaxInteger},
+               "Tells one finger from another, as in W3C Pointer Events.");
+    v.required("pointerType", &Pointer::pointer_type, word("mouse", "touch", "pen"), "What points.");
+    v.required("x", &Pointer::x, kCoordinate, "CSS pixels from the view's left edge.");
+    v.required("y", &Pointer::y, kCoordinate, "CSS pixels from the view's top edge.");
+    v.required("button", &Pointer::button, Integer{-1, 31},
+               "The button that changed: −1 none, 0 left, 1 middle, 2 right.");
+    v.required("buttons", &Pointer::buttons, Integer{0, std::numeric_limits<std::uint32_t>::max()},
+               "The sum of the buttons that are down: 1 left, 2 right, 4 middle.");
     v.inlined(&Pointer::modifiers);
-    v.optional("timeStamp", &Pointer::time_stamp, kTimeStamp);
-    v.optional("frame", &Pointer::frame, kId);
+    v.optional("timeStamp", &Pointer::time_stamp, kTimeStamp,
+               "When it happened, in milliseconds of the client's own clock.");
+    v.optional("frame", &Pointer::frame, kId,
+               "Number of the frame that the user saw; without it the newest drawn counts.");
 }
 
 template <class V>
 void describe(V& v, const Wheel*) {
-    v.required("x", &Wheel::x, kCoordinate);
-    v.required("y", &Wheel::y, kCoordinate);
-    v.required("deltaX", &Wheel::delta_x, kDelta);
-    v.required("deltaY", &Wheel::delta_y, kDelta);
-    v.required("deltaMode", &Wheel::delta_mode, Integer{0, 2});
+    v.required("x", &Wheel::x, kCoordinate, "CSS pixels from the view's left edge.");
+    v.required("y", &Wheel::y, kCoordinate, "CSS pixels from the view's top edge.");
+    v.required("deltaX", &Wheel::delta_x, kDelta, "Sideways; without effect.");
+    v.required("deltaY", &Wheel::delta_y, kDelta, "Towards the user, in the unit of `deltaMode`.");
+    v.required("deltaMode", &Wheel::delta_mode, Integer{0, 2}, "The unit: 0 pixels, 1 lines, 2 pages.");
     v.inlined(&Wheel::modifiers);
-    v.optional("timeStamp", &Wheel::time_stamp, kTimeStamp);
+    v.optional("timeStamp", &Wheel::time_stamp, kTimeStamp,
+               "When it happened, in milliseconds of the client's own clock.");
 }
 
 template <class V>
 void describe(V& v, const Key*) {
-    v.required("key", &Key::key, Text{64});
-    v.required("code", &Key::code, Text{64});
+    v.required("key", &Key::key, Text{64}, "What the key means, as in W3C UI Events: `f`, `ArrowLeft`.");
+    v.required("code", &Key::code, Text{64}, "Which key it is, as in W3C UI Events: `KeyF`, `ArrowLeft`.");
     v.inlined(&Key::modifiers);
-    v.optional("timeStamp", &Key::time_stamp, kTimeStamp);
+    v.optional("timeStamp", &Key::time_stamp, kTimeStamp,
+               "When it happened, in milliseconds of the client's own clock.");
 }
 
 template <class V>
 void describe(V& v, const Navigate*) {
-    v.optional("rotate", &Navigate::rotate, Vector<glm::dvec2>{-1e6, 1e6});
-    v.optional("pan", &Navigate::pan, Vector<glm::dvec2>{-1e6, 1e6});
-    v.optional("zoom", &Navigate::zoom, Number{1e-6, 1e6});
+    v.optional("rotate", &Navigate::rotate, Vector<glm::dvec2>{-1e6, 1e6},
+               "[right, down] in degrees, as if dragged.");
+    v.optional("pan", &Navigate::pan, Vector<glm::dvec2>{-1e6, 1e6},
+               "[right, down]: how far the picture moves, in view heights, in the plane through `focus`.");
+    v.optional("zoom", &Navigate::zoom, Number{1e-6, 1e6}, "Divides the distance from eye to focus.");
 }
 
 template <class V>
 void describe(V& v, const Fit*) {
-    v.optional("node", &Fit::node, kId);
+    v.optional("node", &Fit::node, kId, "The node to fit, with all below it; without it the scene.");
 }
 
 template <class V>
 void describe(V& v, const Swing*) {
-    v.required("node", &Swing::node, kId);
-    v.optional("open", &Swing::open, Number{0, 1});
-    v.optional("ms", &Swing::ms, Number{0, 60'000});
+    v.required("node", &Swing::node, kId, "A node with a hinge, or one below it.");
+    v.optional("open", &Swing::open, Number{0, 1},
+               "0 closed, 1 open; without it closed, or open where it is closed already.");
+    v.optional("ms", &Swing::ms, Number{0, 60'000}, "The time from one end to the other.");
 }
 
 template <class V>
 void describe(V& v, const Patch*) {
-    v.required("patch", &Patch::patch, AnyObject{{{"$ref", "#/$defs/statePatch"}}});
-    v.optional("ifRevision", &Patch::if_revision, kId);
+    v.required("patch", &Patch::patch, AnyObject{{{"$ref", "#/$defs/statePatch"}}},
+               "A merge patch (RFC 7396) on the state document.");
+    v.optional("ifRevision", &Patch::if_revision, kId,
+               "The patch is refused where something that it names has changed since this revision.");
 }
 
 template <class V>
 void describe(V& v, const Pick*) {
-    v.required("x", &Pick::x, kCoordinate);
-    v.required("y", &Pick::y, kCoordinate);
-    v.optional("frame", &Pick::frame, kId);
-    v.optional("then", &Pick::then, word("select", "center", "lookAt"));
-    v.optional("through", &Pick::through, Flag{});
+    v.required("x", &Pick::x, kCoordinate, "CSS pixels from the view's left edge.");
+    v.required("y", &Pick::y, kCoordinate, "CSS pixels from the view's top edge.");
+    v.optional(
+        "frame", &Pick::frame, kId,
+        "The frame whose camera counts, one of the last 64 of the view; without it the present camera.");
+    v.optional("then", &Pick::then, word("select", "center", "lookAt"),
+               "Select the node, make the point the centre of rotation, or look at it, too.");
+    v.optional("through", &Pick::through, Flag{},
+               "Pass transparent parts; the realistic mode always passes those of alpha 0.");
 }
 
 template <class V>
 void describe(V& v, const CameraOverlay*) {
-    v.optional("node", &CameraOverlay::node, kId);
-    v.optional("eye", &CameraOverlay::eye, kPosition);
-    v.optional("focus", &CameraOverlay::focus, kPosition);
-    v.optional("up", &CameraOverlay::up, kPosition);
-    v.optional("center", &CameraOverlay::center, kPosition);
-    v.optional("fov", &CameraOverlay::fov, kFov);
+    v.optional("node", &CameraOverlay::node, kId, "A camera node, whose pose is laid over first.");
+    v.optional("eye", &CameraOverlay::eye, kPosition, "Where the camera stands.");
+    v.optional("focus", &CameraOverlay::focus, kPosition, "What it looks at.");
+    v.optional("up", &CameraOverlay::up, kPosition, "Which way is up in the picture.");
+    v.optional("center", &CameraOverlay::center, kPosition, "The centre of rotation.");
+    v.optional("fov", &CameraOverlay::fov, kFov, "The vertical angle of view in degrees.");
 }
 
 template <class V>
 void describe(V& v, const RendererOverlay*) {
-    v.optional("mode", &RendererOverlay::mode, kMode);
-    v.optional("wireframe", &RendererOverlay::wireframe, Flag{});
-    v.optional("showSelection", &RendererOverlay::show_selection, Flag{});
+    v.optional("mode", &RendererOverlay::mode, kMode, "How surfaces are drawn.");
+    v.optional("wireframe", &RendererOverlay::wireframe, Flag{}, "Edges only.");
+    v.optional("showSelection", &RendererOverlay::show_selection, Flag{}, "Bring out what is selected.");
 }
 
 template <class V>
 void describe(V& v, const Snapshot*) {
-    v.required("width", &Snapshot::width, kPixels);
-    v.required("height", &Snapshot::height, kPixels);
-    v.optional("format", &Snapshot::format, kFormat);
-    v.optional("jpegQuality", &Snapshot::jpeg_quality, kJpegQuality);
-    v.optional("camera", &Snapshot::camera, Object<CameraOverlay>{});
-    v.optional("renderer", &Snapshot::renderer, Object<RendererOverlay>{});
+    v.required("width", &Snapshot::width, kPixels, "Pixels.");
+    v.required("height", &Snapshot::height, kPixels, "Pixels.");
+    v.optional("format", &Snapshot::format, kFormat, "Of the file.");
+    v.optional("jpegQuality", &Snapshot::jpeg_quality, kJpegQuality, "Of a JPEG file.");
+    v.optional("camera", &Snapshot::camera, kCameraOverlay,
+               "Laid over the shared camera, which does not change.");
+    v.optional("renderer", &Snapshot::renderer, Object<RendererOverlay>{},
+               "Laid over the shared renderer, which does not change.");
 }
 
 template <class V>
 void describe(V& v, const Fly::Keyframe*) {
-    v.required("at", &Fly::Keyframe::at, Number{0, 1e9});
-    v.required("camera", &Fly::Keyframe::camera, Object<CameraOverlay>{});
+    v.required("at", &Fly::Keyframe::at, Number{0, 1e9}, "Milliseconds from the start; they rise strictly.");
+    v.required("camera", &Fly::Keyframe::camera, kCameraOverlay,
+               "Laid over the camera of the keyframe before, the first over the present one.");
 }
 
 template <class V>
 void describe(V& v, const Fly*) {
-    v.required("keyframes", &Fly::keyframes, List<Object<Fly::Keyframe>>{{}, 1, kMaxKeyframes});
-    v.optional("easing", &Fly::easing, word("smooth", "linear"));
+    v.required("keyframes", &Fly::keyframes, List<Object<Fly::Keyframe>>{{}, 1, kMaxKeyframes},
+               "The cameras to pass, the last of them exactly.");
+    v.optional("easing", &Fly::easing, word("smooth", "linear"),
+               "`smooth` eases the whole flight at its start and end; it does not stop at keyframes.");
 }
 
 template <class V>
 void describe(V& v, const Tree*) {
-    v.optional("node", &Tree::node, kId);
-    v.optional("depth", &Tree::depth, Integer{0, 1'000'000'000});
-    v.optional("search", &Tree::search, Text{1000});
-    v.optional("only", &Tree::only, word("switches", "hinges"));
-    v.optional("after", &Tree::after, kId);
+    v.optional("node", &Tree::node, kId, "Where to begin; without it at the root.");
+    v.optional("depth", &Tree::depth, Integer{0, 1'000'000'000},
+               "Levels below the node; without it 1, or all with `search` or `only`.");
+    v.optional("search", &Tree::search, Text{1000},
+               "Only nodes whose name has this part; A to Z count in either case.");
+    v.optional("only", &Tree::only, word("switches", "hinges"), "Only switches, or only what has a hinge.");
+    v.optional("after", &Tree::after, kId, "What the page before had as `next`.");
 }
 
 template <class V>
 void describe(V& v, const Open*) {
-    v.required("scene", &Open::scene, Text{kMaxSceneName});
+    v.required("scene", &Open::scene, Text{kMaxSceneName}, "A name as in the answer to `scenes`.");
 }
 
 template <class V>
@@ -207,141 +244,173 @@ void describe(V&, const Scenes*) {}
 
 template <class V>
 void describe(V& v, const Record*) {
-    v.required("action", &Record::action, word("start", "stop"));
-    v.optional("name", &Record::name, Text{64});
+    v.required("action", &Record::action, word("start", "stop"), "Begin or end the log.");
+    v.optional("name", &Record::name, Text{64},
+               "Of the log: A to Z, a to z, 0 to 9, `_`, `-`. Without it a name is made of the time.");
 }
 
 template <class V>
 void describe(V& v, const Control*) {
-    v.required("action", &Control::action, word("take", "release", "ask", "cancel", "give", "decline"));
-    v.optional("client", &Control::client, Text{100});
+    v.required("action", &Control::action, word("take", "release", "ask", "cancel", "give", "decline"),
+               "What is to happen with control.");
+    v.optional("client", &Control::client, Text{100},
+               "Required with `give` and `decline`: the client that gets control, or does not.");
 }
 
 template <class V>
 void describe(V& v, const Share*) {
-    v.optional("page", &Share::page, Text{1000});
+    v.optional("page", &Share::page, Text{1000},
+               "Where the client has opened the page: an address of HTTP without query and fragment.");
 }
 
 template <class V>
 void describe(V& v, const Shown*) {
-    v.required("revision", &Shown::revision, kId);
+    v.required("revision", &Shown::revision, kId, "What the host's walls show now.");
 }
 
 // --- server to client
 
 template <class V>
 void describe(V& v, const Limits*) {
-    v.required("maxMessage", &Limits::max_message, kId);
-    v.required("maxDepth", &Limits::max_depth, kId);
-    v.required("maxGrants", &Limits::max_grants, kId);
-    v.required("maxPixels", &Limits::max_pixels, kId);
-    v.required("messagesPerSecond", &Limits::messages_per_second, kId);
-    v.required("maxServerMessage", &Limits::max_server_message, kId);
+    v.required("maxMessage", &Limits::max_message, kId, "Bytes of a client's message.");
+    v.required("maxDepth", &Limits::max_depth, kId, "Levels of nesting in a client's message.");
+    v.required("maxGrants", &Limits::max_grants, kId, "Grants that the server keeps of a client.");
+    v.required("maxPixels", &Limits::max_pixels, kId, "Pixels of a picture; a larger view is drawn smaller.");
+    v.required("messagesPerSecond", &Limits::messages_per_second, kId,
+               "What a client sends faster is read more slowly.");
+    v.required("maxServerMessage", &Limits::max_server_message, kId, "Bytes of a server's message.");
 }
 
 template <class V>
 void describe(V& v, const InputRules*) {
-    v.required("wheelSteps", &InputRules::wheel_steps, Vector<glm::dvec3>{kDuration.min, kDuration.max});
-    v.required("wheelZoom", &InputRules::wheel_zoom, kDuration);
-    v.required("dragZoom", &InputRules::drag_zoom, kDuration);
-    v.required("drags", &InputRules::drags, ValuesByName<ValuesByName<Text>>{{kName}});
-    v.required("keys", &InputRules::keys, List<Text>{kName, 0, kMaxInteger});
-    v.required("repeatingKeys", &InputRules::repeating_keys, List<Text>{kName, 0, kMaxInteger});
+    v.required("wheelSteps", &InputRules::wheel_steps, Vector<glm::dvec3>{kDuration.min, kDuration.max},
+               "[pixels, lines, pages] that make one step of the wheel.");
+    v.required("wheelZoom", &InputRules::wheel_zoom, kDuration,
+               "A step away from the user divides the distance by it.");
+    v.required("dragZoom", &InputRules::drag_zoom, kDuration,
+               "A zooming drag upwards over the view's height divides the distance by it.");
+    v.required("drags", &InputRules::drags, ValuesByName<ValuesByName<Text>>{{kName}},
+               "By style, by `buttons`: `rotate`, `pan`, `zoom`. Styles that use keys are left out.");
+    v.required("keys", &InputRules::keys, List<Text>{kName, 0, kMaxInteger},
+               "The `key` of each key that has a meaning.");
+    v.required("repeatingKeys", &InputRules::repeating_keys, List<Text>{kName, 0, kMaxInteger},
+               "Of `keys`, those that go on while they are held.");
 }
 
 template <class V>
 void describe(V& v, const Welcome*) {
-    v.required("id", &Welcome::id, kId);
-    v.required("version", &Welcome::version, Integer{kVersion, kVersion});
-    v.required("server", &Welcome::server, kName);
-    v.required("client", &Welcome::client, kName);
-    v.required("role", &Welcome::role, kRole);
-    v.required("limits", &Welcome::limits, Object<Limits>{});
-    v.required("input", &Welcome::input, Object<InputRules>{});
+    v.required("id", &Welcome::id, kId, "Of the `hello`, where it had one.");
+    v.required("version", &Welcome::version, Integer{kVersion, kVersion}, "Of this protocol.");
+    v.required("server", &Welcome::server, kName, "Version of the program.");
+    v.required("client", &Welcome::client, kName, "This client's id.");
+    v.required("role", &Welcome::role, kRole, "The role given.");
+    v.required("limits", &Welcome::limits, Object<Limits>{}, "What holds for messages and pictures.");
+    v.required("input", &Welcome::input, Object<InputRules>{},
+               "What a client needs to foretell what input does, or to pass on what has a meaning only.");
 }
 
 template <class V>
 void describe(V& v, const Ok*) {
-    v.required("id", &Ok::id, kId);
-    v.required("revision", &Ok::revision, kId);
-    v.required("name", &Ok::name, kName);
+    v.required("id", &Ok::id, kId, "Of the message.");
+    v.required("revision", &Ok::revision, kId, "Of the state that the message led to.");
+    v.required("name", &Ok::name, kName, "Of the event log.");
 }
 
 template <class V>
 void describe(V& v, const Picked*) {
-    v.required("id", &Picked::id, kId);
-    v.required("node", &Picked::node, kId);
-    v.required("name", &Picked::name, kName);
-    v.required("path", &Picked::path, List<Text>{kName, 0, 32});
-    v.required("point", &Picked::point, Vector<glm::dvec3>{kAny.min, kAny.max});
-    v.required("normal", &Picked::normal, Vector<glm::dvec3>{-1.001, 1.001});
-    v.required("distance", &Picked::distance, kDuration);
-    v.required("local", &Picked::local, Vector<glm::dvec3>{kAny.min, kAny.max});
+    v.required("id", &Picked::id, kId, "Of the `pick`.");
+    v.required("node", &Picked::node, kId, "The node that was hit.");
+    v.required("name", &Picked::name, kName, "Of the node.");
+    v.required("path", &Picked::path, List<Text>{kName, 0, 32},
+               "Names from the root to the node that was hit, the last 32.");
+    v.required("point", &Picked::point, Vector<glm::dvec3>{kAny.min, kAny.max}, "In the world.");
+    v.required("normal", &Picked::normal, Vector<glm::dvec3>{-1.001, 1.001},
+               "Of the face, unit, towards the viewer.");
+    v.required("distance", &Picked::distance, kDuration, "From the eye.");
+    v.required(
+        "local", &Picked::local, Vector<glm::dvec3>{kAny.min, kAny.max},
+        "The point in the node's own space, for a marker that moves with it; none of a flattened node.");
 }
 
 template <class V>
 void describe(V& v, const Flown*) {
-    v.required("id", &Flown::id, kId);
-    v.required("completed", &Flown::completed, Flag{});
+    v.required("id", &Flown::id, kId, "Of the `fly`.");
+    v.required("completed", &Flown::completed, Flag{}, "False where the flight was stopped.");
 }
 
 template <class V>
 void describe(V& v, const TreeHinge*) {
-    v.required("axis", &TreeHinge::axis, Vector<glm::dvec3>{-1.001, 1.001});
-    v.required("degrees", &TreeHinge::degrees, Number{-360, 360});
-    v.required("closed", &TreeHinge::closed, kMatrix);
+    v.required("axis", &TreeHinge::axis, Vector<glm::dvec3>{-1.001, 1.001},
+               "Unit, in the node's own space, through its origin.");
+    v.required("degrees", &TreeHinge::degrees, Number{-360, 360},
+               "How far it opens; the sign tells which way.");
+    v.required("closed", &TreeHinge::closed, kMatrix, "The node's matrix as in the file.");
 }
 
 template <class V>
 void describe(V& v, const TreeNode*) {
-    v.required("id", &TreeNode::id, kId);
-    v.required("name", &TreeNode::name, kName);
-    v.required("type", &TreeNode::type, kName);
-    v.required("parent", &TreeNode::parent, kId);
-    v.required("active", &TreeNode::active, Flag{});
-    v.required("children", &TreeNode::children, kId);
-    v.required("triangles", &TreeNode::triangles, kId);
-    v.required("material", &TreeNode::material, kId);
-    v.required("matrix", &TreeNode::matrix, kMatrix);
-    v.required("hinge", &TreeNode::hinge, Object<TreeHinge>{});
-    v.required("activeChild", &TreeNode::active_child, kActiveChild);
-    v.required("choices", &TreeNode::choices, List<Text>{kName, 0, kMaxChoices});
+    v.required("id", &TreeNode::id, kId, "The node's id.");
+    v.required("name", &TreeNode::name, kName, "The node's name.");
+    v.required(
+        "type", &TreeNode::type, kName,
+        "`assembly`, `root`, `camera`, `geometry`, `light`, `lod`, `switch`, `background` or `sound`.");
+    v.required("parent", &TreeNode::parent, kId, "The parent's id; none of the root.");
+    v.required("active", &TreeNode::active, Flag{}, "False where it is hidden, with all below it.");
+    v.required("children", &TreeNode::children, kId, "Number of children.");
+    v.required("triangles", &TreeNode::triangles, kId, "Number of triangles of its own geometry.");
+    v.required("material", &TreeNode::material, kId, "Id of its geometry's material.");
+    v.required("matrix", &TreeNode::matrix, kMatrix, "As it is now; where it is missing, the identity.");
+    v.required("hinge", &TreeNode::hinge, Object<TreeHinge>{}, "What a door turns about.");
+    v.required("activeChild", &TreeNode::active_child, kActiveChild,
+               "Of a switch, as in the file: counted from 0, −1 none, −2 all.");
+    v.required("choices", &TreeNode::choices, List<Text>{kName, 0, kMaxChoices},
+               "The children's names, of a switch with at most 64 of them and 16 KiB of names.");
 }
 
 template <class V>
 void describe(V& v, const TreePage*) {
-    v.required("id", &TreePage::id, kId);
-    v.required("nodes", &TreePage::nodes, List<Object<TreeNode>>{{}, 0, kMaxInteger});
-    v.required("next", &TreePage::next, kId);
+    v.required("id", &TreePage::id, kId, "Of the `tree`.");
+    v.required("nodes", &TreePage::nodes, List<Object<TreeNode>>{{}, 0, kMaxInteger},
+               "Depth first, children by rising id.");
+    v.required("next", &TreePage::next, kId, "There is more: send it as `after`.");
 }
 
 template <class V>
 void describe(V& v, const SceneList*) {
-    v.required("id", &SceneList::id, kId);
-    v.required("scenes", &SceneList::scenes, List<Text>{Text{kMaxSceneName}, 0, kMaxScenes});
+    v.required("id", &SceneList::id, kId, "Of the `scenes`.");
+    v.required("scenes", &SceneList::scenes, List<Text>{Text{kMaxSceneName}, 0, kMaxScenes},
+               "Names for `open`, sorted by their bytes.");
 }
 
 template <class V>
 void describe(V& v, const SharedAddress*) {
-    v.required("id", &SharedAddress::id, kId);
-    v.required("address", &SharedAddress::address, kName);
-    v.required("qr", &SharedAddress::qr, List<Text>{Text{kMaxQrSize}, 0, kMaxQrSize});
-    v.required("loopback", &SharedAddress::loopback, Flag{});
+    v.required("id", &SharedAddress::id, kId, "Of the `share`.");
+    v.required("address", &SharedAddress::address, kName,
+               "Of the page, to watch only, with the view token where there is one.");
+    v.required("qr", &SharedAddress::qr, List<Text>{Text{kMaxQrSize}, 0, kMaxQrSize},
+               "The address as a QR code: rows of 0, light, and 1, dark, without the quiet zone.");
+    v.required("loopback", &SharedAddress::loopback, Flag{},
+               "True where no other machine reaches the address.");
 }
 
 template <class V>
 void describe(V& v, const Loading*) {
-    v.required("scene", &Loading::scene, kName);
-    v.required("fraction", &Loading::fraction, Number{0, 1});
-    v.required("done", &Loading::done, Flag{});
-    v.required("refused", &Loading::refused, kName);
+    v.required("scene", &Loading::scene, kName, "Name of the scene that is loaded.");
+    v.required("fraction", &Loading::fraction, Number{0, 1}, "How much of it is loaded.");
+    v.required("done", &Loading::done, Flag{}, "Once, at the end: the scene is ready.");
+    v.required("refused", &Loading::refused, kName,
+               "Once, at the end: a sentence that tells why the scene is not shown.");
 }
+
+struct ErrorCode : Text {
+    Json schema() const { return {{"enum", error_code::all}}; }
+};
 
 template <class V>
 void describe(V& v, const Error*) {
-    v.required("id", &Error::id, kId);
-    v.required("code", &Error::code, kName);
-    v.required("message", &Error::message, Text{300});
+    v.required("id", &Error::id, kId, "Of the message, where it could be read.");
+    v.required("code", &Error::code, ErrorCode{kName}, "For programs.");
+    v.required("message", &Error::message, Text{300}, "One sentence for a person, which names the culprit.");
 }
 
 struct NoticeCode : Text {
@@ -350,224 +419,261 @@ struct NoticeCode : Text {
 
 template <class V>
 void describe(V& v, const Notice*) {
-    v.fixed("code", &Notice::code, NoticeCode{kName});
-    v.fixed("message", &Notice::message, kName);
+    v.fixed("code", &Notice::code, NoticeCode{kName}, "For programs.");
+    v.fixed("message", &Notice::message, kName, "A sentence for a person.");
 }
 
 template <class V>
 void describe(V& v, const Quality*) {
-    v.required("level", &Quality::level, word("moving", "still"));
-    v.required("scale", &Quality::scale, Number{0, 1});
-    v.required("samples", &Quality::samples, Integer{1, 65536});
-    v.required("detail", &Quality::detail, kDuration);
-    v.required("jpegQuality", &Quality::jpeg_quality, kJpegQuality);
-    v.required("subsampling", &Quality::subsampling, word("4:2:0", "4:4:4"));
-    v.optional("error", &Quality::error, Number{0, 1});
+    v.required("level", &Quality::level, word("moving", "still"),
+               "`moving` while things change, `still` at rest.");
+    v.required("scale", &Quality::scale, Number{0, 1},
+               "By which the picture is drawn smaller than the view.");
+    v.required("samples", &Quality::samples, Integer{1, 65536}, "To a pixel.");
+    v.required("detail", &Quality::detail, kDuration,
+               "Pixels of error allowed in the meshes; 0 draws every triangle.");
+    v.required("jpegQuality", &Quality::jpeg_quality, kJpegQuality, "Of the JPEG file.");
+    v.required("subsampling", &Quality::subsampling, word("4:2:0", "4:4:4"),
+               "Of the colours in the JPEG file.");
+    v.optional("error", &Quality::error, Number{0, 1},
+               "Mean FLIP against full accuracy, 0 none, as measured for the level; missing where unknown.");
 }
 
 template <class V>
 void describe(V& v, const Stats::Renderer*) {
-    v.required("meanRenderMs", &Stats::Renderer::mean_render_ms, kDuration);
-    v.required("medianRenderMs", &Stats::Renderer::median_render_ms, kDuration);
-    v.required("p95RenderMs", &Stats::Renderer::p95_render_ms, kDuration);
+    v.required("meanRenderMs", &Stats::Renderer::mean_render_ms, kDuration, "Mean of the last 100 pictures.");
+    v.required("medianRenderMs", &Stats::Renderer::median_render_ms, kDuration,
+               "Median of the last 100 pictures.");
+    v.required("p95RenderMs", &Stats::Renderer::p95_render_ms, kDuration,
+               "95 of 100 took no longer, of the last 100 pictures.");
 }
 
 template <class V>
 void describe(V& v, const Stats::Host*) {
-    v.required("name", &Stats::Host::name, kName);
-    v.required("revision", &Stats::Host::revision, kId);
-    v.required("lagMs", &Stats::Host::lag_ms, kDuration);
+    v.required("name", &Stats::Host::name, kName, "As in its `hello`.");
+    v.required("revision", &Stats::Host::revision, kId, "What its walls show.");
+    v.required("lagMs", &Stats::Host::lag_ms, kDuration,
+               "From that revision's making to the host's report, by the server's clock.");
 }
 
 template <class V>
 void describe(V& v, const Stats*) {
-    v.required("renderer", &Stats::renderer, Object<Stats::Renderer>{});
-    v.required("quality", &Stats::quality, Object<Quality>{});
-    v.required("hosts", &Stats::hosts, Table<Stats::Host>{});
-    v.required("clients", &Stats::clients, kId);
-    v.required("watchers", &Stats::watchers, kId);
-    v.required("framesPerSecond", &Stats::frames_per_second, kDuration);
-    v.required("bytesPerSecond", &Stats::bytes_per_second, kDuration);
+    v.required("renderer", &Stats::renderer, Object<Stats::Renderer>{},
+               "Times of drawing; none before the first picture.");
+    v.required("quality", &Stats::quality, kQuality, "Of the newest picture; none before the first.");
+    v.required("hosts", &Stats::hosts, Table<Stats::Host>{}, "By the client's id.");
+    v.required("clients", &Stats::clients, kId, "Clients that are connected.");
+    v.required("watchers", &Stats::watchers, kId, "Clients of the role `view`.");
+    v.required("framesPerSecond", &Stats::frames_per_second, kDuration, "Sent to all clients.");
+    v.required("bytesPerSecond", &Stats::bytes_per_second, kDuration, "Sent to all clients.");
 }
 
 // --- the state document
 
 template <class V>
 void describe(V& v, const SceneState::Bounds*) {
-    v.fixed("min", &SceneState::Bounds::min, kPosition);
-    v.fixed("max", &SceneState::Bounds::max, kPosition);
+    v.fixed("min", &SceneState::Bounds::min, kPosition, "The least coordinates.");
+    v.fixed("max", &SceneState::Bounds::max, kPosition, "The greatest coordinates.");
 }
 
 template <class V>
 void describe(V& v, const SceneState*) {
-    v.fixed("name", &SceneState::name, kName);
-    v.fixed("file", &SceneState::file, Text{kMaxSceneName});
-    v.fixed("nodes", &SceneState::nodes, kId);
-    v.fixed("materials", &SceneState::materials, kId);
-    v.fixed("geometries", &SceneState::geometries, kId);
-    v.fixed("triangles", &SceneState::triangles, kId);
-    v.fixed("bounds", &SceneState::bounds, Object<SceneState::Bounds>{});
-    v.fixed("notices", &SceneState::notices, List<Object<Notice>>{{}, 0, kMaxInteger});
+    v.fixed("name", &SceneState::name, kName, "The scene's title.");
+    v.fixed("file", &SceneState::file, Text{kMaxSceneName}, "The name by which `open` takes it.");
+    v.fixed("nodes", &SceneState::nodes, kId, "Number of nodes.");
+    v.fixed("materials", &SceneState::materials, kId, "Number of materials.");
+    v.fixed("geometries", &SceneState::geometries, kId, "Number of geometries.");
+    v.fixed("triangles", &SceneState::triangles, kId, "Number of triangles.");
+    v.fixed("bounds", &SceneState::bounds, Object<SceneState::Bounds>{}, "The scene's box in the world.");
+    v.fixed("notices", &SceneState::notices, List<Defined<Object<Notice>>>{kNotice, 0, kMaxInteger},
+            "What to know of it, as what of the file is not shown.");
 }
 
 template <class V>
 void describe(V& v, const CameraState*) {
-    v.writable("node", &CameraState::node, kId);
-    v.fixed("name", &CameraState::name, kName);
-    v.writable("eye", &CameraState::eye, kPosition);
-    v.writable("focus", &CameraState::focus, kPosition);
-    v.writable("up", &CameraState::up, kPosition);
-    v.writable("center", &CameraState::center, kPosition);
-    v.writable("fov", &CameraState::fov, kFov);
-    v.fixed("near", &CameraState::near, kDuration);
-    v.fixed("far", &CameraState::far, kDuration);
+    v.writable("node", &CameraState::node, kId, "The camera node at which the camera stands.");
+    v.fixed("name", &CameraState::name, kName, "Name of the camera node at which the camera stands.");
+    v.writable("eye", &CameraState::eye, kPosition, "Where the camera stands.");
+    v.writable("focus", &CameraState::focus, kPosition, "What it looks at.");
+    v.writable("up", &CameraState::up, kPosition,
+               "Which way is up in the picture; unit, at right angles to the view.");
+    v.writable("center", &CameraState::center, kPosition, "The centre of rotation.");
+    v.writable("fov", &CameraState::fov, kFov, "The vertical angle of view in degrees.");
+    v.fixed("near", &CameraState::near, kDuration,
+            "Near end of a clip range for hosts' own drawing; never below 10⁻⁶ of `far`.");
+    v.fixed("far", &CameraState::far, kDuration, "Far end of a clip range for hosts' own drawing.");
 }
 
 template <class V>
 void describe(V& v, const Named*) {
-    v.fixed("name", &Named::name, kName);
+    v.fixed("name", &Named::name, kName, "As in the file.");
 }
 
 template <class V>
 void describe(V& v, const NavigationState*) {
-    v.writable("style", &NavigationState::style, kStyle);
-    v.writable("keepUpright", &NavigationState::keep_upright, Flag{});
-    v.writable("turnAbout", &NavigationState::turn_about, kTurnAbout);
-    v.writable("rotateSpeed", &NavigationState::rotate_speed, kSpeed);
-    v.writable("panSpeed", &NavigationState::pan_speed, kSpeed);
-    v.writable("zoomSpeed", &NavigationState::zoom_speed, kSpeed);
-    v.writable("tapSwings", &NavigationState::tap_swings, Flag{});
+    v.writable("style", &NavigationState::style, kStyle, "Which buttons and keys do what.");
+    v.writable("keepUpright", &NavigationState::keep_upright, Flag{},
+               "Turn about the scene's vertical, and stop at the poles.");
+    v.writable("turnAbout", &NavigationState::turn_about, kTurnAbout,
+               "What a drag turns about: the camera's `center`, or the surface point that was touched.");
+    v.writable("rotateSpeed", &NavigationState::rotate_speed, kSpeed, "Multiplies turns by input.");
+    v.writable("panSpeed", &NavigationState::pan_speed, kSpeed, "Multiplies pans by input.");
+    v.writable("zoomSpeed", &NavigationState::zoom_speed, kSpeed, "Multiplies zooms by input.");
+    v.writable("tapSwings", &NavigationState::tap_swings, Flag{},
+               "A tap opens or closes what turns about a hinge.");
 }
 
 template <class V>
 void describe(V& v, const RendererState*) {
-    v.writable("mode", &RendererState::mode, kMode);
-    v.writable("wireframe", &RendererState::wireframe, Flag{});
-    v.writable("showSelection", &RendererState::show_selection, Flag{});
-    v.fixed("solid", &RendererState::solid, kId);
-    v.fixed("transparent", &RendererState::transparent, kId);
-    v.fixed("reflective", &RendererState::reflective, kId);
+    v.writable("mode", &RendererState::mode, kMode, "How surfaces are drawn.");
+    v.writable("wireframe", &RendererState::wireframe, Flag{}, "Edges only.");
+    v.writable("showSelection", &RendererState::show_selection, Flag{}, "Bring out what is selected.");
+    v.fixed("solid", &RendererState::solid, kId, "Geometry nodes that are opaque.");
+    v.fixed("transparent", &RendererState::transparent, kId, "Geometry nodes that are transparent.");
+    v.fixed("reflective", &RendererState::reflective, kId, "Geometry nodes that reflect.");
 }
 
 template <class V>
 void describe(V& v, const LightState*) {
-    v.fixed("name", &LightState::name, kName);
-    v.fixed("type", &LightState::type, kName);
-    v.writable("color", &LightState::color, kLightColor);
-    v.writable("attenuation", &LightState::attenuation, kAttenuation);
+    v.fixed("name", &LightState::name, kName, "As in the file.");
+    v.fixed("type", &LightState::type, kName, "`point`, `directional` or `spot`.");
+    v.writable("color", &LightState::color, kLightColor,
+               "Red, green, blue, alpha; above 1 is brighter than white.");
+    v.writable("attenuation", &LightState::attenuation, kAttenuation, "[constant, linear, quadratic].");
 }
 
 template <class V>
 void describe(V& v, const LightsState*) {
-    v.writable("active", &LightsState::active, kName);
-    v.writable("items", &LightsState::items, SharedTable<Items<LightState>>{});
+    v.writable("active", &LightsState::active, kName,
+               "Key of the item that shines; at the start `headlight`.");
+    v.writable("items", &LightsState::items, SharedTable<Items<LightState>>{},
+               "By the node's id, or `headlight`.");
 }
 
 template <class V>
 void describe(V& v, const BackgroundState*) {
-    v.fixed("name", &BackgroundState::name, kName);
-    v.writable("color", &BackgroundState::color, kColor);
-    v.fixed("texture", &BackgroundState::texture, kName);
+    v.fixed("name", &BackgroundState::name, kName, "As in the file.");
+    v.writable("color", &BackgroundState::color, kColor, "Red, green, blue, alpha.");
+    v.fixed("texture", &BackgroundState::texture, kName, "File of its texture.");
 }
 
 template <class V>
 void describe(V& v, const BackgroundsState*) {
-    v.writable("active", &BackgroundsState::active, kName);
-    v.writable("color", &BackgroundsState::color, kColor);
-    v.writable("items", &BackgroundsState::items, SharedTable<Items<BackgroundState>>{});
+    v.writable("active", &BackgroundsState::active, kName,
+               "Key of the item that is shown, or `color`: the plain one.");
+    v.writable("color", &BackgroundsState::color, kColor, "Red, green, blue, alpha of the plain background.");
+    v.writable("items", &BackgroundsState::items, SharedTable<Items<BackgroundState>>{},
+               "By the id of the background.");
 }
 
 template <class V>
 void describe(V& v, const SelectionState*) {
-    v.writable("node", &SelectionState::node, kId);
-    v.fixed("name", &SelectionState::name, kName);
-    v.fixed("path", &SelectionState::path, List<Text>{kName, 0, 32});
-    v.fixed("pathIds", &SelectionState::path_ids, List<Integer>{kId, 0, 32});
-    v.fixed("hinge", &SelectionState::hinge, kId);
+    v.writable("node", &SelectionState::node, kId, "The node that is selected.");
+    v.fixed("name", &SelectionState::name, kName, "Name of the selected node.");
+    v.fixed("path", &SelectionState::path, List<Text>{kName, 0, 32},
+            "Names from the root to the selected node, the last 32.");
+    v.fixed("pathIds", &SelectionState::path_ids, List<Integer>{kId, 0, 32}, "Ids of the nodes in `path`.");
+    v.fixed("hinge", &SelectionState::hinge, kId, "The innermost node of `path` that has a hinge.");
 }
 
 template <class V>
 void describe(V& v, const NodeOverride*) {
-    v.writable("active", &NodeOverride::active, Flag{});
-    v.writable("activeChild", &NodeOverride::active_child, kActiveChild);
-    v.writable("matrix", &NodeOverride::matrix, kMatrix);
-    v.writable("material", &NodeOverride::material, kId);
+    v.writable("active", &NodeOverride::active, Flag{}, "False hides the node, with all below it.");
+    v.writable("activeChild", &NodeOverride::active_child, kActiveChild,
+               "Of a switch: counted from 0, −1 none, −2 all.");
+    v.writable("matrix", &NodeOverride::matrix, kMatrix,
+               "From the node's space to its parent's; the last row is 0 0 0 1.");
+    v.writable("material", &NodeOverride::material, kId, "Id of the material of its geometry.");
 }
 
 template <class V>
 void describe(V& v, const SwingState*) {
-    v.fixed("to", &SwingState::to, Number{0, 1});
+    v.fixed("to", &SwingState::to, Number{0, 1}, "Where it goes: 0 closed, 1 open.");
 }
 
 template <class V>
 void describe(V& v, const Marker*) {
-    v.writable("point", &Marker::point, kPosition);
-    v.writable("node", &Marker::node, kId);
-    v.writable("text", &Marker::text, Text{1000});
+    v.writable("point", &Marker::point, kPosition,
+               "In the world, or in the space of `node`. A new marker must have it.");
+    v.writable("node", &Marker::node, kId, "The marker moves with this node.");
+    v.writable("text", &Marker::text, Text{1000}, "For clients to show; a picture has the sign only.");
 }
 
 template <class V>
 void describe(V& v, const ViewState*) {
-    v.writable("eye", &ViewState::eye, kPosition);
-    v.writable("focus", &ViewState::focus, kPosition);
-    v.writable("up", &ViewState::up, kPosition);
-    v.writable("center", &ViewState::center, kPosition);
-    v.writable("fov", &ViewState::fov, kFov);
-    v.writable("order", &ViewState::order, kOrder);
+    v.writable("eye", &ViewState::eye, kPosition, "Where the camera stands.");
+    v.writable("focus", &ViewState::focus, kPosition, "What it looks at.");
+    v.writable("up", &ViewState::up, kPosition,
+               "Which way is up in the picture; unit, at right angles to the view.");
+    v.writable("center", &ViewState::center, kPosition, "The centre of rotation.");
+    v.writable("fov", &ViewState::fov, kFov, "The vertical angle of view in degrees.");
+    v.writable("order", &ViewState::order, kOrder,
+               "For clients to sort by: the lowest first, then those without one, by name.");
 }
 
 template <class V>
 void describe(V& v, const QualityState*) {
-    v.writable("preference", &QualityState::preference, Number{0, 1});
-    v.writable("latencyTargetMs", &QualityState::latency_target_ms, Number{1, 10'000});
+    v.writable("preference", &QualityState::preference, Number{0, 1}, "0 speed, 1 accuracy.");
+    v.writable("latencyTargetMs", &QualityState::latency_target_ms, Number{1, 10'000},
+               "How old a picture may be when the holder sees it, while things move.");
 }
 
 template <class V>
 void describe(V& v, const ControlState::Asking*) {
-    v.fixed("client", &ControlState::Asking::client, kName);
-    v.fixed("name", &ControlState::Asking::name, kName);
+    v.fixed("client", &ControlState::Asking::client, kName, "The client's id.");
+    v.fixed("name", &ControlState::Asking::name, kName, "As in its `hello`.");
 }
 
 template <class V>
 void describe(V& v, const ControlState*) {
-    v.fixed("holder", &ControlState::holder, kName);
-    v.fixed("name", &ControlState::name, kName);
-    v.fixed("kept", &ControlState::kept, Flag{});
-    v.fixed("absent", &ControlState::absent, Flag{});
-    v.fixed("asking", &ControlState::asking, List<Object<ControlState::Asking>>{{}, 0, kMaxInteger});
+    v.fixed("holder", &ControlState::holder, kName, "Id of the client that holds control.");
+    v.fixed("name", &ControlState::name, kName, "As in the holder's `hello`.");
+    v.fixed("kept", &ControlState::kept, Flag{}, "True while there is a holder.");
+    v.fixed("absent", &ControlState::absent, Flag{},
+            "The holder has lost its connection, and may come back.");
+    v.fixed("asking", &ControlState::asking, List<Object<ControlState::Asking>>{{}, 0, kMaxInteger},
+            "Who asks for control, the first one first.");
 }
 
 template <class V>
 void describe(V& v, const ClientState*) {
-    v.fixed("name", &ClientState::name, kName);
-    v.fixed("role", &ClientState::role, kRole);
+    v.fixed("name", &ClientState::name, kName, "As in `hello`, with its number.");
+    v.fixed("role", &ClientState::role, kRole, "The role given.");
 }
 
 template <class V>
 void describe(V& v, const RecordingState*) {
-    v.fixed("name", &RecordingState::name, kName);
+    v.fixed("name", &RecordingState::name, kName, "Of the event log.");
 }
 
 template <class V>
 void describe(V& v, const State*) {
-    v.fixed("scene", &State::scene, SharedKind<Object<SceneState>>{});
-    v.writable("camera", &State::camera, Section<CameraState>{});
-    v.fixed("cameras", &State::cameras, SharedKind<Table<Named>>{});
-    v.writable("navigation", &State::navigation, Section<NavigationState>{});
-    v.writable("renderer", &State::renderer, Section<RendererState>{});
-    v.writable("lights", &State::lights, Section<LightsState>{});
-    v.fixed("materials", &State::materials, SharedKind<Table<Named>>{});
-    v.writable("backgrounds", &State::backgrounds, Section<BackgroundsState>{});
-    v.writable("selection", &State::selection, Section<SelectionState>{});
-    v.writable("nodes", &State::nodes, SharedTable<Entries<NodeOverride>>{{{}, kMaxNodes, nullptr}});
-    v.fixed("swings", &State::swings, SharedTable<Table<SwingState>>{});
-    v.writable("markers", &State::markers, SharedTable<Entries<Marker>>{{{}, kMaxEntries, "point"}});
-    v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}});
-    v.writable("quality", &State::quality, Section<QualityState>{});
-    v.fixed("control", &State::control, Object<ControlState>{});
-    v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{});
-    v.fixed("recording", &State::recording, Object<RecordingState>{});
-    v.fixed("notices", &State::notices, List<Object<Notice>>{{}, 0, kMaxNotices});
+    v.fixed("scene", &State::scene, SharedKind<Object<SceneState>>{}, "The scene as in the file.");
+    v.writable("camera", &State::camera, kCamera, "The one camera of all.");
+    v.fixed("cameras", &State::cameras, SharedKind<Table<Named>>{}, "Camera nodes, by id.");
+    v.writable("navigation", &State::navigation, Section<NavigationState>{}, "What input does.");
+    v.writable("renderer", &State::renderer, Section<RendererState>{}, "How the scene is drawn.");
+    v.writable("lights", &State::lights, Section<LightsState>{}, "The lights, of which one shines.");
+    v.fixed("materials", &State::materials, SharedKind<Table<Named>>{}, "Materials, by id.");
+    v.writable("backgrounds", &State::backgrounds, Section<BackgroundsState>{},
+               "The backgrounds, of which one is shown.");
+    v.writable("selection", &State::selection, Section<SelectionState>{}, "What is selected.");
+    v.writable("nodes", &State::nodes, SharedTable<Entries<NodeOverride>>{{{}, kMaxNodes, nullptr}},
+               "By id: only what differs from the file.");
+    v.fixed("swings", &State::swings, SharedTable<Table<SwingState>>{},
+            "Nodes that are on their way about their hinges, by id.");
+    v.writable("markers", &State::markers, SharedTable<Entries<Marker>>{{{}, kMaxEntries, "point"}},
+               "Signs in the scene, by name.");
+    v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}},
+               "Saved cameras, by name.");
+    v.writable("quality", &State::quality, Section<QualityState>{},
+               "How pictures are drawn while things move.");
+    v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");
+    v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{},
+            "Who is connected, by the client's id.");
+    v.fixed("recording", &State::recording, Object<RecordingState>{}, "The event log that is written now.");
+    v.fixed("notices", &State::notices, List<Defined<Object<Notice>>>{kNotice, 0, kMaxNotices},
+            "What has gone wrong in the server, the newest last.");
 }
 
 // --- the frame header
@@ -575,23 +681,27 @@ void describe(V& v, const State*) {
 template <class V>
 void describe(V& v, const FrameHeader::Camera*) {
     v.inlined(&FrameHeader::Camera::pose);
-    v.required("viewMatrix", &FrameHeader::Camera::view_matrix, Matrix{kAny.max});
-    v.required("projectionMatrix", &FrameHeader::Camera::projection_matrix, Matrix{kAny.max});
+    v.required("viewMatrix", &FrameHeader::Camera::view_matrix, Matrix{kAny.max},
+               "From the world to the camera's space.");
+    v.required("projectionMatrix", &FrameHeader::Camera::projection_matrix, Matrix{kAny.max},
+               "From the camera's space to clip space.");
 }
 
 template <class V>
 void describe(V& v, const FrameHeader::Renderer*) {
-    v.required("mode", &FrameHeader::Renderer::mode, kMode);
-    v.required("wireframe", &FrameHeader::Renderer::wireframe, Flag{});
-    v.required("showSelection", &FrameHeader::Renderer::show_selection, Flag{});
+    v.required("mode", &FrameHeader::Renderer::mode, kMode, "How surfaces were drawn.");
+    v.required("wireframe", &FrameHeader::Renderer::wireframe, Flag{}, "Edges only.");
+    v.required("showSelection", &FrameHeader::Renderer::show_selection, Flag{},
+               "What is selected was brought out.");
 }
 
 template <class V>
 void describe(V& v, const FrameHeader::Timing*) {
-    v.required("renderMs", &FrameHeader::Timing::render_ms, kDuration);
-    v.required("readbackMs", &FrameHeader::Timing::readback_ms, kDuration);
-    v.required("encodeMs", &FrameHeader::Timing::encode_ms, kDuration);
-    v.required("sinceInputMs", &FrameHeader::Timing::since_input_ms, kDuration);
+    v.required("renderMs", &FrameHeader::Timing::render_ms, kDuration, "Drawing.");
+    v.required("readbackMs", &FrameHeader::Timing::readback_ms, kDuration, "Reading the pixels back.");
+    v.required("encodeMs", &FrameHeader::Timing::encode_ms, kDuration, "Encoding the file.");
+    v.required("sinceInputMs", &FrameHeader::Timing::since_input_ms, kDuration,
+               "From the arrival of the newest input that it shows to its hand-over to the socket.");
 }
 
 /// Without the inset, which is the client's own business.
@@ -609,19 +719,45 @@ struct SizeAlone : Object<Resize> {
 
 template <class V>
 void describe(V& v, const FrameHeader*) {
-    v.required("frame", &FrameHeader::frame, kId);
-    v.required("revision", &FrameHeader::revision, kId);
-    v.required("handled", &FrameHeader::handled, kId);
-    v.required("snapshot", &FrameHeader::snapshot, kId);
-    v.required("camera", &FrameHeader::camera, Object<FrameHeader::Camera>{});
-    v.required("width", &FrameHeader::width, kId);
-    v.required("height", &FrameHeader::height, kId);
-    v.required("view", &FrameHeader::view, SizeAlone{});
-    v.required("renderer", &FrameHeader::renderer, Object<FrameHeader::Renderer>{});
-    v.required("quality", &FrameHeader::quality, Object<Quality>{});
-    v.required("timing", &FrameHeader::timing, Object<FrameHeader::Timing>{});
+    v.required("frame", &FrameHeader::frame, kId, "Number of the frame; it rises.");
+    v.required("revision", &FrameHeader::revision, kId, "Of the state that it shows.");
+    v.required("handled", &FrameHeader::handled, kId,
+               "Highest `id` of this client that was handled when the state was taken; 0 before the first.");
+    v.required("snapshot", &FrameHeader::snapshot, kId, "The `id` of the `snapshot` that asked for it.");
+    v.required("camera", &FrameHeader::camera, Object<FrameHeader::Camera>{},
+               "The state's camera, with matrices.");
+    v.required("width", &FrameHeader::width, kId, "Pixels of this file.");
+    v.required("height", &FrameHeader::height, kId, "Pixels of this file.");
+    v.required("view", &FrameHeader::view, SizeAlone{}, "The size of the view in force.");
+    v.required("renderer", &FrameHeader::renderer, Object<FrameHeader::Renderer>{}, "How it was drawn.");
+    v.required("quality", &FrameHeader::quality, kQuality, "With what accuracy.");
+    v.required("timing", &FrameHeader::timing, Object<FrameHeader::Timing>{},
+               "Milliseconds that were spent.");
     v.optional("markers", &FrameHeader::markers,
-               ValuesByName<Vector<glm::dvec3>>{Vector<glm::dvec3>{kAny.min, kAny.max}});
+               ValuesByName<Vector<glm::dvec3>>{Vector<glm::dvec3>{kAny.min, kAny.max}},
+               "Where the markers' signs stand in the world, by name.");
+}
+
+// --- level tables
+
+inline constexpr Number kCost{0, 1e9};  // ms or bytes: their ratios stay numbers
+
+template <class V>
+void describe(V& v, const Level*) {
+    v.required("quality", &Level::quality, kQuality,
+               "As frame headers tell it. One with `level` `still` tells the `error` at rest.");
+    v.required("ms", &Level::ms, kCost, "Median of drawing, reading back and encoding.");
+    v.required("bytes", &Level::bytes, kCost, "Median of the files.");
+    v.optional("reason", &Level::reason, Text{1000}, "Why it is in the table: a sentence.");
+}
+
+template <class V>
+void describe(V& v, const LevelTable*) {
+    v.required("scene", &LevelTable::scene, Text{100}, "SHA-256 of the scene's file.");
+    v.required("renderer", &LevelTable::renderer, Text{1000}, "What draws, as the server's log tells it.");
+    v.required("width", &LevelTable::width, kPixels, "Of the pictures measured, at scale 1.");
+    v.required("height", &LevelTable::height, kPixels, "Of the pictures measured, at scale 1.");
+    v.required("levels", &LevelTable::levels, List<Object<Level>>{{}, 1, kMaxLevels}, "By rising accuracy.");
 }
 
 }  // namespace vrut::protocol

@@ -10,7 +10,8 @@
 #include "json_reader.hpp"
 
 /// The members of what travels, each described once: `describe(visitor, const T*)` names a struct's members
-/// with the kind of each; readers, writers and the JSON Schema are visitors. For protocol's own .cpp files.
+/// with the kind and the meaning of each. Readers, writers and the JSON Schema are visitors; the schema's
+/// tables in the pages beside this file follow from it. For protocol's own .cpp files.
 namespace vrut::protocol {
 
 template <class T>
@@ -137,6 +138,13 @@ struct Object {
     Json schema() const { return schema_of_struct<T>(); }
 };
 
+/// What several places of the schema refer to by `name`.
+template <class Kind>
+struct Defined : Kind {
+    const char* name;
+    Json schema() const { return {{"$ref", std::string("#/$defs/") + name}}; }
+};
+
 /// {"ID or NAME": {…}}, to be written only.
 template <class T>
 struct Table {
@@ -192,13 +200,13 @@ public:
         : object_(object), target_(target), path_(path) {}
 
     template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind) {
+    void required(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
         if (!object_.contains(name))
             throw BadJson{error_code::bad_message, "member '" + path_to(name) + "' is missing"};
-        optional(name, member, kind);
+        optional(name, member, kind, meaning);
     }
     template <class Member, class Kind>
-    void optional(const char* name, Member T::*member, const Kind& kind) {
+    void optional(const char* name, Member T::*member, const Kind& kind, const char*) {
         if (const auto found = object_.find(name); found != object_.end())
             assign(target_.*member, kind.read(*found, path_to(name)));
     }
@@ -210,12 +218,12 @@ public:
     }
     // A whole section of the state: what clients may not change is read, too.
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind) {
-        optional(name, member, kind);
+    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        optional(name, member, kind, meaning);
     }
     template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind) {
-        optional(name, member, kind);
+    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        optional(name, member, kind, meaning);
     }
 
 private:
@@ -232,7 +240,7 @@ public:
     Writer(const T& value, Json& object) : value_(value), object_(object) {}
 
     template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind) {
+    void required(const char* name, Member T::*member, const Kind& kind, const char*) {
         if constexpr (!IsOptional<Member>::value)
             object_[name] = kind.write(value_.*member);
         else if (value_.*member)
@@ -240,14 +248,14 @@ public:
     }
     /// What has its default is left out.
     template <class Member, class Kind>
-    void optional(const char* name, Member T::*member, const Kind& kind) {
+    void optional(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
         if constexpr (requires { (value_.*member).empty(); }) {
             if ((value_.*member).empty()) return;
         } else if constexpr (requires { value_.*member == value_.*member; }) {
             const T defaults{};
             if (value_.*member == defaults.*member) return;
         }
-        required(name, member, kind);
+        required(name, member, kind, meaning);
     }
     template <class Member>
     void inlined(Member T::*member) {
@@ -255,12 +263,12 @@ public:
         describe(part, static_cast<const Member*>(nullptr));
     }
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind) {
-        required(name, member, kind);
+    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        required(name, member, kind, meaning);
     }
     template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind) {
-        required(name, member, kind);
+    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        required(name, member, kind, meaning);
     }
 
 private:
@@ -275,13 +283,18 @@ public:
     explicit SchemaWriter(Json& schema) : schema_(schema) {}
 
     template <class Member, class Kind>
-    void required(const char* name, Member T::*member, const Kind& kind) {
-        optional(name, member, kind);
+    void required(const char* name, Member T::*, const Kind& kind, const char* meaning) {
+        add(name, kind, meaning);
         if (!IsOptional<Member>::value) schema_["required"].push_back(name);
     }
     template <class Member, class Kind>
-    void optional(const char* name, Member T::*, const Kind& kind) {
-        schema_["properties"][name] = kind.schema();
+    void optional(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        add(name, kind, meaning);
+        if constexpr (!IsOptional<Member>::value) {
+            const Json value = kind.write(T{}.*member);
+            const bool says_nothing = value.is_structured() ? value.empty() : value == "";
+            if (!says_nothing) schema_["properties"][name]["default"] = value;
+        }
     }
     template <class Member>
     void inlined(Member T::*) {
@@ -289,16 +302,22 @@ public:
         describe(part, static_cast<const Member*>(nullptr));
     }
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind) {
-        required(name, member, kind);
+    void writable(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        required(name, member, kind, meaning);
     }
     template <class Member, class Kind>
-    void fixed(const char* name, Member T::*member, const Kind& kind) {
-        required(name, member, kind);
+    void fixed(const char* name, Member T::*member, const Kind& kind, const char* meaning) {
+        required(name, member, kind, meaning);
         schema_["properties"][name]["readOnly"] = true;
     }
 
 private:
+    template <class Kind>
+    void add(const char* name, const Kind& kind, const char* meaning) {
+        Json& schema = schema_["properties"][name] = kind.schema();
+        schema["description"] = meaning;
+    }
+
     Json& schema_;
 };
 

@@ -1,8 +1,7 @@
 #include <cctype>
 
 #include "codec.hpp"
-#include "descriptions.hpp"
-#include "event_log.hpp"
+#include "event_log_descriptions.hpp"
 #include "message_table.hpp"
 
 namespace vrut::protocol {
@@ -31,7 +30,8 @@ void add(Json& defs, const char* group, const std::string& name, Json schema) {
 void add_client_messages(Json& defs) {
     for_each_client_type([&](const MessageTraits& traits, const auto& prototype) {
         Json schema = with_type(schema_of_struct<std::decay_t<decltype(prototype)>>(), traits.type);
-        schema["properties"]["id"] = Integer{1, kMaxInteger}.schema();
+        Json& id = schema["properties"]["id"] = Integer{1, kMaxInteger}.schema();
+        id["description"] = "Asks for exactly one answer, which has the same `id`. It rises.";
         add(defs, "clientMessage", "client" + capitalized(traits.type), std::move(schema));
     });
     defs["clientRecord"]["properties"]["name"]["pattern"] = "^[A-Za-z0-9_-]*$";
@@ -54,19 +54,61 @@ void add_server_messages(Json& defs) {
     add_server_message<Loading>(defs, "loading");
     add_server_message<Stats>(defs, "stats");
     add_server_message<Error>(defs, "error");
-    defs["serverError"]["properties"]["code"] = {{"enum", error_code::all}};
-    const Json revision = Integer{1, kMaxInteger}.schema();
+    const auto described = [](Json schema, const char* meaning) {
+        schema["description"] = meaning;
+        return schema;
+    };
+    const Json revision = described(Integer{1, kMaxInteger}.schema(), "Of the state, once this is in it.");
     add(defs, "serverMessage", "serverState",
         with_type({{"type", "object"},
-                   {"properties", {{"revision", revision}, {"state", reference("stateDocument")}}},
+                   {"properties",
+                    {{"revision", revision},
+                     {"state", described(reference("stateDocument"), "The whole document.")}}},
                    {"required", {"revision", "state"}}},
                   "state"));
     add(defs, "serverMessage", "serverPatch",
-        with_type({{"type", "object"},
-                   {"properties",
-                    {{"revision", revision}, {"patch", {{"type", "object"}}}, {"by", {{"type", "string"}}}}},
-                   {"required", {"revision", "patch"}}},
-                  "patch"));
+        with_type(
+            {{"type", "object"},
+             {"properties",
+              {{"revision", revision},
+               {"patch", described({{"type", "object"}},
+                                   "From the document that this client got last to the present one.")},
+               {"by",
+                described(kName.schema(),
+                          "The client whose doing it is; missing: the server's, or several clients'.")}}},
+             {"required", {"revision", "patch"}}},
+            "patch"));
+}
+
+/// Lines of an event log: the first, and all others.
+void add_event_log(Json& defs) {
+    Json& header = defs["eventLogHeader"] = schema_of_struct<LogHeader>();
+    header["properties"]["log"] = {{"const", kLog}, {"description", "Tells that the file is an event log."}};
+    header["properties"]["version"] = {{"const", kVersion}, {"description", "Of the protocol."}};
+    header["required"].insert(header["required"].begin(), {"log", "version"});
+    const auto line = [](Json schema, const char* client) {
+        Json& at = schema["properties"]["at"] = kLogTime.schema();
+        at["description"] = "Milliseconds since the log began, in whole microseconds.";
+        schema["required"].push_back("at");
+        if (!client) return schema;
+        schema["properties"]["client"] = kClientId.schema();
+        schema["properties"]["client"]["description"] = client;
+        return schema;
+    };
+    Json message = {{"description", "As it came."}, {"$ref", "#/$defs/clientMessage"}};
+    add(defs, "eventLogLine", "eventLogMessage",
+        line({{"type", "object"},
+              {"properties", {{"message", std::move(message)}}},
+              {"required", {"client", "message"}}},
+             "Who sent it."));
+    for_each_event([&](const char* name, const char* client, const auto& prototype) {
+        Json schema = line(schema_of_struct<std::decay_t<decltype(prototype)>>(), client);
+        schema["properties"]["event"] = {{"const", name}};
+        schema["required"].push_back("event");
+        add(defs, "eventLogLine", "eventLog" + capitalized(name), std::move(schema));
+    });
+    for (const char* of_a_client : {"eventLogConnected", "eventLogDisconnected"})
+        defs[of_a_client]["required"].push_back("client");
 }
 
 }  // namespace
@@ -75,6 +117,13 @@ std::string json_schema() {
     Json defs = Json::object();
     add_client_messages(defs);
     add_server_messages(defs);
+    add_event_log(defs);
+    defs["cameraOverlay"] = schema_of_struct<CameraOverlay>();
+    defs["camera"] = schema_of_struct<CameraState>();
+    defs["notice"] = schema_of_struct<Notice>();
+    defs["quality"] = schema_of_struct<Quality>();
+    defs["view"] = schema_of_struct<Resize>();
+    defs["levelTable"] = schema_of_struct<LevelTable>();
     defs["frameHeader"] = schema_of_struct<FrameHeader>();
     defs["stateDocument"] = schema_of_struct<State>();
     defs["statePatch"] = patch_schema_of_struct<State>();

@@ -4,25 +4,6 @@
 
 namespace vrut::protocol {
 
-constexpr Number kCost{0, 1e9};  // ms or bytes: their ratios stay numbers
-
-template <class V>
-void describe(V& v, const Level*) {
-    v.required("quality", &Level::quality, Object<Quality>{});
-    v.required("ms", &Level::ms, kCost);
-    v.required("bytes", &Level::bytes, kCost);
-    v.optional("reason", &Level::reason, Text{1000});
-}
-
-template <class V>
-void describe(V& v, const LevelTable*) {
-    v.required("scene", &LevelTable::scene, Text{100});
-    v.required("renderer", &LevelTable::renderer, Text{1000});
-    v.required("width", &LevelTable::width, kPixels);
-    v.required("height", &LevelTable::height, kPixels);
-    v.required("levels", &LevelTable::levels, List<Object<Level>>{{}, 1, kMaxLevels});
-}
-
 namespace {
 
 constexpr double kSmallestScale = 0.01;  // less is no picture any more

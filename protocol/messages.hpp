@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-/// What travels between clients and the server. PROTOCOL.md tells what each message means; the structs here
-/// have its members under its names, and descriptions.hpp their limits.
+/// What travels between clients and the server. CLIENT_MESSAGES.md and SERVER_MESSAGES.md tell the messages;
+/// descriptions.hpp has the names, limits and meanings of the members of the structs here.
 namespace vrut::protocol {
 
 inline constexpr int kVersion = 1;

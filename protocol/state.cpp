@@ -189,7 +189,7 @@ struct SectionLister {
     Update update;
 
     template <class Member, class Kind>
-    void writable(const char* name, Member State::*member, const Kind& kind) {
+    void writable(const char* name, Member State::*member, const Kind& kind, const char*) {
         update(name, state.*member == previous.*member, [&] {
             if constexpr (!IsOptional<Member>::value)
                 return kind.write(state.*member);
@@ -198,8 +198,8 @@ struct SectionLister {
         });
     }
     template <class Member, class Kind>
-    void fixed(const char* name, Member State::*member, const Kind& kind) {
-        writable(name, member, kind);
+    void fixed(const char* name, Member State::*member, const Kind& kind, const char* meaning) {
+        writable(name, member, kind, meaning);
     }
 };
 

@@ -19,7 +19,7 @@ public:
         : patch_(patch), target_(target), start_(start), path_(path) {}
 
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind) {
+    void writable(const char* name, Member T::*member, const Kind& kind, const char*) {
         const auto found = look_up(name);
         if (found == patch_.end()) return;
         Member& target = target_.*member;
@@ -32,7 +32,7 @@ public:
             assign(target, kind.read(*found, path_to(name)));
     }
     template <class Member, class Kind>
-    void fixed(const char* name, Member T::*, const Kind&) {
+    void fixed(const char* name, Member T::*, const Kind&, const char*) {
         if (look_up(name) != patch_.end())
             throw BadJson{error_code::read_only, "'" + path_to(name) + "' is read-only"};
     }
@@ -75,7 +75,7 @@ public:
         : document_(document), target_(target), path_(path) {}
 
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*member, const Kind& kind) {
+    void writable(const char* name, Member T::*member, const Kind& kind, const char*) {
         Member& target = target_.*member;
         const auto found = document_.find(name);
         const std::string path = path_.empty() ? name : path_ + "." + name;
@@ -90,7 +90,7 @@ public:
         }
     }
     template <class Member, class Kind>
-    void fixed(const char*, Member T::*, const Kind&) {}
+    void fixed(const char*, Member T::*, const Kind&, const char*) {}
 
 private:
     const Json& document_;
@@ -111,14 +111,14 @@ public:
     explicit PatchSchemaWriter(Json& schema) : schema_(schema) {}
 
     template <class Member, class Kind>
-    void writable(const char* name, Member T::*, const Kind& kind) {
+    void writable(const char* name, Member T::*, const Kind& kind, const char*) {
         if constexpr (requires { kind.patch_schema(); })
             schema_["properties"][name] = nullable(kind.patch_schema());
         else
             schema_["properties"][name] = nullable(kind.schema());
     }
     template <class Member, class Kind>
-    void fixed(const char*, Member T::*, const Kind&) {}
+    void fixed(const char*, Member T::*, const Kind&, const char*) {}
 
 private:
     Json& schema_;

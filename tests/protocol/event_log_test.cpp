@@ -299,11 +299,11 @@ TEST_CASE("a wrong header is refused with a sentence") {
     };
     check(with("/log", "other"), "'log'");
     check(with("/version", 2), "'version'");
-    check(with("/clients/0/role", "king"), "'role'");
+    check(with("/clients/0/role", "king"), "'clients[0].role'");
     check(with("/clients/0/width", 0), "width");
-    check(with("/clients/0/name", 5), "'name'");
+    check(with("/clients/0/name", 5), "'clients[0].name'");
     check(with("/clients/1/width", 100), "height");
-    check(with("/clients/1", 5), "'clients'");
+    check(with("/clients/1", 5), "'clients[1]'");
     check(with("/atHome", 1), "'atHome'");
     check(with("/frames", json::object()), "'frames'");
     check(with("/frames/0/camera/fov", 171), "'frames[0].camera.fov'");

@@ -1,93 +1,39 @@
 #include <doctest/doctest.h>
 
-#include <cstdlib>
-#include <fstream>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
+#include <vector>
 
 #include "codec.hpp"
-#include "event_log.hpp"
 #include "examples.hpp"
 #include "frame_header.hpp"
+#include "repository_files.hpp"
 
 using namespace vrut::protocol;
 using nlohmann::json;
 
 namespace {
 
-const std::string kProtocol = VRUT_TEST_DATA "/../../../protocol/";
+json definitions() { return json::parse(json_schema())["$defs"]; }
 
-std::string text_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-/// A committed file that follows from the sources is renewed by whoever asks for it.
-void check_file(const std::string& path, const std::string& text) {
-    if (std::getenv("VRUT_RENEW")) std::ofstream(path, std::ios::binary) << text;
-    const bool same = text_of(path) == text;
-    CHECK_MESSAGE(same, path << " is not what the sources give; VRUT_RENEW=1 test_protocol writes it anew");
-}
-
-/// Names of members in a schema, those of what is inside as well.
-void add_members(const json& schema, std::set<std::string>& names) {
-    if (!schema.is_object()) return;
+/// Members of an object and of what is inside that have no meaning, or a longer one than a cell may be.
+void find_bad_meanings(const json& schema, const std::string& path, std::vector<std::string>& bad) {
+    constexpr std::size_t kLongest = 120;
+    const auto is_start = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; };
     if (const auto properties = schema.find("properties"); properties != schema.end())
-        for (const auto& [name, property] : properties->items()) {
-            names.insert(name);
-            add_members(property, names);
+        for (const auto& [name, member] : properties->items()) {
+            const std::string meaning = member.value("description", "");
+            const auto length =
+                static_cast<std::size_t>(std::count_if(meaning.begin(), meaning.end(), is_start));
+            const bool is_its_type = name == "type" || name == "event";
+            if (length > kLongest || (length == 0 && !is_its_type)) bad.push_back(path + "." + name);
+            find_bad_meanings(member, path + "." + name, bad);
         }
     for (const char* inside : {"items", "additionalProperties"})
-        if (schema.contains(inside)) add_members(schema[inside], names);
+        if (schema.contains(inside) && schema[inside].is_object())
+            find_bad_meanings(schema[inside], path, bad);
 }
-
-std::set<std::string> members(const json& schema) {
-    std::set<std::string> names;
-    add_members(schema, names);
-    return names;
-}
-
-/// The line of PROTOCOL.md that begins with one of `starts`, and the words there in backquotes.
-std::set<std::string> backquoted(const std::string& text) {
-    std::set<std::string> words;
-    for (std::size_t begin = text.find('`'); begin != std::string::npos;) {
-        const std::size_t end = text.find('`', begin + 1);
-        if (end == std::string::npos) break;
-        words.insert(text.substr(begin + 1, end - begin - 1));
-        begin = text.find('`', end + 1);
-    }
-    return words;
-}
-
-/// The part of the document under a heading.
-std::string chapter(const std::string& document, const std::string& heading) {
-    const std::size_t begin = document.find("\n## " + heading + "\n");
-    INFO(heading);
-    REQUIRE(begin != std::string::npos);
-    return document.substr(begin, document.find("\n## ", begin + 1) - begin);
-}
-
-/// The line of `text` whose first words, up to `end`, hold `word` in backquotes.
-std::string line_of(const std::string& text, const std::string& word, char end) {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) {
-        const std::size_t first = line.find_first_not_of("|- ");
-        if (first == std::string::npos) continue;
-        if (backquoted(line.substr(first, line.find(end, first) - first)).contains(word)) return line;
-    }
-    return {};
-}
-
-void check_named(const std::set<std::string>& names, const std::string& where, const std::string& text) {
-    const auto words = backquoted(text);
-    for (const std::string& name : names)
-        CHECK_MESSAGE(words.contains(name), "PROTOCOL.md does not name '" << name << "' of " << where);
-}
-
-json definitions() { return json::parse(json_schema())["$defs"]; }
 
 }  // namespace
 
@@ -125,6 +71,14 @@ TEST_CASE("the examples have all members that the schema has") {
     CHECK(types.size() == 24);
     CHECK(defs["clientMessage"]["oneOf"].size() == 24);
     CHECK(defs["serverMessage"]["oneOf"].size() == 12);
+}
+
+TEST_CASE("every member has a meaning, of at most 120 characters") {
+    std::vector<std::string> bad;
+    const json defs = definitions();
+    for (const auto& [name, schema] : defs.items())
+        if (name != "statePatch") find_bad_meanings(schema, name, bad);
+    CHECK(bad == std::vector<std::string>{});
 }
 
 TEST_CASE("what the server says, for the schema to be tried on") {
@@ -197,75 +151,4 @@ TEST_CASE("what the server says, for the schema to be tried on") {
                       {"frameHeader", {plain, json::parse(encode(header))}},
                       {"stateDocument", {first->json(), second->json()}}};
     check_file(VRUT_TEST_DATA "/server_messages.json", all.dump(1) + "\n");
-}
-
-TEST_CASE("PROTOCOL.md names every message and every member of it") {
-    const std::string document = text_of(kProtocol + "PROTOCOL.md");
-    const json defs = definitions();
-    const auto check_side = [&](const char* side, const char* heading) {
-        const std::string table = chapter(document, heading);
-        for (const json& reference : defs[side]["oneOf"]) {
-            const json& schema = defs[reference["$ref"].get<std::string>().substr(8)];
-            const std::string type = schema["properties"]["type"]["const"];
-            std::string row = line_of(table, type, '|');
-            CHECK_MESSAGE(!row.empty(), "PROTOCOL.md has no row for '" << type << "'");
-            // Said once for all that have them.
-            if (row.find("modifier keys") != std::string::npos)
-                row += "`ctrlKey` `shiftKey` `altKey` `metaKey`";
-            if (row.find("{camera members}") != std::string::npos)
-                row += "`node` `eye` `focus` `up` `center` `fov`";
-            if (row.find("as in the frame header") != std::string::npos)
-                row += chapter(document, "The frame header");
-            std::set<std::string> names = members(schema);
-            names.erase("type");
-            names.erase("id");
-            check_named(names, type, row);
-        }
-    };
-    check_side("clientMessage", "Client to server");
-    check_side("serverMessage", "Server to client");
-    check_named({"type", "id"}, "every message", chapter(document, "Transport"));
-}
-
-TEST_CASE("PROTOCOL.md names the state document's and the frame header's members, and the errors") {
-    const std::string document = text_of(kProtocol + "PROTOCOL.md");
-    const json defs = definitions();
-    const std::string state = chapter(document, "The state document");
-    for (const auto& [section, schema] : defs["stateDocument"]["properties"].items())
-        check_named(members(schema), section, line_of(state, section, ':'));
-    const std::string header = chapter(document, "The frame header");
-    std::set<std::string> names = members(defs["frameHeader"]);
-    for (const auto& [name, schema] : defs["stateDocument"]["properties"]["camera"]["properties"].items()) {
-        static_cast<void>(schema);
-        names.erase(name);
-    }
-    check_named(names, "the frame header", header);
-    const std::string server = chapter(document, "Server to client");
-    check_named({error_code::all.begin(), error_code::all.end()}, "the error codes", server);
-    CHECK(defs["serverError"]["properties"]["code"]["enum"].size() == 13);
-}
-
-TEST_CASE("PROTOCOL.md names the event log's members") {
-    const std::string log = chapter(text_of(kProtocol + "PROTOCOL.md"), "The event log");
-    LogHeader header;
-    header.state = std::make_shared<const json>(json::object());
-    header.at_home = true;
-    header.home.emplace();
-    header.clients = {{"c1", Role::view, Resize{}}};
-    header.frames = {{}};
-    LogHeader::Flight flight;
-    flight.fly.keyframes = {{}};
-    header.flight = flight;
-    std::set<std::string> names = {"at", "client", "message", "event", "role"};
-    const json written = json::parse(encode(header));
-    for (const auto& [name, value] : written.items()) {
-        names.insert(name);
-        if (name != "state" && value.is_structured())
-            for (const auto& [part, inner] : (value.is_array() ? value[0] : value).items()) {
-                static_cast<void>(inner);
-                names.insert(part);
-            }
-    }
-    names.insert({"connected", "disconnected", "opened", "drawn"});
-    check_named(names, "the event log", log);
 }

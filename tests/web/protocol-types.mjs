@@ -47,8 +47,12 @@ function objectType({ properties, required = [], additionalProperties }, indent)
   if (!properties) return 'object';
   const inner = `${indent}  `;
   const members = Object.entries(properties).map(([name, schema]) =>
-    `${inner}${name}${required.includes(name) ? '' : '?'}: ${typeOf(schema, inner)};\n`);
+    `${comment(schema, inner)}${inner}${name}${required.includes(name) ? '' : '?'}: ${typeOf(schema, inner)};\n`);
   return `{\n${members.join('')}${indent}}`;
+}
+
+function comment({ description }, indent) {
+  return description ? `${indent}/** ${description} */\n` : '';
 }
 
 function literal(value) {

@@ -10,10 +10,10 @@ const tables = Object.entries({ en, cs });
 const modules = readdirSync(new URL('../../../web-client/', import.meta.url), { recursive: true })
   .filter((name) => name.endsWith('.js') && !name.includes('texts/'))
   .map((name) => ({ name, source: read(`web-client/${name}`) }));
-const { serverError, stateDocument } = JSON.parse(read('protocol/protocol.schema.json')).$defs;
+const { notice, serverError } = JSON.parse(read('protocol/protocol.schema.json')).$defs;
 const codes = [
   ...serverError.properties.code.enum.map((code) => `error.${code}`),
-  ...stateDocument.properties.notices.items.properties.code.enum.map((code) => `notice.${code}`),
+  ...notice.properties.code.enum.map((code) => `notice.${code}`),
 ].sort();
 
 const isOfServer = (key) => /^(error|notice)\./.test(key);
