@@ -1,4 +1,4 @@
-// Contract: `frame`, "One view", "The frame header", and that nothing is sent while nothing changes.
+// Contract: `frame`, FRAMES.md, and that nothing is sent while nothing changes.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { setTimeout as sleep } from 'node:timers/promises';

@@ -1,4 +1,4 @@
-// Contract: the HTTP routes of "Command line, files and HTTP", with and without tokens.
+// Contract: "HTTP" of PROTOCOL.md: the routes, with and without tokens.
 import assert from 'node:assert/strict';
 import http from 'node:http';
 import { after, describe, test } from 'node:test';

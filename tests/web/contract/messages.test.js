@@ -1,4 +1,4 @@
-// Contract: "Client to server", member by member: what is missing, of a wrong type, or out of range.
+// Contract: CLIENT_MESSAGES.md, member by member: what is missing, of a wrong type, or out of range.
 import { after, describe, test } from 'node:test';
 import { ContractClient } from './contract-client.js';
 import { schemaTest } from './schema.js';

@@ -1,4 +1,4 @@
-// Contract: "Navigation": every row of its table with its numbers. The view is 400 x 300, its shorter side 300.
+// Contract: NAVIGATION.md: every row of its table with its numbers. The view is 400 x 300, its shorter side 300.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { add, axes, dot, length, near, nearCamera, pixelAtFocus, projected, scale, sub, turnedAbout, unit } from './numbers.js';
@@ -592,7 +592,7 @@ describe('keys', () => {
   });
 });
 
-// The contract names the styles; what they map to is what PROTOCOL.md and the programs themselves have in common.
+// The contract names the styles; what they map to is what NAVIGATION.md and the programs themselves have in common.
 describe('styles', () => {
   const ALT = { altKey: true };
   const CHANGES = {

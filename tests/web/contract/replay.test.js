@@ -1,4 +1,4 @@
-// Contract: `record`, the event log of "Command line, files and HTTP", and that its replay ends at the same camera.
+// Contract: `record`, EVENT_LOG.md, and that its replay ends at the same camera.
 import assert from 'node:assert/strict';
 import { spawnSync } from 'node:child_process';
 import { createHash } from 'node:crypto';

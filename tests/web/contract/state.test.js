@@ -1,4 +1,4 @@
-// Contract: "The state document", member by member, and what `patch` promises.
+// Contract: STATE.md, member by member, and what `patch` promises.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { ContractClient } from './contract-client.js';

@@ -1,4 +1,4 @@
-// Contract: "Rules": who steers, tokens; and `control`, `resize` and `hello` of the message table.
+// Contract: "Control" and "Tokens and origins" of PROTOCOL.md, and `control`, `resize` and `hello`.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import path from 'node:path';

@@ -1,4 +1,4 @@
-// Contract: "Transport", and "Ends of a connection".
+// Contract: "Connecting", "Messages", "Ids and answers" and "Ends of a connection" of PROTOCOL.md.
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { ContractClient, SUBPROTOCOL } from './contract-client.js';
