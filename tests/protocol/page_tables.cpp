@@ -1,5 +1,6 @@
 #include "page_tables.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
