@@ -22,10 +22,11 @@ RUN_PACKAGES=(
 # To make the Debian packages (cpack), and of them a container's root (container.sh).
 # shellcheck disable=SC2034
 PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file mmdebstrap:mmdebstrap)
-# To test: doctest, a browser and what steers it, and what checks the source's format and the shaders.
+# To test: doctest, a browser and what steers it, and what checks the source's format, the shaders and the manual pages.
 # shellcheck disable=SC2034
 TEST_PACKAGES=(
     doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
+    groff-base:groff
 )
 # To test all: another browser, what the charts, the examples and deploy/ work with, and what checks the source and its
 # comments.

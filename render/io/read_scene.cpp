@@ -37,13 +37,6 @@ const ReaderEntry* reader_of(const std::filesystem::path& path) {
     return nullptr;
 }
 
-std::string known_extensions() {
-    std::string list;
-    for (const ReaderEntry& format : kReaders)
-        list += (list.empty() ? "" : ", ") + std::string(format.extension);
-    return list;
-}
-
 }  // namespace
 
 ReadResult build_scene(scene::SceneParts parts, const std::string& file) {
@@ -67,6 +60,13 @@ std::string lower_extension(const std::filesystem::path& path) {
 
 bool has_reader(const std::filesystem::path& path) { return reader_of(path) != nullptr; }
 
+std::string read_extensions() {
+    std::string list;
+    for (const ReaderEntry& format : kReaders)
+        list += (list.empty() ? "" : ", ") + std::string(format.extension);
+    return list;
+}
+
 bool has_foreign_reader(const std::filesystem::path& path) {
     const ReaderEntry* const format = reader_of(path);
     return format != nullptr && format->foreign;
@@ -82,7 +82,7 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
                               "convert it to .osb with OpenSG");
     if (format == nullptr)
         return tl::unexpected(file + ": this file extension cannot be read; supported are " +
-                              known_extensions());
+                              read_extensions());
     return format->read(path, progress);
 }
 

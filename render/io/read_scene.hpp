@@ -26,6 +26,8 @@ std::string lower_extension(const std::filesystem::path& path);
 
 /// Returns true if the file's ending is that of a known format.
 bool has_reader(const std::filesystem::path& path);
+/// The endings of the known formats: ".vrut, …".
+std::string read_extensions();
 
 /// Returns true if a foreign library reads this ending: one that may crash, or take whatever memory there is.
 bool has_foreign_reader(const std::filesystem::path& path);

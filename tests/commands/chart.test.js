@@ -6,8 +6,8 @@ const fs = require('node:fs');
 const os = require('node:os');
 const path = require('node:path');
 const { after, test } = require('node:test');
+const { PROGRAM, examples } = require('./examples.js');
 
-const PROGRAM = process.env.VRUT_PREVIEW;
 const SCENE = path.join(process.env.VRUT_SCENES, 'teaching', 'glass-crossing.vrut');
 const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'vrut-chart-'));
 after(() => fs.rmSync(folder, { recursive: true }));
@@ -74,6 +74,21 @@ test('the levels of a scene are measured and kept', () => {
   assert.equal(new Set(levels.map((level) => level.indexOf('  FLIP'))).size, 1, result.stdout);
   assert.equal(fs.readdirSync(path.join(environment.XDG_STATE_HOME, 'vrut-preview', 'levels')).length, 1);
 });
+
+for (const example of examples('chart')) {
+  test(`example: ${example}`, () => {
+    const work = fs.mkdtempSync(path.join(folder, 'example-'));
+    fs.symlinkSync(PROGRAM, path.join(work, 'vrut-preview'));
+    for (const name of ['my.vrut', 'other.vrut'])
+      fs.copyFileSync(name === 'my.vrut' ? SCENE : path.join(path.dirname(SCENE), 'triangle.vrut'), path.join(work, name));
+    // As the example, but for how much it measures.
+    const shorter = `${example.replace(/ --(size|frames) \S+/g, '')} ${example.includes('--out') ? SMALL.join(' ') : '--size 64x48'}`;
+    const env = { ...environment, PATH: `${work}:${process.env.PATH}` };
+    const result = spawnSync('bash', ['-c', shorter], { encoding: 'utf8', cwd: work, env });
+    assert.equal(result.status, 0, result.stderr);
+    if (example.includes('--out charts')) assert.ok(fs.existsSync(path.join(work, 'charts/index.html')));
+  });
+}
 
 test('what cannot be done is told before anything is measured', () => {
   fails(2, /--out/, [SCENE]);

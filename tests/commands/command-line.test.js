@@ -40,16 +40,14 @@ function pngSize(name) {
 
 test('help and version', () => {
   assert.match(succeeds('--version'), /^vrut-preview \d+\.\d+\.\d+\n$/);
-  for (const command of ['serve', 'render', 'info']) {
-    assert.match(succeeds('--help'), new RegExp(command));
-    assert.match(succeeds(command, '--help'), /scene/);
-  }
+  assert.match(succeeds('--help'), /^Usage: vrut-preview COMMAND/);
+  assert.match(succeeds('render', '--help'), /^Usage: vrut-preview render \[OPTIONS\] SCENE\n/);
 });
 
 test('wrong usage is told in a sentence, with status 2', () => {
-  fails(2, /subcommand/);
+  fails(2, /a command is required/);
   fails(2, /dance/, 'dance');
-  fails(2, /scene/, 'info');
+  fails(2, /SCENE/, 'info');
   fails(2, /'import'/, 'import', CAR);
   fails(2, /--output/, 'render', CAR);
   fails(2, /--size: .*'12'/, 'render', CAR, '-o', file('x.png'), '--size', '12');
@@ -274,7 +272,7 @@ test('compare tells how far pictures are apart', () => {
   fails(1, /missing\.png: there is no such file/, 'compare', file('a.png'), file('missing.png'));
   fails(1, /neither PNG nor JPEG/, 'compare', CAR, file('a.png'));
   fails(1, /map\.jpg/, 'compare', file('a.png'), file('b.png'), '--map', file('map.jpg'));
-  fails(2, /b is required/, 'compare', file('a.png'));
+  fails(2, /IMAGE2 is required/, 'compare', file('a.png'));
 });
 
 test('with pixels of detail fewer triangles are drawn', () => {

@@ -95,8 +95,8 @@ test('what is lost is told, a line each', () => {
 
 test('wrong usage ends with status 2, and what cannot be done with 1', () => {
   const scene = path.join(TEACHING, 'triangle.vrut');
-  fails(2, /in is required/, 'convert');
-  fails(2, /out is required/, 'convert', scene);
+  fails(2, /IN is required/, 'convert');
+  fails(2, /OUT is required/, 'convert', scene);
   fails(2, /x\.fbx: .*\.vrut, \.obj, \.stl, \.glb/, 'convert', scene, file('x.fbx'));
   fs.copyFileSync(scene, file('same.vrut'));
   fails(2, /own file/, 'convert', file('same.vrut'), path.join(folder, '.', 'same.vrut'));

@@ -1,0 +1,489 @@
+#include "command_line.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <charconv>
+#include <sstream>
+
+#include "io/read_scene.hpp"
+#include "io/write_scene.hpp"
+
+namespace vrut::server::commands {
+
+namespace {
+
+// The groups of options, as help shows them.
+constexpr const char *kNetwork = "Network", *kAccess = "Access", *kScene = "Scene", *kDrawing = "Drawing",
+                     *kOutput = "Output", *kCamera = "Camera", *kMeasurement = "Measurement",
+                     *kGeneral = "General";
+
+/// Numbers between separators, all of them, or CLI::ValidationError.
+template <class Number, std::size_t N>
+std::array<Number, N> parse_numbers(const std::string& option, const std::string& text, char separator,
+                                    const char* expected) {
+    std::array<Number, N> numbers{};
+    const char* next = text.data();
+    const char* const last = text.data() + text.size();
+    for (std::size_t i = 0; i < N; ++i) {
+        const auto [end, error] = std::from_chars(next, last, numbers[i]);
+        const bool ends_right = i + 1 == N ? end == last : end != last && *end == separator;
+        if (error != std::errc() || !ends_right)
+            throw CLI::ValidationError(option,
+                                       "expected " + std::string(expected) + ", found '" + text + "'");
+        next = end + 1;
+    }
+    return numbers;
+}
+
+template <class Number>
+std::string text_of(Number number) {
+    std::ostringstream stream;
+    stream << number;
+    return stream.str();
+}
+
+bool has_digits_only(const std::string& text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+/// A validator, as CLI11 has it: empty, or what is wrong.
+std::string is_whole_number(const std::string& text) {
+    return has_digits_only(text) ? std::string() : "expected a whole number, found '" + text + "'";
+}
+
+/// An option for one number of a range, which its sentence and its error name.
+template <class Number, class Target>
+CLI::Option* add_number(Command& command, const std::string& name, Target& target, Number least, Number most,
+                        const std::string& sentence) {
+    const std::string range = "from " + text_of(least) + " to " + text_of(most);
+    return command.add_option(name, target, sentence + ", " + range + ".")
+        ->check([least, most, range](const std::string& text) {
+            Number number{};
+            const bool in_range =
+                CLI::detail::lexical_cast(text, number) && number >= least && number <= most;
+            return in_range ? std::string() : "expected a number " + range + ", found '" + text + "'";
+        })
+        ->type_name("N");
+}
+
+/// An option for one of some words, which its type's name tells.
+CLI::Option* add_choice(Command& command, const std::string& name, const std::vector<std::string>& words,
+                        const std::function<void(const std::string&)>& take, const std::string& sentence) {
+    const std::string list = CLI::detail::join(words, "|");
+    return command.add_option_function<std::string>(name, take, sentence)
+        ->check([words, list](const std::string& text) {
+            const bool known = std::find(words.begin(), words.end(), text) != words.end();
+            return known ? std::string() : "expected " + list + ", found '" + text + "'";
+        })
+        ->type_name(list);
+}
+
+CLI::Option* add_file(Command& command, const std::string& name, std::filesystem::path& target,
+                      const std::string& sentence) {
+    return command.add_option(name, target, sentence)->type_name("FILE");
+}
+
+CLI::Option* add_folder(Command& command, const std::string& name, std::filesystem::path& target,
+                        const std::string& sentence) {
+    return command.add_option(name, target, sentence)->type_name("DIR");
+}
+
+void add_vector(Command& command, const std::string& name, std::optional<glm::dvec3>& target,
+                const std::string& sentence) {
+    command
+        .add_option_function<std::string>(
+            name,
+            [name, &target](const std::string& text) {
+                const auto numbers = parse_numbers<double, 3>(name, text, ',', "X,Y,Z");
+                target = glm::dvec3(numbers[0], numbers[1], numbers[2]);
+            },
+            sentence)
+        ->type_name("X,Y,Z")
+        ->group(kCamera);
+}
+
+void add_device(Command& command, std::optional<int>& device) {
+    command.add_option("--device", device, "Draw on this EGL device, counted from 0.")
+        ->check(is_whole_number)
+        ->type_name("N")
+        ->default_str("the first that works")
+        ->group(kDrawing);
+}
+
+CLI::Option* add_size(Command& command, int& width, int& height) {
+    return command
+        .add_option_function<std::string>(
+            "--size",
+            [&width, &height](const std::string& text) {
+                const auto size = parse_numbers<int, 2>("--size", text, 'x', "WxH");
+                if (size[0] < 1 || size[1] < 1)
+                    throw CLI::ValidationError("--size", "expected one pixel at least, found '" + text + "'");
+                width = size[0];
+                height = size[1];
+            },
+            "Draw this many pixels, width and height.")
+        ->type_name("WxH")
+        ->default_str(std::to_string(width) + "x" + std::to_string(height));
+}
+
+/// The log's level, which a command has that goes on for long.
+void add_log_level(Command& command) {
+    add_choice(
+        command, "--log-level", {"debug", "info", "warning", "error", "off"},
+        [](const std::string& text) { spdlog::set_level(spdlog::level::from_str(text)); },
+        "Log events of this level and above.")
+        ->default_str("info")
+        ->group(kGeneral);
+}
+
+std::vector<Entry> statuses(const std::string& done,
+                            const std::string& wrong_usage = "The command line is wrong.") {
+    return {{std::to_string(kDone), done},
+            {std::to_string(kFailed), "The command failed. One sentence on standard error says why."},
+            {std::to_string(kWrongUsage), wrong_usage + " One sentence on standard error says where."}};
+}
+
+Entry state_folder(const std::string& what) {
+    return {"XDG_STATE_HOME",
+            "The folder vrut-preview in this one holds " + what + ". Default: ~/.local/state."};
+}
+
+std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
+    auto command = std::make_shared<Command>("Serve a scene to tablets, hosts and scripts.", "serve");
+    command->description = {
+        "The server draws the scene without a window, and streams frames of it to web pages, hosts and "
+        "scripts. It prints the address of its page when it accepts connections, and logs to standard error. "
+        "SIGINT, SIGTERM and SIGHUP end it.",
+        "Beyond this machine, clients need a token. Where neither a file nor the environment has one, the "
+        "server makes two, and prints the addresses with their tokens, one of them as a QR code."};
+    add_file(*command, "SCENE", arguments.scene, "Serve this scene file.")->default_str("the car");
+    command->add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
+        ->type_name("ADDR:PORT")
+        ->capture_default_str()
+        ->group(kNetwork);
+    add_number(*command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
+        ->capture_default_str()
+        ->group(kNetwork);
+    add_file(
+        *command, "--token-file", arguments.token_file,
+        R"(Read the tokens from this JSON file, {"control": TOKEN, "view": TOKEN}, which nobody but its )"
+        R"(owner may read.)")
+        ->group(kAccess);
+    command
+        ->add_option("--allow-origin", arguments.allowed_origins,
+                     "Accept pages of this origin, besides the server's own.")
+        ->allow_extra_args(false)  // what follows the one is the scene
+        ->type_name("ORIGIN")
+        ->group(kAccess);
+    add_folder(*command, "--scenes", arguments.scenes,
+               "Let clients open the scenes in this folder and below.")
+        ->group(kScene);
+    add_folder(*command, "--record", arguments.record, "Let clients record sessions into this folder.")
+        ->group(kScene);
+    add_device(*command, arguments.device);
+    add_log_level(*command);
+    command->environment = {
+        {"VRUT_PREVIEW_CONTROL_TOKEN",
+         "Token of clients that may steer, of 16 to 1000 bytes. That of --token-file has priority."},
+        {"VRUT_PREVIEW_VIEW_TOKEN", "Token of clients that only watch, likewise."},
+        {"CREDENTIALS_DIRECTORY", "The group may read a token file in this folder, which systemd makes."},
+        state_folder("measured levels, and what clients have changed of scenes")};
+    command->exit_statuses = statuses("A signal has ended the server.");
+    command->examples = {
+        {"vrut-preview serve", "Serve the car at http://127.0.0.1:8080/."},
+        {"vrut-preview serve my.glb --listen 0.0.0.0:8080", "Serve a scene to the tablets of a network."},
+        {"vrut-preview serve my.vrut --scenes scenes --record recordings",
+         "Let clients open other scenes, and record sessions."}};
+    command->callback([&arguments] { serve_command(arguments); });
+    return command;
+}
+
+/// Options that stand for patches of the state.
+void add_patches(Command& command, RenderArguments& arguments) {
+    const auto adds = [&](const std::string& name, const std::string& before, const std::string& after) {
+        return [&arguments, name, before, after](const std::string& text) {
+            arguments.patches.emplace_back(name, before + text + after);
+        };
+    };
+    add_choice(command, "--mode", {"realistic", "stylized"},
+               adds("--mode", R"({"renderer":{"mode":")", "\"}}"), "Draw the scene in this way.")
+        ->group(kScene);
+    command
+        .add_flag_callback(
+            "--wireframe",
+            [&arguments] {
+                arguments.patches.emplace_back("--wireframe", R"({"renderer":{"wireframe":true}})");
+            },
+            "Draw edges only.")
+        ->group(kScene);
+    command
+        .add_option_function<std::int64_t>(
+            "--select",
+            [add = adds("--select", R"({"selection":{"node":)", "}}")](std::int64_t node) {
+                add(std::to_string(node));
+            },
+            "Draw the node of this id as selected.")
+        ->check(is_whole_number)
+        ->type_name("ID")
+        ->group(kScene);
+    const auto is_id = [](const std::string& other) {
+        return [other](const std::string& text) {
+            return has_digits_only(text) || text == other
+                       ? std::string()
+                       : "expected a node's id or " + other + ", found '" + text + "'";
+        };
+    };
+    command
+        .add_option_function<std::string>(
+            "--light", adds("--light", R"({"lights":{"active":")", "\"}}"),
+            "Light the scene by the light node of this id, or by the headlight.")
+        ->check(is_id("headlight"))
+        ->type_name("ID|headlight")
+        ->group(kScene);
+    command
+        .add_option_function<std::string>(
+            "--background",
+            [add = adds("--background", R"({"backgrounds":{"active":")", "\"}}")](const std::string& id) {
+                add(id == "none" ? "color" : id);
+            },
+            "Draw the background node of this id, or none but the plain colour.")
+        ->check(is_id("none"))
+        ->type_name("ID|none")
+        ->group(kScene);
+}
+
+void add_camera(Command& command, RenderArguments& arguments) {
+    add_file(command, "--camera", arguments.camera_file,
+             "Read the camera from this JSON file, in the form that it has in the state document.")
+        ->group(kCamera);
+    add_vector(command, "--eye", arguments.eye, "Look from this point.");
+    add_vector(command, "--focus", arguments.focus, "Look at this point.");
+    add_vector(command, "--up", arguments.up, "Hold this direction upright.");
+    add_number(command, "--fov", arguments.fov, 1.0, 170.0, "Draw a vertical field of view of N degrees")
+        ->group(kCamera);
+}
+
+/// What the image is drawn with, and what is written besides.
+void add_drawing(Command& command, RenderArguments& arguments) {
+    add_number(command, "--samples", arguments.samples, 1, 4096, "Draw N samples a pixel")
+        ->capture_default_str()
+        ->group(kDrawing);
+    auto* detail = add_number(command, "--detail", arguments.detail, 0.0, 1000.0,
+                              "Draw fewer triangles: surfaces may lie off by N pixels")
+                       ->capture_default_str()
+                       ->group(kDrawing);
+    auto* reference = command
+                          .add_flag("--reference", arguments.reference,
+                                    "Trace rays in double precision, without a graphics card.")
+                          ->excludes(detail)
+                          ->group(kDrawing);
+    add_file(command, "--float", arguments.unrounded,
+             "Write the values of --reference before they are rounded too, as a PFM image.")
+        ->needs(reference)
+        ->group(kOutput);
+    add_file(command, "--ids", arguments.ids,
+             "Write the node ids at the centres of the pixels too, as a PNG image: 24 bits, white for none.")
+        ->group(kOutput);
+    command.add_flag("--stats", arguments.stats, "Print what drawing took, as JSON.")
+        ->excludes(reference)
+        ->group(kOutput);
+    add_device(command, arguments.device);
+}
+
+std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
+    auto command = std::make_shared<Command>("Draw an image of a scene.", "render");
+    command->description = {
+        "The image shows the first view of the scene, unless options choose another one. --eye, --focus, "
+        "--up "
+        "and --fov have priority over --camera, and --camera has priority over --set."};
+    add_file(*command, "SCENE", arguments.scene, "Draw this scene file.")->required();
+    add_file(*command, "-o,--output", arguments.output,
+             "Write the image to this file, whose name ends in .png, .jpg or .jpeg.")
+        ->required()
+        ->group(kOutput);
+    add_size(*command, arguments.width, arguments.height)->group(kOutput);
+    add_number(*command, "--jpeg-quality", arguments.jpeg_quality, 1, 100, "Write JPEG of this quality")
+        ->capture_default_str()
+        ->group(kOutput);
+    add_camera(*command, arguments);
+    command->add_option("--set", arguments.set, "Change the state document by this JSON merge patch.")
+        ->type_name("JSON")
+        ->group(kScene);
+    add_patches(*command, arguments);
+    add_drawing(*command, arguments);
+    command->exit_statuses = statuses("The image is written.");
+    command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
+                         {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
+                          "Draw it from a point, in another size."},
+                         {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
+                          "Trace a scene with mirrors ray by ray."}};
+    command->callback([&arguments] { render_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_replay(ReplayArguments& arguments) {
+    auto command = std::make_shared<Command>("Replay a recorded session.", "replay");
+    command->description = {
+        "The command prints the camera at the end of the session, as JSON: the same one as in the session, "
+        "to "
+        "the last bit. A server records sessions where it is started with --record."};
+    add_file(*command, "LOG", arguments.log, "Replay this event log (.jsonl).")->required();
+    add_file(*command, "--scene", arguments.scene, "Replay on this scene file.")
+        ->default_str("the one that was recorded, beside the log or among the scenes of the program")
+        ->group(kScene);
+    add_folder(*command, "--out", arguments.frames,
+               "Write the frames of the session to this folder, as JPEG.")
+        ->group(kOutput);
+    add_device(*command, arguments.device);
+    command->exit_statuses = statuses("The session is replayed.");
+    command->examples = {
+        {"vrut-preview replay recordings/session.jsonl", "Print the last camera of a session."},
+        {"vrut-preview replay recordings/session.jsonl --out frames", "Draw its frames too."},
+        {"vrut-preview replay recordings/session.jsonl --scene my.vrut", "Replay it on another scene."}};
+    command->callback([&arguments] { replay_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_info(InfoArguments& arguments) {
+    auto command = std::make_shared<Command>("Print what a scene holds.", "info");
+    command->description = {
+        "The command prints the size of the scene, notices about what is not shown of it, and its nodes."};
+    add_file(*command, "SCENE", arguments.scene, "Read this scene file.")->required();
+    command->add_flag("--json", arguments.json, "Print JSON.")->group(kOutput);
+    command->exit_statuses = statuses("The scene can be read.");
+    command->examples = {{"vrut-preview info my.glb", "Print the nodes of a scene."},
+                         {"vrut-preview info my.glb | grep geometry", "Print those with triangles."},
+                         {"vrut-preview info my.glb --json >my.json", "Write them to a file for scripts."}};
+    command->callback([&arguments] { info_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_convert(ConvertArguments& arguments) {
+    auto command = std::make_shared<Command>("Write a scene in another format.", "convert");
+    command->description = {
+        "The ending of a file's name says its format. What OUT does not hold is said on standard error, a "
+        "line "
+        "each."};
+    add_file(*command, "IN", arguments.in, "Read this scene file: " + io::read_extensions() + ".")
+        ->required();
+    add_file(*command, "OUT", arguments.out, "Write this scene file: " + io::written_extensions() + ".")
+        ->required();
+    command->exit_statuses =
+        statuses("The file is written.", "The command line is wrong, as where OUT is of no format or is IN.");
+    command->examples = {
+        {"vrut-preview convert my.obj my.glb", "Write glTF."},
+        {"vrut-preview convert my.glb my.vrut", "Write scene text, which can be read and edited."},
+        {"vrut-preview convert my.vrut my.stl 2>lost.txt", "Keep the list of what is lost."}};
+    command->callback([&arguments] { convert_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_compare(CompareArguments& arguments) {
+    auto command = std::make_shared<Command>("Measure how far two images are apart.", "compare");
+    command->description = {
+        "The command prints the largest difference, RMS, PSNR, how many pixels are off, and FLIP, which "
+        "weighs "
+        "differences as a viewer sees them. The images are PNG or JPEG files of the same size."};
+    add_file(*command, "IMAGE1", arguments.a, "Compare this image.")->required();
+    add_file(*command, "IMAGE2", arguments.b, "Compare it with this one.")->required();
+    command->add_flag("--json", arguments.json, "Print JSON.")->group(kOutput);
+    add_file(*command, "--map", arguments.map,
+             "Write the FLIP error of each pixel to this PNG file, from black for 0 to white for 1.")
+        ->group(kOutput);
+    command->exit_statuses = statuses("The images are compared, whether or not they differ.");
+    command->examples = {
+        {"vrut-preview compare my.png truth.png", "Print the differences."},
+        {"vrut-preview compare my.png truth.png --json", "Print them for scripts."},
+        {"vrut-preview compare my.png truth.png --map flip.png", "Draw where the images differ."}};
+    command->callback([&arguments] { compare_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
+    auto command = std::make_shared<Command>("Measure speed against accuracy.", "chart");
+    command->description = {
+        "With --out, the command measures many settings of the renderer, and draws charts of them by "
+        "gnuplot. "
+        "With --calibrate, it measures the levels that a server draws the scene with on this machine, and "
+        "stores them for it. One of the two is required."};
+    command->add_option("SCENE", arguments.scenes, "Measure these scene files.")
+        ->type_name("FILE")
+        ->default_str("the car");
+    auto* out =
+        add_folder(*command, "--out", arguments.out,
+                   "Write charts, tables and a page to this folder. What it holds is not measured again.")
+            ->group(kOutput);
+    auto* calibrate =
+        command
+            ->add_flag("--calibrate", arguments.calibrate, "Measure the levels of one scene, and store them.")
+            ->group(kOutput);
+    out->excludes(calibrate);
+    add_size(*command, arguments.width, arguments.height)->group(kMeasurement);
+    add_number(*command, "--frames", arguments.frames, 1, 1000, "Draw N frames of each setting")
+        ->capture_default_str()
+        ->group(kMeasurement);
+    command
+        ->add_option("--triangles", arguments.most_triangles,
+                     "Measure generated scenes of up to N triangles too.")
+        ->check(is_whole_number)
+        ->type_name("N")
+        ->capture_default_str()
+        ->group(kMeasurement);
+    add_device(*command, arguments.device);
+    command->environment = {state_folder("measured levels")};
+    command->exit_statuses = statuses("The measurements are written.");
+    command->examples = {
+        {"vrut-preview chart my.vrut --calibrate", "Store the levels of a scene, in half a minute."},
+        {"vrut-preview chart my.vrut --out charts", "Draw all charts of a scene, in some hours."},
+        {"vrut-preview chart my.vrut other.vrut --out charts --size 640x360 --frames 4",
+         "Draw charts of two scenes, in less time."}};
+    command->callback([&arguments] {
+        if (!arguments.calibrate && arguments.out.empty()) throw CLI::RequiredError("--out or --calibrate");
+        if (arguments.calibrate && arguments.scenes.size() > 1)
+            throw CLI::ValidationError(
+                "--calibrate", "expected one scene, found " + std::to_string(arguments.scenes.size()));
+        chart_command(arguments);
+    });
+    return command;
+}
+
+}  // namespace
+
+std::shared_ptr<Command> describe_program(Arguments& arguments) {
+    auto program = std::make_shared<Command>("Preview the scene of a CAVE on tablets.", "vrut-preview");
+    program->description = {
+        "The program serves a scene to tablets, whose web page steers the camera; and draws, converts, "
+        "replays, compares and measures scenes from the command line. It draws without a window, on a "
+        "graphics card or in software.",
+        "Scene files end in " + io::read_extensions() + ". --help after a command prints its options."};
+    program->set_version_flag("--version", "vrut-preview " VRUT_VERSION, "Print the version.")
+        ->group(kGeneral);
+    program->require_subcommand(1);
+    program
+        ->add_option_function<std::string>(
+            "--write-manual",
+            [program = program.get()](const std::string& folder) {
+                write_manual(*program, VRUT_VERSION, folder);
+                throw CLI::Success();
+            },
+            "Write the manual pages and the completion for Bash below this folder.")
+        ->group("");  // for the build
+    program->environment = {
+        {"VRUT_PREVIEW_CONTROL_TOKEN, VRUT_PREVIEW_VIEW_TOKEN", "Tokens of the clients of serve."},
+        state_folder("what serve and chart keep")};
+    program->exit_statuses = statuses("The command has done its work.");
+    program->examples = {{"vrut-preview serve", "Serve the car at http://127.0.0.1:8080/."},
+                         {"vrut-preview render my.glb -o my.png", "Draw an image of a scene."},
+                         {"vrut-preview serve --help", "Print the options of a command."}};
+    program->add_subcommand(describe_serve(arguments.serve));
+    program->add_subcommand(describe_render(arguments.render));
+    program->add_subcommand(describe_replay(arguments.replay));
+    program->add_subcommand(describe_info(arguments.info));
+    program->add_subcommand(describe_convert(arguments.convert));
+    program->add_subcommand(describe_compare(arguments.compare));
+    program->add_subcommand(describe_chart(arguments.chart));
+    return program;
+}
+
+}  // namespace vrut::server::commands
