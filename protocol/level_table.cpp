@@ -25,8 +25,7 @@ LevelTable checked(LevelTable table) {
             refuse(i, "quality.error' must not be larger than that of the level before");
         below = &quality;
     }
-    if (!below)
-        throw BadJson{error_code::out_of_range, "'levels' must have one for pictures while things move"};
+    if (!below) throw BadJson{error_code::out_of_range, "'levels' must have one for frames of a moving view"};
     return table;
 }
 

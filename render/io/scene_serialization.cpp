@@ -276,7 +276,7 @@ void serialize_cube_map(Stream& stream, scene::BackgroundData& data,
             }
         }
     });
-    stream.require(data.cube_map || !data.cube_textures, "names of a cube map's pictures");
+    stream.require(data.cube_map || !data.cube_textures, "names of a cube map's images");
 }
 
 /// The alternative that belongs to the node's type.

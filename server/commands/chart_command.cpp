@@ -27,8 +27,9 @@ constexpr int kLargestSide = 8192;
 void require_size(const ChartArguments& arguments, const renderer::Renderer& renderer) {
     const int most = std::min(kLargestSide, renderer.max_size());
     if (std::max(arguments.width, arguments.height) > most)
-        throw std::runtime_error("--size: pictures of up to " + std::to_string(most) +
-                                 " pixels a side are measured here");
+        throw std::runtime_error("--size: expected at most " + std::to_string(most) +
+                                 " pixels a side, found " + std::to_string(arguments.width) + "x" +
+                                 std::to_string(arguments.height));
 }
 
 Subject subject_of(const fs::path& path, const ChartArguments& arguments, observe::Progress& progress) {
@@ -82,8 +83,8 @@ public:
             Subject subject = subject_of(scene, arguments, progress);
             for (const Subject& other : subjects_)
                 if (other.sha256 == subject.sha256)
-                    throw std::runtime_error(scene.string() + ": the same scene as " + other.name +
-                                             ", which is given before it");
+                    throw std::runtime_error(scene.string() + ": this is the scene " + other.name +
+                                             ", too: name it once");
             for (auto& list :
                  {experiments_of(subject, arguments.frames), sizes_of(subject, arguments.frames)})
                 experiments_.insert(experiments_.end(), list.begin(), list.end());
@@ -181,9 +182,9 @@ void write_all(const ChartArguments& arguments, const Run& run, const std::strin
         for (Plot& plot : section.plots) plot.subtitle = subtitle;
     const PageHead head{
         "VRUT Preview: speed against accuracy",
-        {"Drawn by " + renderer + " on " + machine() + ", VRUT Preview " VRUT_VERSION ", pictures of " +
+        {"Drawn by " + renderer + " on " + machine() + ", VRUT Preview " VRUT_VERSION ", images of " +
          std::to_string(arguments.width) + " x " + std::to_string(arguments.height) + " pixels, " +
-         std::to_string(arguments.frames) + " frames a setting."}};
+         std::to_string(arguments.frames) + " frames a setting"}};
     write_page(arguments.out / "index.html", head, sections);
 }
 

@@ -146,7 +146,7 @@ std::vector<Entry> statuses(const std::string& done,
 
 Entry state_folder(const std::string& what) {
     return {"XDG_STATE_HOME",
-            "The folder vrut-preview in this one holds " + what + ". Default: ~/.local/state."};
+            "Folder for " + what + ", in its subfolder vrut-preview. Default: ~/.local/state."};
 }
 
 std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {

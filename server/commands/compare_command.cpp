@@ -62,7 +62,7 @@ void print(const protocol::CompareReport& report) {
 
 void compare_command(const CompareArguments& arguments) {
     if (!arguments.map.empty() && arguments.map.extension() != ".png")
-        throw std::runtime_error(arguments.map.string() + ": the map's name ends in .png");
+        throw std::runtime_error(arguments.map.string() + ": the name of a map ends in .png");
     const scene::Image a = read(arguments.a), b = read(arguments.b);
     if (a.width != b.width || a.height != b.height)
         throw std::runtime_error("images of different sizes cannot be compared: " + arguments.a.string() +

@@ -59,12 +59,12 @@ std::string bash_completion(const Command& program) {
     }
     return "# Bash completion for " + name + R"script(
 _vrut_preview() {
-    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=
+    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=''
     # --option=value is three words here.
     [[ $before == = ]] && before=${COMP_WORDS[COMP_CWORD - 2]}
-    [[ $word == = ]] && word=
+    [[ $word == = ]] && word=''
     ((COMP_CWORD > 1)) && command=${COMP_WORDS[1]}
-    local kind=files words= options=
+    local kind=files words='' options=''
     case $command in
     '')
         kind=words words=')script" +

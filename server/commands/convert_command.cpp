@@ -62,7 +62,8 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
 
 void convert_command(const ConvertArguments& arguments) {
     if (!io::has_writer(arguments.out))
-        throw std::invalid_argument(arguments.out.string() + ": a converted scene's name ends in one of " +
+        throw std::invalid_argument(arguments.out.string() +
+                                    ": the name of a converted scene ends in one of " +
                                     io::written_extensions());
     std::error_code error;
     if (std::filesystem::equivalent(arguments.in, arguments.out, error))

@@ -38,7 +38,7 @@ std::string fault_of(const commands::Command& program, const CLI::ParseError& er
 std::string sentence_of(const commands::Command& program, const CLI::ParseError& error) {
     std::string command = program.get_name();
     for (const CLI::App* chosen : program.get_subcommands()) command += " " + chosen->get_name();
-    return fault_of(program, error) + "; '" + command + " --help' tells more";
+    return fault_of(program, error) + "; see '" + command + " --help'";
 }
 
 /// The exit status. What goes wrong is printed.

@@ -23,7 +23,7 @@ namespace {
 std::string read_text(const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream) throw std::runtime_error(path.string() + " cannot be read");
+    if (!stream) throw std::runtime_error("--camera: " + path.string() + " cannot be read");
     return text;
 }
 
@@ -93,7 +93,7 @@ scene::Image picture_of_ids(const plan::View& view, const std::vector<scene::Ind
             id = view.scene->scene->nodes()[static_cast<std::size_t>(nodes[i])].id;
             if (id >= kNobody)
                 throw std::runtime_error("--ids: node " + std::to_string(id) +
-                                         " has an id beyond 16777214, the highest that 24 bits can tell");
+                                         " has an id beyond 16777214, the highest that 24 bits can hold");
         }
         for (unsigned k = 0; k < 3; ++k)
             image.rgba[4 * i + k] = static_cast<std::uint8_t>(id >> (16 - 8 * k));
@@ -121,8 +121,7 @@ void require_surfaces_only(const plan::View& view) {
     if (edges || marks)
         throw std::invalid_argument(
             "--reference draws surfaces alone, without edges, outlines and markers: leave it out, or what "
-            "asks "
-            "for these (" +
+            "asks for these (" +
             std::string(edges ? "--wireframe, --mode stylized" : "--select, markers") + ")");
 }
 
@@ -166,7 +165,8 @@ void draw_picture(const RenderArguments& arguments, plan::View view) {
 void render_command(const RenderArguments& arguments) {
     const std::string extension = arguments.output.extension().string();
     if (extension != ".png" && extension != ".jpg" && extension != ".jpeg")
-        throw std::runtime_error(arguments.output.string() + ": a picture's name ends in .png or .jpg");
+        throw std::runtime_error(arguments.output.string() +
+                                 ": the name of an image ends in .png, .jpg or .jpeg");
     const plan::View view = view_of(arguments);
     if (arguments.reference)
         trace_picture(arguments, view);

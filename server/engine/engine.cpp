@@ -146,9 +146,8 @@ Engine::~Engine() {
 scenes::LoadedScene Engine::prepared(scenes::LoadedScene scene) const {
     scene.picking_trees = std::make_shared<const mesh::PickingTrees>(scene.placed->scene);
     if (renderer_.software)
-        scene.notices.push_back(
-            {protocol::notice_code::software,
-             "Drawn in software, without a graphics card: expect fewer pictures a second"});
+        scene.notices.push_back({protocol::notice_code::software,
+                                 "Drawn in software, without a graphics card: expect fewer frames a second"});
     return scene;
 }
 
@@ -315,13 +314,12 @@ void Engine::handle(const PictureFailed& failed) {
     const Picture& picture = failed.picture;
     observe::log_warning("picture_not_encoded", {{"frame", picture.header.frame}, {"reason", failed.why}});
     if (!picture.client.empty())
-        return reject(picture.client, picture.header.snapshot,
-                      "the picture cannot be encoded: " + failed.why);
+        return reject(picture.client, picture.header.snapshot, "the image cannot be encoded: " + failed.why);
     std::erase(drawn_, picture.header.frame);
     if (picture.header.frame != newest_.frame) return;  // a newer one may do better
     failed_ = Failed{newest_.visible, newest_.view_size};
     newest_ = before_newest_;
-    notice({protocol::notice_code::not_encoded, "What is to be seen now cannot be encoded: " + failed.why});
+    notice({protocol::notice_code::not_encoded, "This view cannot be encoded: " + failed.why});
 }
 
 /// The first frame of a scene is not kept waiting by coarser surfaces that are made for later ones.

@@ -229,8 +229,7 @@ void Engine::draw_frame() {
     } catch (const std::exception& error) {
         failed_ = Failed{frame_->visible, frame_->view_size};
         frame_.reset();
-        notice({protocol::notice_code::not_drawn,
-                std::string("What is to be seen now cannot be drawn: ") + error.what()});
+        notice({protocol::notice_code::not_drawn, std::string("This view cannot be drawn: ") + error.what()});
     }
 }
 
@@ -301,11 +300,11 @@ void Engine::draw_snapshot() {
     } catch (const std::bad_alloc&) {
         return reject(snapshot, "there is no memory to draw it");
     } catch (const std::exception& error) {
-        return reject(snapshot, std::string("the picture cannot be drawn: ") + error.what());
+        return reject(snapshot, std::string("the image cannot be drawn: ") + error.what());
     }
     if (drawn == Drawn::whole) return finish_snapshot(std::move(snapshot));
     if (drawn == Drawn::lost && ++snapshot.losses == kMostLosses)
-        return reject(snapshot, "the graphics driver is lost whenever this picture is drawn");
+        return reject(snapshot, "the graphics driver is lost whenever this image is drawn");
     // Behind those of others, before further ones of its own client.
     const auto own = std::stable_partition(snapshots_.begin(), snapshots_.end(), [&](const Snapshot& other) {
         return other.order.client != snapshot.order.client;

@@ -115,10 +115,10 @@ void Engine::draw_smaller(const Failed& what, const PictureSize& size, const std
                          {{"width", size.width}, {"height", size.height}, {"reason", why}});
     if (pixels >= kFewestPixels) {
         pixel_budget_.max_pixels = pixels;
-        return notice({protocol::notice_code::smaller, "Memory is short: pictures are drawn smaller"});
+        return notice({protocol::notice_code::smaller, "Memory is short: frames are drawn smaller"});
     }
     failed_ = what;
-    notice({protocol::notice_code::no_memory, "Memory is short: what is to be seen now cannot be drawn"});
+    notice({protocol::notice_code::no_memory, "Memory is short: this view cannot be drawn"});
 }
 
 bool Engine::has_failed() const {

@@ -113,7 +113,7 @@ public:
         const int status = rgba ? compress_rgba(job, **rgba, top, height, out, size)
                                 : compress_planes(job, *std::get<1>(job.image), top, height, out, size);
         if (status != 0)
-            throw std::runtime_error(std::string("a picture cannot be encoded as JPEG: ") +
+            throw std::runtime_error(std::string("an image cannot be encoded as JPEG: ") +
                                      tjGetErrorStr2(handle_));
         const std::span<const std::uint8_t> file(out, size), coded = entropy_coded(file);
         return {strip == 0 ? file.begin() : coded.begin(), coded.end()};
@@ -203,7 +203,7 @@ Bytes JpegEncoder::encode(const scene::PlanarImage& image, int quality) {
 
 Bytes JpegEncoder::encode(Job job) {
     if (std::min(job.width, job.height) < 1 || std::max(job.width, job.height) > kMaxSide)
-        throw std::runtime_error("a picture of " + std::to_string(job.width) + " x " +
+        throw std::runtime_error("an image of " + std::to_string(job.width) + " x " +
                                  std::to_string(job.height) + " pixels cannot be encoded as JPEG");
     job.strip_height = strip_height(job.width, job.subsampled);
     job.strips.resize(static_cast<std::size_t>((job.height - 1) / job.strip_height) + 1);

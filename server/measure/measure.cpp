@@ -164,7 +164,7 @@ scene::Image Studio::picture(const plan::View& view, const Setting& setting) {
     if (setting.jpeg_quality == 0) return image_;
     const auto file = jpeg_.encode(image_, setting.jpeg_quality, setting.subsampled);
     auto decoded = io::decode_image({reinterpret_cast<const char*>(file.data()), file.size()});
-    if (!decoded) throw std::runtime_error("a picture that was encoded cannot be read: " + decoded.error());
+    if (!decoded) throw std::runtime_error("an image that was encoded cannot be read: " + decoded.error());
     return *std::move(decoded);
 }
 

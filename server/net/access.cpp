@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "net/addresses.hpp"
 #include "tokens.hpp"
@@ -63,14 +66,16 @@ Access read_access(const std::filesystem::path& token_file) {
     Access access;
     if (const char* token = std::getenv("VRUT_PREVIEW_CONTROL_TOKEN")) access.control_token = token;
     if (const char* token = std::getenv("VRUT_PREVIEW_VIEW_TOKEN")) access.view_token = token;
-    for (const std::string* token : {&access.control_token, &access.view_token})
+    for (const auto& [variable, token] : {std::pair("VRUT_PREVIEW_CONTROL_TOKEN", &access.control_token),
+                                          std::pair("VRUT_PREVIEW_VIEW_TOKEN", &access.view_token)})
         if (!token->empty() && !protocol::is_token(*token))
-            throw std::runtime_error("a token in the environment must be 16 to 1000 bytes long");
+            throw std::runtime_error(std::string(variable) + " must be 16 to 1000 bytes long");
     if (token_file.empty()) return access;
 
     struct stat status {};
     if (::stat(token_file.c_str(), &status) != 0)
-        throw std::runtime_error("token file " + token_file.string() + " cannot be opened");
+        throw std::runtime_error("token file " + token_file.string() +
+                                 " cannot be opened: " + std::strerror(errno));
     if ((status.st_mode & forbidden_rights(token_file)) != 0)
         throw std::runtime_error("token file " + token_file.string() +
                                  " can be read by others: chmod 600 it");

@@ -23,9 +23,8 @@ bool is_numeric(const std::string& host) {
 
 ListenAddress parse_listen_address(std::string_view text) {
     const auto fail = [&]() -> ListenAddress {
-        throw std::invalid_argument(
-            "'" + std::string(text) +
-            "' is no address to listen at: expected ADDR:PORT, as 127.0.0.1:8080 or [::1]:8080");
+        throw std::invalid_argument("--listen: expected ADDR:PORT, as 127.0.0.1:8080 or [::1]:8080, found '" +
+                                    std::string(text) + "'");
     };
     const std::size_t colon = text.rfind(':');
     if (colon == std::string_view::npos) return fail();

@@ -187,7 +187,7 @@ void Connection::on_received(std::size_t size) {
             close_code::too_big);
     else if (vrut::base::find_invalid_utf8(text) !=
              std::string_view::npos)  // Beast overlooks it where an empty fragment ends it
-        reject_and_close({{}, protocol::error_code::bad_message, "the message is no UTF-8"},
+        reject_and_close({{}, protocol::error_code::bad_message, "the message is not UTF-8"},
                          close_code::bad_payload);
     else
         on_text(text);

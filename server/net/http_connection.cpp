@@ -82,7 +82,8 @@ std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access
     const auto origin = request.find(http::field::origin);
     if (origin != request.end() && !access.accepts_origin(view(origin->value()), host)) {
         observe::log_info("origin_refused", {{"origin", view(origin->value())}, {"host", host}});
-        return rejection(http::status::forbidden, "pages of this origin are not served");
+        return rejection(http::status::forbidden,
+                         "pages of this origin may not connect: allow it with --allow-origin");
     }
     return std::nullopt;
 }
@@ -91,7 +92,7 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
     const std::string_view path = path_of(request);
     if (auto file = page_response(request, path)) return *std::move(file);
     if (path == "/ws")
-        return rejection(http::status::upgrade_required, "here a WebSocket is spoken, version 13");
+        return rejection(http::status::upgrade_required, "expected the handshake of a WebSocket, version 13");
     const auto state = [](const std::optional<std::string>& fault, const char* good) {
         return fault ? rejection(http::status::service_unavailable, *fault)
                      : text_response(http::status::ok, good);
@@ -204,10 +205,12 @@ private:
             [self = shared_from_this()](const ViewPicture* picture) {
                 if (picture) return self->send_file(*picture);
                 self->send(rejection(http::status::service_unavailable,
-                                     "this picture cannot be drawn: the log says why"));
+                                     "this image cannot be drawn: the log says why"));
             },
             registry_.engine->mailbox());
-        if (!asked) send(rejection(http::status::service_unavailable, "too many pictures are being drawn"));
+        if (!asked)
+            send(rejection(http::status::service_unavailable,
+                           "too many images are being drawn: try again later"));
     }
 
     void send_file(const ViewPicture& picture) {
@@ -217,7 +220,7 @@ private:
 
     void open_websocket(const HttpRequest& request) {
         if (!speaks_our_subprotocol(request))
-            return send(rejection(http::status::bad_request, "the subprotocol is vrut-preview.v1"));
+            return send(rejection(http::status::bad_request, "expected the subprotocol vrut-preview.v1"));
         if (incoming_.size() > 0) {
             keep_alive_ = false;
             return send(

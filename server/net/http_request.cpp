@@ -45,7 +45,7 @@ HttpRejection unreadable(beast::error_code error, std::string_view head) {
     const bool other_version = error == http::error::bad_version && version != "HTTP/1.1" &&
                                version != "HTTP/1.0" && version.size() == 8 && version.starts_with("HTTP/") &&
                                is_digit(version[5]) && version[6] == '.' && is_digit(version[7]);
-    if (other_version) return {status::http_version_not_supported, "HTTP/1.1 is spoken here, and HTTP/1.0"};
+    if (other_version) return {status::http_version_not_supported, "expected HTTP/1.1 or HTTP/1.0"};
     return {status::bad_request, "the request cannot be read: " + error.message()};
 }
 

@@ -26,7 +26,8 @@ room::ShareAddress share_address(const ListenAddress& listen, std::uint16_t port
     return [host = listen.host, port,
             access](std::string page) -> tl::expected<protocol::SharedAddress, protocol::Error> {
         if (!page.empty() && host_of(page).empty())
-            return tl::unexpected(protocol::Error{{}, code::out_of_range, "'page' is no address of a page"});
+            return tl::unexpected(
+                protocol::Error{{}, code::out_of_range, "'page' must be the address of a page"});
         if (access.needs_token() && access.view_token.empty())
             return tl::unexpected(
                 protocol::Error{{}, code::failed, "the server has no token for those who only watch"});

@@ -5,7 +5,7 @@
 namespace vrut::server::room {
 
 tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name) {
-    if (!stream) return tl::unexpected(name + ": cannot be opened");
+    if (!stream) return tl::unexpected(name + ": it cannot be opened");
     EventLog log;
     std::string text;
     for (std::size_t number = 1; std::getline(stream, text); ++number) {

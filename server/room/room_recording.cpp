@@ -17,7 +17,8 @@ void Room::apply(const Received& received, const protocol::Record& record) {
         return answer(received);
     }
     if (!options_.recordings)
-        return reject(received, code::not_allowed, "this server has no folder for recordings");
+        return reject(received, code::not_allowed,
+                      "this server has no folder for recordings: start it with --record");
     if (record.action == protocol::Record::Action::start)
         start_recording(received, record.name);
     else
@@ -28,8 +29,9 @@ void Room::apply(const Received& received, const protocol::Record& record) {
 void Room::start_recording(const Received& received, const std::string& name) {
     if (const Recording* active = active_recording())
         return reject(received, code::busy,
-                      active->name.empty() ? "a recording is being begun already"
-                                           : "a recording is going on: '" + active->name + "'");
+                      active->name.empty()
+                          ? "a recording is being begun already"
+                          : "the recording '" + active->name + "' is going on: stop it first");
     steer(received);
     end_swings();  // a log's header knows nothing of them
     tap_.reset();

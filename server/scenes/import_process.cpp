@@ -156,7 +156,7 @@ void warn_of_open_reader(bool files) {
 }
 
 constexpr const char* kMemoryRemedy =
-    "; free some memory on the server's machine, or open a scene with fewer triangles or smaller pictures";
+    "; free some memory on the server's machine, or open a scene with fewer triangles or smaller textures";
 
 std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20) + " MiB"; }
 

@@ -72,7 +72,9 @@ tl::expected<fs::path, std::string> SceneLibrary::find(const std::string& name) 
 }
 
 tl::expected<fs::path, std::string> SceneLibrary::find_in_folder(const std::string& name) const {
-    if (folder_.empty()) return tl::unexpected(std::string("this server has no folder of scenes to open"));
+    if (folder_.empty())
+        return tl::unexpected(
+            std::string("this server has no folder of scenes to open: start it with --scenes"));
     const std::string sentence = "there is no scene '" + name.substr(0, 100) + "'";
     const fs::path relative(name);
     const bool leaves = std::find(relative.begin(), relative.end(), "..") != relative.end();

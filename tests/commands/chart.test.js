@@ -101,7 +101,7 @@ test('what cannot be done is told before anything is measured', () => {
   assert.equal(fs.existsSync(path.join(folder, 'none')), false);
   const twice = run([SCENE, SCENE, '--out', path.join(folder, 'twice'), ...SMALL]);
   assert.equal(twice.status, 1, twice.stderr);
-  assert.match(twice.stderr, /the same scene/);
+  assert.match(twice.stderr, /name it once/);
   fs.writeFileSync(path.join(folder, 'file'), '');
   fails(1, /file/, [SCENE, '--out', path.join(folder, 'file', 'x')]);
   fails(1, /gnuplot.*install/, [SCENE, '--out', path.join(folder, 'none')], { ...environment, PATH: folder });

@@ -47,7 +47,7 @@ for (const command of [[], ...commands().map((name) => [name])]) {
       const { status, stderr, stdout } = run(...options);
       assert.equal(status, 2, stderr);
       assert.equal(stdout, '');
-      assert.match(stderr, new RegExp(`^vrut-preview: .*; '${name} --help' tells more\n$`));
+      assert.match(stderr, new RegExp(`^vrut-preview: .*; see '${name} --help'\n$`));
     }
   });
 

@@ -276,11 +276,11 @@ TEST_CASE("a picture that cannot be drawn is told, and ends nothing") {
     client.join();
     broken = true;
     client.send({{"type", "frame"}});
-    client.wait_for_notice("What is to be seen now cannot be drawn: the table of colours is gone");
+    client.wait_for_notice("This view cannot be drawn: the table of colours is gone");
     client.send({{"type", "snapshot"}, {"id", 1}, {"width", 64}, {"height", 48}});
     const Json error = client.wait_for("error");
     CHECK(error["code"] == "failed");
-    CHECK(error["message"] == "the picture cannot be drawn: the table of colours is gone");
+    CHECK(error["message"] == "the image cannot be drawn: the table of colours is gone");
     broken = false;
     client.send({{"type", "navigate"}, {"id", 2}, {"rotate", {5, 0}}});
     client.wait_for("frame");
@@ -302,7 +302,7 @@ TEST_CASE("a picture that cannot be encoded is told, and ends nothing") {
     client.join();
     broken = true;
     client.send({{"type", "frame"}});
-    client.wait_for_notice("What is to be seen now cannot be encoded: ");
+    client.wait_for_notice("This view cannot be encoded: ");
     client.send({{"type", "snapshot"}, {"id", 1}, {"width", 64}, {"height", 48}, {"format", "png"}});
     CHECK(client.wait_for("error")["code"] == "failed");
     CHECK(http(server.port(), "GET", "/frame.jpg").status == 503);
@@ -331,7 +331,7 @@ TEST_CASE("if the last refinement cannot be encoded, who comes later sees the on
         frame = client.wait_for("frame");
     }
     client.grant();
-    client.wait_for_notice("What is to be seen now cannot be encoded: ");
+    client.wait_for_notice("This view cannot be encoded: ");
     TestClient late(server.port());
     late.join();
     late.grant();

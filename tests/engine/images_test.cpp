@@ -176,11 +176,11 @@ TEST_CASE("a JPEG of several strips decodes to the pixels of one that is encoded
 TEST_CASE("a picture without pixels, or with a side that JPEG cannot have, is no JPEG, and that is said") {
     JpegEncoder encoder;
     CHECK_THROWS_WITH(encoder.encode(scene::Image{}, 90, false),
-                      "a picture of 0 x 0 pixels cannot be encoded as JPEG");
+                      "an image of 0 x 0 pixels cannot be encoded as JPEG");
     CHECK_THROWS_WITH(encoder.encode(two_halves(3, 65'501), 90, false),
-                      "a picture of 3 x 65501 pixels cannot be encoded as JPEG");
+                      "an image of 3 x 65501 pixels cannot be encoded as JPEG");
     CHECK_THROWS_WITH(encoder.encode(two_halves(65'501, 3), 90, false),
-                      "a picture of 65501 x 3 pixels cannot be encoded as JPEG");
+                      "an image of 65501 x 3 pixels cannot be encoded as JPEG");
 }
 
 TEST_CASE("what fails in a strip fails the picture, and the encoder goes on") {
@@ -188,7 +188,7 @@ TEST_CASE("what fails in a strip fails the picture, and the encoder goes on") {
     JpegEncoder encoder;
     for (int i = 0; i < 20; ++i) {
         CHECK_THROWS_WITH(encoder.encode(image, 101, true),
-                          doctest::Contains("a picture cannot be encoded as JPEG: "));
+                          doctest::Contains("an image cannot be encoded as JPEG: "));
         CHECK(encoder.encode(image, 75, true).size() > 1000);
     }
 }

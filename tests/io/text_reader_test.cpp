@@ -407,7 +407,7 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "node 1 \"x\" switch\nactive-child 0.5 end", 3, "active-child"},
         {h + "node 1 \"x\" lod\nranges 10 -4 end", 3, "a range"},
         {h + "node 1 \"x\" background\ncube-map \"1\" \"2\" \"3\" \"4\" \"5\"\nend", 4,
-         "a cube map's picture in quotes, found 'end'"},
+         "a cube map's image in quotes, found 'end'"},
         {h + "node 1 \"x\" assembly\nactive 1 2 end", 3, "a member of node 1 or 'end', found '2'"},
         {h + "node 1 \"x\" assembly\nmatrix 1 0 0 0 0 1 0 0 0 0 1 0\n0 0 0 2\n\nend", 4,
          "0 0 0 1 as the matrix's last row"},

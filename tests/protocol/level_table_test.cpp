@@ -71,7 +71,7 @@ TEST_CASE("what is wrong with a table is told in a sentence that names it") {
     CHECK(rejection("/levels", json::array_t(32, level)) == "");
     CHECK(rejection("/levels", json::array_t(33, level)).starts_with("'levels'"));
     CHECK(rejection("/levels", json::array({json::parse(encode(example()))["levels"][2]})) ==
-          "'levels' must have one for pictures while things move");
+          "'levels' must have one for frames of a moving view");
 }
 
 TEST_CASE("what is no table is told so") {

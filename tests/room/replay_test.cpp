@@ -481,7 +481,7 @@ TEST_CASE("what is no log is told with file and line") {
     CHECK(holds(error("\n"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"vrut-prev"), "x.jsonl:1: "));
     CHECK(holds(error("{\"log\":\"another\",\"version\":1}\n"), "'log'"));
-    CHECK(holds(log_in(folder.path() / "none.jsonl").error(), "none.jsonl: cannot be opened"));
+    CHECK(holds(log_in(folder.path() / "none.jsonl").error(), "none.jsonl: it cannot be opened"));
 }
 
 TEST_CASE("what was kept of a scene that is opened, and of the one before, is in the log") {

@@ -69,7 +69,7 @@ std::string memory_refusal([[maybe_unused]] const std::string& mebibytes) {
 #else
     return "to read it takes more than the " + mebibytes +
            " MiB of memory that it may take; free some memory on the server's machine, or open a scene with "
-           "fewer triangles or smaller pictures";
+           "fewer triangles or smaller textures";
 #endif
 }
 
@@ -212,7 +212,7 @@ TEST_CASE("where memory runs out here, a sentence names the scene and says what 
         const std::string sentence =
             path.string() +
             ": there is not enough memory for it; free some memory on the server's machine, or open a scene "
-            "with fewer triangles or smaller pictures";
+            "with fewer triangles or smaller textures";
         const auto scene = import_scene(path, run_out);
         REQUIRE_FALSE(scene);
         CHECK(scene.error() == sentence);

@@ -93,7 +93,8 @@ TEST_CASE("the folder itself may be behind a link, and may go") {
 TEST_CASE("without a folder there is nothing to open") {
     CHECK(SceneLibrary().names().empty());
     REQUIRE_FALSE(SceneLibrary().find("room.vrut"));
-    CHECK(SceneLibrary().find("room.vrut").error() == "this server has no folder of scenes to open");
+    CHECK(SceneLibrary().find("room.vrut").error() ==
+          "this server has no folder of scenes to open: start it with --scenes");
 }
 
 TEST_CASE("the scene of the start is always there, wherever it lies") {

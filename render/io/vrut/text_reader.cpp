@@ -344,7 +344,7 @@ private:
                 members.push_back({"cube-map", [&] {
                                        auto& faces = data.cube_map.emplace();
                                        for (std::string& face : faces)
-                                           face = tokens_.take_string("a cube map's picture");
+                                           face = tokens_.take_string("a cube map's image");
                                    }});
                 break;
             }
