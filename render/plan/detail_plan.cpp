@@ -81,7 +81,8 @@ private:
             return other.second == item.view_from_node;
         });
         const math::Bounds& box = scene_.geometries()[static_cast<std::size_t>(item.geometry)].bounds;
-        const double most = view_.detail / max_screen_space_scale(item.view_from_node, box, view_);
+        const double most =
+            is_full_detail ? 0 : view_.detail / max_screen_space_scale(item.view_from_node, box, view_);
         const mesh::DetailLevel* missing = nullptr;
         const std::span levels = levels_[static_cast<std::size_t>(item.geometry)];
         for (std::size_t k = levels.size(); k > 0; --k) {  // from the coarsest

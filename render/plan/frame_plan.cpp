@@ -21,39 +21,29 @@ namespace {
 /// What it takes to plan a node that is shown, and its place among the others, in units of DrawBudget.
 constexpr std::int64_t kListed = 20, kOrdered = 20;
 
-/// None where the node draws nothing.
-std::optional<DrawItem> item_of(const scene::PlacedScene& placed, std::size_t node, const glm::dmat4& view,
+bool is_flattened(double relative_determinant) { return !(std::abs(relative_determinant) > 1e-12); }
+
+/// Of a drawable node. None if it lies too far from the eye.
+std::optional<DrawItem> item_of(const scene::PlacedScene& placed, scene::Index node, const glm::dmat4& view,
                                 const scene::Style& style) {
-    const auto* data = std::get_if<scene::GeometryData>(&placed.scene->nodes()[node].data);
-    if (!data || data->geometry == scene::kNone) return {};
-    const scene::Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
-    if (geometry.triangles.empty()) return {};
-    const scene::Index material = placed.nodes[node].material;
+    const auto at = static_cast<std::size_t>(node);
+    const scene::Scene& scene = *placed.scene;
     DrawItem item;
-    item.node = static_cast<scene::Index>(node);
-    item.geometry = data->geometry;
-    item.material = material;
-    item.view_from_node = view * placed.world[node];
-    const math::Bounds in_view = transformed(item.view_from_node, geometry.bounds);
+    item.node = node;
+    item.geometry = std::get<scene::GeometryData>(scene.nodes()[at].data).geometry;
+    item.material = placed.nodes[at].material;
+    item.view_from_node = view * placed.world[at];
+    const math::Bounds in_view =
+        transformed(item.view_from_node, scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds);
     if (!(glm::length(in_view.min) < scene::kMaxDrawDistance &&
           glm::length(in_view.max) < scene::kMaxDrawDistance))
         return {};
     const double determinant = scene::relative_determinant(glm::dmat3(item.view_from_node));
-    const bool mirror = !style.override_material && mirror_plane(*placed.scene, item);
-    const bool both =
-        is_flattened(item.view_from_node) || mirror || placed.scene->material(material).two_sided;
+    const bool mirror = !style.override_material && mirror_plane(scene, item);
+    const bool both = is_flattened(determinant) || mirror || scene.material(item.material).two_sided;
     item.cull_mode = both ? CullMode::none : CullMode::back;
     item.mirrored = determinant < 0;
     return item;
-}
-
-/// Equal depth: the higher id is in front, so it comes last.
-void sort_by_id(std::vector<DrawItem>& items, const scene::Scene& scene) {
-    const auto id = [&](const DrawItem& item) {
-        return scene.nodes()[static_cast<std::size_t>(item.node)].id;
-    };
-    std::sort(items.begin(), items.end(),
-              [&](const DrawItem& a, const DrawItem& b) { return id(a) < id(b); });
 }
 
 void assign_textures(std::vector<DrawItem>& items, const View& view) {
@@ -162,14 +152,16 @@ std::vector<glm::dvec3> markers_of(const View& view, const glm::dmat4& view_matr
 
 std::vector<DrawItem> visible_items(const View& view) {
     const scene::PlacedScene& placed = *view.scene;
-    const std::vector<bool> shown = scene::shown_nodes(placed, view.camera.eye);
+    std::vector<bool> shown;  // empty: all that is drawable
+    if (placed.scene->has_lods()) shown = scene::shown_nodes(placed, view.camera.eye);
     const glm::dmat4 view_matrix = scene::view_from_world(view.camera);
     const scene::Style style = style_of(view);
     std::vector<DrawItem> items;
-    for (std::size_t i = 0; i < shown.size(); ++i)
-        if (shown[i] && (style.presentation || !placed.scene->is_presentation(static_cast<scene::Index>(i))))
-            if (const auto item = item_of(placed, i, view_matrix, style)) items.push_back(*item);
-    sort_by_id(items, *placed.scene);
+    items.reserve(placed.drawable.size());
+    for (const scene::Index node : placed.drawable)  // at equal depth the last one is in front
+        if ((shown.empty() || shown[static_cast<std::size_t>(node)]) &&
+            (style.presentation || !placed.scene->is_presentation(node)))
+            if (auto item = item_of(placed, node, view_matrix, style)) items.push_back(*std::move(item));
     if (style.faces && !style.override_material) assign_textures(items, view);
     return items;
 }
@@ -182,7 +174,7 @@ std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene) {
 double marker_radius(int picture_height) { return std::max(picture_height / 120.0, 3.0); }
 
 bool is_flattened(const glm::dmat4& view_from_node) {
-    return !(std::abs(scene::relative_determinant(glm::dmat3(view_from_node))) > 1e-12);
+    return is_flattened(scene::relative_determinant(glm::dmat3(view_from_node)));
 }
 
 bool has_transparent(const DrawLists& lists) {

@@ -216,6 +216,8 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     link_parents(scene.nodes_);
     scene.is_presentation_ = presentation_of(scene.nodes_);
     scene.looking_cameras_ = looking_cameras_of(scene.nodes_);
+    scene.has_lods_ = std::ranges::any_of(
+        scene.nodes_, [](const Node& node) { return std::holds_alternative<LodData>(node.data); });
     scene.extents_ = extents_of(scene);
     return scene;
 }
@@ -263,6 +265,23 @@ std::vector<NodeState> file_states(const Scene& scene) {
     return states;
 }
 
+namespace {
+
+std::vector<Index> drawable_nodes(const PlacedScene& placed) {
+    const std::vector<bool> shown = shown_nodes(placed, std::nullopt);
+    std::vector<Index> drawable;
+    for (const auto& [id, index] : placed.scene->index_by_id()) {
+        const auto at = static_cast<std::size_t>(index);
+        const auto* data = std::get_if<GeometryData>(&placed.scene->nodes()[at].data);
+        if (!shown[at] || !data || data->geometry == kNone) continue;
+        const Geometry& geometry = placed.scene->geometries()[static_cast<std::size_t>(data->geometry)];
+        if (!geometry.triangles.empty()) drawable.push_back(index);
+    }
+    return drawable;
+}
+
+}  // namespace
+
 PlacedScene place(Scene scene) {
     std::vector<NodeState> states = file_states(scene);
     return place(std::make_shared<const Scene>(std::move(scene)), std::move(states));
@@ -270,9 +289,10 @@ PlacedScene place(Scene scene) {
 
 PlacedScene place(std::shared_ptr<const Scene> scene, std::vector<NodeState> nodes) {
     assert(nodes.size() == scene->nodes().size());
-    PlacedScene placed{std::move(scene), std::move(nodes), {}, {}};
+    PlacedScene placed{std::move(scene), std::move(nodes), {}, {}, {}};
     placed.world = world_matrices(*placed.scene, placed.nodes);
     placed.bounds = subtree_bounds(placed, 0);
+    placed.drawable = drawable_nodes(placed);
     return placed;
 }
 

@@ -192,6 +192,9 @@ public:
     bool is_presentation(Index node) const { return is_presentation_[static_cast<std::size_t>(node)]; }
     /// Camera nodes with a CameraData::look_radius.
     const std::vector<Index>& looking_cameras() const { return looking_cameras_; }
+    /// Returns true if what is shown depends on the eye.
+    bool has_lods() const { return has_lods_; }
+    const IdToIndex& index_by_id() const { return index_by_id_; }
     Index find_node(Id id) const;
     /// Triangles of all geometry nodes, instances counted each.
     std::uint64_t triangle_count() const;
@@ -210,6 +213,7 @@ private:
     std::vector<Node> nodes_;
     std::vector<bool> is_presentation_;  // one for each node
     std::vector<Index> looking_cameras_;
+    bool has_lods_ = false;
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;
 };
@@ -233,6 +237,8 @@ struct PlacedScene {
     std::vector<NodeState> nodes;        ///< one for each of the scene's
     std::vector<glm::dmat4> world;       ///< world from node
     math::Bounds bounds;                 ///< subtree_bounds of the root
+    /// Geometry nodes with triangles that are shown from some eye (shown_nodes()), by rising id.
+    std::vector<Index> drawable;
 };
 
 /// As the file says.

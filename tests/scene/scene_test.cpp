@@ -288,6 +288,29 @@ TEST_CASE("a LOD shows the first child whose range is beyond the eye") {
     CHECK(shown_ids(with({40, 10}, 3), at(20)) == Ids{0, 1, 2, 10});
 }
 
+TEST_CASE("drawable is what has triangles and shows from some eye, by rising id") {
+    std::vector<scene::SceneParts::PartNode> nodes{part(1, 0, scene::NodeType::lod),
+                                                   geometry_part(9, 1, 0),
+                                                   geometry_part(3, 1, 0),
+                                                   part(2, 0, scene::NodeType::switch_),
+                                                   geometry_part(4, 2, 0),
+                                                   geometry_part(8, 2, 0),
+                                                   geometry_part(5, 0, scene::kNone),
+                                                   geometry_part(6, 0, 1),
+                                                   geometry_part(7, 0, 0),
+                                                   geometry_part(10, 0, 0)};
+    nodes[0].node.data = scene::LodData{{10}};
+    nodes[3].node.data = scene::SwitchData{1};
+    nodes[8].node.active = false;
+    scene::Geometry points = geometry_of({{0, 0, 0}});
+    points.triangles.clear();
+    const scene::PlacedScene placed = scene::place(built(nodes, {geometry_of({{0, 0, 0}}), points}));
+    Ids ids;
+    for (const scene::Index node : placed.drawable)
+        ids.push_back(placed.scene->nodes()[static_cast<std::size_t>(node)].id);
+    CHECK(ids == Ids{3, 8, 9, 10});
+}
+
 TEST_CASE("bounds") {
     math::Bounds box;
     CHECK(box.empty());
