@@ -19,8 +19,9 @@ const TAP = `${finger(32, 20)}<circle cx="32" cy="20" r="10"/>`;
 /**
  * What a hand can do, by fingers, the mouse or a button of the page, and keys.
  *
- * @returns {{title: string, ways: ({words: string, picture: string} | {words: string, icon: string} | {keys: string[]})[]}[]}
- *   `picture` is SVG within 64 × 40, `icon` the name of one of the page's
+ * @typedef {{words?: string, picture?: string, icon?: string, keys?: string[]}} Way either keys, or words with a picture (SVG
+ *   within 64 × 40) or one of the page's icons
+ * @returns {{title: string, ways: Way[]}[]}
  */
 export function gestures() {
   const gesture = (title, ...ways) => ({ title, ways });
@@ -69,7 +70,8 @@ export function help() {
   };
 }
 
-function shown({ words, picture, icon, keys }) {
+/** @param {Way} way */
+function shown({ words = '', picture, icon, keys }) {
   if (keys) return element('p', { className: 'keys' }, ...keys.map((name) => element('kbd', {}, name)));
   const made = element('p', { className: icon ? 'shown' : '' });
   made.innerHTML = icon
