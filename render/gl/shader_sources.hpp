@@ -15,7 +15,8 @@ struct ShaderSource {
 /// All of them.
 std::span<const ShaderSource> shader_sources();
 
-/// Returns the text of one, with these names defined. Throws std::logic_error where there is none: our own fault.
+/// Returns the text of one, with these names defined. Throws std::logic_error where there is none: our own
+/// fault.
 std::string shader_source(std::string_view file, std::span<const std::string_view> defines = {});
 
 }  // namespace vrut::gl
