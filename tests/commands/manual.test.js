@@ -57,7 +57,7 @@ for (const command of [[], ...commands().map((name) => [name])]) {
       const here = fs.mkdtempSync(path.join(folder, 'example-'));
       fs.cpSync(work, here, { recursive: true });
       if (/^vrut-preview serve(?! --help)/.test(example)) return serves(example, here);
-      const { status, stderr } = spawnSync('bash', ['-o', 'pipefail', '-c', example], { cwd: here, env: environment, encoding: 'utf8' });
+      const { status, stderr } = spawnSync('bash', ['--norc', '-o', 'pipefail', '-c', example], { cwd: here, env: environment, encoding: 'utf8' });
       assert.equal(status, 0, stderr);
       const options = [...example.matchAll(/(?:-o|--map|--out|>) ?(\S+)/g)].map(([, written]) => written);
       for (const written of options) assert.ok(fs.existsSync(path.join(here, written)), written);
@@ -68,7 +68,7 @@ for (const command of [[], ...commands().map((name) => [name])]) {
 /** Runs an example of a server on a free port instead of its own, and ends it. */
 async function serves(example, cwd) {
   const free = example.includes('--listen') ? example.replace(/(--listen \S+):\d+/, '$1:0') : `${example} --listen 127.0.0.1:0`;
-  const server = new Running('bash', ['-c', `exec ${free}`], { cwd, env: environment });
+  const server = new Running('bash', ['--norc', '-c', `exec ${free}`], { cwd, env: environment });
   await server.printed(/listening on http:\S+/);
   assert.equal(await server.stop(), 0);
 }
@@ -113,7 +113,7 @@ function completions(...words) {
   const script = `source ${path.join(manual, 'completions/vrut-preview')}
     [[ $(complete -p vrut-preview) == *' -F _vrut_preview vrut-preview' ]] || exit 1
     COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _vrut_preview; printf '%s\\n' "\${COMPREPLY[@]}"`;
-  return output('bash', ['-euc', `set +e; ${script}`, 'bash', 'vrut-preview', ...words], { cwd: work }).split('\n').filter(Boolean).sort();
+  return output('bash', ['--norc', '-euc', `set +e; ${script}`, 'bash', 'vrut-preview', ...words], { cwd: work }).split('\n').filter(Boolean).sort();
 }
 
 test('Bash completes commands and options', () => {
