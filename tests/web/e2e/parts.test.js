@@ -1,9 +1,11 @@
 import assert from 'node:assert/strict';
 import { after, before, describe, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
 import { Colleague } from './colleague.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
+const PAGE = new URL('../../../web-client/', import.meta.url);
 const TABLET = { width: 1180, height: 820, pixelRatio: 1 };
 const BLOCK = 20; // pixels; both sides of the view are multiples of it
 const CHANGED = 10; // of 255, in the colour of a block; what finer edges do to it is less
@@ -177,8 +179,11 @@ describe('the parts of a car on a tablet', { skip: browserIsMissing }, () => {
   });
 
   test('a list of many goes on when it is asked to, and a choice of many is a list', async () => {
+    // What the server sends is bundled; the module alone comes from its source.
+    await tablet.page.route('**/source/**', (route) =>
+      route.fulfill({ path: fileURLToPath(new URL(new URL(route.request().url()).pathname.replace('/source/', ''), PAGE)) }));
     await tablet.page.evaluate(async () => {
-      const { partsSection } = await import('/panels/parts-section.js');
+      const { partsSection } = await import('/source/panels/parts-section.js');
       const state = { scene: {}, selection: {}, nodes: {} };
       const page = (ids, next) => ({ nodes: ids.map((id) => ({ id, name: `Nut ${id}`, parent: 0, active: true, children: 0 })), next });
       const choices = ['a', 'b', 'c', 'd', 'e'];
