@@ -151,9 +151,9 @@ TEST_CASE("there is no network, no other process, and no limit of another's") {
         {"unlink", [&] { return error_of(unlink(scene.file.c_str())); }},
         {"io_uring", [] { return error_of(syscall(SYS_io_uring_setup, 0, nullptr)); }},
     };
-    for (const auto& [name, attempt] : kAttempts) {
-        CAPTURE(name);
-        CHECK(confined(scene.file, attempt) == EPERM);
+    for (const auto& attempt : kAttempts) {
+        CAPTURE(attempt.first);
+        CHECK(confined(scene.file, attempt.second) == EPERM);
     }
     close(ready);
     close(listener);

@@ -120,7 +120,8 @@ Swarm::~Swarm() { close(epoll_); }
 
 std::size_t Swarm::join(const std::string& role) {
     const std::size_t index = clients_.size();
-    Client& client = clients_.emplace_back(RawSocket(port_, {.source = static_cast<unsigned>(2 + index)}));
+    Client& client =
+        clients_.emplace_back(Client{RawSocket(port_, {.source = static_cast<unsigned>(2 + index)})});
     client.frame.client = index;
     epoll_event event{};
     event.events = EPOLLIN;

@@ -77,7 +77,7 @@ private:
     struct Client {
         RawSocket socket;
         bool upgraded = false;
-        std::string start;     ///< of what is being read: the answer's to the handshake, then a message's
+        std::string start{};   ///< of what is being read: the answer's to the handshake, then a message's
         std::size_t skip = 0;  ///< bytes of the message before, which come first and are not looked at
         Frame frame{};         ///< to which those belong
     };
