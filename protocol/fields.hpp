@@ -292,7 +292,8 @@ public:
         add(name, kind, meaning);
         if constexpr (!IsOptional<Member>::value) {
             const Json value = kind.write(T{}.*member);
-            const bool says_nothing = value.is_structured() ? value.empty() : value == "";
+            const bool says_nothing =
+                value.is_string() ? value.template get_ref<const std::string&>().empty() : value.empty();
             if (!says_nothing) schema_["properties"][name]["default"] = value;
         }
     }
