@@ -28,16 +28,14 @@ TEST_PACKAGES=(
     doctest-dev nodejs:node npm:npm chromium:chromium clang-format-14:clang-format-14 glslang-tools:glslangValidator
     groff-base:groff
 )
-# To test all: another browser, what the charts, the examples and deploy/ work with, and what checks the source and its
-# comments.
+# To test all: another browser, what the charts, the examples and deploy/ work with, what checks the source and its
+# comments, and clang with the sanitizers' runtime and libFuzzer.
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(
     firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy openssl:openssl
-    bubblewrap:bwrap clang-tidy-14:clang-tidy-14 doxygen:doxygen lintian:lintian
+    bubblewrap:bwrap doxygen:doxygen lintian:lintian
+    clang-14:clang++-14 libclang-rt-14-dev clang-tidy-14:clang-tidy-14
 )
-# To fuzz: clang, libFuzzer and the sanitizers' runtime.
-# shellcheck disable=SC2034
-FUZZ_PACKAGES=(clang-14:clang++-14 libclang-rt-14-dev)
 
 say() { printf '%s\n' "$*" >&2; }
 

@@ -81,7 +81,6 @@ sources() { # EXTENSION...
 packages() {
     local wanted=("${BUILD_PACKAGES[@]}" "${RUN_PACKAGES[@]}" "${TEST_PACKAGES[@]}")
     if $ci; then wanted+=("${ALL_TEST_PACKAGES[@]}" "${PACKAGING_PACKAGES[@]}"); fi
-    if $all; then wanted+=("${FUZZ_PACKAGES[@]}"); fi
     install_packages "${wanted[@]}"
 }
 
@@ -114,7 +113,8 @@ tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
     local file stamp header stamps=build/tidy/$1 folders='protocol|render|scenes|server'
     if $all; then folders+='|tests'; fi
     local -A queued=()  # what several programs compile is looked at once
-    cmake --preset release -B build/tidy -DVRUT_UNITY=OFF -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >build/tidy.configure.log
+    cmake --preset release -B build/tidy -DCMAKE_CXX_COMPILER=clang++-14 -DVRUT_UNITY=OFF \
+        -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >build/tidy.configure.log
     mkdir -p "$stamps"
     header=$(sources hpp | xargs ls -t | sed -n 1p)
     # shellcheck disable=SC2016

@@ -16,8 +16,7 @@
 
 #include "base/descriptor.hpp"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define VRUT_SANITIZED
+#ifdef VRUT_SANITIZED
 #include <sanitizer/common_interface_defs.h>
 #endif
 

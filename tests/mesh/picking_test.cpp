@@ -10,6 +10,7 @@
 
 #include "io/read_scene.hpp"
 #include "navigation/camera_moves.hpp"
+#include "repetitions.hpp"
 #include "scene/camera.hpp"
 
 using namespace vrut;
@@ -532,13 +533,13 @@ TEST_CASE("whole numbers: an exact count of what lies under a grid of rays") {
 
 TEST_CASE("the car, against the reference") {
     REQUIRE(car().scene->triangle_count() > 1000);
-    compare_with_reference(car(), 2000, false);
-    compare_with_reference(car(), 300, true);
-    compare_with_reference(seen_through(turned_by(0.4, 2.2), car()), 300, false);
-    compare_with_reference(seen_through(scaled_by({1, -1.5, 0.7}), car()), 300, false);
-    compare_with_reference(seen_through(moved_by({1e7, -1e7, 3e7}), car()), 300, false);
-    compare_with_reference(seen_through(scaled_by(glm::dvec3(1e-6)), car()), 300, false);
-    compare_with_reference(seen_through(scaled_by(glm::dvec3(1e6)), car()), 300, false);
+    compare_with_reference(car(), test::repetitions(2000), false);
+    compare_with_reference(car(), test::repetitions(300), true);
+    compare_with_reference(seen_through(turned_by(0.4, 2.2), car()), test::repetitions(300), false);
+    compare_with_reference(seen_through(scaled_by({1, -1.5, 0.7}), car()), test::repetitions(300), false);
+    compare_with_reference(seen_through(moved_by({1e7, -1e7, 3e7}), car()), test::repetitions(300), false);
+    compare_with_reference(seen_through(scaled_by(glm::dvec3(1e-6)), car()), test::repetitions(300), false);
+    compare_with_reference(seen_through(scaled_by(glm::dvec3(1e6)), car()), test::repetitions(300), false);
 }
 
 TEST_CASE("a picked point lies under its pixel") {

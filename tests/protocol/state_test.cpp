@@ -9,6 +9,7 @@
 
 #include "codec.hpp"
 #include "examples.hpp"
+#include "repetitions.hpp"
 #include "tokens.hpp"
 
 using namespace vrut::protocol;
@@ -588,8 +589,8 @@ private:
 }  // namespace
 
 TEST_CASE("the patch from any document to any later one leads there") {
-    for (unsigned seed = 1; seed <= 20; ++seed) {
-        RandomSteps steps(seed);
+    for (int seed = 1; seed <= vrut::test::repetitions(20); ++seed) {
+        RandomSteps steps(static_cast<unsigned>(seed));
         State state = start();
         std::vector<std::shared_ptr<const StateDocument>> documents = {StateDocument::next({}, state)};
         for (int i = 0; i < 40; ++i) {

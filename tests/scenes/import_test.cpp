@@ -64,7 +64,7 @@ std::string repeated(const std::string& text, int times) {
 
 /// What is told of a file for which so much memory is too little; the sanitizers make an end of their own.
 std::string memory_refusal([[maybe_unused]] const std::string& mebibytes) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef VRUT_SANITIZED
     return "";
 #else
     return "to read it takes more than the " + mebibytes +

@@ -6,7 +6,7 @@
 
 namespace vrut::test {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef VRUT_SANITIZED
 inline constexpr bool kMemoryTells = false;  // the sanitizers keep what is freed
 #else
 inline constexpr bool kMemoryTells = true;

@@ -10,6 +10,7 @@
 #include <boost/asio/write.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
+#include <cmath>
 #include <random>
 
 #include "engine/frame_quality.hpp"
@@ -77,7 +78,8 @@ server::engine::FrameRendererFactory FakeRenderer::factory() const {
             scene::Image& image = rendering.image;
             image.resize(rendering.view.width, rendering.view.height);
             const double x = std::abs(rendering.view.camera.eye.x);
-            std::fill(image.rgba.begin(), image.rgba.end(), static_cast<std::uint8_t>(x * 40));
+            std::fill(image.rgba.begin(), image.rgba.end(),
+                      static_cast<std::uint8_t>(std::fmod(x * 40, 256)));
             if (noise) fill_with_noise(image.rgba, static_cast<std::size_t>(x * 1000));
             return true;
         };
