@@ -77,7 +77,7 @@ template <class V>
 void describe(V& v, const Resize*) {
     v.required("width", &Resize::width, Number{1, 8192}, "CSS pixels; fractions are allowed.");
     v.required("height", &Resize::height, Number{1, 8192}, "CSS pixels; fractions are allowed.");
-    v.required("pixelRatio", &Resize::pixel_ratio, Number{0.25, 4}, "Pixels of the picture to a CSS pixel.");
+    v.required("pixelRatio", &Resize::pixel_ratio, Number{0.25, 4}, "Pixels of the image to a CSS pixel.");
     v.optional("inset", &Resize::inset, Object<Inset>{},
                "What lies on the view's sides and covers it, in CSS pixels.");
 }
@@ -141,7 +141,7 @@ void describe(V& v, const Navigate*) {
     v.optional("rotate", &Navigate::rotate, Vector<glm::dvec2>{-1e6, 1e6},
                "[right, down] in degrees, as if dragged.");
     v.optional("pan", &Navigate::pan, Vector<glm::dvec2>{-1e6, 1e6},
-               "[right, down]: how far the picture moves, in view heights, in the plane through `focus`.");
+               "[right, down]: how far the image moves, in view heights, in the plane through `focus`.");
     v.optional("zoom", &Navigate::zoom, Number{1e-6, 1e6}, "Divides the distance from eye to focus.");
 }
 
@@ -184,7 +184,7 @@ void describe(V& v, const CameraOverlay*) {
     v.optional("node", &CameraOverlay::node, kId, "A camera node, whose pose is laid over first.");
     v.optional("eye", &CameraOverlay::eye, kPosition, "Where the camera stands.");
     v.optional("focus", &CameraOverlay::focus, kPosition, "What it looks at.");
-    v.optional("up", &CameraOverlay::up, kPosition, "Which way is up in the picture.");
+    v.optional("up", &CameraOverlay::up, kPosition, "Which way is up in the image.");
     v.optional("center", &CameraOverlay::center, kPosition, "The centre of rotation.");
     v.optional("fov", &CameraOverlay::fov, kFov, "The vertical angle of view in degrees.");
 }
@@ -275,7 +275,7 @@ void describe(V& v, const Limits*) {
     v.required("maxMessage", &Limits::max_message, kId, "Bytes of a client's message.");
     v.required("maxDepth", &Limits::max_depth, kId, "Levels of nesting in a client's message.");
     v.required("maxGrants", &Limits::max_grants, kId, "Grants that the server keeps of a client.");
-    v.required("maxPixels", &Limits::max_pixels, kId, "Pixels of a picture; a larger view is drawn smaller.");
+    v.required("maxPixels", &Limits::max_pixels, kId, "Pixels of an image; a larger view is drawn smaller.");
     v.required("messagesPerSecond", &Limits::messages_per_second, kId,
                "What a client sends faster is read more slowly.");
     v.required("maxServerMessage", &Limits::max_server_message, kId, "Bytes of a server's message.");
@@ -304,7 +304,7 @@ void describe(V& v, const Welcome*) {
     v.required("server", &Welcome::server, kName, "Version of the program.");
     v.required("client", &Welcome::client, kName, "This client's id.");
     v.required("role", &Welcome::role, kRole, "The role given.");
-    v.required("limits", &Welcome::limits, Object<Limits>{}, "What holds for messages and pictures.");
+    v.required("limits", &Welcome::limits, Object<Limits>{}, "What holds for messages and images.");
     v.required("input", &Welcome::input, Object<InputRules>{},
                "What a client needs to foretell what input does, or to pass on what has a meaning only.");
 }
@@ -427,8 +427,7 @@ template <class V>
 void describe(V& v, const Quality*) {
     v.required("level", &Quality::level, word("moving", "still"),
                "`moving` while things change, `still` at rest.");
-    v.required("scale", &Quality::scale, Number{0, 1},
-               "By which the picture is drawn smaller than the view.");
+    v.required("scale", &Quality::scale, Number{0, 1}, "By which the frame is drawn smaller than the view.");
     v.required("samples", &Quality::samples, Integer{1, 65536}, "To a pixel.");
     v.required("detail", &Quality::detail, kDuration,
                "Pixels of error allowed in the meshes; 0 draws every triangle.");
@@ -441,11 +440,11 @@ void describe(V& v, const Quality*) {
 
 template <class V>
 void describe(V& v, const Stats::Renderer*) {
-    v.required("meanRenderMs", &Stats::Renderer::mean_render_ms, kDuration, "Mean of the last 100 pictures.");
+    v.required("meanRenderMs", &Stats::Renderer::mean_render_ms, kDuration, "Mean of the last 100 frames.");
     v.required("medianRenderMs", &Stats::Renderer::median_render_ms, kDuration,
-               "Median of the last 100 pictures.");
+               "Median of the last 100 frames.");
     v.required("p95RenderMs", &Stats::Renderer::p95_render_ms, kDuration,
-               "95 of 100 took no longer, of the last 100 pictures.");
+               "95 of 100 took no longer, of the last 100 frames.");
 }
 
 template <class V>
@@ -459,8 +458,8 @@ void describe(V& v, const Stats::Host*) {
 template <class V>
 void describe(V& v, const Stats*) {
     v.required("renderer", &Stats::renderer, Object<Stats::Renderer>{},
-               "Times of drawing; none before the first picture.");
-    v.required("quality", &Stats::quality, kQuality, "Of the newest picture; none before the first.");
+               "Times of drawing; none before the first frame.");
+    v.required("quality", &Stats::quality, kQuality, "Of the newest frame; none before the first.");
     v.required("hosts", &Stats::hosts, Table<Stats::Host>{}, "By the client's id.");
     v.required("clients", &Stats::clients, kId, "Clients that are connected.");
     v.required("watchers", &Stats::watchers, kId, "Clients of the role `view`.");
@@ -496,7 +495,7 @@ void describe(V& v, const CameraState*) {
     v.writable("eye", &CameraState::eye, kPosition, "Where the camera stands.");
     v.writable("focus", &CameraState::focus, kPosition, "What it looks at.");
     v.writable("up", &CameraState::up, kPosition,
-               "Which way is up in the picture; unit, at right angles to the view.");
+               "Which way is up in the image; unit, at right angles to the view.");
     v.writable("center", &CameraState::center, kPosition, "The centre of rotation.");
     v.writable("fov", &CameraState::fov, kFov, "The vertical angle of view in degrees.");
     v.fixed("near", &CameraState::near, kDuration,
@@ -596,7 +595,7 @@ void describe(V& v, const Marker*) {
     v.writable("point", &Marker::point, kPosition,
                "In the world, or in the space of `node`. A new marker must have it.");
     v.writable("node", &Marker::node, kId, "The marker moves with this node.");
-    v.writable("text", &Marker::text, Text{1000}, "For clients to show; a picture has the sign only.");
+    v.writable("text", &Marker::text, Text{1000}, "For clients to show; a frame has the sign only.");
 }
 
 template <class V>
@@ -604,7 +603,7 @@ void describe(V& v, const ViewState*) {
     v.writable("eye", &ViewState::eye, kPosition, "Where the camera stands.");
     v.writable("focus", &ViewState::focus, kPosition, "What it looks at.");
     v.writable("up", &ViewState::up, kPosition,
-               "Which way is up in the picture; unit, at right angles to the view.");
+               "Which way is up in the image; unit, at right angles to the view.");
     v.writable("center", &ViewState::center, kPosition, "The centre of rotation.");
     v.writable("fov", &ViewState::fov, kFov, "The vertical angle of view in degrees.");
     v.writable("order", &ViewState::order, kOrder,
@@ -615,7 +614,7 @@ template <class V>
 void describe(V& v, const QualityState*) {
     v.writable("preference", &QualityState::preference, Number{0, 1}, "0 speed, 1 accuracy.");
     v.writable("latencyTargetMs", &QualityState::latency_target_ms, Number{1, 10'000},
-               "How old a picture may be when the holder sees it, while things move.");
+               "How old a frame may be when the holder sees it, while things move.");
 }
 
 template <class V>
@@ -667,7 +666,7 @@ void describe(V& v, const State*) {
     v.writable("views", &State::views, SharedTable<Entries<ViewState>>{{{}, kMaxEntries, nullptr}},
                "Saved cameras, by name.");
     v.writable("quality", &State::quality, Section<QualityState>{},
-               "How pictures are drawn while things move.");
+               "How frames are drawn while things move.");
     v.fixed("control", &State::control, Object<ControlState>{}, "Who holds control, and who asks.");
     v.fixed("clients", &State::clients, SharedTable<Table<ClientState>>{},
             "Who is connected, by the client's id.");
@@ -755,8 +754,8 @@ template <class V>
 void describe(V& v, const LevelTable*) {
     v.required("scene", &LevelTable::scene, Text{100}, "SHA-256 of the scene's file.");
     v.required("renderer", &LevelTable::renderer, Text{1000}, "What draws, as the server's log tells it.");
-    v.required("width", &LevelTable::width, kPixels, "Of the pictures measured, at scale 1.");
-    v.required("height", &LevelTable::height, kPixels, "Of the pictures measured, at scale 1.");
+    v.required("width", &LevelTable::width, kPixels, "Of the frames measured, at scale 1.");
+    v.required("height", &LevelTable::height, kPixels, "Of the frames measured, at scale 1.");
     v.required("levels", &LevelTable::levels, List<Object<Level>>{{}, 1, kMaxLevels}, "By rising accuracy.");
 }
 

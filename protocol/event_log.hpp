@@ -66,7 +66,7 @@ struct LogLine {
         std::string scene, sha256;
         std::string changes = {};  ///< what was kept of it: a patch of the state; empty: nothing
     };
-    /// A picture of this number was drawn of what is to be seen now.
+    /// The frame of this number was drawn of what is shown now.
     struct Drawn {
         std::int64_t frame = 0;
     };

@@ -29,7 +29,7 @@ struct FrameHeader {
     std::int64_t frame = 0, revision = 0, handled = 0;
     std::optional<std::int64_t> snapshot;  ///< id of the message that asked for it
     Camera camera;
-    int width = 0, height = 0;  ///< of the picture
+    int width = 0, height = 0;  ///< of the frame
     Resize view;
     Renderer renderer;
     Quality quality;

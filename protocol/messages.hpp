@@ -146,7 +146,7 @@ struct RendererOverlay {
     bool operator==(const RendererOverlay&) const = default;
 };
 
-/// One picture at full accuracy, of `width` by `height` pixels.
+/// One image at full accuracy, of `width` by `height` pixels.
 struct Snapshot {
     int width = 0, height = 0;
     ImageFormat format = ImageFormat::jpeg;
@@ -348,7 +348,7 @@ inline constexpr std::array all{bad_message,   out_of_range,   unknown_member, r
                                 busy,          too_many,       failed};
 }  // namespace error_code
 
-// --- of a picture, and what is measured of pictures
+// --- of a frame, and what is measured of frames
 
 struct Quality {
     enum class Level { moving, still };
@@ -367,15 +367,15 @@ struct Quality {
 /// What the server measures.
 struct Stats {
     struct Renderer {
-        double mean_render_ms = 0, median_render_ms = 0, p95_render_ms = 0;  ///< of the last 100 pictures
+        double mean_render_ms = 0, median_render_ms = 0, p95_render_ms = 0;  ///< of the last 100 frames
     };
     struct Host {
         std::string name;
         std::int64_t revision = 0;     ///< that it shows
         std::optional<double> lag_ms;  ///< from that revision's making to its report
     };
-    std::optional<Renderer> renderer;  ///< none before the first picture
-    std::optional<Quality> quality;    ///< of the newest picture
+    std::optional<Renderer> renderer;  ///< none before the first frame
+    std::optional<Quality> quality;    ///< of the newest frame
     std::map<std::string, Host> hosts;
     int clients = 0, watchers = 0;
     double frames_per_second = 0, bytes_per_second = 0;

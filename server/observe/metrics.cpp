@@ -96,25 +96,25 @@ void add_clients(Exposition& to, const Metrics& metrics) {
 void add_frames(Exposition& to, const Metrics& metrics) {
     to.counter("frames_granted_total", "Frames that clients asked for.", metrics.frames_granted);
     to.family(fmt::format("{}frames_rendered_total", kPrefix), "counter",
-              "Pictures drawn, while things moved and at rest.");
+              "Frames drawn, while things moved and at rest.");
     to.sample(metrics.frames_rendered_moving.load(), label("level", "moving"));
     to.sample(metrics.frames_rendered_still.load(), label("level", "still"));
-    to.counter("frames_interrupted_total", "Pictures given up because what was to be seen had changed.",
+    to.counter("frames_interrupted_total", "Frames whose drawing stopped because the view had changed.",
                metrics.frames_interrupted);
-    to.counter("samples_drawn_total", "Samples drawn, for pictures of any kind.", metrics.samples_drawn);
+    to.counter("samples_drawn_total", "Samples drawn, for images of any kind.", metrics.samples_drawn);
     to.counter("readbacks_total", "Times that pixels were read back from what draws.", metrics.readbacks);
-    to.counter("frames_encoded_total", "Pictures encoded, snapshots too.", metrics.frames_encoded);
-    to.counter("encoded_bytes_total", "Bytes of encoded pictures.", metrics.bytes_encoded);
+    to.counter("frames_encoded_total", "Images encoded, snapshots too.", metrics.frames_encoded);
+    to.counter("encoded_bytes_total", "Bytes of encoded images.", metrics.bytes_encoded);
     to.counter("frames_sent_total", "Frames handed to sockets.", metrics.frames_sent);
     to.counter("frames_replaced_total", "Frames that gave way to newer ones before they were sent.",
                metrics.frames_replaced);
     to.counter("sent_bytes_total", "Bytes of messages handed to sockets.", metrics.bytes_sent);
     to.counter("snapshots_rendered_total", "Snapshots drawn.", metrics.snapshots_rendered);
     to.counter("snapshots_sent_total", "Snapshots handed to sockets.", metrics.snapshots_sent);
-    to.gauge("held_bytes", "Bytes of encoded pictures and of messages that wait for clients.",
+    to.gauge("held_bytes", "Bytes of encoded images and of messages that wait for clients.",
              metrics.bytes_held);
-    to.gauge("pictures_held", "Encoded pictures in memory.", metrics.pictures_held);
-    to.gauge("pictures_held_most", "The most encoded pictures that were ever in memory.",
+    to.gauge("pictures_held", "Encoded images in memory.", metrics.pictures_held);
+    to.gauge("pictures_held_most", "The most encoded images that were ever in memory.",
              metrics.pictures_held_most);
 }
 
@@ -124,7 +124,7 @@ void add_times(Exposition& to, const Metrics& metrics) {
     to.buckets(metrics.render_still, label("level", "still"));
     to.histogram("readback_seconds", "Reading a frame's pixels back from what draws.");
     to.buckets(metrics.readback);
-    to.histogram("encode_seconds", "Encoding of a picture.");
+    to.histogram("encode_seconds", "Encoding of an image.");
     to.buckets(metrics.encode);
     to.histogram(
         "input_to_frame_seconds",
@@ -139,7 +139,7 @@ void add_times(Exposition& to, const Metrics& metrics) {
 void add_scene(Exposition& to, const Metrics& metrics) {
     to.gauge("scene_nodes", "Nodes of the scene.", metrics.scene_nodes);
     to.gauge("scene_triangles", "Triangles of the scene.", metrics.scene_triangles);
-    to.gauge("gl_objects", "GL objects that lived after the last picture.", metrics.gl_objects);
+    to.gauge("gl_objects", "GL objects that lived after the last frame.", metrics.gl_objects);
 }
 
 /// By the names that Prometheus' own libraries give them.

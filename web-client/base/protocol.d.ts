@@ -17,7 +17,7 @@ export type Camera = {
   near: number;
   /** The camera node at which the camera stands. */
   node?: number;
-  /** Which way is up in the picture; unit, at right angles to the view. */
+  /** Which way is up in the image; unit, at right angles to the view. */
   up: Array<number>;
 };
 
@@ -32,7 +32,7 @@ export type CameraOverlay = {
   fov?: number;
   /** A camera node, whose pose is laid over first. */
   node?: number;
-  /** Which way is up in the picture. */
+  /** Which way is up in the image. */
   up?: Array<number>;
 };
 
@@ -136,7 +136,7 @@ export type ClientMessage = ClientHello | ClientResize | ClientFrame | ClientPoi
 export type ClientNavigate = {
   /** Asks for exactly one answer, which has the same `id`. It rises. */
   id?: number;
-  /** [right, down]: how far the picture moves, in view heights, in the plane through `focus`. */
+  /** [right, down]: how far the image moves, in view heights, in the plane through `focus`. */
   pan?: Array<number>;
   /** [right, down] in degrees, as if dragged. */
   rotate?: Array<number>;
@@ -325,7 +325,7 @@ export type ClientResize = {
     /** Covered at the top. */
     top?: number;
   };
-  /** Pixels of the picture to a CSS pixel. */
+  /** Pixels of the image to a CSS pixel. */
   pixelRatio: number;
   type: 'resize';
   /** CSS pixels; fractions are allowed. */
@@ -491,7 +491,7 @@ export type EventLogHeader = {
     };
     /** As in its `hello`. */
     name?: string;
-    /** Pixels of the picture to a CSS pixel. */
+    /** Pixels of the image to a CSS pixel. */
     pixelRatio?: number;
     /** The role given. */
     role: 'control' | 'view' | 'host';
@@ -542,7 +542,7 @@ export type EventLogHeader = {
     fov: number;
     /** For clients to sort by: the lowest first, then those without one, by name. */
     order?: number;
-    /** Which way is up in the picture; unit, at right angles to the view. */
+    /** Which way is up in the image; unit, at right angles to the view. */
     up: Array<number>;
   };
   /** Tells that the file is an event log. */
@@ -605,7 +605,7 @@ export type FrameHeader = {
     node?: number;
     /** From the camera's space to clip space. */
     projectionMatrix: Array<number>;
-    /** Which way is up in the picture; unit, at right angles to the view. */
+    /** Which way is up in the image; unit, at right angles to the view. */
     up: Array<number>;
     /** From the world to the camera's space. */
     viewMatrix: Array<number>;
@@ -648,7 +648,7 @@ export type FrameHeader = {
   view: {
     /** CSS pixels; fractions are allowed. */
     height: number;
-    /** Pixels of the picture to a CSS pixel. */
+    /** Pixels of the image to a CSS pixel. */
     pixelRatio: number;
     /** CSS pixels; fractions are allowed. */
     width: number;
@@ -658,7 +658,7 @@ export type FrameHeader = {
 };
 
 export type LevelTable = {
-  /** Of the pictures measured, at scale 1. */
+  /** Of the frames measured, at scale 1. */
   height: number;
   /** By rising accuracy. */
   levels: Array<{
@@ -675,7 +675,7 @@ export type LevelTable = {
   renderer: string;
   /** SHA-256 of the scene's file. */
   scene: string;
-  /** Of the pictures measured, at scale 1. */
+  /** Of the frames measured, at scale 1. */
   width: number;
 };
 
@@ -697,7 +697,7 @@ export type Quality = {
   level: 'moving' | 'still';
   /** To a pixel. */
   samples: number;
-  /** By which the picture is drawn smaller than the view. */
+  /** By which the frame is drawn smaller than the view. */
   scale: number;
   /** Of the colours in the JPEG file. */
   subsampling: '4:2:0' | '4:4:4';
@@ -819,15 +819,15 @@ export type ServerStats = {
     /** What its walls show. */
     revision: number;
   }>;
-  /** Of the newest picture; none before the first. */
+  /** Of the newest frame; none before the first. */
   quality?: Quality;
-  /** Times of drawing; none before the first picture. */
+  /** Times of drawing; none before the first frame. */
   renderer?: {
-    /** Mean of the last 100 pictures. */
+    /** Mean of the last 100 frames. */
     meanRenderMs: number;
-    /** Median of the last 100 pictures. */
+    /** Median of the last 100 frames. */
     medianRenderMs: number;
-    /** 95 of 100 took no longer, of the last 100 pictures. */
+    /** 95 of 100 took no longer, of the last 100 frames. */
     p95RenderMs: number;
   };
   type: 'stats';
@@ -897,7 +897,7 @@ export type ServerWelcome = {
     /** A step away from the user divides the distance by it. */
     wheelZoom: number;
   };
-  /** What holds for messages and pictures. */
+  /** What holds for messages and images. */
   limits: {
     /** Levels of nesting in a client's message. */
     maxDepth: number;
@@ -905,7 +905,7 @@ export type ServerWelcome = {
     maxGrants: number;
     /** Bytes of a client's message. */
     maxMessage: number;
-    /** Pixels of a picture; a larger view is drawn smaller. */
+    /** Pixels of an image; a larger view is drawn smaller. */
     maxPixels: number;
     /** Bytes of a server's message. */
     maxServerMessage: number;
@@ -992,7 +992,7 @@ export type StateDocument = {
     node?: number;
     /** In the world, or in the space of `node`. A new marker must have it. */
     point: Array<number>;
-    /** For clients to show; a picture has the sign only. */
+    /** For clients to show; a frame has the sign only. */
     text: string;
   }>;
   /** Materials, by id. */
@@ -1030,9 +1030,9 @@ export type StateDocument = {
   }>;
   /** What has gone wrong in the server, the newest last. */
   notices: Array<Notice>;
-  /** How pictures are drawn while things move. */
+  /** How frames are drawn while things move. */
   quality: {
-    /** How old a picture may be when the holder sees it, while things move. */
+    /** How old a frame may be when the holder sees it, while things move. */
     latencyTargetMs: number;
     /** 0 speed, 1 accuracy. */
     preference: number;
@@ -1111,7 +1111,7 @@ export type StateDocument = {
     fov: number;
     /** For clients to sort by: the lowest first, then those without one, by name. */
     order?: number;
-    /** Which way is up in the picture; unit, at right angles to the view. */
+    /** Which way is up in the image; unit, at right angles to the view. */
     up: Array<number>;
   }>;
 };
@@ -1195,7 +1195,7 @@ export type View = {
     /** Covered at the top. */
     top?: number;
   };
-  /** Pixels of the picture to a CSS pixel. */
+  /** Pixels of the image to a CSS pixel. */
   pixelRatio: number;
   /** CSS pixels; fractions are allowed. */
   width: number;
