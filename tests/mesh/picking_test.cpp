@@ -308,7 +308,7 @@ void compare_with_reference(const scene::PlacedScene& placed, int count, bool th
         hits += hit.has_value();
     }
     CHECK(hits > count / 3);
-    CHECK(close_calls < count / 100);
+    CHECK(100 * close_calls < count);
 }
 
 mesh::Ray pixel_ray(const scene::Camera& camera, const glm::ivec2& size, const glm::ivec2& pixel) {
