@@ -43,6 +43,8 @@ export class Dialogs {
    * @param {HTMLElement} [opener] gets the focus when the dialog is closed
    */
   async open(name, opener) {
+    // Nor one that is closed before this would come to it.
+    if (this.#open) return;
     const loaded = await Promise.all([import('./dialogs/dialog.js'), LOADS[name]()]).catch(() => null);
     if (!loaded) return this.#page.report({ code: 'not-loaded' });
     if (this.#open) return;

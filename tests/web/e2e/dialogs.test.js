@@ -90,6 +90,19 @@ for (const [name, size] of Object.entries(SIZES)) {
       await page.keyboard.press('ArrowLeft');
       await tablet.wire.until('a key', () => keys() === 1);
 
+      await page.keyboard.press('?');
+      await help().waitFor();
+      // Under load the next key, which closes the dialog, may come before this one's module does.
+      await page.evaluate(async () => {
+        document.body.dispatchEvent(new KeyboardEvent('keydown', { key: '?', bubbles: true, cancelable: true }));
+        const dialog = document.querySelector('dialog');
+        dialog.close();
+        dialog.dispatchEvent(new Event('close'));
+        for (let i = 0; i < 4; i += 1) await new Promise((resolve) => { setTimeout(resolve); });
+      });
+      await gone();
+      assert.equal(await page.locator('dialog').count(), 0);
+
       await openMenu();
       await page.locator('[data-section="views"] summary').tap();
       const field = page.getByRole('textbox', { name: 'Name of the view' });
