@@ -1,5 +1,8 @@
 #include "state.hpp"
 
+#include <algorithm>
+#include <map>
+
 #include "descriptions.hpp"
 
 namespace vrut::protocol {
@@ -133,29 +136,36 @@ namespace {
 
 constexpr const char* kGone = "";  // no member has an empty name
 
+/// Null where there is none.
+const Json& member(const Json& parent, const std::string& name) {
+    static const Json kNone;
+    if (!parent.is_object()) return kNone;
+    const auto found = parent.find(name);
+    return found == parent.end() ? kNone : *found;
+}
+
 /// `changed` brought up to date for a step from `from` to `to`.
 Json mark_changes(const Json& from, const Json& to, const Json& changed, std::int64_t revision) {
     if (!to.is_object()) return from == to && changed.is_number() ? changed : Json(revision);
     Json result = Json::object();
     for (const auto& [name, value] : to.items())
-        result[name] = mark_changes(from.is_object() ? from.value(name, Json()) : Json(), value,
-                                    changed.is_object() ? changed.value(name, Json()) : Json(), revision);
+        result[name] = mark_changes(member(from, name), value, member(changed, name), revision);
     // What went leaves its mark, so that a patch that counts on it is found stale. Marks of what went long
     // ago are kept as one, for all: names that come and go must not pile up.
     constexpr std::size_t kMostGone = 1000;
     std::int64_t gone = changed.is_object() ? changed.value(kGone, std::int64_t{0}) : 0;
-    std::map<std::string, Json> marks;
+    const auto is_gone = [&](const std::string& name) { return !to.contains(name); };
     if (changed.is_object())
         for (const auto& [name, mark] : changed.items())
-            if (!to.contains(name) && name != kGone) marks[name] = mark;
+            if (is_gone(name) && name != kGone) result[name] = mark;
     if (from.is_object())
         for (const auto& [name, value] : from.items())
-            if (!to.contains(name)) marks[name] = revision;
-    if (marks.size() > kMostGone) {
-        marks.clear();
+            if (is_gone(name)) result[name] = revision;
+    if (result.size() - to.size() > kMostGone) {
+        std::erase_if(result.get_ref<Json::object_t&>(),
+                      [&](const auto& entry) { return is_gone(entry.first); });
         gone = revision;
     }
-    for (auto& [name, mark] : marks) result[name] = std::move(mark);
     if (gone > 0) result[kGone] = gone;
     return result;
 }

@@ -107,49 +107,61 @@ tests() { # PRESET CTEST-ARGUMENTS...
     ctest --preset "$1" --parallel "$(nproc)" --no-tests=error "${@:2}" </dev/null
 }
 
-# Each file that the build compiles, by itself and without precompiled headers, so that it has to include what it uses;
-# and of these only what has changed, itself or some header, since clang-tidy last passed it.
+# What the build compiles, without precompiled headers, since clang-tidy reads no other compiler's; and of this only what
+# has changed, itself or some header, since clang-tidy last passed it. Each check goes through all the headers: with the
+# files of a library compiled as one it takes half the time. With --all each file stands by itself, so that it has to
+# include what it uses.
 tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
-    local file stamp header stamps=build/tidy/$1 folders='protocol|render|scenes|server'
-    if $all; then folders+='|tests'; fi
+    local file name stamp header parts stamps=build/tidy/$1 folders='protocol|render|scenes|server' unity=ON
+    if $all; then folders+='|tests' unity=OFF; fi
     local -A queued=()  # what several programs compile is looked at once
-    cmake --preset release -B build/tidy -DCMAKE_CXX_COMPILER=clang++-14 -DVRUT_UNITY=OFF \
+    cmake --preset release -B build/tidy -DCMAKE_CXX_COMPILER=clang++-14 -DVRUT_UNITY=$unity \
         -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >build/tidy.configure.log
     mkdir -p "$stamps"
     header=$(sources hpp | xargs ls -t | sed -n 1p)
     # shellcheck disable=SC2016
     sed -nE 's/.*"file": "(.*)".*/\1/p' build/tidy/compile_commands.json |
         while read -r file; do
-            [[ ${file#"$ROOT"/} =~ ^($folders)/ ]] || continue
-            stamp=${file#"$ROOT"/}
-            stamp=$stamps/${stamp//\//+}
-            [ "$stamp" -nt "$file" ] && [ "$stamp" -nt "$header" ] && [ "$stamp" -nt .clang-tidy ] && continue
+            name=${file#"$ROOT"/}
+            parts=("$file")
+            if [[ $name == build/tidy/*/Unity/* ]]; then
+                name=${name#build/tidy/}
+                mapfile -t parts < <(sed -nE 's/^#include "(.*)"/\1/p' "$file")
+            fi
+            [[ $name =~ ^($folders)/ ]] || continue
+            stamp=$stamps/${name//\//+}
+            [ -z "$(find "${parts[@]}" "$header" .clang-tidy -newer "$stamp" 2>&1 | sed -n 1p)" ] && continue
             [ -n "${queued[$file]:-}" ] && continue
             queued[$file]=yes
             printf '%s\0%s\0' "$file" "$stamp"
-        done | arguments=${*:2} xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$0")" >&2
+        done | arguments=${*:2} xargs -0 -r -n 2 -P "$jobs" bash -c 'set -o pipefail; echo "  $(basename "$1")" >&2
             clang-tidy-14 -p build/tidy --quiet --warnings-as-errors="*" $arguments "$0" 2>&1 |
                 sed -E "/^[0-9]+ warnings? (generated|treated)/d" && touch "$1"'
 }
 
-# In the time that tests leave over, in which they wait for pictures and browsers.
-begin_tidy() { # STAMPS CLANG-TIDY-ARGUMENTS...
-    rm -f build/tidy.passed
+# A step in the time that those in the foreground leave over, in which they wait for pictures and browsers; it begins
+# when the one before it has ended.
+begin() { # NAME COMMAND...
+    local name=$1 before=${background:-}
+    rm -f "build/$name.passed"
     set -m  # a process group of its own
     (
+        if [ -n "$before" ]; then tail --pid="$before" --follow /dev/null; fi
         chrt --idle --pid 0 "$BASHPID"
         set -e
-        tidy "$@"
-        touch build/tidy.passed
-    ) >build/tidy.log 2>&1 </dev/null &
-    tidy_process=$!
+        "${@:2}"
+        touch "build/$name.passed"
+    ) >"build/$name.log" 2>&1 </dev/null &
+    background=$!
+    backgrounds+=" -$background"
     set +m
-    trap 'kill -- "-$tidy_process" 2>/dev/null || true' EXIT
+    # shellcheck disable=SC2064
+    trap "kill --$backgrounds 2>/dev/null || true" EXIT
 }
 
-end_tidy() {
-    tail --lines=+1 --follow --pid="$tidy_process" build/tidy.log
-    [ -e build/tidy.passed ]
+end() { # NAME PROCESS
+    tail --lines=+1 --follow --pid="$2" "build/$1.log"
+    [ -e "build/$1.passed" ]
 }
 
 compile_remedy="The compiler's message is above; if the source is right, remove the folder build and start again."
@@ -166,11 +178,14 @@ step "node modules" "npm's message is above: see that there is a network, and st
 step "format" "Run clang-format-14 -i on the files named above." format
 if $ci; then
     step "build release" "$compile_remedy" build release
-    if $all; then begin_tidy analyzer; else begin_tidy tidy '--checks=-clang-analyzer-*'; fi
+    begin asan build asan --target tests_without_gpu
+    asan=$background
+    # The files of a library that are compiled as one are, to it, suspicious.
+    if $all; then begin tidy tidy analyzer; else begin tidy tidy one '--checks=-clang-analyzer-*,-bugprone-suspicious-include'; fi
     step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -LE '^(soak|fuzz|bench|bare)$'
-    step "build asan" "$compile_remedy" build asan --target tests_without_gpu
+    step "build asan" "$compile_remedy" end asan "$asan"
     step "tests of asan" "Again alone: ctest --preset asan -R NAME." tests asan -L '^(unit|net|replay)$'
-    step "clang-tidy" "Mend what it names above." end_tidy
+    step "clang-tidy" "Mend what it names above." end tidy "$background"
 else
     step "build release" "$compile_remedy" build release --target default_tests
     step "tests of release" "Again alone: ctest --preset release -R NAME." tests release -L "$default_labels"
