@@ -14,6 +14,7 @@ tl::expected<ClientMessage, Error> decode(std::string_view text);
 /// The other way: decode() of it gives the same message. What has its default is left out.
 std::string encode(const ClientMessage& message);
 
+/// A server's text message.
 std::string encode(const Welcome& message);
 std::string encode(const Ok& message);
 std::string encode(const Picked& message);
@@ -25,6 +26,7 @@ std::string encode(const Loading& message);
 std::string encode(const Stats& message);
 std::string encode(const Error& message);
 
+/// The word that stands for it in messages and in the state.
 const char* name_of(Role role);
 const char* name_of(NavigationState::Style style);
 

@@ -36,8 +36,8 @@ Matrix4 projection_matrix(const Camera& camera, double aspect);
 enum class Role { control, view, host };
 
 struct Options {
-    std::string host =
-        "127.0.0.1";  ///< a name, or better an address: a name is looked up by Asio's own thread
+    /// A name, or better an address: a name is looked up by Asio's own thread.
+    std::string host = "127.0.0.1";
     std::uint16_t port = 8080;
     std::string name;   ///< that others see
     std::string token;  ///< empty: none
@@ -65,6 +65,7 @@ struct Loading {
 /// other members, and what they throw comes out of poll(); nothing else does.
 class PreviewClient {
 public:
+    /// Does nothing yet: the first poll() connects.
     explicit PreviewClient(Options options);
     ~PreviewClient();
     PreviewClient(const PreviewClient&) = delete;
@@ -77,7 +78,7 @@ public:
 
     bool connected() const;         ///< the server has sent its state
     std::int64_t revision() const;  ///< of the state below; that of the last connection after a loss
-    const Camera& camera() const;
+    const Camera& camera() const;   ///< that of the state below
     std::optional<std::int64_t> selection() const;  ///< the selected node's id
     /// The state document or the member at a JSON pointer ("/nodes", RFC 6901) as JSON; empty: there is none.
     std::string state_json(const std::string& pointer = {}) const;
@@ -96,12 +97,14 @@ public:
     /// A merge patch (RFC 7396) on the state; a host may patch `camera`, `nodes` and `selection`.
     std::int64_t patch(const std::string& json);
 
+    /// The server's state has come, or the connection is lost.
     std::function<void(bool connected)> on_connection;
     /// The camera has changed, or a state came anew. `mine`: by this client's own patch, which a host that
     /// leads shows already.
     std::function<void(const Camera& camera, bool mine)> on_camera;
     /// The state has changed by `changes`, a merge patch as JSON; `whole`: it is the document itself.
     std::function<void(const std::string& changes, bool whole)> on_state;
+    /// A scene is being loaded, has been, or is refused.
     std::function<void(const Loading&)> on_loading;
     /// A connection that cannot be made or is lost is told once, not at each attempt.
     std::function<void(const Problem&)> on_error;

@@ -78,7 +78,9 @@ std::optional<std::int64_t> query_number(const HttpRequest& request, std::string
 std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access& access) {
     const std::string_view host = view(request[http::field::host]);
     if (!access.accepts_host(host))
-        return rejection(http::status::forbidden, "this server is to be reached as localhost");
+        return rejection(http::status::forbidden,
+                         "this server answers to localhost only: open it by that name, "
+                         "or start it with --token-file");
     const auto origin = request.find(http::field::origin);
     if (origin != request.end() && !access.accepts_origin(view(origin->value()), host)) {
         observe::log_info("origin_refused", {{"origin", view(origin->value())}, {"host", host}});
@@ -92,7 +94,8 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
     const std::string_view path = path_of(request);
     if (auto file = page_response(request, path)) return *std::move(file);
     if (path == "/ws")
-        return rejection(http::status::upgrade_required, "expected the handshake of a WebSocket, version 13");
+        return rejection(http::status::upgrade_required,
+                         "this address is for WebSockets of version 13: send their handshake");
     const auto state = [](const std::optional<std::string>& fault, const char* good) {
         return fault ? rejection(http::status::service_unavailable, *fault)
                      : text_response(http::status::ok, good);
@@ -100,7 +103,8 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
     if (path == "/healthz") return state(why_unhealthy(registry), "ok\n");
     if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
         if (!has_token(request, registry))
-            return rejection(http::status::unauthorized, "this route asks for a token");
+            return rejection(http::status::unauthorized,
+                             "this address needs a token: send it as 'Authorization: Bearer TOKEN'");
         if (path == "/protocol.schema.json") {
             static const auto schema = std::make_shared<const std::string>(protocol::json_schema());
             return {http::status::ok, "application/schema+json", schema};
@@ -110,7 +114,7 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
                 std::make_shared<const std::string>(metrics_text(registry))};
     }
-    return rejection(http::status::not_found, "there is nothing at this address");
+    return rejection(http::status::not_found, "there is nothing at this address: the page is at /");
 }
 
 /// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
@@ -220,11 +224,12 @@ private:
 
     void open_websocket(const HttpRequest& request) {
         if (!speaks_our_subprotocol(request))
-            return send(rejection(http::status::bad_request, "expected the subprotocol vrut-preview.v1"));
+            return send(
+                rejection(http::status::bad_request, "'Sec-WebSocket-Protocol' must hold vrut-preview.v1"));
         if (incoming_.size() > 0) {
             keep_alive_ = false;
             return send(
-                rejection(http::status::bad_request, "a handshake is answered before anything follows"));
+                rejection(http::status::bad_request, "nothing may follow a handshake before its answer"));
         }
         if (registry_.stopping) return;
         deadline_timer_.cancel();
@@ -298,8 +303,8 @@ void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, Conn
 }
 
 void reject_connection(asio::ip::tcp::socket socket) {
-    const HttpResponse response =
-        rejection(http::status::service_unavailable, "there are too many connections");
+    const HttpResponse response = rejection(http::status::service_unavailable,
+                                            "there are too many connections: close some, or try again later");
     const std::string text = head_of(response, {}, false) + *response.body;
     beast::error_code ignored;  // what fits at once has to do
     socket.non_blocking(true, ignored);

@@ -25,15 +25,15 @@ Rejected rejected_bytes(std::string_view head) {
         const auto byte = static_cast<unsigned char>(head[i]);
         const char before = i > 0 ? head[i - 1] : '\0';
         if ((byte == '\n') != (before == '\r'))
-            return HttpRejection{status::bad_request, "lines of a request end by CR LF"};
+            return HttpRejection{status::bad_request, "each line of a request must end with CR LF"};
         if (before == '\n' && (byte == ' ' || byte == '\t'))
-            return HttpRejection{status::bad_request, "header fields may not be folded"};
+            return HttpRejection{status::bad_request, "a header field must stand in one line"};
         if ((byte < ' ' && byte != '\r' && byte != '\n' && byte != '\t') || byte == 0x7F)
-            return HttpRejection{status::bad_request, "control bytes have no place in a request"};
+            return HttpRejection{status::bad_request, "a request must hold no control bytes"};
     }
     if (head.substr(0, kMaxRequestLine).find('\n') == std::string_view::npos &&
         head.size() >= kMaxRequestLine)
-        return HttpRejection{status::uri_too_long, "the first line of a request has at most " +
+        return HttpRejection{status::uri_too_long, "the first line of a request may have at most " +
                                                        std::to_string(kMaxRequestLine) + " bytes"};
     return std::nullopt;
 }
@@ -45,7 +45,8 @@ HttpRejection unreadable(beast::error_code error, std::string_view head) {
     const bool other_version = error == http::error::bad_version && version != "HTTP/1.1" &&
                                version != "HTTP/1.0" && version.size() == 8 && version.starts_with("HTTP/") &&
                                is_digit(version[5]) && version[6] == '.' && is_digit(version[7]);
-    if (other_version) return {status::http_version_not_supported, "expected HTTP/1.1 or HTTP/1.0"};
+    if (other_version)
+        return {status::http_version_not_supported, "the version must be HTTP/1.1 or HTTP/1.0"};
     return {status::bad_request, "the request cannot be read: " + error.message()};
 }
 
@@ -54,16 +55,20 @@ Rejected rejected_body(const HttpRequest& request) {
     const bool encoded = request.count(field::transfer_encoding) > 0;
     const bool sized = request.count(field::content_length) > 0;
     if (encoded && (sized || request.version() < 11))
-        return HttpRejection{status::bad_request, "'Transfer-Encoding' stands beside what it excludes"};
+        return HttpRejection{status::bad_request,
+                             "'Transfer-Encoding' must stand alone: leave out 'Content-Length', "
+                             "and use HTTP/1.1"};
     if (encoded)
-        return HttpRejection{status::not_implemented, "requests with a transfer coding are not served"};
+        return HttpRejection{status::not_implemented,
+                             "requests may have no body: leave out 'Transfer-Encoding'"};
     const std::string_view length = view(request[field::content_length]);
     if (sized && !std::all_of(length.begin(), length.end(), is_digit))
-        return HttpRejection{status::bad_request, "'Content-Length' is one number"};
+        return HttpRejection{status::bad_request, "'Content-Length' must be one number"};
     if (sized && length.find_first_not_of('0') != std::string_view::npos)
-        return HttpRejection{status::payload_too_large, "requests have no body here"};
+        return HttpRejection{status::payload_too_large,
+                             "requests may have no body: leave out 'Content-Length'"};
     if (request.count(field::expect) > 0)
-        return HttpRejection{status::expectation_failed, "'Expect' is not served"};
+        return HttpRejection{status::expectation_failed, "'Expect' is not supported: leave it out"};
     return std::nullopt;
 }
 
@@ -74,23 +79,23 @@ Rejected rejected_repeats(const HttpRequest& request) {
     for (const field name : kOnce)
         if (request.count(name) > 1)
             return HttpRejection{status::bad_request,
-                                 "'" + std::string(http::to_string(name)) + "' may stand there once"};
+                                 "'" + std::string(http::to_string(name)) + "' must occur once only"};
     return std::nullopt;
 }
 
 Rejected rejected_head(const HttpRequest& request) {
     const std::string_view target = view(request.target());
     if (request.method() == http::verb::unknown)
-        return HttpRejection{status::not_implemented, "there is no such method here"};
+        return HttpRejection{status::not_implemented, "there is no such method: send GET or HEAD"};
     if (request.method() != http::verb::get && request.method() != http::verb::head)
-        return HttpRejection{status::method_not_allowed, "only GET and HEAD are answered"};
+        return HttpRejection{status::method_not_allowed, "the method must be GET or HEAD"};
     if (!target.starts_with('/') ||
         std::any_of(target.begin(), target.end(), [](char c) { return c < '!' || c > '~' || c == '#'; }))
-        return HttpRejection{status::bad_request, "an address is a path in ASCII, from '/' on"};
+        return HttpRejection{status::bad_request, "an address must be a path in ASCII, from '/' on"};
     if (request.version() == 11 && request.count(field::host) == 0)
-        return HttpRejection{status::bad_request, "'Host' is missing"};
+        return HttpRejection{status::bad_request, "'Host' is missing: name the server and its port"};
     if (request.count(field::host) > 0 && !is_host(view(request[field::host])))
-        return HttpRejection{status::bad_request, "'Host' is a name and a port"};
+        return HttpRejection{status::bad_request, "'Host' must be a name and a port"};
     return std::nullopt;
 }
 
@@ -100,7 +105,7 @@ Rejected rejected_handshake(const HttpRequest& request) {
     const std::string_view key = view(request[field::sec_websocket_key]);
     const auto is_base64 = [](char c) { return is_letter(c) || is_digit(c) || c == '+' || c == '/'; };
     if (key.size() != 24 || !key.ends_with("==") || !std::all_of(key.begin(), key.end() - 2, is_base64))
-        return HttpRejection{status::bad_request, "'Sec-WebSocket-Key' is 16 bytes in base64"};
+        return HttpRejection{status::bad_request, "'Sec-WebSocket-Key' must be 16 bytes in base64"};
     return std::nullopt;
 }
 
@@ -150,7 +155,7 @@ std::optional<tl::expected<ReadRequest, HttpRejection>> read_request(std::string
     if (head.size() > kMaxRequest || (!whole && head.size() == kMaxRequest))
         return tl::unexpected(
             HttpRejection{status::request_header_fields_too_large,
-                          "a request has at most " + std::to_string(kMaxRequest) + " bytes"});
+                          "a request may have at most " + std::to_string(kMaxRequest) + " bytes"});
     if (!whole) return std::nullopt;
 
     http::request_parser<http::empty_body> parser;

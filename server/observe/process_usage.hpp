@@ -12,6 +12,7 @@ struct ProcessUsage {
     std::uint64_t descriptors = 0, most_descriptors = 0;
 };
 
+/// Now; what /proc does not tell is 0.
 ProcessUsage process_usage();
 
 }  // namespace vrut::server::observe

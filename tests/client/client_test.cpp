@@ -458,7 +458,8 @@ TEST_CASE("a server that declines is told with its sentence") {
     CHECK(host.problems[0].code == "connection");
     CHECK(host.problems[0].message ==
           "VRUT Preview at [::ffff:127.0.0.1]:" + std::to_string(server.port()) +
-              ": it declines: HTTP 403, this server is to be reached as localhost");
+              ": it declines: HTTP 403, this server answers to localhost only: open it by that name, "
+              "or start it with --token-file");
 }
 
 TEST_CASE("a client says who it is, answers pings, and tells of loading and of what it does not know") {

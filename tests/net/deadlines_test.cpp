@@ -169,7 +169,7 @@ TEST_CASE("one connection too many of any kind is told so, and there is room aga
     RawConnection late(server.port());
     const HttpAnswer answer = late.answer();
     CHECK(answer.status == 503);
-    CHECK(answer.body == "there are too many connections\n");
+    CHECK(answer.body == "there are too many connections: close some, or try again later\n");
     CHECK(late.ended());
     open.resize(open.size() / 2);
     CHECK(eventually([&] { return http(server.port(), "GET", "/healthz").status == 200; }));

@@ -57,12 +57,13 @@ export function noticeSentence({ code, message }) {
   return key in TABLES[current] ? say(key, { message }) : message;
 }
 
-/** A number as the language writes it; `digits` behind the decimal sign, at most. */
-export function written(value, digits = 0) {
+/** A number as the language writes it; `digits` behind the decimal sign, at most. No line ends before its unit. */
+export function written(value, digits = 0, unit = '') {
   const key = `${current} ${digits}`;
   // Making one takes longer than all else that is done for a frame.
   formats[key] ??= new Intl.NumberFormat(current, { maximumFractionDigits: digits });
-  return formats[key].format(value);
+  const number = formats[key].format(value);
+  return unit ? `${number}\u00a0${unit}` : number;
 }
 
 /**

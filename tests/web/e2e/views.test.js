@@ -190,10 +190,10 @@ describe('views and connection on a tablet', { skip: browserIsMissing }, () => {
   test('the page measures, and measures nothing when nothing comes', async () => {
     await tablet.touch([{ from: [500, 400], to: [420, 400] }]);
     const connection = await tablet.settings('connection');
-    await connection.locator('[data-fact="latency"]').getByText(/^[\d,]+ ms, [\d,]+ ms$/).waitFor();
+    await connection.locator('[data-fact="latency"]').getByText(/^[\d,]+\sms, [\d,]+\sms$/).waitFor();
     await connection.locator('[data-fact="level"]').getByText(/^Still · \d+ samples · full size · JPEG \d+$/).waitFor();
     await fact(connection, 'frames', '0');
-    await fact(connection, 'data', '0 kB / s');
+    await fact(connection, 'data', '0\u00a0kB/s');
     await tablet.closeSettings();
   });
 

@@ -137,9 +137,9 @@ describe('of the connection', () => {
   test('a loss, and how long the wait will be', () => {
     assert.equal(say({ name: 'waiting', retryMs: 250, hadOpened: true }), 'The connection to the server is lost. Trying again…');
     assert.equal(say({ name: 'waiting', retryMs: 250 }), 'The server does not answer. Trying again…');
-    assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'The server does not answer. Trying again in 2 s.');
+    assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'The server does not answer. Trying again in 2\u00a0s.');
     assert.equal(say({ name: 'waiting', retryMs: 4000, reason: { code: 'too-many', message: 'the server has no room' } }),
-      'The server has no room. Trying again in 4 s.');
+      'The server has no room. Trying again in 4\u00a0s.');
   });
 
   test('a refusal, and what to do', () => {
@@ -155,7 +155,7 @@ describe('of the connection', () => {
   test('in Czech, too', async () => {
     await setLanguage('cs');
     try {
-      assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Nový pokus za 2 s.');
+      assert.equal(say({ name: 'waiting', retryMs: 1900 }), 'Server neodpovídá. Nový pokus za 2\u00a0s.');
       assert.equal(say({ name: 'waiting', retryMs: 0, reason: { code: 'too-many', message: 'the server is full' } }),
         'Nejvyšší povolený počet je překročen (the server is full). Nový pokus…');
     } finally {

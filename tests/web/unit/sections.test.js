@@ -36,7 +36,7 @@ test('a section shows anew only the controls of which something is another', () 
 describe('the scene', () => {
   test('the renderer\'s counts, and its time once it is measured', () => {
     assert.deepEqual(rendererFacts({ solid: 7 }, undefined), [{ solid: 7, time: undefined }]);
-    assert.deepEqual(rendererFacts({ solid: 7 }, 4.26), [{ solid: 7, time: '4.3 ms' }]);
+    assert.deepEqual(rendererFacts({ solid: 7 }, 4.26), [{ solid: 7, time: '4.3\u00a0ms' }]);
   });
 
   test('the camera: its name and the size of its near plane', () => {
@@ -147,8 +147,8 @@ describe('connection', () => {
 
   test('how pictures come; no latency before the first', () => {
     assert.deepEqual(pictureFacts({ framesPerSecond: 12.34, bytesPerSecond: 1.5e6 }),
-      { latency: undefined, frames: '12.3', data: '1.5 MB / s' });
-    assert.equal(pictureFacts({ p50: 20.4, p95: 80, framesPerSecond: 0, bytesPerSecond: 0 }).latency, '20 ms, 80 ms');
+      { latency: undefined, frames: '12.3', data: '1.5\u00a0MB/s' });
+    assert.equal(pictureFacts({ p50: 20.4, p95: 80, framesPerSecond: 0, bytesPerSecond: 0 }).latency, '20\u00a0ms, 80\u00a0ms');
   });
 
   test('who steers', async () => {
@@ -163,7 +163,7 @@ describe('connection', () => {
   });
 
   test('how far behind a wall is', async () => {
-    assert.equal(hostWords({ revision: 9, lagMs: 12.4 }, 9), 'up to date · 12 ms');
+    assert.equal(hostWords({ revision: 9, lagMs: 12.4 }, 9), 'up to date · 12\u00a0ms');
     assert.equal(hostWords({ revision: 5 }, 9), '4 behind');
     assert.equal(hostWords({ revision: 10 }, 9), 'up to date');
     await setLanguage('cs');
@@ -194,10 +194,10 @@ describe('connection', () => {
   });
 
   test('bytes in words', async () => {
-    assert.equal(bytesWords(0), '0 kB');
-    assert.equal(bytesWords(148_200), '148 kB');
-    assert.equal(bytesWords(2_340_000), '2.3 MB');
+    assert.equal(bytesWords(0), '0\u00a0kB');
+    assert.equal(bytesWords(148_200), '148\u00a0kB');
+    assert.equal(bytesWords(2_340_000), '2.3\u00a0MB');
     await setLanguage('cs');
-    assert.equal(bytesWords(2_340_000), '2,3 MB');
+    assert.equal(bytesWords(2_340_000), '2,3\u00a0MB');
   });
 });

@@ -41,7 +41,7 @@ export const cs = {
   'phase.lost': 'Spojení se serverem se přerušilo.',
   'phase.noAnswer': 'Server neodpovídá.',
   'phase.retry': 'Nový pokus…',
-  'phase.retryIn': 'Nový pokus za {seconds} s.',
+  'phase.retryIn': 'Nový pokus za {seconds}\u00a0s.',
   'phase.tokenWrong': 'Server nepřijal přístupový klíč z této adresy.',
   'phase.tokenMissing': 'Server vyžaduje přístupový klíč.',
   'phase.notSent': 'Není spojení se serverem, nic se nezměnilo.',

@@ -44,7 +44,7 @@ export const en = {
   'phase.lost': 'The connection to the server is lost.',
   'phase.noAnswer': 'The server does not answer.',
   'phase.retry': 'Trying again…',
-  'phase.retryIn': 'Trying again in {seconds} s.',
+  'phase.retryIn': 'Trying again in {seconds}\u00a0s.',
   'phase.tokenWrong': 'The server does not accept the token in this address.',
   'phase.tokenMissing': 'The server asks for a token.',
   'phase.notSent': 'There is no connection to the server: nothing was changed.',

@@ -105,16 +105,16 @@ export function hostLines(hosts, revision) {
 /** @param {ReturnType<Meter['read']>} measured */
 export function pictureFacts({ p50, p95, framesPerSecond, bytesPerSecond }) {
   return {
-    latency: p50 && `${written(p50)} ms, ${written(p95)} ms`,
+    latency: p50 && `${written(p50, 0, 'ms')}, ${written(p95, 0, 'ms')}`,
     frames: written(framesPerSecond, 1),
-    data: `${bytesWords(bytesPerSecond)} / s`,
+    data: `${bytesWords(bytesPerSecond)}/s`,
   };
 }
 
 /** How far a host is behind. @param {{revision: number, lagMs?: number}} host @param {number} revision */
 export function hostWords({ revision: shown, lagMs }, revision) {
   const words = shown < revision ? say('connection.behind', { count: revision - shown }) : say('connection.upToDate');
-  return lagMs === undefined ? words : `${words} · ${written(lagMs)} ms`;
+  return lagMs === undefined ? words : `${words} · ${written(lagMs, 0, 'ms')}`;
 }
 
 /** @param {FrameHeader['quality']} quality */
@@ -131,5 +131,5 @@ export function qualityWords({ level, scale, samples, detail, jpegQuality, error
 }
 
 export function bytesWords(bytes) {
-  return bytes < 1e6 ? `${written(bytes / 1e3)} kB` : `${written(bytes / 1e6, 1)} MB`;
+  return bytes < 1e6 ? written(bytes / 1e3, 0, 'kB') : written(bytes / 1e6, 1, 'MB');
 }

@@ -50,7 +50,7 @@ function renderer(change) {
 
 /** @param {StateDocument['renderer']} renderer @param {number} [meanRenderMs] */
 export function rendererFacts(renderer, meanRenderMs) {
-  return [{ ...renderer, time: meanRenderMs && `${written(meanRenderMs, 1)} ms` }];
+  return [{ ...renderer, time: meanRenderMs && written(meanRenderMs, 1, 'ms') }];
 }
 
 function camera(change) {
