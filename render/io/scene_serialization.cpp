@@ -10,7 +10,7 @@
 
 #include "base/salted_hash.hpp"
 #include "base/utf8.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "io/scene_textures.hpp"
 
 namespace vrut::io {

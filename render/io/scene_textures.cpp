@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "base/file_bytes.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "io/notices.hpp"
 #include "io/vrut/tokenizer.hpp"
 

@@ -8,7 +8,7 @@
 #include "compare/difference.hpp"
 #include "compare/flip.hpp"
 #include "engine/images.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "report.hpp"
 
 namespace vrut::server::commands {

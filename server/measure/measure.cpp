@@ -9,7 +9,7 @@
 
 #include "compare/difference.hpp"
 #include "compare/flip.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "navigation/camera_moves.hpp"
 #include "scene/camera.hpp"
 

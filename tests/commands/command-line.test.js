@@ -270,7 +270,7 @@ test('compare tells how far pictures are apart', () => {
 
   fails(1, /different sizes.*64 x 48.*65 x 48/, 'compare', file('a.png'), file('wide.png'));
   fails(1, /missing\.png: there is no such file/, 'compare', file('a.png'), file('missing.png'));
-  fails(1, /neither PNG nor JPEG/, 'compare', CAR, file('a.png'));
+  fails(1, /none of PNG, JPEG/, 'compare', CAR, file('a.png'));
   fails(1, /map\.jpg/, 'compare', file('a.png'), file('b.png'), '--map', file('map.jpg'));
   fails(2, /IMAGE2 is required/, 'compare', file('a.png'));
 });

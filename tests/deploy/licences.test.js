@@ -22,6 +22,7 @@ const WORDS = {
   'GPL-2.0-only WITH Linux-syscall-note': /General Public License version 2/,
   'Zlib': /provided 'as-is', without any express/,
   'libpng-2.0': /PNG Reference Library/,
+  'libtiff': /the names of Sam Leffler and Silicon Graphics may not be used/,
   'IJG': /Independent JPEG Group/,
 };
 

@@ -9,7 +9,7 @@
 
 #include "base/files.hpp"
 #include "frame_header.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "planes.hpp"
 
 using namespace vrut;

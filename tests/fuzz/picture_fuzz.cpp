@@ -2,7 +2,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     constexpr std::uint64_t kMostPixels = 1 << 16;

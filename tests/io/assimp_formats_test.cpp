@@ -353,6 +353,56 @@ TEST_CASE("the pictures of a Collada or FBX scene lie in its folder") {
     }
 }
 
+TEST_CASE("a picture is found by its name, beside the scene or in textures/") {
+    const TemporaryFolder folder;
+    folder.write("paint.png", picture());
+    folder.write("textures/wheel.png", picture());
+    const auto pictures_with = [&](const std::string& image) {
+        folder.write("panel.mtl", "newmtl Paint\nmap_Kd " + image + "\n");
+        return read_well(folder.write("panel.obj", text_of("panel.obj"))).textures().size();
+    };
+    for (const char* image : {"paint.png ", "paint.png\t\r", "../maps/paint.png", "/home/me/paint.png ",
+                              "wheel.png", "C:\\maps\\wheel.png", "../wheel.png"})
+        CHECK_MESSAGE(pictures_with(image) == 1, image);
+    CHECK(pictures_with("door.png") == 0);
+
+    std::string gltf = text_of("car.gltf");
+    const std::size_t start = gltf.find("data:image"), end = gltf.find('"', start);
+    gltf.replace(start, end - start, "../somewhere/wheel.png");
+    CHECK_FALSE(has_notice(read_well(folder.write("car.gltf", gltf)), "without its texture"));
+}
+
+TEST_CASE("harmless faults do not refuse a file") {
+    const TemporaryFolder folder;
+    const auto triangle = [&](const std::string& normal, const std::string& material) {
+        folder.write("a.mtl", "newmtl Paint\nKd 1 0 0\n" + material + "\n");
+        return read_well(folder.write("a.obj", "mtllib a.mtl\nusemtl Paint\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn " +
+                                                   normal + "\nf 1//1 2//1 3//1\n"));
+    };
+    const scene::Scene odd = triangle("nan 0 1", "");
+    CHECK(odd.geometries()[0].normals == std::vector(3, glm::vec3(0)));
+    CHECK(has_notice(odd, "a normal that is not a number is replaced by the face's (3 times)"));
+    CHECK(triangle("0 0 1", "").notices().empty());
+
+    for (const char* transparent : {"Tr 1", "d 0"}) {
+        const scene::Scene scene = triangle("0 0 1", transparent);
+        CHECK(scene.materials()[0].diffuse == glm::dvec4(1, 0, 0, 1));
+        CHECK(has_notice(scene, "a material is opaque, though its file calls it wholly transparent"));
+    }
+    const scene::Scene clear =
+        read_panel("panel.dae", "<transparency><float>0.5<", "<transparency><float>0<");
+    CHECK(material_of(clear, "Paint").diffuse.a == 1);
+
+    const std::string matrix = "0 -1 0 4 1 0 0 5 0 0 1 6 0 0 0 1";
+    const scene::Scene rounded =
+        read_panel("panel.dae", matrix, "0 -1 0 4 1 0 0 5 0 0 1 6 0 -1e-7 0 0.999999");
+    CHECK(node_of(rounded, "Door").matrix == glm::dmat4(0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 4, 5, 6, 1));
+    std::string text = text_of("panel.dae");
+    check_refused_file("a.dae",
+                       text.replace(text.find(matrix), matrix.size(), "0 -1 0 4 1 0 0 5 0 0 1 6 0 0.001 0 1"),
+                       "the matrix of node 'Door' is not affine");
+}
+
 TEST_CASE("a picture that says that it is huge is not read") {
     const TemporaryFolder folder;
     folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\n");

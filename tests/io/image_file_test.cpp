@@ -1,12 +1,14 @@
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 
 #include <doctest/doctest.h>
 #include <sys/resource.h>
+#include <webp/encode.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "contains.hpp"
@@ -36,6 +38,113 @@ std::string refusal(const std::string& bytes) {
     const auto image = io::decode_image(bytes);
     REQUIRE_FALSE(image);
     return image.error();
+}
+
+std::string little_endian(std::uint64_t value, int bytes) {
+    std::string text;
+    for (; bytes > 0; --bytes, value >>= 8) text += static_cast<char>(value & 0xFF);
+    return text;
+}
+
+// Two rows of two pixels: red and green, below them blue and a brown, of which half shows where there is
+// alpha.
+
+std::string webp_bytes() {
+    const std::uint8_t rgba[] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 200, 100, 50, 128};
+    std::uint8_t* data = nullptr;
+    const std::size_t size = WebPEncodeLosslessRGBA(rgba, 2, 2, 8, &data);
+    std::string bytes(reinterpret_cast<char*>(data), size);
+    WebPFree(data);
+    return bytes;
+}
+
+std::string tiff_bytes() {
+    const std::string pixels(
+        "\xFF\0\0\xFF"
+        "\0\xFF\0\xFF"
+        "\0\0\xFF\xFF"
+        "\xC8\x64\x32\x80",
+        16);
+    std::string file = "II" + little_endian(42, 2) + little_endian(8, 4), entries;
+    unsigned count = 0;
+    const auto add = [&](unsigned tag, unsigned type, unsigned values, std::uint64_t value) {
+        entries += little_endian(tag, 2) + little_endian(type, 2) + little_endian(values, 4) +
+                   little_endian(value, 4);
+        ++count;
+    };
+    constexpr unsigned kShort = 3, kLong = 4, kEntries = 11;
+    const std::uint64_t behind = 8 + 2 + 12 * kEntries + 4;
+    add(256, kLong, 1, 2);              // width
+    add(257, kLong, 1, 2);              // length
+    add(258, kShort, 4, behind);        // bits of each sample
+    add(259, kShort, 1, 1);             // not compressed
+    add(262, kShort, 1, 2);             // RGB
+    add(273, kLong, 1, behind + 8);     // the strip
+    add(277, kShort, 1, 4);             // samples
+    add(278, kLong, 1, 2);              // rows of the strip
+    add(279, kLong, 1, pixels.size());  // bytes of the strip
+    add(284, kShort, 1, 1);             // samples side by side
+    add(338, kShort, 1, 2);             // the fourth is alpha
+    REQUIRE(count == kEntries);
+    file += little_endian(kEntries, 2) + entries + little_endian(0, 4);
+    for (int i = 0; i < 4; ++i) file += little_endian(8, 2);
+    return file + pixels;
+}
+
+std::string bmp_bytes() {
+    const std::string rows(
+        "\xFF\0\0"
+        "\x32\x64\xC8"
+        "\0\0"
+        "\0\0\xFF"
+        "\0\xFF\0"
+        "\0\0",
+        16);  // from below, BGR
+    return "BM" + little_endian(54 + rows.size(), 4) + little_endian(0, 4) + little_endian(54, 4) +
+           little_endian(40, 4) + little_endian(2, 4) + little_endian(2, 4) + little_endian(1, 2) +
+           little_endian(24, 2) + little_endian(0, 4) + little_endian(rows.size(), 4) +
+           std::string(16, '\0') + rows;
+}
+
+std::string gif_bytes() {
+    const std::string palette(
+        "\xFF\0\0"
+        "\0\xFF\0"
+        "\0\0\xFF"
+        "\xC8\x64\x32",
+        12);
+    // Of LZW the codes 4 (clear), 0, 1, 2 in three bits each; then 3 and 5 (end) in four.
+    std::uint64_t codes = 0;
+    int at = 0;
+    const std::pair<unsigned, int> kCodes[] = {{4, 3}, {0, 3}, {1, 3}, {2, 3}, {3, 4}, {5, 4}};
+    for (const auto& [code, bits] : kCodes) {
+        codes |= std::uint64_t{code} << at;
+        at += bits;
+    }
+    const std::string screen = little_endian(2, 2) + little_endian(2, 2) + std::string("\x81\0\0", 3);
+    const std::string image =
+        "," + little_endian(0, 4) + little_endian(2, 2) + little_endian(2, 2) + std::string(1, '\0');
+    return "GIF89a" + screen + palette + image + "\x02\x03" + little_endian(codes, 3) + std::string(1, '\0') +
+           ";";
+}
+
+std::string tga_bytes(bool runs) {
+    const std::string header = std::string("\0\0", 2) + (runs ? "\x0A" : "\x02") + std::string(9, '\0') +
+                               little_endian(2, 2) + little_endian(2, 2) + "\x20\x08";
+    const std::string top(
+        "\0\0\xFF\xFF"
+        "\0\xFF\0\xFF",
+        8);  // BGRA
+    const std::string bottom(
+        "\xFF\0\0\xFF"
+        "\x32\x64\xC8\x80",
+        8);
+    return header + (runs ? "\x03" : "") + bottom + top;
+}
+
+std::vector<std::pair<std::string, std::string>> other_files() {
+    return {{"WebP", webp_bytes()}, {"TIFF", tiff_bytes()},    {"BMP", bmp_bytes()},
+            {"GIF", gif_bytes()},   {"TGA", tga_bytes(false)}, {"TGA, runs", tga_bytes(true)}};
 }
 
 constexpr int kWidth = 13, kHeight = 9;
@@ -280,8 +389,10 @@ TEST_CASE("JPEGs in colour and grey, of one and of several scans, are read uprig
 
 TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a sentence") {
     std::string cmyk = jpeg_bytes(8, 8, std::vector<std::uint8_t>(192, 100));
-    CHECK(contains(refusal("GIF89a"), "neither PNG nor JPEG"));
-    CHECK(contains(refusal(""), "neither PNG nor JPEG"));
+    CHECK(contains(refusal("%PDF-1.7"), "none of PNG, JPEG, WebP, TIFF, BMP, GIF and TGA"));
+    CHECK(contains(refusal(""), "none of PNG, JPEG, WebP, TIFF, BMP, GIF and TGA"));
+    CHECK(refusal("\xABKTX 20\xBB\r\n\x1A\n") == "it is KTX2, which is not supported: save it as PNG");
+    CHECK(refusal("DDS |") == "it is DDS, which is not supported: save it as PNG");
 
     tjhandle encoder = tjInitCompress();
     unsigned char* data = nullptr;
@@ -291,6 +402,32 @@ TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a
     CHECK(contains(refusal(std::string(reinterpret_cast<char*>(data), size)), "CMYK"));
     tjFree(data);
     tjDestroy(encoder);
+}
+
+TEST_CASE("WebP, TIFF, BMP, GIF and TGA are read upright, with their alpha") {
+    for (const auto& [name, bytes] : other_files()) {
+        CAPTURE(name);
+        const scene::Image image = decode_well(bytes);
+        REQUIRE(image.width == 2);
+        REQUIRE(image.height == 2);
+        const bool has_alpha = name != "BMP" && name != "GIF";
+        CHECK(pixel(image, 0, 0) == Pixel{255, 0, 0, 255});
+        CHECK(pixel(image, 1, 0) == Pixel{0, 255, 0, 255});
+        CHECK(pixel(image, 0, 1) == Pixel{0, 0, 255, 255});
+        const Pixel last = pixel(image, 1, 1);
+        CHECK(last[3] == (has_alpha ? 128 : 255));
+        const bool rounded = name == "TIFF";  // libtiff multiplies by alpha
+        CHECK((rounded ? std::abs(last[0] - 200) <= 1 : last[0] == 200));
+        CHECK((rounded ? std::abs(last[1] - 100) <= 1 : last[1] == 100));
+        CHECK((rounded ? std::abs(last[2] - 50) <= 1 : last[2] == 50));
+    }
+}
+
+TEST_CASE("the sizes of these are judged from their headers, too") {
+    for (auto& [name, bytes] : other_files()) {
+        CAPTURE(name);
+        CHECK(contains(io::decode_image(bytes, 3).error(), "2 x 2 pixels, but at most 3"));
+    }
 }
 
 TEST_CASE("the size is judged from the header") {
@@ -326,6 +463,8 @@ TEST_CASE("files that are cut short are refused, and changed ones do no harm") {
     for (const Kind& kind : kKinds) files.push_back(file_of(kind, files.size() % 2 == 1));
     files.push_back(jpeg_bytes(32, 16, three_fields(32, 16)));
     files.push_back(jpeg_bytes(32, 16, three_fields(32, 16), true, TJFLAG_PROGRESSIVE));
+    for (const auto& [name, bytes] : other_files())
+        files.push_back(name == "GIF" ? bytes.substr(0, bytes.size() - 1) : bytes);
     for (const std::string& file : files)
         for (std::size_t at = 0; at < file.size(); at += at < 20 ? 1 : 7) {
             CAPTURE(at);

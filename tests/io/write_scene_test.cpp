@@ -13,7 +13,7 @@
 
 #include "base/output_files.hpp"
 #include "io/gltf/material.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "io/read_scene.hpp"
 #include "temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 
 #include "compare/difference.hpp"
 #include "engine/images.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "study.hpp"
 
 namespace vrut::stability {

@@ -84,10 +84,14 @@ std::string file_name_of_uri(const std::filesystem::path& folder, const std::str
 std::string file_name_of_foreign_path(const std::filesystem::path& folder, const std::string& address) {
     std::string name = file_name_of_uri(folder, address);
     if (base::find_below(folder, name)) return name;
+    name = file_name_of_uri(folder, address.substr(0, address.find_last_not_of(" \t\r\n") + 1));
+    if (base::find_below(folder, name)) return name;
     std::replace(name.begin(), name.end(), '\\', '/');
     if (base::find_below(folder, name)) return name;
     const std::string last = name.substr(name.rfind('/') + 1);
-    return base::find_below(folder, last) ? last : name;
+    for (const std::string& found : {last, "textures/" + last})
+        if (base::find_below(folder, found)) return found;
+    return name;
 }
 
 SceneFiles::SceneFiles(std::filesystem::path scene_file, std::string head)

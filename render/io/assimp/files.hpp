@@ -12,8 +12,9 @@ namespace vrut::io {
 /// such a file, else with percent-encoding decoded (`%20` is a space).
 std::string file_name_of_uri(const std::filesystem::path& folder, const std::string& address);
 
-/// The same for formats that store paths of the machine that wrote the file, with `\` between folders: if
-/// there is no such file, the one of that name beside the scene's.
+/// The same for paths of the machine that wrote the file, which may have `\` between folders and blanks or a
+/// carriage return behind them: if there is no such file, the one of that name beside the scene's, or else in
+/// `textures/` there.
 std::string file_name_of_foreign_path(const std::filesystem::path& folder, const std::string& address);
 
 /// The files that assimp may open: the scene's file, by the name main_name(), and files in its folder or

@@ -74,13 +74,18 @@ void convert_metallic_roughness(const aiMaterial& from, scene::Material& materia
 }
 
 /// Colours and exponent of Phong's model.
-void convert_phong(const aiMaterial& from, AssimpFormat format, scene::Material& material) {
+void convert_phong(const aiMaterial& from, AssimpFormat format, scene::Material& material,
+                   ConversionWarnings& warnings) {
     const aiColor4D white(1, 1, 1, 1), black(0, 0, 0, 1);
     const bool none_told = format == AssimpFormat::stl || format == AssimpFormat::ply;
     const aiColor4D diffuse = color_of(from, "$clr.diffuse").value_or(white);
     if (!none_told || diffuse != white)  // which assimp makes up
         material.diffuse = glm::dvec4(as_written(diffuse), 1);
     if (!has_texture(from, aiTextureType_OPACITY)) material.diffuse.a = part_of(from, "$mat.opacity", 1);
+    if (material.diffuse.a == 0) {  // as programs write it that take 1 for transparent
+        material.diffuse.a = 1;
+        warnings.add("a material is opaque, though its file calls it wholly transparent");
+    }
     if (const double exponent = number_of(from, "$mat.shininess", 0); exponent > 0) {
         const aiColor4D specular = color_of(from, "$clr.specular").value_or(black);
         material.specular = glm::dvec4(part_of(from, "$mat.shinpercent", 1) * as_written(specular), 1);
@@ -105,7 +110,7 @@ scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
     if (format == AssimpFormat::gltf)
         convert_metallic_roughness(from, material);
     else
-        convert_phong(from, format, material);
+        convert_phong(from, format, material, warnings);
     material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
     if (has_texture(from, aiTextureType_EMISSIVE)) material.emission = {0, 0, 0, 1};
     set_texture_name(from, scene, folder, format, material, warnings);

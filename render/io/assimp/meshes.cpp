@@ -17,10 +17,14 @@ std::string called(const aiMesh& mesh) {
     return name.empty() ? "the mesh" : "mesh '" + excerpt(name) + "'";
 }
 
+bool are_coordinates(const aiVector3D& v) {
+    return (int{is_coordinate(v.x)} & int{is_coordinate(v.y)} & int{is_coordinate(v.z)}) != 0;
+}
+
 void require_coordinates(const aiVector3D* vectors, const char* what, const aiMesh& mesh) {
     int all = 1;  // without an early end, so that several are looked at at once
     for (const aiVector3D* v = vectors; v != vectors + mesh.mNumVertices; ++v)
-        all &= int{is_coordinate(v->x)} & int{is_coordinate(v->y)} & int{is_coordinate(v->z)};
+        all &= int{are_coordinates(*v)};
     if (all == 0)
         throw ImportError("a " + std::string(what) + " of " + called(mesh) +
                           " is not a number from -1e15 to 1e15");
@@ -41,12 +45,17 @@ void move_vertices(aiMesh& mesh, scene::Geometry& geometry) {
     release(mesh.mVertices);
 }
 
-void move_normals(aiMesh& mesh, scene::Geometry& geometry) {
+/// A normal that vanishes is drawn as the face's.
+void move_normals(aiMesh& mesh, scene::Geometry& geometry, ConversionWarnings& warnings) {
     if (!mesh.HasNormals()) return;
-    require_coordinates(mesh.mNormals, "normal", mesh);
     geometry.normals.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v)
-        geometry.normals.emplace_back(v->x, v->y, v->z);
+    std::size_t unusable = 0;
+    for (const aiVector3D* v = mesh.mNormals; v != mesh.mNormals + mesh.mNumVertices; ++v) {
+        const bool usable = are_coordinates(*v);
+        geometry.normals.emplace_back(usable ? glm::vec3(v->x, v->y, v->z) : glm::vec3(0));
+        unusable += usable ? 0 : 1;
+    }
+    warnings.add("a normal that is not a number is replaced by the face's", unusable);
     release(mesh.mNormals);
 }
 
@@ -119,11 +128,12 @@ void check_faces(const aiMesh& mesh) {
     }
 }
 
-scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format) {
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, ConversionWarnings& warnings) {
     scene::Geometry geometry;
     move_triangles(mesh, geometry);
     move_vertices(mesh, geometry);
-    if (format != AssimpFormat::stl) move_normals(mesh, geometry);  // there each triangle has its own
+    if (format != AssimpFormat::stl)
+        move_normals(mesh, geometry, warnings);  // there each triangle has its own
     move_texcoords(mesh, geometry);
     if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
     return geometry;

@@ -26,7 +26,7 @@ void check_faces(const aiMesh& mesh);
 
 /// Converts the triangles of a mesh that passed check_faces(), by the rules in assimp/scene.hpp. Frees the
 /// arrays that it has copied. Throws ImportError.
-scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format);
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, ConversionWarnings& warnings);
 
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings);
 

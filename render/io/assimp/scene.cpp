@@ -90,7 +90,7 @@ private:
     scene::Index add_geometry(aiMesh& mesh) {
         report_unsupported_parts(mesh, warnings_);
         if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return scene::kNone;
-        scene::Geometry geometry = convert_geometry(mesh, format_);
+        scene::Geometry geometry = convert_geometry(mesh, format_, warnings_);
         if (geometry.triangles.empty()) return scene::kNone;
         geometry.id = static_cast<scene::Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));
@@ -221,9 +221,12 @@ private:
                                       "' has an element that is not a number from -1e15 to 1e15");
                 matrix[static_cast<int>(column)][static_cast<int>(row)] = from[row][column];
             }
-        if (from.d1 != 0 || from.d2 != 0 || from.d3 != 0 || from.d4 != 1)
+        constexpr float kRounding = 1e-5F;  // assimp inverts pivots in single precision
+        if (std::abs(from.d1) > kRounding || std::abs(from.d2) > kRounding || std::abs(from.d3) > kRounding ||
+            std::abs(from.d4 - 1) > kRounding)
             throw ImportError("the matrix of node '" + excerpt(text_of(node.mName)) +
                               "' is not affine: its last row is not 0 0 0 1");
+        for (int column = 0; column < 4; ++column) matrix[column][3] = column == 3 ? 1 : 0;
         return matrix;
     }
 

@@ -8,7 +8,7 @@
 
 #include "io/assimp/files.hpp"
 #include "io/assimp/text.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "io/notices.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
@@ -30,7 +30,7 @@ aiTextureType color_texture_type(const aiMaterial& material) {
 /// As assimp looks for it: a texture inside the file may be meant by its number or by its name.
 std::string name_of(const std::string& address, const aiScene& scene, const std::filesystem::path& folder,
                     AssimpFormat format) {
-    if (format == AssimpFormat::gltf) return file_name_of_uri(folder, address);
+    if (format == AssimpFormat::gltf) return file_name_of_foreign_path(folder, address);
     const int number = scene.GetEmbeddedTextureAndIndex(address.c_str()).second;
     return number >= 0 ? "*" + std::to_string(number) : file_name_of_foreign_path(folder, address);
 }
@@ -60,7 +60,7 @@ TextureResult decode_embedded(aiScene& scene, const std::string& name, std::uint
         return tl::unexpected(std::string("the file has no such embedded texture"));
     aiTexture& from = *scene.mTextures[index];
     if (from.mHeight != 0 || from.pcData == nullptr)
-        return tl::unexpected(std::string("it is neither PNG nor JPEG"));
+        return tl::unexpected(std::string("its pixels are not in an image file"));
     auto image = decode_image({reinterpret_cast<const char*>(from.pcData), from.mWidth}, max_pixels);
     delete[] from.pcData;  // each is decoded once
     from.pcData = nullptr;

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/utf8.hpp"
-#include "io/image_file.hpp"
+#include "io/image/image_file.hpp"
 #include "io/scene_textures.hpp"
 
 namespace vrut::io {

@@ -14,9 +14,10 @@ namespace vrut::io {
 inline constexpr std::uint64_t kMaxImagePixels = std::uint64_t{1} << 26;
 inline constexpr std::uint32_t kMaxImageSide = 16384;
 
-/// Decodes a PNG (of any kind) or JPEG (grey or colour), recognized by its first bytes. Values are the
-/// file's: gamma, colour profile and orientation are ignored; 16 bits are rounded to 8. The size is checked
-/// before pixels are allocated. Returns an error without the file's name.
+/// Decodes a PNG (of any kind), JPEG (grey or colour), WebP, TIFF, BMP, GIF or TGA, recognized by its first
+/// bytes. Values are the file's: gamma, colour profile and, but for TIFF, orientation are ignored; 16 bits
+/// are rounded to 8, and so are colours times alpha of a TIFF. The size is checked before pixels are
+/// allocated. Returns an error without the file's name.
 tl::expected<scene::Image, std::string> decode_image(std::string_view bytes,
                                                      std::uint64_t max_pixels = kMaxImagePixels);
 

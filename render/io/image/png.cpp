@@ -1,35 +1,15 @@
-#include "io/image_file.hpp"
-
 #include <png.h>
-#include <turbojpeg.h>
 
 #include <csetjmp>
 #include <cstdio>
 #include <cstring>
-#include <memory>
-#include <optional>
 #include <vector>
 
-#include "base/file_bytes.hpp"
+#include "io/image/decoders.hpp"
 
 namespace vrut::io {
 
 namespace {
-
-using Result = tl::expected<scene::Image, std::string>;
-
-// What the largest image takes uncompressed: 16 bits RGBA.
-constexpr std::uintmax_t kMaxFileBytes = kMaxImagePixels * 8 + (std::uintmax_t{1} << 20);
-
-std::optional<std::string> size_fault(std::uint32_t width, std::uint32_t height, std::uint64_t max_pixels) {
-    const std::string size =
-        "its size is " + std::to_string(width) + " x " + std::to_string(height) + " pixels, ";
-    if (width > kMaxImageSide || height > kMaxImageSide)
-        return size + "but a side may have at most " + std::to_string(kMaxImageSide);
-    if (std::uint64_t{width} * height > max_pixels)
-        return size + "but at most " + std::to_string(max_pixels) + " in all can be read";
-    return std::nullopt;
-}
 
 /// libpng leaves a call that fails by longjmp: nothing with a destructor lives in the functions that call it.
 class PngDecoder {
@@ -90,7 +70,9 @@ private:
     png_infop info_ = nullptr;
 };
 
-Result decode_png(std::string_view bytes, std::uint64_t max_pixels) {
+}  // namespace
+
+DecodedImage decode_png(std::string_view bytes, std::uint64_t max_pixels) {
     PngDecoder decoder(bytes);
     if (!decoder.read_header()) return tl::unexpected(decoder.fault());
     if (auto fault = size_fault(decoder.width(), decoder.height(), max_pixels))
@@ -102,45 +84,6 @@ Result decode_png(std::string_view bytes, std::uint64_t max_pixels) {
         rows.push_back(image.rgba.data() + row * decoder.width() * 4);
     if (!decoder.read_pixels(rows.data())) return tl::unexpected(decoder.fault());
     return image;
-}
-
-Result decode_jpeg(std::string_view bytes, std::uint64_t max_pixels) {
-    const std::unique_ptr<void, int (*)(tjhandle)> decoder(tjInitDecompress(), tjDestroy);
-    const auto fault = [&] {
-        return tl::unexpected(std::string("the JPEG is damaged: ") + tjGetErrorStr2(decoder.get()));
-    };
-    if (!decoder) return fault();
-    const auto* data = reinterpret_cast<const unsigned char*>(bytes.data());
-    int width = 0, height = 0, sampling = 0, colors = 0;
-    if (tjDecompressHeader3(decoder.get(), data, bytes.size(), &width, &height, &sampling, &colors) != 0)
-        return fault();
-    if (colors == TJCS_CMYK || colors == TJCS_YCCK)
-        return tl::unexpected(std::string("it is a CMYK JPEG: save it as RGB"));
-    if (auto why =
-            size_fault(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), max_pixels))
-        return tl::unexpected(*std::move(why));
-    scene::Image image;
-    image.resize(width, height);
-    // The limit is for progressive files: each of thousands of scans costs as much as the whole image.
-    constexpr int kFlags = TJFLAG_BOTTOMUP | TJFLAG_ACCURATEDCT | TJFLAG_STOPONWARNING | TJFLAG_LIMITSCANS;
-    if (tjDecompress2(decoder.get(), data, bytes.size(), image.rgba.data(), width, 0, height, TJPF_RGBA,
-                      kFlags) != 0)
-        return fault();
-    return image;
-}
-
-}  // namespace
-
-Result decode_image(std::string_view bytes, std::uint64_t max_pixels) {
-    if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return decode_png(bytes, max_pixels);
-    if (bytes.starts_with("\xFF\xD8\xFF")) return decode_jpeg(bytes, max_pixels);
-    return tl::unexpected(std::string("it is neither PNG nor JPEG"));
-}
-
-Result read_image_file(const std::filesystem::path& path, std::uint64_t max_pixels) {
-    const auto bytes = base::read_bytes(path, kMaxFileBytes);
-    if (!bytes) return tl::unexpected(bytes.error());
-    return decode_image(*bytes, max_pixels);
 }
 
 }  // namespace vrut::io
