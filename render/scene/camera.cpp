@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/frustum.hpp"
+
 namespace vrut::scene {
 
 namespace {
@@ -117,14 +119,43 @@ bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye) {
     return false;
 }
 
+namespace {
+
+/// The camera node with the lowest id, or kNone.
+Index lowest_camera_node(const Scene& scene) {
+    for (const auto& [id, index] : scene.index_by_id())
+        if (scene.nodes()[static_cast<std::size_t>(index)].type == NodeType::camera) return index;
+    return kNone;
+}
+
+/// True if nothing can be drawn, too.
+bool sees_something(const PlacedScene& placed, const Camera& camera) {
+    constexpr double kAspect = 16.0 / 9;  // a tablet's, lying
+    const math::Frustum frustum = math::frustum_of(projection_of(camera, kAspect));
+    const glm::dmat4 view = view_from_world(camera);
+    const Scene& scene = *placed.scene;
+    return placed.drawable.empty() || std::ranges::any_of(placed.drawable, [&](Index node) {
+               const auto at = static_cast<std::size_t>(node);
+               const Index geometry = std::get<GeometryData>(scene.nodes()[at].data).geometry;
+               return !math::is_outside(frustum, view * placed.world[at],
+                                        scene.geometries()[static_cast<std::size_t>(geometry)].bounds);
+           });
+}
+
+}  // namespace
+
 Index first_camera_node(const PlacedScene& placed) {
-    const auto& nodes = placed.scene->nodes();
-    std::size_t first = nodes.size();
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-        if (nodes[i].type == NodeType::camera && (first == nodes.size() || nodes[i].id < nodes[first].id))
-            first = i;
-    if (first == nodes.size() || !camera_at(placed, static_cast<Index>(first))) return kNone;
-    return static_cast<Index>(first);
+    const Index node = lowest_camera_node(*placed.scene);
+    if (node == kNone) return kNone;
+    const std::optional<Camera> camera = camera_at(placed, node);
+    return camera && sees_something(placed, *camera) ? node : kNone;
+}
+
+std::optional<std::string> why_not_first_camera(const PlacedScene& placed) {
+    const Index node = lowest_camera_node(*placed.scene);
+    if (node == kNone || first_camera_node(placed) == node) return std::nullopt;
+    return "the first view shows the whole scene: camera node " +
+           std::to_string(placed.scene->nodes()[static_cast<std::size_t>(node)].id) + " sees nothing of it";
 }
 
 }  // namespace vrut::scene

@@ -59,8 +59,10 @@ glm::dvec3 direction_through(const Camera& camera, double aspect, const glm::dve
 std::optional<Camera> camera_at(const PlacedScene& placed, Index camera_node);
 /// Returns whether `eye` is where drags look around (CameraData::look_radius).
 bool looks_around_from(const PlacedScene& placed, const glm::dvec3& eye);
-/// Returns the scene's initial camera: the camera node with the lowest id if there is one and its pose is
-/// valid; else kNone.
+/// Returns the scene's initial camera: the camera node with the lowest id if there is one, its pose is valid,
+/// and it sees something that can be drawn, where there is anything; else kNone.
 Index first_camera_node(const PlacedScene& placed);
+/// A sentence where there is a camera node and none is the initial camera.
+std::optional<std::string> why_not_first_camera(const PlacedScene& placed);
 
 }  // namespace vrut::scene

@@ -75,8 +75,8 @@ void info_command(const InfoArguments& arguments) {
     if (!scene) throw std::runtime_error(scene.error());
     scenes::LoadedScene loaded;
     loaded.name = arguments.scene.filename().string();
-    loaded.notices = scenes::all_notices(*scene);
     loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
+    loaded.notices = scenes::all_notices(*loaded.placed);
     const protocol::SceneState state = *room::starting_state(loaded, 1).scene.value;
     const auto nodes = list_nodes(*loaded.placed);
     if (arguments.json)

@@ -32,8 +32,8 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     loaded.name = name;
     loaded.sha256 = sum.get();
     if (progress) progress(1);
-    loaded.notices = all_notices(*scene);
     loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
+    loaded.notices = all_notices(*loaded.placed);
     if (const std::size_t bytes = most_state_bytes(loaded); bytes > kMaxStateBytes)
         return tl::unexpected(path.string() + ": its cameras, lights, materials and backgrounds take " +
                               std::to_string(bytes) + " bytes in the state that clients get, and at most " +

@@ -3,14 +3,18 @@
 #include <string_view>
 
 #include "plan/frame_plan.hpp"
+#include "scene/camera.hpp"
 
 namespace vrut::server::scenes {
 
-std::vector<protocol::Notice> all_notices(const scene::Scene& scene) {
+std::vector<protocol::Notice> all_notices(const scene::PlacedScene& placed) {
+    const scene::Scene& scene = *placed.scene;
     std::vector<protocol::Notice> notices;
     for (const auto& sentences : {scene.notices(), plan::unsupported_features(scene)})
         for (const std::string& sentence : sentences)
             notices.push_back({protocol::notice_code::scene, sentence});
+    if (const auto sentence = scene::why_not_first_camera(placed))
+        notices.push_back({protocol::notice_code::scene, *sentence});
     return notices;
 }
 

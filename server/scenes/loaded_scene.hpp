@@ -23,7 +23,7 @@ struct LoadedScene {
 };
 
 /// What the reader reported about a scene, and which of its features are not drawn.
-std::vector<protocol::Notice> all_notices(const scene::Scene& scene);
+std::vector<protocol::Notice> all_notices(const scene::PlacedScene& placed);
 
 /// An upper bound of the bytes that cameras, lights, materials, backgrounds and notices take in `state`.
 std::size_t most_state_bytes(const LoadedScene& scene);

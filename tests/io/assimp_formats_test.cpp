@@ -403,6 +403,40 @@ TEST_CASE("harmless faults do not refuse a file") {
                        "the matrix of node 'Door' is not affine");
 }
 
+TEST_CASE("a picture lies on the texture coordinates that its material names") {
+    std::string text = text_of("panel.dae");
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        REQUIRE_MESSAGE(text.find(from) != std::string::npos, from);
+        text.replace(text.find(from), from.size(), to);
+    };
+    const auto read = [&] {
+        const TemporaryFolder folder;
+        folder.write("tex/my paint.png", picture());
+        return read_well(folder.write("panel.dae", text));
+    };
+    replace("texcoord=\"UV\"", "texcoord=\"CHANNEL1\"");
+    replace("target=\"#mat\"/>",
+            "target=\"#mat\"><bind_vertex_input semantic=\"CHANNEL1\" input_semantic=\"TEXCOORD\" "
+            "input_set=\"0\"/></instance_material>");
+    const scene::Scene first = read();
+    check_panel(geometry_of(first, node_of(first, "Door")), true);
+    CHECK_FALSE(has_notice(first, "texture coordinates"));
+
+    replace("input_set=\"0\"", "input_set=\"1\"");
+    replace("<input semantic=\"TEXCOORD\" source=\"#uv\" offset=\"1\" set=\"0\"/>",
+            "<input semantic=\"TEXCOORD\" source=\"#zero\" offset=\"1\" set=\"0\"/>"
+            "<input semantic=\"TEXCOORD\" source=\"#uv\" offset=\"1\" set=\"1\"/>");
+    replace("<vertices id=\"v\">",
+            "<source id=\"zero\"><float_array id=\"zeroa\" count=\"8\">0 0 0 0 0 0 0 0</float_array>"
+            "<technique_common><accessor source=\"#zeroa\" count=\"4\" stride=\"2\">"
+            "<param name=\"S\" type=\"float\"/><param name=\"T\" "
+            "type=\"float\"/></accessor></technique_common></source>"
+            "<vertices id=\"v\">");
+    const scene::Scene second = read();
+    check_panel(geometry_of(second, node_of(second, "Door")), true);
+    CHECK_FALSE(has_notice(second, "texture coordinates"));
+}
+
 TEST_CASE("a picture that says that it is huge is not read") {
     const TemporaryFolder folder;
     folder.write("panel.mtl", "newmtl Paint\nmap_Kd paint.png\n");

@@ -233,6 +233,9 @@ TEST_CASE("a glTF file that is none is refused in a sentence") {
     check_refused("nothing", "no scene to show");
     check_refused(car_text().substr(0, 900), "its JSON is invalid at byte");
     check_refused("vrut-text 1", "not a binary glTF", "car.glb");
+    check_refused(R"({"meshes":{"box":{}},"asset":{"generator":"a","version":"1.0"}})",
+                  "it is glTF 1.0: export");
+    check_refused(std::string("glTF\1\0\0\0", 8) + std::string(40, ' '), "it is glTF 1.0: export", "car.glb");
     check_refused(car_glb().substr(0, 900), "its JSON chunk exceeds the file", "car.glb");
     check_refused(car_glb().substr(0, car_glb().size() - 8), "cannot be read", "car.glb");
     check_refused(car_with("\"2.0\"", "\"1.0\""), "version");

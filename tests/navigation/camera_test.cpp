@@ -555,6 +555,42 @@ TEST_CASE("the scene's first camera node by id, in the world, active or not") {
           scene::kNone);
 }
 
+TEST_CASE("a camera that sees nothing of the scene is not its first view") {
+    const auto with_eye = [](const glm::dvec3& eye, const glm::dvec3& focus) {
+        scene::SceneParts parts;
+        scene::Geometry triangle;
+        triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+        for (const glm::dvec3& position : triangle.positions) triangle.bounds.add(position);
+        triangle.triangles = {{0, 1, 2}};
+        parts.geometries = {triangle};
+        scene::CameraData data;
+        data.eye = eye;
+        data.focus = focus;
+        scene::Node part{2,
+                         {},
+                         scene::NodeType::geometry,
+                         scene::kNone,
+                         {},
+                         true,
+                         glm::dmat4(1),
+                         scene::GeometryData{0, scene::kNone}};
+        parts.nodes = {camera_part(1, 0, data), {std::move(part), 0}};
+        auto scene = scene::Scene::build(std::move(parts));
+        REQUIRE(scene);
+        return scene::place(*std::move(scene));
+    };
+    const scene::PlacedScene seen = with_eye({0, 0, 5}, {0, 0, 0}), behind = with_eye({0, 0, 5}, {0, 0, 9}),
+                             beside = with_eye({0, 0, 5}, {9, 0, 0});
+    CHECK(scene::first_camera_node(seen) != scene::kNone);
+    CHECK_FALSE(scene::why_not_first_camera(seen));
+    for (const scene::PlacedScene* placed : {&behind, &beside}) {
+        CHECK(scene::first_camera_node(*placed) == scene::kNone);
+        CHECK(scene::why_not_first_camera(*placed) ==
+              "the first view shows the whole scene: camera node 1 sees nothing of it");
+    }
+    CHECK_FALSE(scene::why_not_first_camera(scene_of({})));
+}
+
 TEST_CASE("home looks from three quarters and above, and fits") {
     math::Bounds box;
     box.add({1, 0, 2});

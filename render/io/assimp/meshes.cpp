@@ -60,13 +60,14 @@ void move_normals(aiMesh& mesh, scene::Geometry& geometry, ConversionWarnings& w
 }
 
 /// assimp has turned v upwards already, as we have it.
-void move_texcoords(aiMesh& mesh, scene::Geometry& geometry) {
-    if (!mesh.HasTextureCoords(0)) return;
-    require_coordinates(mesh.mTextureCoords[0], "texture coordinate", mesh);
+void move_texcoords(aiMesh& mesh, unsigned set, scene::Geometry& geometry) {
+    aiVector3D*& from = mesh.mTextureCoords[mesh.HasTextureCoords(set) ? set : 0];
+    if (from == nullptr) return;
+    require_coordinates(from, "texture coordinate", mesh);
     geometry.texcoords.reserve(mesh.mNumVertices);
-    for (const aiVector3D* v = mesh.mTextureCoords[0]; v != mesh.mTextureCoords[0] + mesh.mNumVertices; ++v)
+    for (const aiVector3D* v = from; v != from + mesh.mNumVertices; ++v)
         geometry.texcoords.emplace_back(v->x, v->y);
-    release(mesh.mTextureCoords[0]);
+    release(from);
 }
 
 void move_triangles(aiMesh& mesh, scene::Geometry& geometry) {
@@ -128,13 +129,14 @@ void check_faces(const aiMesh& mesh) {
     }
 }
 
-scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, ConversionWarnings& warnings) {
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, unsigned texcoord_set,
+                                 ConversionWarnings& warnings) {
     scene::Geometry geometry;
     move_triangles(mesh, geometry);
     move_vertices(mesh, geometry);
     if (format != AssimpFormat::stl)
         move_normals(mesh, geometry, warnings);  // there each triangle has its own
-    move_texcoords(mesh, geometry);
+    move_texcoords(mesh, texcoord_set, geometry);
     if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
     return geometry;
 }
@@ -143,7 +145,6 @@ void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings) 
     if (mesh.HasBones()) warnings.add("a skin is ignored: its mesh is shown undeformed");
     if (mesh.mNumAnimMeshes > 0) warnings.add("morph targets are ignored");
     if (mesh.HasVertexColors(0)) warnings.add("vertex colours are ignored");
-    if (mesh.HasTextureCoords(1)) warnings.add("a mesh's further texture coordinates are not read");
     if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
         warnings.add("a primitive of points or lines is ignored: only triangles are supported");
 }

@@ -25,8 +25,10 @@ inline bool is_coordinate(float value) { return std::abs(value) <= 1e15F; }
 void check_faces(const aiMesh& mesh);
 
 /// Converts the triangles of a mesh that passed check_faces(), by the rules in assimp/scene.hpp. Frees the
-/// arrays that it has copied. Throws ImportError.
-scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, ConversionWarnings& warnings);
+/// arrays that it has copied. `texcoord_set`: the texture coordinates to take, if the mesh has them, else the
+/// first. Throws ImportError.
+scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, unsigned texcoord_set,
+                                 ConversionWarnings& warnings);
 
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings);
 

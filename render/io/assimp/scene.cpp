@@ -90,7 +90,8 @@ private:
     scene::Index add_geometry(aiMesh& mesh) {
         report_unsupported_parts(mesh, warnings_);
         if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) return scene::kNone;
-        scene::Geometry geometry = convert_geometry(mesh, format_, warnings_);
+        scene::Geometry geometry = convert_geometry(
+            mesh, format_, texcoord_set_of(*scene_.mMaterials[mesh.mMaterialIndex]), warnings_);
         if (geometry.triangles.empty()) return scene::kNone;
         geometry.id = static_cast<scene::Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));

@@ -35,9 +35,10 @@ std::string name_of(const std::string& address, const aiScene& scene, const std:
     return number >= 0 ? "*" + std::to_string(number) : file_name_of_foreign_path(folder, address);
 }
 
-void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, ConversionWarnings& warnings) {
-    int set = 0, wrap = aiTextureMapMode_Wrap;
-    if (from.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS && set != 0)
+void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, AssimpFormat format,
+                                 ConversionWarnings& warnings) {
+    int wrap = aiTextureMapMode_Wrap;
+    if (format == AssimpFormat::gltf && texcoord_set_of(from) != 0)  // check_gltf() hides them from assimp
         warnings.add("a texture uses the first texture coordinates, not others as the file says");
     for (const char* key : {"$tex.mapmodeu", "$tex.mapmodev"})
         if (from.Get(key, type, 0, wrap) == aiReturn_SUCCESS && wrap != aiTextureMapMode_Wrap)
@@ -76,12 +77,19 @@ bool has_texture(const aiMaterial& material, aiTextureType type) {
     return material.GetTextureCount(type) > 0;
 }
 
+unsigned texcoord_set_of(const aiMaterial& material) {
+    int set = 0;
+    const aiTextureType type = color_texture_type(material);
+    const bool told = material.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS;
+    return told && set > 0 && set < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(set) : 0;
+}
+
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
                       AssimpFormat format, scene::Material& material, ConversionWarnings& warnings) {
     const aiTextureType type = color_texture_type(from);
     if (!has_texture(from, type)) return;
     material.image = name_of(texture_name(from, type), scene, folder, format);
-    report_unsupported_sampling(from, type, warnings);
+    report_unsupported_sampling(from, type, format, warnings);
     if (glm::dvec3(material.diffuse) != glm::dvec3(1))
         warnings.add("a texture is not multiplied by the base or diffuse colour");
 }

@@ -15,6 +15,8 @@ namespace vrut::io {
 
 bool has_texture(const aiMaterial& material, aiTextureType type);
 
+/// The number of the texture coordinates, counted from 0, that the colour's texture lies on.
+unsigned texcoord_set_of(const aiMaterial& material);
 /// Sets the name of the material's base colour or diffuse texture, if it has one: a file in `folder`, or `*`
 /// and a number for a texture embedded in the scene's file.
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,

@@ -214,6 +214,25 @@ private:
     std::uint64_t memory_ = 0, most_memory_ = 0;
 };
 
+constexpr const char* kVersion1 = "it is glTF 1.0: export it as glTF 2.0";
+/// Of a file that has nothing to show for version 2, whose lists version 1 has as objects.
+bool is_version_1(std::string_view json) try {
+    bool found = false;
+    JsonScan scan(json);
+    scan.each_member([&](std::string_view name) {
+        if (name != "asset") return scan.skip();
+        scan.each_member([&](std::string_view member) {
+            if (member == "version")
+                found = scan.take_string().starts_with("1.");
+            else
+                scan.skip();
+        });
+    });
+    return found;
+} catch (const JsonError&) {
+    return false;
+}
+
 constexpr std::size_t kGlbHeader = 20;  // of the file and its first chunk, which is the JSON
 
 /// Of a binary file, up to the end of its JSON; throws where there is none.
@@ -222,6 +241,7 @@ std::string read_glb_head(const std::filesystem::path& path) {
     std::string head(kGlbHeader, '\0');
     if (!stream.read(head.data(), kGlbHeader) || !head.starts_with("glTF"))
         reject("it is not a binary glTF (GLB) file");
+    if (head.compare(4, 4, std::string("\1\0\0\0", 4)) == 0) reject(kVersion1);
     std::uint32_t length = 0;
     std::memcpy(&length, head.data() + 12, sizeof length);
     std::error_code error;
@@ -245,13 +265,15 @@ tl::expected<CheckedGltf, std::string> check_gltf(const std::filesystem::path& p
     // By its ending, as assimp does.
     const std::string ending = path.extension().string();
     const bool binary = ending.size() == 4;
+    CheckedGltf result;
     try {
-        CheckedGltf result;
         result.head = read_head(path, binary);
         GltfChecker(path, result, read_gltf(result, binary ? kGlbHeader : 0)).check();
         return result;
     } catch (const JsonError& fault) {
-        return tl::unexpected(std::string(fault.what()));
+        const std::size_t start = std::min(binary ? kGlbHeader : 0, result.head.size());
+        const bool old = is_version_1(std::string_view(result.head).substr(start));
+        return tl::unexpected(std::string(old ? kVersion1 : fault.what()));
     }
 }
 
