@@ -113,7 +113,8 @@ TEST_CASE("a picture that cannot be read is left out with a notice") {
     fs::create_symlink("loop.png", folder.path() / "cars/loop.png");
     check_notice(notice_of(folder, "none.png"),
                  {"car.vrut: material 3 ", "'none.png'", "there is no such file"});
-    check_notice(notice_of(folder, "text.png"), {"material 3 ", "'text.png'", "it is none of PNG, JPEG, WebP, TIFF, BMP, GIF and TGA"});
+    check_notice(notice_of(folder, "text.png"),
+                 {"material 3 ", "'text.png'", "it is none of PNG, JPEG, WebP, TIFF, BMP, GIF and TGA"});
     check_notice(notice_of(folder, "short.png"), {"material 3 ", "'short.png'", "damaged"});
     check_notice(notice_of(folder, "folder.png"), {"material 3 ", "'folder.png'", "not a regular file"});
     check_notice(notice_of(folder, "loop.png"), {"material 3 ", "'loop.png'", "cannot be found"});
