@@ -405,8 +405,9 @@ TEST_CASE("a JPEG in printing colours, and what is no picture, is refused with a
 }
 
 TEST_CASE("WebP, TIFF, BMP, GIF and TGA are read upright, with their alpha") {
-    for (const auto& [name, bytes] : other_files()) {
-        CAPTURE(name);
+    for (const auto& file : other_files()) {
+        const auto& [name, bytes] = file;
+        CAPTURE(file.first);
         const scene::Image image = decode_well(bytes);
         REQUIRE(image.width == 2);
         REQUIRE(image.height == 2);
@@ -424,9 +425,9 @@ TEST_CASE("WebP, TIFF, BMP, GIF and TGA are read upright, with their alpha") {
 }
 
 TEST_CASE("the sizes of these are judged from their headers, too") {
-    for (auto& [name, bytes] : other_files()) {
-        CAPTURE(name);
-        CHECK(contains(io::decode_image(bytes, 3).error(), "2 x 2 pixels, but at most 3"));
+    for (const auto& file : other_files()) {
+        CAPTURE(file.first);
+        CHECK(contains(io::decode_image(file.second, 3).error(), "2 x 2 pixels, but at most 3"));
     }
 }
 
