@@ -103,7 +103,8 @@ describe('only the holder steers', () => {
     const count = other.texts.length;
     for (const message of INPUT) other.send(message, { id: null });
     await other.barrier();
-    assert.deepEqual(other.texts.slice(count).map((text) => text.type), ['picked']);
+    const types = other.texts.slice(count).map((text) => text.type);
+    assert.deepEqual(types.filter((type) => type !== 'stats'), ['picked']);  // those come each second
   });
 
   test('what does not steer is free to all', async (t) => {
