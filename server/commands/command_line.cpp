@@ -383,8 +383,9 @@ std::shared_ptr<Command> describe_compare(CompareArguments& arguments) {
     auto command = std::make_shared<Command>("Measure how far two images are apart.", "compare");
     command->description = {
         "The command prints the largest difference, RMS, PSNR, how many pixels are off, and FLIP, which "
-        "weighs "
-        "differences as a viewer sees them. The images have the same size."};
+        "weighs differences as a viewer sees them. The images are PNG, JPEG, WebP, TIFF, BMP, GIF or TGA "
+        "files "
+        "of the same size."};
     add_file(*command, "IMAGE1", arguments.a, "Compare this image.")->required();
     add_file(*command, "IMAGE2", arguments.b, "Compare it with this one.")->required();
     command->add_flag("--json", arguments.json, "Print JSON.")->group(kOutput);

@@ -46,8 +46,7 @@ std::string little_endian(std::uint64_t value, int bytes) {
     return text;
 }
 
-// Two rows of two pixels: red and green, below them blue and a brown, of which half shows where there is
-// alpha.
+// Two rows of two pixels: red and green above blue and brown. The alpha of brown is 128.
 
 std::string webp_bytes() {
     const std::uint8_t rgba[] = {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 200, 100, 50, 128};
