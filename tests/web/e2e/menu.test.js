@@ -130,7 +130,7 @@ for (const [name, size] of Object.entries({ 'a tablet': TABLET, 'an upright tabl
       assert.equal(await told('name'), scene.name);
       for (const key of ['nodes', 'materials', 'geometries']) assert.equal(await told(key), String(scene[key]));
       for (const key of ['solid', 'transparent', 'reflective']) assert.equal(await told(key), String(renderer[key]));
-      await page.waitForFunction(() => / ms$/.test(document.querySelector('[data-fact="time"]').textContent));
+      await page.waitForFunction(() => /\u00a0ms$/.test(document.querySelector('[data-fact="time"]').textContent));
     });
 
     async function assertRoom(where, mostly) {
