@@ -30,6 +30,7 @@ public:
     /// Levels that are made meanwhile wait for the next image: all of a geometry's items see the same.
     LevelSelector(FramePlan& plan, const View& view, const IsResident& is_resident)
         : plan_(plan), view_(view), scene_(*view.scene->scene), is_resident_(is_resident) {
+        levels_.reserve(scene_.geometries().size());
         for (std::size_t i = 0; i < scene_.geometries().size(); ++i)
             levels_.push_back(view.levels->of(static_cast<scene::Index>(i)));
     }

@@ -1,6 +1,7 @@
 #include "plan/draw_groups.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace vrut::plan {
@@ -37,50 +38,87 @@ bool belong_together(const DrawItem& a, const DrawItem& b, const scene::Scene& s
            share_draw(a, b);
 }
 
-/// Items that belong together, in runs whose boxes are tested first.
-class Group {
+/// Items that belong together, in runs whose boxes are tested first. All groups lie in a few arrays: memory
+/// of their own would take longer than the tests.
+class Groups {
 public:
-    /// `first` must outlive it.
-    explicit Group(const DrawItem& first) : first_(first) {}
-    const DrawItem& first() const { return first_; }
-
-    void add(std::size_t item, const math::Bounds& box) {
-        if (items_.size() % kRunLength == 0) runs_.emplace_back();
-        runs_.back().add(box);
-        items_.push_back(item);
-        boxes_.push_back(box);
+    Groups(std::span<const DrawItem> items, const scene::Scene& scene) : items_(items), scene_(scene) {
+        next_.reserve(items.size());
+        boxes_.reserve(items.size());
+        runs_.reserve(items.size());
     }
+
+    /// Adds the next item to the last group that it belongs to and behind which nothing overlaps it; else it
+    /// begins a group.
+    void add(const math::Bounds& box) {
+        const std::size_t item = boxes_.size();
+        boxes_.push_back(box);
+        next_.push_back(kNone);
+        std::size_t tests = kMostTests;
+        for (std::size_t k = groups_.size(); k > 0; --k) {
+            Group& group = groups_[k - 1];
+            if (belong_together(items_[group.first], items_[item], scene_)) return append(group, item);
+            if (may_overlap(group, box, tests)) break;
+        }
+        groups_.push_back({item, item, runs_.size(), runs_.size()});
+        runs_.push_back({item, 1, box});
+    }
+
+    /// Calls `visit` for each item, group by group.
+    template <class Visit>
+    void for_each_item(const Visit& visit) const {
+        for (const Group& group : groups_)
+            for (std::size_t item = group.first; item != kNone; item = next_[item]) visit(item);
+    }
+
+private:
+    static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
+
+    struct Group {
+        std::size_t first, last;  // items
+        std::size_t first_run, last_run;
+    };
+    /// `count` items of a group from `first` on.
+    struct Run {
+        std::size_t first, count;
+        math::Bounds box;
+        std::size_t next = kNone;
+    };
+
+    void append(Group& group, std::size_t item) {
+        next_[group.last] = item;
+        group.last = item;
+        if (runs_[group.last_run].count == kRunLength) {
+            runs_[group.last_run].next = runs_.size();
+            group.last_run = runs_.size();
+            runs_.push_back({item, 0, {}});
+        }
+        Run& run = runs_[group.last_run];
+        ++run.count;
+        run.box.add(boxes_[item]);
+    }
+
     /// Also true where `tests` do not suffice to find out.
-    bool may_overlap(const math::Bounds& box, std::size_t& tests) const {
-        for (std::size_t run = 0; run < runs_.size(); ++run) {
+    bool may_overlap(const Group& group, const math::Bounds& box, std::size_t& tests) const {
+        for (std::size_t k = group.first_run; k != kNone; k = runs_[k].next) {
             if (tests == 0) return true;
             --tests;
-            if (!overlap(runs_[run], box)) continue;
-            const std::size_t end = std::min((run + 1) * kRunLength, boxes_.size());
-            for (std::size_t i = run * kRunLength; i < end; ++i)
-                if (overlap(boxes_[i], box)) return true;
+            const Run& run = runs_[k];
+            if (!overlap(run.box, box)) continue;
+            std::size_t item = run.first;
+            for (std::size_t i = 0; i < run.count; ++i, item = next_[item])
+                if (overlap(boxes_[item], box)) return true;
         }
         return false;
     }
-    const std::vector<std::size_t>& items() const { return items_; }
 
-private:
-    const DrawItem& first_;
-    std::vector<std::size_t> items_;
-    std::vector<math::Bounds> boxes_, runs_;
+    std::span<const DrawItem> items_;
+    const scene::Scene& scene_;
+    std::vector<Group> groups_;
+    std::vector<Run> runs_;
+    std::vector<std::size_t> next_;  // of each item, the next one of its group
+    std::vector<math::Bounds> boxes_;
 };
-
-/// The last group that the item belongs to and behind which nothing overlaps it; null: there is none.
-Group* group_for(std::vector<Group>& groups, const DrawItem& item, const math::Bounds& box,
-                 const scene::Scene& scene) {
-    std::size_t tests = kMostTests;
-    for (std::size_t k = groups.size(); k > 0; --k) {
-        Group& group = groups[k - 1];
-        if (belong_together(group.first(), item, scene)) return &group;
-        if (group.may_overlap(box, tests)) return nullptr;
-    }
-    return nullptr;
-}
 
 }  // namespace
 
@@ -94,17 +132,11 @@ void group_for_draws(std::vector<DrawItem>& items, const scene::PlacedScene& pla
     const scene::Scene& scene = *placed.scene;
     const auto differs = [&](const DrawItem& item) { return !belong_together(items.front(), item, scene); };
     if (std::ranges::none_of(items, differs)) return;
-    std::vector<Group> groups;
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        const math::Bounds box = box_of(items[i], placed, eye);
-        Group* group = group_for(groups, items[i], box, scene);
-        if (!group) group = &groups.emplace_back(items[i]);
-        group->add(i, box);
-    }
+    Groups groups(items, scene);
+    for (const DrawItem& item : items) groups.add(box_of(item, placed, eye));
     std::vector<DrawItem> grouped;
     grouped.reserve(items.size());
-    for (const Group& group : groups)
-        for (const std::size_t i : group.items()) grouped.push_back(std::move(items[i]));
+    groups.for_each_item([&](std::size_t item) { grouped.push_back(std::move(items[item])); });
     items = std::move(grouped);
 }
 

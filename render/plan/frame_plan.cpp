@@ -23,27 +23,28 @@ constexpr std::int64_t kListed = 20, kOrdered = 20;
 
 bool is_flattened(double relative_determinant) { return !(std::abs(relative_determinant) > 1e-12); }
 
-/// Of a drawable node. None if it lies too far from the eye.
-std::optional<DrawItem> item_of(const scene::PlacedScene& placed, scene::Index node, const glm::dmat4& view,
-                                const scene::Style& style) {
+/// Adds the item of a drawable node, unless it lies too far from the eye.
+void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dmat4& view,
+              const scene::Style& style, std::vector<DrawItem>& items) {
     const auto at = static_cast<std::size_t>(node);
     const scene::Scene& scene = *placed.scene;
-    DrawItem item;
-    item.node = node;
-    item.geometry = std::get<scene::GeometryData>(scene.nodes()[at].data).geometry;
-    item.material = placed.nodes[at].material;
-    item.view_from_node = view * placed.world[at];
+    const scene::Index geometry = std::get<scene::GeometryData>(scene.nodes()[at].data).geometry;
+    const glm::dmat4 view_from_node = view * placed.world[at];
     const math::Bounds in_view =
-        transformed(item.view_from_node, scene.geometries()[static_cast<std::size_t>(item.geometry)].bounds);
+        transformed(view_from_node, scene.geometries()[static_cast<std::size_t>(geometry)].bounds);
     if (!(glm::length(in_view.min) < scene::kMaxDrawDistance &&
           glm::length(in_view.max) < scene::kMaxDrawDistance))
-        return {};
+        return;
+    DrawItem& item = items.emplace_back();
+    item.node = node;
+    item.geometry = geometry;
+    item.material = placed.nodes[at].material;
+    item.view_from_node = view_from_node;
     const double determinant = scene::relative_determinant(glm::dmat3(item.view_from_node));
     const bool mirror = !style.override_material && mirror_plane(scene, item);
     const bool both = is_flattened(determinant) || mirror || scene.material(item.material).two_sided;
     item.cull_mode = both ? CullMode::none : CullMode::back;
     item.mirrored = determinant < 0;
-    return item;
 }
 
 void assign_textures(std::vector<DrawItem>& items, const View& view) {
@@ -161,7 +162,7 @@ std::vector<DrawItem> visible_items(const View& view) {
     for (const scene::Index node : placed.drawable)  // at equal depth the last one is in front
         if ((shown.empty() || shown[static_cast<std::size_t>(node)]) &&
             (style.presentation || !placed.scene->is_presentation(node)))
-            if (auto item = item_of(placed, node, view_matrix, style)) items.push_back(*std::move(item));
+            add_item(placed, node, view_matrix, style, items);
     if (style.faces && !style.override_material) assign_textures(items, view);
     return items;
 }

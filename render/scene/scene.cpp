@@ -308,21 +308,23 @@ std::vector<glm::dmat4> world_matrices(const Scene& scene, const std::vector<Nod
 
 namespace {
 
-/// Returns true if a LOD or switch at `index` lets its child number `place` show.
-bool chooses(const PlacedScene& placed, std::size_t index, std::size_t place,
-             const std::optional<glm::dvec3>& eye) {
+/// Returns the place of the only child that a LOD or switch at `index` lets show, which may be past the last
+/// one; none if it lets all show.
+std::optional<std::size_t> chosen_child(const PlacedScene& placed, std::size_t index,
+                                        const std::optional<glm::dvec3>& eye) {
     const Node& node = placed.scene->nodes()[index];
     if (std::holds_alternative<SwitchData>(node.data)) {
         const int active_child = placed.nodes[index].active_child;
-        return active_child == SwitchData::kAllChildren || active_child == static_cast<int>(place);
+        if (active_child == SwitchData::kAllChildren) return {};
+        return active_child < 0 ? node.children.size() : static_cast<std::size_t>(active_child);
     }
     if (const auto* data = std::get_if<LodData>(&node.data); data && eye) {
         const double distance = glm::distance(*eye, glm::dvec3(placed.world[index][3]));
         std::size_t level = 0;
         while (level < data->ranges.size() && distance >= data->ranges[level]) ++level;
-        return place == level;
+        return level;
     }
-    return true;
+    return {};
 }
 
 }  // namespace
@@ -332,10 +334,14 @@ std::vector<bool> shown_nodes(const PlacedScene& placed, const std::optional<glm
     std::vector<bool> shown(nodes.size());
     shown[0] = placed.nodes[0].active;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-        if (!shown[i]) continue;
-        for (std::size_t place = 0; place < nodes[i].children.size(); ++place) {
-            const auto child = static_cast<std::size_t>(nodes[i].children[place]);
-            shown[child] = placed.nodes[child].active && chooses(placed, i, place, eye);
+        const std::vector<Index>& children = nodes[i].children;
+        if (!shown[i] || children.empty()) continue;
+        const std::optional<std::size_t> chosen = chosen_child(placed, i, eye);
+        const std::size_t first = std::min(chosen.value_or(0), children.size());
+        const std::size_t end = chosen ? std::min(first + 1, children.size()) : children.size();
+        for (std::size_t place = first; place < end; ++place) {
+            const auto child = static_cast<std::size_t>(children[place]);
+            shown[child] = placed.nodes[child].active;
         }
     }
     return shown;
@@ -350,7 +356,8 @@ bool is_shown(const PlacedScene& placed, Index node, const std::optional<glm::dv
         const auto& children = nodes[static_cast<std::size_t>(parent)].children;
         const auto place =
             static_cast<std::size_t>(std::find(children.begin(), children.end(), node) - children.begin());
-        if (!chooses(placed, static_cast<std::size_t>(parent), place, eye)) return false;
+        if (chosen_child(placed, static_cast<std::size_t>(parent), eye).value_or(place) != place)
+            return false;
     }
     return false;
 }
