@@ -51,6 +51,10 @@ GlVertexArray vertex_array_of(const GeometryBuffers& buffers, GLint first_vertex
         bind(1, buffers.texcoords, sizeof(glm::vec2));
         add_attribute(result, 2, 1, 2, 0);
     }
+    if (buffers.colors) {
+        bind(4, buffers.colors, sizeof(glm::vec3));
+        add_attribute(result, 4, 4, 3, 0);
+    }
     if (buffers.low_positions) {
         bind(2, buffers.low_positions, sizeof(glm::vec3));
         add_attribute(result, 3, 2, 3, 0);
@@ -65,6 +69,7 @@ std::shared_ptr<const GeometryBuffers> make_geometry_buffers(const GeometrySizes
     buffers->indices = make_dynamic_buffer("triangles", sizes.triangles * sizeof(glm::uvec3));
     if (sizes.texcoords)
         buffers->texcoords = make_dynamic_buffer("texture coordinates", sizes.vertices * sizeof(glm::vec2));
+    if (sizes.colors) buffers->colors = make_dynamic_buffer("colours", sizes.vertices * sizeof(glm::vec3));
     if (sizes.low_positions)
         buffers->low_positions =
             make_dynamic_buffer("low parts of positions", sizes.vertices * sizeof(glm::vec3));
@@ -95,7 +100,8 @@ GpuGeometry GeometryBufferPool::allocate(const GeometrySizes& sizes) {
     geometry.index_count = static_cast<GLsizei>(sizes.triangles * 3);
     // There may be vertices that no triangle uses.
     const bool is_small = sizes.triangles <= plan::kMostTrianglesOfSmall &&
-                          sizes.vertices <= 3 * plan::kMostTrianglesOfSmall && !sizes.low_positions;
+                          sizes.vertices <= 3 * plan::kMostTrianglesOfSmall && !sizes.colors &&
+                          !sizes.low_positions;
     if (is_small)
         share(sizes, geometry);
     else
@@ -108,7 +114,7 @@ void GeometryBufferPool::share(const GeometrySizes& sizes, GpuGeometry& geometry
     geometry.buffers = shared_.lock();
     if (!geometry.buffers || shared_vertices_ + sizes.vertices > vertices_at_most_ ||
         shared_triangles_ + triangles > triangles_at_most_) {
-        geometry.buffers = make_geometry_buffers({vertices_at_most_, triangles_at_most_, true}, true);
+        geometry.buffers = make_geometry_buffers({vertices_at_most_, triangles_at_most_, /*texcoords=*/true}, true);
         shared_ = geometry.buffers;
         shared_vertices_ = shared_triangles_ = 0;
     }

@@ -28,6 +28,7 @@ struct GeometryBuffers {
     /// One for each vertex. Whole numbers are subtracted, so that they lie around 0. Null: the geometry has
     /// none. Shared buffers hold unused ones for geometries that have none.
     GlBuffer texcoords;
+    GlBuffer colors;  ///< one for each vertex; null: the geometry has none
     /// The rest of each position that float rounds away. Null: positions are single floats.
     GlBuffer low_positions;
     GlVertexArray vertex_array;
@@ -52,7 +53,7 @@ struct GpuGeometry {
 
 struct GeometrySizes {
     std::size_t vertices = 0, triangles = 0;
-    bool texcoords = false, low_positions = false;
+    bool texcoords = false, colors = false, low_positions = false;
 };
 
 /// Returns a vertex array of a geometry's vertices with these indices.

@@ -19,6 +19,7 @@ PreparedData geometry_data(const scene::Geometry& geometry, bool double_single) 
     data.arrays = make_arrays(geometry, origin);
     if (double_single) data.low_positions = low_positions_of(data.arrays.corners, geometry, origin);
     if (!geometry.texcoords.empty()) data.texcoords = texcoords_of(data.arrays.corners, geometry);
+    if (!geometry.colors.empty()) data.colors = colors_of(data.arrays.corners, geometry);
     return data;
 }
 
@@ -172,7 +173,7 @@ void GpuScene::create_geometry(Arrival& arrival) {
     const std::vector<glm::uvec3>& triangles = triangles_of(data.arrays, read);
     GpuGeometry& geometry = arrival.geometry;
     geometry = buffer_pool_.allocate({data.arrays.vertices.size(), triangles.size(), !data.texcoords.empty(),
-                                      !data.low_positions.empty()});
+                                      !data.colors.empty(), !data.low_positions.empty()});
     geometry.origin = read.bounds.center();
     const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
     arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
@@ -185,6 +186,7 @@ void GpuScene::create_geometry(Arrival& arrival) {
     }
     if (!data.texcoords.empty())
         arrival.upload.add(geometry.buffers->texcoords, data.texcoords, first_vertex);
+    if (!data.colors.empty()) arrival.upload.add(geometry.buffers->colors, data.colors);
     if (!data.low_positions.empty()) arrival.upload.add(geometry.buffers->low_positions, data.low_positions);
 }
 

@@ -28,12 +28,13 @@ struct ResourceKey {
     }
 };
 
-/// A resource in memory, in the layout of the GPU. A geometry or a level fills the first three members,
+/// A resource in memory, in the layout of the GPU. A geometry or a level fills the first four members,
 /// another kind of resource one of the others.
 struct PreparedData {
     VertexArrays arrays;
     std::vector<glm::vec3> low_positions;
     std::vector<glm::vec2> texcoords;
+    std::vector<glm::vec3> colors;
     std::vector<glm::uvec2> edges;
     TextureData texture;
 

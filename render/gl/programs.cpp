@@ -58,10 +58,11 @@ bool is_double_single(FixedProgram program) {
 /// no mirror shows another; what it shows may be clipped, and lies beside the eye that carries the headlight.
 bool is_reachable(const SurfaceVariant& variant) {
     const bool plain = !variant.environment && !variant.clipped;
-    if (variant.kind == Kind::edges && (variant.textured || !plain)) return false;
+    if (variant.kind == Kind::edges && (variant.textured || variant.colored || !plain)) return false;
     if (variant.kind == Kind::mirror && !plain) return false;
     if (variant.anisotropic && !variant.textured) return false;
-    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single)) return false;
+    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored))
+        return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
 
@@ -74,7 +75,7 @@ bool has_double_single(const scene::Scene& scene) {
 /// What a scene's surfaces and lights may ask of programs.
 struct SceneFeatures {
     bool small_geometries = false, double_single = false;
-    bool texcoords = false, planes = false, environment_map = false;
+    bool texcoords = false, colors = false, planes = false, environment_map = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
     std::array<bool, 4> lights{};  ///< by SurfaceVariant::Light
@@ -94,6 +95,7 @@ SceneFeatures features_of(const scene::Scene& scene) {
     for (std::size_t i = 0; i < scene.geometries().size(); ++i) {
         features.small_geometries |= scene.geometries()[i].triangles.size() <= plan::kMostTrianglesOfSmall;
         features.texcoords |= !scene.geometries()[i].texcoords.empty();
+        features.colors |= !scene.geometries()[i].colors.empty();
         features.planes |= scene.plane(static_cast<scene::Index>(i)).has_value();
     }
     for (const scene::Material& material : scene.materials()) add_material(features, scene, material);
@@ -115,6 +117,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     const bool reflective = is_glass ? features.reflective_glass : features.reflective;
     if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
     if (variant.double_single && !features.double_single) return false;
+    if (variant.colored && !features.colors) return false;
     if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
     if (variant.kind == Kind::mirror && !features.mirrors()) return false;
@@ -145,10 +148,11 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 64; ++bits) {
+                for (int bits = 0; bits < 128; ++bits) {
                     const SurfaceVariant variant{
                         kind,   light,           (bits & 1) != 0,  (bits & 2) != 0, (bits & 4) != 0,
-                        lit_at, (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0};
+                        lit_at, (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0,
+                        (bits & 64) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -182,6 +186,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.instanced, "INSTANCED");
     define(variant.kind == Kind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
+    define(variant.colored, "COLORED");
     define(variant.environment, "ENVIRONMENT");
     define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");

@@ -53,11 +53,12 @@ struct SurfaceVariant {
     bool anisotropic = false;    ///< filter of its texture
     /// Faces whose matrices and material are attributes of instances (GpuInstance) instead of uniforms.
     bool instanced = false;
+    bool colored = false;  ///< by the colours of its vertices
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic, v.instanced);
+                            v.anisotropic, v.instanced, v.colored);
         };
         return key(*this) < key(other);
     }

@@ -85,6 +85,13 @@ std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const 
     return result;
 }
 
+std::vector<glm::vec3> colors_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry) {
+    std::vector<glm::vec3> result;
+    result.reserve(corners.size());
+    for (const unsigned corner : corners) result.push_back(geometry.colors[corner]);
+    return result;
+}
+
 std::vector<glm::vec3> low_positions_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry,
                                         const glm::dvec3& origin) {
     std::vector<glm::vec3> low;

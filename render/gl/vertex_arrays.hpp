@@ -29,6 +29,9 @@ const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const sc
 /// more digits of the interpolated coordinates.
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry);
 
+/// Returns the colour of each vertex.
+std::vector<glm::vec3> colors_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry);
+
 /// Returns for each vertex its position relative to `origin` minus that position as float.
 std::vector<glm::vec3> low_positions_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry,
                                         const glm::dvec3& origin);

@@ -232,6 +232,13 @@ bool are_numbers(const std::vector<Vector>& vectors) {
     return all;
 }
 
+bool are_colors(const std::vector<glm::vec3>& colors) {
+    bool all = true;
+    for (const glm::vec3& color : colors)
+        for (int i = 0; i < 3; ++i) all &= color[i] >= 0 && color[i] <= 1;  // and no NaN
+    return all;
+}
+
 unsigned highest_index(const std::vector<glm::uvec3>& triangles) {
     unsigned highest = 0;
     for (const glm::uvec3& triangle : triangles)
@@ -245,17 +252,20 @@ void serialize(Stream& stream, scene::Geometry& geometry) {
     stream.array(geometry.positions);
     stream.array(geometry.normals);
     stream.array(geometry.texcoords);
+    stream.array(geometry.colors);
     stream.array(geometry.triangles);
     if constexpr (std::is_same_v<Stream, PartsDeserializer>) {
         const std::size_t count = geometry.positions.size();
         const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
-        stream.require(fits(geometry.normals.size()) && fits(geometry.texcoords.size()),
+        stream.require(fits(geometry.normals.size()) && fits(geometry.texcoords.size()) &&
+                           fits(geometry.colors.size()),
                        "as many of each as vertices");
         stream.require(geometry.triangles.empty() || highest_index(geometry.triangles) < count,
                        "indices of vertices");
         stream.require(are_numbers(geometry.positions) && are_numbers(geometry.normals) &&
                            are_numbers(geometry.texcoords),
                        "numbers from -1e15 to 1e15");
+        stream.require(are_colors(geometry.colors), "colours from 0 to 1");
         for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
     }
 }

@@ -63,6 +63,8 @@ WorkingMesh mesh_of(const scene::Geometry& geometry) {
         streams.push_back({geometry.normals.data(), sizeof(glm::vec3), sizeof(glm::vec3)});
     if (!geometry.texcoords.empty())
         streams.push_back({geometry.texcoords.data(), sizeof(glm::vec2), sizeof(glm::vec2)});
+    if (!geometry.colors.empty())
+        streams.push_back({geometry.colors.data(), sizeof(glm::vec3), sizeof(glm::vec3)});
     const std::vector<unsigned> vertex = numbered(streams, geometry, vertices);
 
     WorkingMesh mesh{
@@ -173,6 +175,7 @@ scene::Geometry geometry_of(const scene::Geometry& geometry, const DetailLevel& 
                 result.positions.push_back(geometry.positions[vertex]);
                 if (!geometry.normals.empty()) result.normals.push_back(geometry.normals[vertex]);
                 if (!geometry.texcoords.empty()) result.texcoords.push_back(geometry.texcoords[vertex]);
+                if (!geometry.colors.empty()) result.colors.push_back(geometry.colors[vertex]);
             }
             triangle[k] = numbers[vertex];
         }

@@ -47,12 +47,14 @@ void add_item(const scene::PlacedScene& placed, scene::Index node, const glm::dm
     item.mirrored = determinant < 0;
 }
 
-void assign_textures(std::vector<DrawItem>& items, const View& view) {
+/// Finds what their surfaces show besides their materials' own colours.
+void assign_surfaces(std::vector<DrawItem>& items, const View& view) {
     const scene::Scene& scene = *view.scene->scene;
     for (DrawItem& item : items) {
         const scene::Material& material = scene.material(item.material);
-        if (!scene.geometries()[static_cast<std::size_t>(item.geometry)].texcoords.empty())
-            item.texture = material.texture;
+        const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
+        if (!geometry.texcoords.empty()) item.texture = material.texture;
+        item.colored = !geometry.colors.empty();
         item.environment = view.background.cube_map && material.reflectivity > 0 &&
                            !scene.is_mirror(material, item.geometry);
     }
@@ -163,7 +165,7 @@ std::vector<DrawItem> visible_items(const View& view) {
         if ((shown.empty() || shown[static_cast<std::size_t>(node)]) &&
             (style.presentation || !placed.scene->is_presentation(node)))
             add_item(placed, node, view_matrix, style, items);
-    if (style.faces && !style.override_material) assign_textures(items, view);
+    if (style.faces && !style.override_material) assign_surfaces(items, view);
     return items;
 }
 

@@ -27,6 +27,7 @@ struct DrawItem {
     CullMode cull_mode = CullMode::back;
     bool mirrored = false;                ///< the matrix turns counter-clockwise triangles clockwise
     scene::Index texture = scene::kNone;  ///< replaces the material's diffuse colour
+    bool colored = false;                 ///< by the colours of its vertices
     bool environment = false;             ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;

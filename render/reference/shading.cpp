@@ -28,6 +28,7 @@ struct TriangleVertices {
                 part.geometry->normals.empty() ? glm::dvec3(0) : glm::dvec3(part.geometry->normals[corner]);
             normals[k] = unit(part.normal_matrix * (normal == glm::dvec3(0) ? own_face : unit(normal)));
             if (!part.geometry->texcoords.empty()) texcoords[k] = part.geometry->texcoords[corner];
+            if (part.colored) colors[k] = part.geometry->colors[corner];
         }
         edges[0] = part.positions[at.y] - part.positions[at.x];
         edges[1] = part.positions[at.z] - part.positions[at.x];
@@ -36,6 +37,7 @@ struct TriangleVertices {
 
     glm::dmat3 normals{0};
     glm::dmat3x2 texcoords{0};
+    glm::dmat3 colors{1, 1, 1, 1, 1, 1, 1, 1, 1};
     std::array<glm::dvec3, 2> edges{};  ///< from the first corner to the others
     glm::dvec3 face{0};                 ///< normal of the plane
 };
@@ -93,6 +95,7 @@ SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit&
     SurfaceInteraction interaction;
     interaction.point = ray.origin + ray.direction * hit.distance;
     interaction.texcoord = corners.texcoords * hit.barycentrics;
+    interaction.color = corners.colors * hit.barycentrics;
     const glm::dvec3 normal = corners.normals * hit.barycentrics;
     const double length = glm::length(normal);
     const bool vanishes = length < 1e-6;  // opposite neighbours
@@ -119,8 +122,9 @@ glm::dvec3 phong(const scene::Material& material, const glm::dvec3& diffuse, con
     const double cosine = glm::dot(to_light, interaction.normal), lambert = std::max(cosine, 0.0);
     const glm::dvec3 reflected = interaction.normal * (2 * cosine) - to_light;
     const double highlight = std::pow(std::max(glm::dot(reflected, to_viewer), 0.0), material.shininess);
-    const glm::dvec3 lit = diffuse + glm::dvec3(material.specular) * highlight;
-    const glm::dvec3 base = glm::dvec3(material.emission) + glm::dvec3(material.ambient);
+    const glm::dvec3 lit = diffuse * interaction.color + glm::dvec3(material.specular) * highlight;
+    const glm::dvec3 base =
+        glm::dvec3(material.emission) + glm::dvec3(material.ambient) * interaction.color;
     return glm::clamp(base + lit * glm::dvec3(light.color) * (lambert * intensity), 0.0, 1.0);
 }
 

@@ -13,6 +13,7 @@ struct SurfaceInteraction {
     glm::dvec3 point{0};
     glm::dvec3 normal{0, 0, 1};  ///< unit
     glm::dvec2 texcoord{0};
+    glm::dvec3 color{1};  ///< of the vertices; multiplies what is reflected of ambient and diffuse light
     std::array<glm::dvec3, 2> dn_dxy{};
     std::array<glm::dvec2, 2> duv_dxy{};
 };

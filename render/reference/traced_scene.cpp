@@ -59,6 +59,7 @@ std::optional<TracedInstance> instance_of(const plan::View& view, std::size_t no
     const scene::Material* const override_material = plan::style_of(view).override_material;
     part.material = override_material ? override_material : &material;
     part.transparent = !override_material && scene.is_transparent(material, data->geometry);
+    part.colored = !override_material && !geometry.colors.empty();
     if (!override_material && scene.is_mirror(material, data->geometry)) {
         const math::Plane& plane = *scene.plane(data->geometry);
         part.mirror = math::transformed(matrix, math::Plane{plane.normal, plane.point - center});

@@ -30,6 +30,7 @@ struct TracedInstance {
     bool clockwise = false, counter_clockwise = false;
     bool two_sided = false;  ///< normals turn to the viewer
     bool transparent = false;
+    bool colored = false;  ///< by the colours of its vertices
     std::optional<math::Plane> mirror;
     std::uint32_t coincident_group = 0;  ///< the first part of the same geometry under the same matrix
 };

@@ -53,6 +53,9 @@ struct Geometry {
     std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals;     ///< one for each position, or none: then triangles are flat
     std::vector<glm::vec2> texcoords;   ///< one for each position, or none; a Scene's: move_near_zero()
+    /// RGB 0 to 1 as displayed, one for each position, or none: what the material reflects of ambient and
+    /// diffuse light is multiplied by it. Interpolated linearly.
+    std::vector<glm::vec3> colors;
     std::vector<glm::uvec3> triangles;  ///< counter-clockwise from the front
     math::Bounds bounds;
 };

@@ -30,6 +30,7 @@ enum SurfaceUniform : GLint {
     first_triangle_at = 12,
     clip_plane_at = 13,
     origin_at = 14,
+    ambient_at = 15,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
@@ -155,6 +156,7 @@ SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawIte
     const bool textured = item.texture != scene::kNone;
     SurfaceVariant variant{kind, light_, textured, item.environment, item.clip_plane.has_value()};
     variant.lit_at = methods_.light;
+    variant.colored = item.colored;
     variant.double_single = geometry.is_double_single();
     variant.anisotropic = textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic;
     return variant;
@@ -172,7 +174,8 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     const glm::mat3 normals = normal_matrix(glm::dmat3(item.view_from_node), item.mirrored);
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
     bind_textures(item);
-    set(base_at, base_of(material));
+    set(base_at, item.colored ? glm::vec3(material.emission) : base_of(material));
+    if (item.colored) set(ambient_at, glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));

@@ -52,6 +52,10 @@ in vec3 view_normal;
 layout(binding = 0) uniform sampler2D image;
 in vec2 uv;
 #endif
+#ifdef COLORED
+layout(location = 15) uniform vec3 ambient;  // else part of base
+in vec3 vertex_color;
+#endif
 #ifdef ENVIRONMENT
 layout(binding = 1) uniform samplerCube environment_map;
 #endif
@@ -86,7 +90,13 @@ void main() {
 #else
     vec3 matte = diffuse;
 #endif
-    vec3 own = clamp(base + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
+#ifdef COLORED
+    matte *= vertex_color;
+    vec3 unlit = base + ambient * vertex_color;
+#else
+    vec3 unlit = base;
+#endif
+    vec3 own = clamp(unlit + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
 #ifdef ENVIRONMENT
     // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
     // direction follow by the chain rule, but for the part along it, which does not turn it.

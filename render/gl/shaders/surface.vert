@@ -38,6 +38,10 @@ invariant gl_Position;  // one depth in all programs
 layout(location = 2) in vec2 texcoord;
 out vec2 uv;
 #endif
+#ifdef COLORED
+layout(location = 4) in vec3 color;
+out vec3 vertex_color;
+#endif
 
 void main() {
     vec3 local = local_position();
@@ -54,6 +58,9 @@ void main() {
 #endif
 #ifdef TEXTURED
     uv = texcoord;
+#endif
+#ifdef COLORED
+    vertex_color = color;
 #endif
     vec4 p = view_from_local * vec4(local, 1);
     vec3 n = normal_matrix * normal;

@@ -172,7 +172,7 @@ private:
     void read_geometry(std::size_t line) {
         scene::Geometry geometry;
         geometry.id = take_id("the geometry's id");
-        std::size_t normals_line = 0, texcoords_line = 0, triangles_line = 0;
+        std::size_t normals_line = 0, texcoords_line = 0, colors_line = 0, triangles_line = 0;
         const BlockMember members[] = {
             {"vertices",
              [&] {
@@ -196,6 +196,14 @@ private:
                              tokens_.take_number("a texture coordinate", -kMaxCoordinate, kMaxCoordinate);
                  geometry.texcoords = scene::texcoords_near_zero(texcoords);
              }},
+            {"colors",
+             [&] {
+                 colors_line = tokens_.line();
+                 geometry.colors.resize(tokens_.take_count("a count of colours", 6));
+                 for (glm::vec3& color : geometry.colors)
+                     for (int i = 0; i < 3; ++i)
+                         color[i] = static_cast<float>(tokens_.take_number("a colour", 0, 1));
+             }},
             {"triangles",
              [&] {
                  triangles_line = tokens_.line();
@@ -216,6 +224,7 @@ private:
         };
         check_count(geometry.normals.size(), normals_line, "normals");
         check_count(geometry.texcoords.size(), texcoords_line, "texture coordinates");
+        check_count(geometry.colors.size(), colors_line, "colours");
         for (const glm::uvec3& triangle : geometry.triangles)
             if (const unsigned highest = std::max({triangle.x, triangle.y, triangle.z}); highest >= count)
                 throw ParseError(triangles_line, "expected vertex indices below " + std::to_string(count) +

@@ -119,6 +119,7 @@ private:
         write_rows("vertices", geometry.positions);
         write_rows("normals", geometry.normals);
         write_rows("texcoords", geometry.texcoords);
+        write_rows("colors", geometry.colors);
         write_rows("triangles", geometry.triangles);
         text("\nend\n");
     }
