@@ -166,6 +166,7 @@ void report_lost_geometry(const std::vector<ShownShape>& shapes, ConversionWarni
     for (const ShownShape& shape : shapes) {
         if (!written.insert(shape.geometry).second)
             warnings.add("a geometry that several nodes share is written once for each node");
+        if (!shape.geometry->colors.empty()) warnings.add("vertex colours are lost");
         const auto& positions = shape.geometry->positions;
         const auto is_single = [&](const glm::dvec3& position) {
             const glm::dvec4 world = shape.world * glm::dvec4(position, 1);

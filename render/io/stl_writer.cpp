@@ -42,9 +42,11 @@ void write_shape(const ShownShape& shape, std::ostream& out) {
 
 void report_lost_materials(const std::vector<ShownShape>& shapes, ConversionWarnings& warnings) {
     warnings.add("names and materials are lost");
-    for (const ShownShape& shape : shapes)
+    for (const ShownShape& shape : shapes) {
         if (!shape.geometry->normals.empty())
             warnings.add("vertex normals are lost: STL stores face normals only");
+        if (!shape.geometry->colors.empty()) warnings.add("vertex colours are lost");
+    }
 }
 
 }  // namespace

@@ -12,7 +12,9 @@ scene::SceneParts everything() {
     for (scene::Texture& texture : parts.textures) texture.image = {2, 2, std::vector<std::uint8_t>(16, 200)};
     scene::Geometry textured = sphere(0.5, 8);
     textured.texcoords.resize(textured.positions.size(), {0.5, 0.5});
-    parts.geometries = {quad(3), sphere(0.6, 8), textured, box({0.3, 0.3, 0.3})};
+    scene::Geometry colored = textured;
+    colored.colors.resize(colored.positions.size(), {0.5, 1, 0.5});
+    parts.geometries = {quad(3), sphere(0.6, 8), textured, box({0.3, 0.3, 0.3}), colored};
     const auto add = [&](const scene::Geometry* geometry, double alpha, double reflectivity,
                          scene::Index texture, const glm::dvec3& place) {
         const auto material = static_cast<scene::Index>(parts.materials.size());
@@ -39,6 +41,8 @@ scene::SceneParts everything() {
     add(shapes + 2, 0.5, 0.5, 6, {0, -1, -1});
     add(shapes + 3, 0.5, 0, scene::kNone, {0.2, -0.9, -0.9});
     add(shapes + 3, 0.4, 0.3, scene::kNone, {-0.4, 0, 1});
+    add(shapes + 4, 1, 0.5, 6, {0.8, 0.8, 0});
+    add(shapes + 4, 0.5, 0.5, scene::kNone, {-0.8, -0.8, 0.5});
     scene::Id id = 20;
     using Type = scene::LightData::Type;
     for (const Type type : {Type::point, Type::directional, Type::spot}) {

@@ -180,9 +180,23 @@ TEST_CASE("a PLY scene is one part by its file's name") {
     const scene::Node& panel = node_of(scene, "panel");
     check_panel(geometry_of(scene, panel), false);  // and the vertex that no face has is gone
     CHECK(geometry_of(scene, panel).normals == std::vector(4, glm::vec3(0, 0.6F, 0.8F)));
-    CHECK(material_of(scene, panel).diffuse == scene::Material().diffuse);
-    CHECK(has_notice(scene, "vertex colours are ignored"));
-    CHECK(scene.notices().size() == 1);
+    CHECK(geometry_of(scene, panel).colors == std::vector(4, glm::vec3(1, 0, 0)));
+    CHECK(material_of(scene, panel).diffuse == glm::dvec4(1));  // they are shown as they are
+    CHECK(material_of(scene, panel).ambient == glm::dvec4(0.1, 0.1, 0.1, 1));
+    CHECK(scene.notices().empty());
+}
+
+TEST_CASE("colours of vertices are shown as they are, or multiply a material's") {
+    const TemporaryFolder folder;
+    const std::string triangle = "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n";
+    const std::vector<glm::vec3> colors{{1, 0, 0}, {0, 0.5F, 0}, {0, 0, 1}};
+    const scene::Scene plain = read_well(folder.write("plain.obj", triangle));
+    CHECK(plain.geometries()[0].colors == colors);
+    CHECK(plain.material(0).diffuse == glm::dvec4(1));
+    folder.write("red.mtl", "newmtl Red\nKd 0.5 0 0\n");
+    const scene::Scene red = read_well(folder.write("red.obj", "mtllib red.mtl\nusemtl Red\n" + triangle));
+    CHECK(red.geometries()[0].colors == colors);
+    CHECK(red.material(0).diffuse == glm::dvec4(0.5, 0, 0, 1));
 }
 
 TEST_CASE(

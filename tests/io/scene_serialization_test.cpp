@@ -22,7 +22,7 @@ material 3 "Paint" ambient 0.02 0.01 0 1 diffuse 0.6 0.02 0.03 0.5 specular 0.8 
   emission 0.1 0.2 0.3 1 shininess 64 reflectivity 0.25 two-sided 1 image "red.png" end
 material 12 "Grey" image "no such.png" end
 geometry 7 vertices 4 0 0 0  1 0 0  0 1 0  1 1 -0.25 normals 4 0 0 1  0 0 1  0 0 1  0 1 0
-  texcoords 4 0 0  1 0  0 1  1.5 -2 triangles 2 0 1 2  2 1 3 end
+  texcoords 4 0 0  1 0  0 1  1.5 -2 colors 4 1 0 0  0 0.5 0  0 0 1  1 1 1 triangles 2 0 1 2  2 1 3 end
 geometry 8 vertices 0 triangles 0 end
 node 0 "Estate" root end
 node 4 "Body" assembly active 0 matrix 1 2 3 4  5 6 7 8  9 10 11 12  0 0 0 1 end
@@ -191,6 +191,9 @@ TEST_CASE("parts that no reader would hand over are refused") {
         {"indices of vertices", [](scene::SceneParts& p) { p.geometries[0].triangles[1].y = 4; }},
         {"as many of each", [](scene::SceneParts& p) { p.geometries[0].normals.pop_back(); }},
         {"as many of each", [](scene::SceneParts& p) { p.geometries[0].texcoords.pop_back(); }},
+        {"as many of each", [](scene::SceneParts& p) { p.geometries[0].colors.pop_back(); }},
+        {"colours from", [](scene::SceneParts& p) { p.geometries[0].colors[3].y = 1.5F; }},
+        {"colours from", [](scene::SceneParts& p) { p.geometries[0].colors[0].x = std::nanf(""); }},
         {"numbers from", [](scene::SceneParts& p) { p.geometries[0].positions[2].z = 1e16; }},
         {"numbers from", [](scene::SceneParts& p) { p.geometries[0].normals[0].x = std::nanf(""); }},
         {"a number in its range", [](scene::SceneParts& p) { p.nodes[1].node.matrix[3][0] = INFINITY; }},

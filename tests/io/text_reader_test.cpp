@@ -25,6 +25,7 @@ geometry 7
   vertices 4   0 0 0  1 0 0  0 1 0  1 +1 -2.5e-1
   normals 4    0 0 1  0 0 1  0 0 1  0 1 0
   texcoords 4  0 0  1 0  0 1  1.5 -2
+  colors 4     1 0 0  0 0.5 0  0 0 1  1 1 1
 end
 node 4 "Body" assembly
   parent 0   active 0
@@ -100,6 +101,7 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(geometry.positions == std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, -0.25}});
     CHECK(geometry.normals == std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 1, 0}});
     CHECK(geometry.texcoords == std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 1}, {1.5, -2}});
+    CHECK(geometry.colors == std::vector<glm::vec3>{{1, 0, 0}, {0, 0.5, 0}, {0, 0, 1}, {1, 1, 1}});
     CHECK(geometry.triangles == std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}});
     CHECK(geometry.bounds.min == glm::dvec3(0, 0, -0.25));
     CHECK(geometry.bounds.max == glm::dvec3(1, 1, 0));
@@ -173,7 +175,7 @@ TEST_CASE("nodes of every type") {
     CHECK(node_of(scene, 14).type == scene::NodeType::sound);
     CHECK(node_of(scene, node_of(scene, 14).id).parent == scene.find_node(9));
     CHECK(scene.notices() ==
-          std::vector<std::string>{"folder/car.vrut:27: node 14 is a sound and was kept as a group"});
+          std::vector<std::string>{"folder/car.vrut:28: node 14 is a sound and was kept as a group"});
 }
 
 TEST_CASE("what a node leaves out") {
@@ -386,6 +388,9 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
          "as many normals as vertices (1), found 2"},
         {h + "geometry 1\ntexcoords 1 0 0 vertices 2 0 0 0 1 1 1\nend", 3,
          "as many texture coordinates as vertices (2), found 1"},
+        {h + "geometry 1\ncolors 1 0 0 1 vertices 2 0 0 0 1 1 1\nend", 3,
+         "as many colours as vertices (2), found 1"},
+        {h + "geometry 1 vertices 1 0 0 0\ncolors 1 0 1.5 0 end", 3, "a colour"},
         // --- nodes
         {h + "node 1 \"x\"\ncar end", 3, "a node type (assembly, root, camera,"},
         {h + "node 1 \"x\" 9 end", 2, "a node type"},

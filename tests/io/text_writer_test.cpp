@@ -41,7 +41,7 @@ bool same(const scene::Material& a, const scene::Material& b) {
 
 bool same(const scene::Geometry& a, const scene::Geometry& b) {
     const auto members = [](const scene::Geometry& g) {
-        return std::tie(g.id, g.positions, g.normals, g.texcoords, g.triangles);
+        return std::tie(g.id, g.positions, g.normals, g.texcoords, g.colors, g.triangles);
     };
     return members(a) == members(b);
 }
@@ -166,12 +166,13 @@ private:
         scene::Geometry result;
         result.id = id;
         const std::size_t count = below(20);
-        const bool normals = coin(), texcoords = coin();
+        const bool normals = coin(), texcoords = coin(), colors = coin();
         for (std::size_t i = 0; i < count; ++i) {
             result.positions.push_back(point());
             result.bounds.add(result.positions.back());
             if (normals) result.normals.emplace_back(point());
             if (texcoords) result.texcoords.emplace_back(point());
+            if (colors) result.colors.emplace_back(glm::abs(glm::sin(point())));
             const auto index = [&] { return static_cast<unsigned>(below(count)); };
             if (coin()) result.triangles.emplace_back(index(), index(), index());
         }

@@ -255,6 +255,39 @@ TEST_CASE("a seam does not open") {
     }
 }
 
+TEST_CASE("the border between two colours stays where it is") {
+    scene::Geometry tiles = surface(20, 20, [](double u, double v) { return glm::dvec3(u, v, 0); });
+    // Half of it red: along the border two vertices differ in their colours alone.
+    std::vector<unsigned> red(tiles.positions.size());
+    tiles.colors.assign(tiles.positions.size(), {0, 0, 1});
+    for (unsigned i = 0; i < red.size(); ++i) {
+        red[i] = static_cast<unsigned>(tiles.positions.size());
+        tiles.positions.push_back(glm::dvec3(tiles.positions[i]));
+        tiles.colors.emplace_back(1, 0, 0);
+    }
+    const auto is_right = [&](const glm::uvec3& t) {
+        return tiles.positions[t.x].x + tiles.positions[t.y].x + tiles.positions[t.z].x > 1.5;
+    };
+    for (glm::uvec3& triangle : tiles.triangles)
+        if (is_right(triangle)) triangle = {red[triangle.x], red[triangle.y], red[triangle.z]};
+    const auto levels = mesh::simplify(tiles, kGoOn);
+    REQUIRE_FALSE(levels.empty());
+    for (const mesh::DetailLevel& level : levels) {
+        const scene::Geometry simplified = mesh::geometry_of(tiles, level);
+        REQUIRE(simplified.colors.size() == simplified.positions.size());
+        double red_area = 0;
+        for (const glm::uvec3& t : simplified.triangles) {
+            CHECK(simplified.colors[t.x] == simplified.colors[t.y]);
+            CHECK(simplified.colors[t.x] == simplified.colors[t.z]);
+            const glm::dvec3& corner = simplified.positions[t.x];
+            const glm::dvec3 cross =
+                glm::cross(simplified.positions[t.y] - corner, simplified.positions[t.z] - corner);
+            if (simplified.colors[t.x].r > 0) red_area += glm::length(cross) / 2;
+        }
+        CHECK(red_area == doctest::Approx(0.5));
+    }
+}
+
 TEST_CASE("what cannot be simplified has no levels") {
     CHECK(mesh::simplify({}, kGoOn).empty());
     scene::Geometry few = ball(4, 4);

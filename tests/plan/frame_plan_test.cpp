@@ -68,11 +68,12 @@ TEST_CASE("a plan holds what the view needs and no more") {
     CHECK(sizes() == Sizes{5, 5, 0, 0});
 }
 
-TEST_CASE("textures and the panorama are planned for surfaces that show them") {
+TEST_CASE("textures, colours of vertices and the panorama are planned for surfaces that show them") {
     scene::SceneParts parts;
     parts.textures.resize(1);
     parts.geometries = {quad(1), sphere(1, 4), sphere(1, 4)};
     parts.geometries[2].texcoords.assign(parts.geometries[2].positions.size(), glm::vec2(0));
+    parts.geometries[1].colors.assign(parts.geometries[1].positions.size(), glm::vec3(0.5));
     parts.materials.resize(3);
     parts.materials[0].reflectivity = 0.5;
     parts.materials[1] = parts.materials[0];
@@ -106,7 +107,9 @@ TEST_CASE("textures and the panorama are planned for surfaces that show them") {
     };
     const auto reflecting = [&] { return ids([](const plan::DrawItem& item) { return item.environment; }); };
     const auto textured = [&] { return ids([](const plan::DrawItem& item) { return item.texture == 0; }); };
+    const auto colored = [&] { return ids([](const plan::DrawItem& item) { return item.colored; }); };
     CHECK(textured() == std::vector<scene::Id>{9});
+    CHECK(colored() == std::vector<scene::Id>{4, 5, 6});
     CHECK(reflecting().empty());
     view.background.cube_map.emplace();
     // All but the opaque plane, which is a mirror.
@@ -114,6 +117,7 @@ TEST_CASE("textures and the panorama are planned for surfaces that show them") {
     view.mode = plan::DrawMode::stylized;
     CHECK(reflecting().empty());
     CHECK(textured().empty());
+    CHECK(colored().empty());
 }
 
 TEST_CASE("what is not drawn is told, and lights are drawn") {

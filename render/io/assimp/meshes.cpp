@@ -3,6 +3,7 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "io/assimp/text.hpp"
@@ -29,6 +30,8 @@ void require_coordinates(const aiVector3D* vectors, const char* what, const aiMe
         throw ImportError("a " + std::string(what) + " of " + called(mesh) +
                           " is not a number from -1e15 to 1e15");
 }
+
+float in_unit_range(float value) { return std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 0.0F; }
 
 /// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
 template <class T>
@@ -70,6 +73,21 @@ void move_texcoords(aiMesh& mesh, unsigned set, scene::Geometry& geometry) {
     release(from);
 }
 
+/// Colours as displayed. A file may give them more than it can show.
+void move_colors(aiMesh& mesh, scene::Geometry& geometry, ConversionWarnings& warnings) {
+    aiColor4D*& from = mesh.mColors[0];
+    if (from == nullptr) return;
+    geometry.colors.reserve(mesh.mNumVertices);
+    bool opaque = true;
+    for (const aiColor4D* color = from; color != from + mesh.mNumVertices; ++color) {
+        geometry.colors.emplace_back(in_unit_range(color->r), in_unit_range(color->g),
+                                     in_unit_range(color->b));
+        opaque = opaque && !(color->a < 1);
+    }
+    if (!opaque) warnings.add("the opacity of vertex colours is ignored");
+    release(from);
+}
+
 void move_triangles(aiMesh& mesh, scene::Geometry& geometry) {
     geometry.triangles.reserve(mesh.mNumFaces);
     unsigned last = 0;
@@ -103,6 +121,7 @@ void weld(scene::Geometry& geometry) {
     add_stream(geometry.positions, streams);
     add_stream(geometry.normals, streams);
     add_stream(geometry.texcoords, streams);
+    add_stream(geometry.colors, streams);
     std::vector<unsigned> numbers(geometry.positions.size());
     unsigned* const indices = &geometry.triangles[0].x;
     const std::size_t corners = 3 * geometry.triangles.size();
@@ -113,6 +132,7 @@ void weld(scene::Geometry& geometry) {
     remap(geometry.positions, numbers, count);
     remap(geometry.normals, numbers, count);
     remap(geometry.texcoords, numbers, count);
+    remap(geometry.colors, numbers, count);
     geometry.bounds = {};  // a vertex that no triangle has is gone
     for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
 }
@@ -137,6 +157,7 @@ scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, unsigned tex
     if (format != AssimpFormat::stl)
         move_normals(mesh, geometry, warnings);  // there each triangle has its own
     move_texcoords(mesh, texcoord_set, geometry);
+    move_colors(mesh, geometry, warnings);
     if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
     return geometry;
 }
@@ -144,7 +165,6 @@ scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, unsigned tex
 void report_unsupported_parts(const aiMesh& mesh, ConversionWarnings& warnings) {
     if (mesh.HasBones()) warnings.add("a skin is ignored: its mesh is shown undeformed");
     if (mesh.mNumAnimMeshes > 0) warnings.add("morph targets are ignored");
-    if (mesh.HasVertexColors(0)) warnings.add("vertex colours are ignored");
     if ((mesh.mPrimitiveTypes & (aiPrimitiveType_LINE | aiPrimitiveType_POINT)) != 0)
         warnings.add("a primitive of points or lines is ignored: only triangles are supported");
 }

@@ -93,9 +93,21 @@ private:
         scene::Geometry geometry = convert_geometry(
             mesh, format_, texcoord_set_of(*scene_.mMaterials[mesh.mMaterialIndex]), warnings_);
         if (geometry.triangles.empty()) return scene::kNone;
+        if (!geometry.colors.empty()) show_colors(mesh.mMaterialIndex);
         geometry.id = static_cast<scene::Id>(parts_.geometries.size());
         parts_.geometries.push_back(std::move(geometry));
         return static_cast<scene::Index>(parts_.geometries.size() - 1);
+    }
+
+    /// Where the file has no material, colours of vertices are shown as they are.
+    void show_colors(unsigned index) {
+        aiString name;
+        scene_.mMaterials[index]->Get(AI_MATKEY_NAME, name);
+        scene::Material& material = parts_.materials[static_cast<std::size_t>(materials_[index])];
+        const bool is_default = is_one_part() && material.diffuse == scene::Material().diffuse;
+        if (!is_default && text_of(name) != AI_DEFAULT_MATERIAL_NAME) return;
+        material.diffuse = glm::dvec4(1);
+        material.ambient = {0.1, 0.1, 0.1, 1};
     }
 
     /// Those that may be drawn from one side and look the same: opaque, and on closed parts only.

@@ -32,6 +32,7 @@ namespace vrut::io {
 ///     shininess the exponent, from 1 to 10,000
 ///     emission  the emissive colour, or black where there is an emissive texture
 /// and the diffuse texture as the image, whose alpha counts only where it is the opacity texture too.
+/// Colours of vertices multiply ambient and diffuse, and are shown as they are where there is no material;
 /// STL and PLY without colours take the default material's. Images that are not where the file says are
 /// looked for beside it. Which sides of a surface are seen these formats do not tell: materials are
 /// two-sided, but for those that are opaque and on parts only that are closed and wound outwards
