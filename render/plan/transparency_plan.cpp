@@ -16,20 +16,21 @@ namespace {
 
 constexpr double kVisibleDifference = 1.0 / 255;
 
-/// The range of colours that a material can have under a light, for all normals; 0 to 1.
+/// The range of colours that an item can have under a light, for all normals; 0 to 1.
 struct ColorRange {
     glm::dvec3 low{0}, high{1};
     double alpha = 1;
 };
 
-ColorRange color_range(const scene::Material& material, const scene::Light& light) {
+ColorRange color_range(const DrawItem& item, const scene::Material& material, const scene::Light& light) {
     if (material.reflectivity > 0) return {glm::dvec3(0), glm::dvec3(1), material.diffuse.a};
     const glm::dvec3 diffuse =
         material.texture == scene::kNone ? glm::dvec3(material.diffuse) : glm::dvec3(1);
     const double brightest = light.attenuation == glm::dvec3(0) ? 1 : 1 / std::max(light.attenuation.x, 1e-6);
     const glm::dvec3 unlit = glm::dvec3(material.emission) + glm::dvec3(material.ambient);
     const glm::dvec3 lit = (diffuse + glm::dvec3(material.specular)) * glm::dvec3(light.color) * brightest;
-    return {glm::clamp(unlit, 0.0, 1.0), glm::clamp(unlit + lit, 0.0, 1.0), material.diffuse.a};
+    const glm::dvec3 least = item.colored ? glm::dvec3(material.emission) : unlit;
+    return {glm::clamp(least, 0.0, 1.0), glm::clamp(unlit + lit, 0.0, 1.0), material.diffuse.a};
 }
 
 /// Returns the largest error of a channel, 0 to 1, if two surfaces are blended in the wrong order:
@@ -174,7 +175,7 @@ DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const View& vi
     for (const DrawItem& item : items)
         transparent_items_.push_back(
             transparent_item_of(transformed(item.view_from_node, shapes.box(item.geometry)),
-                                color_range(scene_.material(item.material), view.light)));
+                                color_range(item, scene_.material(item.material), view.light)));
 }
 
 const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) {

@@ -92,6 +92,14 @@ TEST_CASE("panes that cross are an exact group where that can be seen") {
     CHECK(!four[2].exact);
 }
 
+TEST_CASE("panes of one material whose vertices have other colours are an exact group where they cross") {
+    std::vector<Part> parts{pane(1, {}, turned_by(30, {0, 1, 0})), pane(2, {}, turned_by(-30, {0, 1, 0}))};
+    for (Part& part : parts) part.material.ambient = {0.9, 0.9, 0.9, 1};
+    CHECK(!groups_of(parts)[0].exact);
+    parts[1].geometry.colors.assign(parts[1].geometry.positions.size(), glm::vec3(0));
+    CHECK(groups_of(parts)[0].exact);
+}
+
 TEST_CASE("panes beside each other, and panes that meet in an edge, are sorted") {
     const glm::dvec3 red(0.9, 0, 0), blue(0, 0, 0.9);
     const auto box_of_panes =
