@@ -109,10 +109,12 @@ bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
 }
 
 bool GpuScene::request(const plan::DrawItem& item, const std::shared_ptr<const mesh::DetailLevels>& levels) {
-    const bool has_texture = item.texture == scene::kNone || request_texture(item.texture);
-    if (item.level) return request(item.geometry, *item.level, levels, Need::now) && has_texture;
+    bool has_textures = true;
+    for (const scene::Index texture : {item.texture, item.emissive_texture})
+        has_textures = (texture == scene::kNone || request_texture(texture)) && has_textures;
+    if (item.level) return request(item.geometry, *item.level, levels, Need::now) && has_textures;
     const bool has_level = !item.order && is_resident(key_of(Kind::level, item.geometry, 0));
-    return (has_level || request_geometry(item.geometry, Need::now)) && has_texture;
+    return (has_level || request_geometry(item.geometry, Need::now)) && has_textures;
 }
 
 bool GpuScene::request_edges(const plan::DrawItem& item, Need need) {

@@ -58,10 +58,12 @@ bool is_double_single(FixedProgram program) {
 /// no mirror shows another; what it shows may be clipped, and lies beside the eye that carries the headlight.
 bool is_reachable(const SurfaceVariant& variant) {
     const bool plain = !variant.environment && !variant.clipped;
-    if (variant.kind == Kind::edges && (variant.textured || variant.colored || !plain)) return false;
+    if (variant.kind == Kind::edges && (variant.textured || variant.colored || variant.emissive || !plain))
+        return false;
     if (variant.kind == Kind::mirror && !plain) return false;
     if (variant.anisotropic && !variant.textured) return false;
-    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored))
+    if (variant.instanced &&
+        (variant.kind != Kind::faces || variant.double_single || variant.colored || variant.emissive))
         return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
@@ -76,6 +78,7 @@ bool has_double_single(const scene::Scene& scene) {
 struct SceneFeatures {
     bool small_geometries = false, double_single = false;
     bool texcoords = false, colors = false, planes = false, environment_map = false;
+    bool emissive = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
     std::array<bool, 4> lights{};  ///< by SurfaceVariant::Light
@@ -85,6 +88,7 @@ struct SceneFeatures {
 void add_material(SceneFeatures& features, const scene::Scene& scene, const scene::Material& material) {
     const bool glass = scene.is_transparent(material), textured = material.texture != scene::kNone;
     features.glass |= glass;
+    features.emissive |= material.emissive != glm::dvec3(0);
     (glass ? features.glass_textured : features.opaque_textured) |= textured;
     (glass ? features.reflective_glass : features.reflective) |= material.reflectivity > 0;
 }
@@ -118,6 +122,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (!features.lights[static_cast<std::size_t>(variant.light)]) return false;
     if (variant.double_single && !features.double_single) return false;
     if (variant.colored && !features.colors) return false;
+    if (variant.emissive && !features.emissive) return false;
     if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
     if (variant.kind == Kind::mirror && !features.mirrors()) return false;
@@ -148,11 +153,18 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 128; ++bits) {
-                    const SurfaceVariant variant{
-                        kind,   light,           (bits & 1) != 0,  (bits & 2) != 0, (bits & 4) != 0,
-                        lit_at, (bits & 8) != 0, (bits & 16) != 0, (bits & 32) != 0,
-                        (bits & 64) != 0};
+                for (int bits = 0; bits < 256; ++bits) {
+                    const SurfaceVariant variant{kind,
+                                                 light,
+                                                 (bits & 1) != 0,
+                                                 (bits & 2) != 0,
+                                                 (bits & 4) != 0,
+                                                 lit_at,
+                                                 (bits & 8) != 0,
+                                                 (bits & 16) != 0,
+                                                 (bits & 32) != 0,
+                                                 (bits & 64) != 0,
+                                                 (bits & 128) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -187,6 +199,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.kind == Kind::edges, "EDGES");
     define(variant.textured, "TEXTURED");
     define(variant.colored, "COLORED");
+    define(variant.emissive, "EMISSIVE");
     define(variant.environment, "ENVIRONMENT");
     define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");

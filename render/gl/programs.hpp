@@ -53,12 +53,13 @@ struct SurfaceVariant {
     bool anisotropic = false;    ///< filter of its texture
     /// Faces whose matrices and material are attributes of instances (GpuInstance) instead of uniforms.
     bool instanced = false;
-    bool colored = false;  ///< by the colours of its vertices
+    bool colored = false;   ///< by the colours of its vertices
+    bool emissive = false;  ///< sends light by itself
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic, v.instanced, v.colored);
+                            v.anisotropic, v.instanced, v.colored, v.emissive);
         };
         return key(*this) < key(other);
     }

@@ -220,8 +220,11 @@ void serialize(Stream& stream, scene::Material& material, const scene::ScenePart
     stream.number(material.shininess, 0, kMostNumber);
     stream.number(material.reflectivity, 0, kMostNumber);
     serialize_flag(stream, material.two_sided);
+    serialize_vector(stream, material.emissive, 0);
     stream.text(material.image);
     serialize_index(stream, material.texture, parts.textures.size());
+    stream.text(material.emissive_image);
+    serialize_index(stream, material.emissive_texture, parts.textures.size());
 }
 
 template <class Vector>
@@ -257,9 +260,9 @@ void serialize(Stream& stream, scene::Geometry& geometry) {
     if constexpr (std::is_same_v<Stream, PartsDeserializer>) {
         const std::size_t count = geometry.positions.size();
         const auto fits = [&](std::size_t size) { return size == 0 || size == count; };
-        stream.require(fits(geometry.normals.size()) && fits(geometry.texcoords.size()) &&
-                           fits(geometry.colors.size()),
-                       "as many of each as vertices");
+        stream.require(
+            fits(geometry.normals.size()) && fits(geometry.texcoords.size()) && fits(geometry.colors.size()),
+            "as many of each as vertices");
         stream.require(geometry.triangles.empty() || highest_index(geometry.triangles) < count,
                        "indices of vertices");
         stream.require(are_numbers(geometry.positions) && are_numbers(geometry.normals) &&

@@ -87,13 +87,17 @@ void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const R
     TextureReader reader(parts, scene_file, progress, max_pixels);
     Notices notices;
     const auto say = [&](const std::string& what) { notices.add(scene_file.string() + ": " + what); };
-    for (scene::Material& material : parts.materials) {
-        if (material.image.empty()) continue;
-        if (const TextureResult texture = reader.read(material.image))
-            material.texture = *texture;
+    const auto read = [&](const scene::Material& material, const std::string& image, scene::Index& texture) {
+        if (image.empty()) return;
+        if (const TextureResult found = reader.read(image))
+            texture = *found;
         else
             say("material " + std::to_string(material.id) + " is drawn without its texture '" +
-                excerpt(material.image) + "': " + texture.error());
+                excerpt(image) + "': " + found.error());
+    };
+    for (scene::Material& material : parts.materials) {
+        read(material, material.image, material.texture);
+        read(material, material.emissive_image, material.emissive_texture);
     }
     for (auto& [node, parent_id, line] : parts.nodes) {
         auto* background = std::get_if<scene::BackgroundData>(&node.data);

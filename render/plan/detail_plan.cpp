@@ -59,12 +59,14 @@ private:
     }
 
     /// Collects the items that keep full detail: those with textures or colours at their vertices, since the
-    /// error bound covers positions and not these, and glass with ordered triangles. Coincident items must keep it too, so that
-    /// their depths are equal.
+    /// error bound covers positions and not these, and glass with ordered triangles. Coincident items must
+    /// keep it too, so that their depths are equal.
     FullDetailItems full_detail_items(const DrawLists& lists) const {
         FullDetailItems full_detail;
         const auto add_if_full_detail = [&](const DrawItem& item, bool ordered) {
-            if ((item.texture != scene::kNone || item.colored || ordered) && has_levels(item))
+            if ((item.texture != scene::kNone || item.emissive_texture != scene::kNone || item.colored ||
+                 ordered) &&
+                has_levels(item))
                 full_detail.emplace(item.geometry, item.view_from_node);
         };
         for (const DrawItem& item : lists.opaque) add_if_full_detail(item, false);

@@ -123,7 +123,8 @@ private:
 }  // namespace
 
 bool share_draw(const DrawItem& a, const DrawItem& b) {
-    return a.texture == b.texture && a.colored == b.colored && a.environment == b.environment &&
+    return a.texture == b.texture && a.colored == b.colored && !a.emissive && !b.emissive &&
+           a.environment == b.environment &&
            (a.cull_mode == CullMode::none) == (b.cull_mode == CullMode::none) &&
            a.clip_plane.has_value() == b.clip_plane.has_value();
 }

@@ -53,7 +53,11 @@ void assign_surfaces(std::vector<DrawItem>& items, const View& view) {
     for (DrawItem& item : items) {
         const scene::Material& material = scene.material(item.material);
         const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
-        if (!geometry.texcoords.empty()) item.texture = material.texture;
+        item.emissive = material.emissive != glm::dvec3(0);
+        if (!geometry.texcoords.empty()) {
+            item.texture = material.texture;
+            if (item.emissive) item.emissive_texture = material.emissive_texture;
+        }
         item.colored = !geometry.colors.empty();
         item.environment = view.background.cube_map && material.reflectivity > 0 &&
                            !scene.is_mirror(material, item.geometry);

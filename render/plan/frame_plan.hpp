@@ -28,7 +28,9 @@ struct DrawItem {
     bool mirrored = false;                ///< the matrix turns counter-clockwise triangles clockwise
     scene::Index texture = scene::kNone;  ///< replaces the material's diffuse colour
     bool colored = false;                 ///< by the colours of its vertices
-    bool environment = false;             ///< mixed with the environment map that it reflects
+    bool emissive = false;                ///< sends light by itself
+    scene::Index emissive_texture = scene::kNone;
+    bool environment = false;  ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
     /// Clip plane in node space: only points with a non-negative dot product are drawn.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.hpp"
+
 namespace vrut::reference {
 
 namespace {
@@ -20,7 +22,10 @@ std::vector<std::optional<MipMap>> textures_in_use(const plan::View& view, const
         auto& map = textures[static_cast<std::size_t>(texture)];
         if (!map) map.emplace(image_of(view, texture));
     };
-    for (const TracedInstance& part : surfaces.parts()) use(part.material->texture);
+    for (const TracedInstance& part : surfaces.parts()) {
+        use(part.material->texture);
+        use(part.material->emissive_texture);
+    }
     use(view.background.texture);
     return textures;
 }
@@ -106,6 +111,9 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
     ShadedSurface surface{
         phong(material, glm::dvec3(diffuse), view_.light, view_.camera.eye, interaction, -path.ray.direction),
         part.transparent ? std::clamp(diffuse.a, 0.0, 1.0) : 1};
+    if (material.emissive != glm::dvec3(0))
+        surface.color =
+            base::srgb_from_linear(base::linear_from_srgb(surface.color) + emitted_light(part, interaction));
     const double reflectivity = std::clamp(material.reflectivity, 0.0, 1.0);
     if (reflectivity == 0) return surface;
     if (part.mirror && path.mirror == TracedScene::kNoInstance)
@@ -113,6 +121,16 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
     else if (!part.mirror && cube_map_)
         surface.color = glm::mix(surface.color, environment(path, interaction), reflectivity);
     return surface;
+}
+
+/// RGB, linear.
+glm::dvec3 Tracer::emitted_light(const TracedInstance& part, const SurfaceInteraction& interaction) const {
+    const scene::Material& material = *part.material;
+    if (material.emissive_texture == scene::kNone || part.geometry->texcoords.empty())
+        return material.emissive;
+    const glm::dvec4 texel = textures_[static_cast<std::size_t>(material.emissive_texture)]->sample(
+        interaction.texcoord, interaction.duv_dxy, Wrap::repeat);
+    return material.emissive * base::linear_from_srgb(glm::dvec3(texel));
 }
 
 /// The new ray starts on the mirror's plane, which the triangle may miss by a rounding error; everything in

@@ -43,6 +43,7 @@ private:
     };
     glm::dvec3 radiance(const PathRay& path) const;
     ShadedSurface surface_at(const PathRay& path, const TriangleHit& hit) const;
+    glm::dvec3 emitted_light(const TracedInstance& part, const SurfaceInteraction& interaction) const;
     PathRay reflected(const PathRay& path, const TriangleHit& hit) const;
     glm::dvec3 environment(const PathRay& path, const SurfaceInteraction& interaction) const;
     glm::dvec3 background(const PathRay& path) const;

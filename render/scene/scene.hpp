@@ -44,15 +44,20 @@ struct Material {
     double shininess = 0;
     double reflectivity = 0;
     bool two_sided = false;
-    std::string image;      ///< relative to the scene's file; empty for none
-    Index texture = kNone;  ///< what was read from there; kNone where nothing could be
+    /// RGB of light that the surface sends by itself, linear: it is added to what is displayed as light is
+    /// added, and not as numbers are, as the emission is.
+    glm::dvec3 emissive{0};
+    std::string image;           ///< relative to the scene's file; empty for none
+    Index texture = kNone;       ///< what was read from there; kNone where nothing could be
+    std::string emissive_image;  ///< its linear colours multiply `emissive`
+    Index emissive_texture = kNone;
 };
 
 struct Geometry {
     Id id = 0;
     std::vector<glm::dvec3> positions;
-    std::vector<glm::vec3> normals;     ///< one for each position, or none: then triangles are flat
-    std::vector<glm::vec2> texcoords;   ///< one for each position, or none; a Scene's: move_near_zero()
+    std::vector<glm::vec3> normals;    ///< one for each position, or none: then triangles are flat
+    std::vector<glm::vec2> texcoords;  ///< one for each position, or none; a Scene's: move_near_zero()
     /// RGB 0 to 1 as displayed, one for each position, or none: what the material reflects of ambient and
     /// diffuse light is multiplied by it. Interpolated linearly.
     std::vector<glm::vec3> colors;

@@ -43,6 +43,11 @@ scene::SceneParts everything() {
     add(shapes + 3, 0.4, 0.3, scene::kNone, {-0.4, 0, 1});
     add(shapes + 4, 1, 0.5, 6, {0.8, 0.8, 0});
     add(shapes + 4, 0.5, 0.5, scene::kNone, {-0.8, -0.8, 0.5});
+    add(shapes + 1, 1, 0, scene::kNone, {-0.8, 0.8, 0.2});
+    parts.materials.back().emissive = {0.1, 0.1, 0};
+    add(shapes + 2, 0.5, 0.5, 6, {0.8, -0.8, 0.2});
+    parts.materials.back().emissive = {0, 0.2, 0};
+    parts.materials.back().emissive_texture = 6;
     scene::Id id = 20;
     using Type = scene::LightData::Type;
     for (const Type type : {Type::point, Type::directional, Type::spot}) {

@@ -19,7 +19,8 @@ namespace {
 constexpr const char* kText = R"(vrut-text 1
 unit 0.001
 material 3 "Paint" ambient 0.02 0.01 0 1 diffuse 0.6 0.02 0.03 0.5 specular 0.8 0.7 0.6 1
-  emission 0.1 0.2 0.3 1 shininess 64 reflectivity 0.25 two-sided 1 image "red.png" end
+  emission 0.1 0.2 0.3 1 shininess 64 reflectivity 0.25 two-sided 1 image "red.png"
+  emissive 0.5 0 2 emissive-image "red.png" end
 material 12 "Grey" image "no such.png" end
 geometry 7 vertices 4 0 0 0  1 0 0  0 1 0  1 1 -0.25 normals 4 0 0 1  0 0 1  0 0 1  0 1 0
   texcoords 4 0 0  1 0  0 1  1.5 -2 colors 4 1 0 0  0 0.5 0  0 0 1  1 1 1 triangles 2 0 1 2  2 1 3 end

@@ -18,6 +18,7 @@ unit 0.001                        # metres per unit
 material 3 "Paint \"red\" \\ #1"
   ambient 0.02 0.01 0 1   diffuse 0.6 0.02 0.03 0.5   specular 0.8 0.7 0.6 1   emission 0.1 0.2 0.3 1
   shininess 64   reflectivity 0.25   two-sided 1
+  emissive 0.5 0 2   emissive-image "textures/glow.png"
   image "textures/plate.png"
 end
 geometry 7
@@ -88,6 +89,8 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.reflectivity == 0.25);
     CHECK(paint.two_sided);
     CHECK(paint.image == "textures/plate.png");
+    CHECK(paint.emissive == glm::dvec3(0.5, 0, 2));
+    CHECK(paint.emissive_image == "textures/glow.png");
     const scene::Material& grey = scene.materials()[1];
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
     CHECK(grey.diffuse == glm::dvec4(0.8, 0.8, 0.8, 1));
@@ -175,7 +178,7 @@ TEST_CASE("nodes of every type") {
     CHECK(node_of(scene, 14).type == scene::NodeType::sound);
     CHECK(node_of(scene, node_of(scene, 14).id).parent == scene.find_node(9));
     CHECK(scene.notices() ==
-          std::vector<std::string>{"folder/car.vrut:28: node 14 is a sound and was kept as a group"});
+          std::vector<std::string>{"folder/car.vrut:29: node 14 is a sound and was kept as a group"});
 }
 
 TEST_CASE("what a node leaves out") {

@@ -34,7 +34,7 @@ scene::Scene read(const std::string& text, const std::string& file) {
 bool same(const scene::Material& a, const scene::Material& b) {
     const auto members = [](const scene::Material& m) {
         return std::tie(m.id, m.name, m.ambient, m.diffuse, m.specular, m.emission, m.shininess,
-                        m.reflectivity, m.two_sided, m.image);
+                        m.reflectivity, m.two_sided, m.emissive, m.image, m.emissive_image);
     };
     return members(a) == members(b);
 }
@@ -149,17 +149,10 @@ private:
     }
 
     scene::Material material(scene::Id id) {
-        return {id,
-                name(),
-                color(),
-                color(),
-                color(),
-                color(),
-                positive(10000),
-                positive(1),
-                coin(),
-                name(),
-                scene::Index{scene::kNone}};
+        return {
+            id,      name(),          color(),     color(),     color(),
+            color(), positive(10000), positive(1), coin(),      coin() ? glm::dvec3(0) : glm::dvec3(color()),
+            name(),  scene::kNone,    name(),      scene::kNone};
     }
 
     scene::Geometry geometry(scene::Id id) {

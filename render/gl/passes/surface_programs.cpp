@@ -31,10 +31,11 @@ enum SurfaceUniform : GLint {
     clip_plane_at = 13,
     origin_at = 14,
     ambient_at = 15,
+    emissive_at = 16,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
-constexpr GLuint kTextureUnit = 0, kEnvironmentUnit = 1;
+constexpr GLuint kTextureUnit = 0, kEnvironmentUnit = 1, kEmissiveUnit = 3;
 
 /// What holds for all surfaces of a view, in view space; laid out as std140 has it.
 struct ViewUniforms {
@@ -157,13 +158,25 @@ SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawIte
     SurfaceVariant variant{kind, light_, textured, item.environment, item.clip_plane.has_value()};
     variant.lit_at = methods_.light;
     variant.colored = item.colored;
+    variant.emissive = item.emissive;
     variant.double_single = geometry.is_double_single();
     variant.anisotropic = textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic;
     return variant;
 }
 
+const GlTexture& SurfacePrograms::emissive_texture_of(const plan::DrawItem& item) {
+    if (item.emissive_texture != scene::kNone) return scene_->texture(item.emissive_texture);
+    if (!white_) {
+        constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
+        white_ = make_texture(GL_RGBA8, 1, 1);
+        glClearTexImage(white_.get(), 0, GL_RGBA, GL_UNSIGNED_BYTE, kWhite.data());
+    }
+    return white_;
+}
+
 void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
     if (item.texture != scene::kNone) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
+    if (item.emissive) glBindTextureUnit(kEmissiveUnit, emissive_texture_of(item).get());
     if (item.environment) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
 }
 
@@ -175,6 +188,7 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     glUniformMatrix3fv(normal_matrix_at, 1, GL_FALSE, glm::value_ptr(normals));
     bind_textures(item);
     set(base_at, item.colored ? glm::vec3(material.emission) : base_of(material));
+    if (item.emissive) set(emissive_at, glm::vec3(material.emissive));
     if (item.colored) set(ambient_at, glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
     set(specular_at, glm::vec3(material.specular));
@@ -261,7 +275,7 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
         const plan::DrawItem& first = items.front();
         const GpuGeometry& geometry = scene_->geometry(first);
         std::size_t length = 1;
-        if (geometry.buffers->shared) {
+        if (geometry.buffers->shared && !first.emissive) {
             length = run_length(items);
             draw_run(items.first(length), state, material, stats);
         } else {

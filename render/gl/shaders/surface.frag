@@ -3,7 +3,7 @@
 #ifndef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
-#if defined(TEXTURED) || defined(ENVIRONMENT)
+#if defined(TEXTURED) || defined(EMISSIVE) || defined(ENVIRONMENT)
 #include "texture_filter.glsl"
 #endif
 #ifdef LAYERED
@@ -50,6 +50,13 @@ in vec3 view_normal;
 #endif
 #ifdef TEXTURED
 layout(binding = 0) uniform sampler2D image;
+#endif
+#ifdef EMISSIVE
+layout(binding = 3) uniform sampler2D emissive_image;
+layout(location = 16) uniform vec3 emissive;
+#include "srgb.glsl"
+#endif
+#if defined(TEXTURED) || defined(EMISSIVE)
 in vec2 uv;
 #endif
 #ifdef COLORED
@@ -97,6 +104,10 @@ void main() {
     vec3 unlit = base;
 #endif
     vec3 own = clamp(unlit + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
+#ifdef EMISSIVE
+    own = srgb_from_linear(linear_from_srgb(own) +
+                           emissive * linear_from_srgb(sample_filtered(emissive_image, uv).rgb));
+#endif
 #ifdef ENVIRONMENT
     // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
     // direction follow by the chain rule, but for the part along it, which does not turn it.

@@ -162,6 +162,13 @@ private:
             {"shininess", [&] { material.shininess = tokens_.take_number("shininess", 0, 10000); }},
             {"reflectivity", [&] { material.reflectivity = tokens_.take_number("reflectivity", 0, 1); }},
             {"two-sided", [&] { material.two_sided = tokens_.take_flag("two-sided"); }},
+            {"emissive",
+             [&] {
+                 for (int i = 0; i < 3; ++i)
+                     material.emissive[i] = tokens_.take_number("emissive", 0, kMaxColor);
+             }},
+            {"emissive-image",
+             [&] { material.emissive_image = tokens_.take_string("the emissive image's file"); }},
             {"image", [&] { material.image = tokens_.take_string("the image's file"); }},
         };
         read_members("material " + std::to_string(material.id), members);

@@ -96,9 +96,15 @@ private:
         text("\n  shininess").number(material.shininess);
         text("  reflectivity").number(material.reflectivity);
         text("  two-sided").number(material.two_sided ? 1 : 0);
-        if (const std::string& image = texture_file(material.texture, material.image); !image.empty())
-            text("\n  image").string(image);
+        write_image("image", material.texture, material.image);
+        if (material.emissive != glm::dvec3(0)) text("\n  emissive").numbers(material.emissive);
+        write_image("emissive-image", material.emissive_texture, material.emissive_image);
         text("\nend\n");
+    }
+
+    void write_image(std::string_view member, scene::Index texture, const std::string& own) {
+        if (const std::string& image = texture_file(texture, own); !image.empty())
+            text("\n  ").text(member).string(image);
     }
 
     template <class Rows>
