@@ -131,7 +131,7 @@ std::vector<std::string> name_materials(const scene::Scene& scene, const std::ve
     return names;
 }
 
-/// What the file does not hold, and what of it the rule of our reader does not take (assimp_scene.hpp).
+/// What the file does not hold, and what of it the rule of our reader does not take (assimp/scene.hpp).
 void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
                          ConversionWarnings& warnings) {
     warnings.add("a material's two-sided flag is lost");

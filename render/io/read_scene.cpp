@@ -4,6 +4,7 @@
 
 #include "base/file_bytes.hpp"
 #include "io/assimp/scene.hpp"
+#include "io/gltf/reader.hpp"
 #include "io/osb/scene.hpp"
 #include "io/vrut/text_reader.hpp"
 
@@ -14,14 +15,14 @@ namespace {
 struct ReaderEntry {
     const char* extension;
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
-    bool foreign;  ///< its reader is not ours
+    bool foreign;  ///< a foreign library reads what matters of it
 };
 
 constexpr ReaderEntry kReaders[] = {
     {".vrut", read_vrut_file, false},
     {".osb", read_osb_scene, false},
-    {".glb", read_assimp_scene<AssimpFormat::gltf>, true},
-    {".gltf", read_assimp_scene<AssimpFormat::gltf>, true},
+    {".glb", read_gltf_scene, true},
+    {".gltf", read_gltf_scene, true},
     {".obj", read_assimp_scene<AssimpFormat::obj>, true},
     {".stl", read_assimp_scene<AssimpFormat::stl>, true},
     {".ply", read_assimp_scene<AssimpFormat::ply>, true},

@@ -110,4 +110,57 @@ void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const R
     notices.append_to(parts.notices);
 }
 
+void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_file,
+                              const EmbeddedDecoder& decode) {
+    std::map<std::string, TextureResult> known;
+    std::uint64_t pixels_left = kMaxTexturePixels;
+    const auto decode_new = [&](const std::string& name) -> TextureResult {
+        auto image = decode(name, std::min(pixels_left, kMaxImagePixels));
+        if (!image) return tl::unexpected(image.error());
+        pixels_left -= image->rgba.size() / 4;
+        const bool transparent = has_transparent_pixel(*image);
+        parts.textures.push_back({name, *std::move(image), transparent});
+        return static_cast<scene::Index>(parts.textures.size() - 1);
+    };
+    Notices notices;
+    for (scene::Material& material : parts.materials) {
+        if (!material.image.starts_with('*')) continue;
+        auto found = known.find(material.image);
+        if (found == known.end()) found = known.emplace(material.image, decode_new(material.image)).first;
+        if (found->second)
+            material.texture = *found->second;
+        else
+            notices.add(scene_file.string() + ": material " + std::to_string(material.id) +
+                        " is drawn without its texture '" + excerpt(material.image) +
+                        "': " + found->second.error());
+        material.image.clear();  // no file that could be read
+    }
+    notices.append_to(parts.notices);
+}
+
+void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<scene::Texture>& textures) {
+    std::vector<bool> keeps_alpha(textures.size());
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].texture != scene::kNone && !ignore_alpha[i])
+            keeps_alpha[static_cast<std::size_t>(materials[i].texture)] = true;
+    std::map<scene::Index, scene::Index> opaque;  // by the texture that it was made from
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        const scene::Index from = materials[i].texture;
+        if (from == scene::kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)
+            continue;
+        const auto [found, is_new] = opaque.emplace(from, from);
+        if (is_new && keeps_alpha[static_cast<std::size_t>(from)]) {
+            found->second = static_cast<scene::Index>(textures.size());
+            textures.push_back(textures[static_cast<std::size_t>(from)]);
+        }
+        materials[i].texture = found->second;
+    }
+    for (const auto& [from, made] : opaque) {
+        scene::Texture& texture = textures[static_cast<std::size_t>(made)];
+        for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
+        texture.transparent = false;
+    }
+}
+
 }  // namespace vrut::io

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include "io/read_scene.hpp"
 
@@ -18,5 +19,18 @@ bool has_transparent_pixel(const scene::Image& image);
 /// unreadable one, and a cube map without six squares of one size are omitted with a notice.
 void read_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
                    const ReadProgress& progress = {}, std::uint64_t max_pixels = kMaxTexturePixels);
+
+/// Decodes an image that lies inside the scene's file, by its name, of at most so many pixels.
+using EmbeddedDecoder =
+    std::function<tl::expected<scene::Image, std::string>(const std::string& name, std::uint64_t max_pixels)>;
+
+/// Decodes the images of materials whose names begin with `*`, each once, and empties these names. One that
+/// cannot be decoded is omitted with a notice.
+void decode_embedded_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
+                              const EmbeddedDecoder& decode);
+
+/// Gives opaque copies of their textures to the materials that ignore alpha.
+void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
+                          std::vector<scene::Texture>& textures);
 
 }  // namespace vrut::io

@@ -3,7 +3,6 @@
 #include <cstring>
 
 #include "image_bytes.hpp"
-#include "io/gltf/check.hpp"
 #include "scene_queries.hpp"
 
 using namespace vrut;
@@ -158,15 +157,11 @@ TEST_CASE("glTF cameras and lights are nodes") {
     CHECK(std::get<scene::LightData>(node_of(scene, "Sun").data).type == scene::LightData::Type::directional);
 }
 
-TEST_CASE(
-    "a glTF camera's field of view is the file's vertical one, whatever assimp makes of the aspect ratio") {
+TEST_CASE("a glTF camera's field of view is the file's vertical one, whatever its aspect ratio") {
     const TemporaryFolder folder;
     for (const char* aspect : {"\"aspectRatio\": 1.5", "\"aspectRatio\": 0.1", "\"aspectRatio\": 1e39"}) {
-        const fs::path file = folder.write("car.gltf", car_with("\"aspectRatio\": 1.5", aspect));
-        const auto checked = io::check_gltf(file);
-        REQUIRE(checked);
-        CHECK(checked->head.find("aspectRatio") == std::string::npos);
-        const scene::Scene scene = read_well(file);
+        const scene::Scene scene =
+            read_well(folder.write("car.gltf", car_with("\"aspectRatio\": 1.5", aspect)));
         CHECK(std::get<scene::CameraData>(node_of(scene, "Presenter").data).fov == doctest::Approx(30));
     }
 }
@@ -229,16 +224,21 @@ TEST_CASE("the buffers and pictures of a glTF scene lie in its folder") {
 }
 
 TEST_CASE("a glTF file that is none is refused in a sentence") {
-    check_refused("", "unexpected end");
-    check_refused("nothing", "no scene to show");
-    check_refused(car_text().substr(0, 900), "its JSON is invalid at byte");
+    check_refused("", "its JSON ends too early");
+    check_refused("nothing", "its JSON is invalid at byte 2");
+    check_refused("[]", "its JSON is not an object");
+    check_refused("{\"a\": 1e999}", "beyond the range of double precision");
+    check_refused(car_text().substr(0, 900), "its JSON ends too early");
+    check_refused(car_with("\"scene\": 0", "\"scene\": \"0\""),
+                  "a member 'scene' that is not an integer from 0");
     check_refused("vrut-text 1", "not a binary glTF", "car.glb");
     check_refused(R"({"meshes":{"box":{}},"asset":{"generator":"a","version":"1.0"}})",
                   "it is glTF 1.0: export");
     check_refused(std::string("glTF\1\0\0\0", 8) + std::string(40, ' '), "it is glTF 1.0: export", "car.glb");
     check_refused(car_glb().substr(0, 900), "its JSON chunk exceeds the file", "car.glb");
-    check_refused(car_glb().substr(0, car_glb().size() - 8), "cannot be read", "car.glb");
-    check_refused(car_with("\"2.0\"", "\"1.0\""), "version");
+    check_refused(car_glb().substr(0, car_glb().size() - 8), "its binary chunk exceeds the file", "car.glb");
+    check_refused(car_with("\"2.0\"", "\"1.0\""), "it is glTF 1.0: export");
+    check_refused(car_with("\"2.0\"", "\"3.0\""), "export it as glTF 2.0");
     check_refused(car_with("Left door", "Left \xff door"), "UTF-8");
     check_refused(std::string(100'000, '['), "nested too deeply");
     check_refused(car_with("\"scene\": 0", "\"scene\": 3"), "no scene");
@@ -254,7 +254,7 @@ TEST_CASE("numbers of a glTF file that lead nowhere are refused in a sentence") 
     check_refused(car_with("\"children\": [3]", "\"children\": [0]"), "node 0 has several parents");
     check_refused(car_with("\"children\": [3]", "\"children\": [1]"), "node 1 has several parents");
     check_refused(car_with("\"indices\": 3", "\"indices\": 8"), "no accessor 8");
-    check_refused(car_with("\"material\": 1", "\"material\": 5"), "cannot be read");
+    check_refused(car_with("\"material\": 1", "\"material\": 5"), "no material 5");
     check_refused(car_with("\"byteOffset\": 128", "\"byteOffset\": 129"), "exceeds its buffer");
     check_refused(car_with("5123, \"count\": 6", "5123, \"count\": 7"), "exceeds its bufferView");
     check_refused(car_with("5123, \"count\": 6", "5123, \"count\": 1"), "too few vertices");
@@ -262,12 +262,6 @@ TEST_CASE("numbers of a glTF file that lead nowhere are refused in a sentence") 
     check_refused(car_with("\"bufferView\": 3", "\"bufferView\": 1"), "vertex index out of range");
     check_refused(car_with("[1, 2, 3]", "[1e300, 2, 3]"), "matrix of node 'Car'");
     check_refused(car_with("0.25, 1]", "0.25, 2]"), "0 0 0 1");
-}
-
-TEST_CASE("a second glTF document does not hide behind the name of an extension") {
-    check_refused(car_with("\"KHR_materials_clearcoat\"", R"("\"], ")"), "an extension's name");
-    check_refused(car_with("\"KHR_materials_clearcoat\"", R"("KHR\u005fmaterials_sheen")"),
-                  "an extension's name");
 }
 
 TEST_CASE("the indices of glTF lines and points, which are not shown, may be any") {
@@ -285,37 +279,29 @@ TEST_CASE("the indices of glTF lines and points, which are not shown, may be any
     }
 }
 
-TEST_CASE("addresses in a glTF file are checked as assimp decodes them") {
-    const auto read_with = [](const std::string& from, const std::string& to) {
-        const TemporaryFolder folder;
+TEST_CASE("data URIs of a glTF file may be written in any way") {
+    const TemporaryFolder folder;
+    const auto read_with = [&](const std::string& from, const std::string& to) {
         return read_well(folder.write("car.gltf", car_with(from, to)));
     };
-    CHECK(read_with("data:image/png", R"(d\u0061ta:image\/p\u006Eg)").textures().size() == 2);
-    CHECK(read_with("data:application/octet-stream", R"(data:\u010D\ud83d\ude97)").triangle_count() == 8);
-    for (const char* address : {R"(d\u0061ta:x)", "data:x", "data:image"})
-        check_refused(car_with("data:image/png", address), "an image's mimeType is invalid");
-    for (const char* address : {R"(data:x\u0000/y)", R"(\u0010data:image/png)", R"(\n)"})
-        check_refused(car_with("data:image/png", address), "a URI contains a control character");
-    check_refused(car_with("data:application", R"(\u0010data:application)"),
-                  "a URI contains a control character");
-    for (const char* kind : {R"(image\u0000/x)", "image", ""})
-        check_refused(
-            car_with("\"images\": [{", "\"images\": [{\"mimeType\": \"" + std::string(kind) + "\", "),
-            "an image's mimeType is invalid");
-}
-
-TEST_CASE("the data in an address of a glTF file begins soon enough for assimp") {
-    const auto address = [](std::size_t size) {  // up to its comma
-        return "data:" + std::string(size - std::string("data:/;base64").size(), 'a') + "/;base64";
-    };
-    const TemporaryFolder folder;
-    for (const char* from : {"data:application/octet-stream;base64", "data:image/png;base64"}) {
-        CHECK(read_well(folder.write("car.gltf", car_with(from, address(126)))).textures().size() == 2);
-        check_refused(car_with(from, address(127)), "more than 126 bytes before its data");
-        check_refused(car_with(from, address(300)), "more than 126 bytes before its data");
-    }
-    check_refused(car_with("data:image/png;base64,", "data:image/png"),
-                  "more than 126 bytes before its data");
+    for (const char* head :
+         {R"(d\u0061ta:image\/p\u006Eg)", "data:", "data:image", "data:image/x-unknown;charset=a"})
+        CHECK_MESSAGE(read_with("data:image/png", head).textures().size() == 2, head);
+    const std::string long_head = "data:" + std::string(300, 'a') + "/b";
+    for (const std::string& head :
+         {std::string(R"(data:\u010D\ud83d\ude97)"), std::string("data:"), long_head})
+        CHECK(read_with("data:application/octet-stream", head).triangle_count() == 8);
+    CHECK(has_notice(read_with("data:image/png;base64,", "data:image/png"),
+                     "is drawn without its texture '*0': a data URI has no data"));
+    CHECK(has_notice(read_with("data:image/png;base64,", "data:image/png,"),
+                     "without its texture '*0': it is none of"));
+    check_refused(car_with("octet-stream;base64,", "octet-stream;base64,!"),
+                  "a data URI is not valid base64");
+    check_refused(car_with("octet-stream;base64,", "octet-stream,"), "mesh 'Door' has a vertex index");
+    check_refused(car_with("\"byteLength\": 140", "\"byteLength\": 144"),
+                  "buffer 0 has 140 bytes, but its byteLength is 144");
+    check_refused(car_with("data:application/octet-stream", R"(\u0000)"),
+                  "its name is empty or contains a NUL");
 }
 
 TEST_CASE("a small glTF file that would take much memory is refused") {
@@ -324,45 +310,60 @@ TEST_CASE("a small glTF file that would take much memory is refused") {
         "{\"count\": 1, \"indices\": {\"bufferView\": 3, \"componentType\": 5123}, "
         "\"values\": {\"bufferView\": 0}}}";
     const std::string why = "loading it would need more than 256 MiB of memory";
-    // Sparse ones, whether they are used or not.
-    check_refused(car_with("\"accessors\": [", "\"accessors\": [" + large + ", " + large + ", "), why);
+    // Sparse ones.
+    const auto with_positions = [](const std::string& text) {
+        return replaced(text, "\"attributes\": {\"POSITION\": 0}, \"indices\": 3",
+                        "\"attributes\": {\"POSITION\": 4}, \"indices\": 3");
+    };
+    const std::string behind = "\"type\": \"SCALAR\"}";
+    check_refused(with_positions(car_with(behind, behind + ", " + large)), why);
+    const std::string none = "{\"componentType\": 5126, \"count\": 4294967295, \"type\": \"VEC3\"}";  // zeros
+    check_refused(with_positions(car_with(behind, behind + ", " + none)), why);
     // One that is used often.
     std::string primitives;
-    for (int i = 0; i < 40; ++i) primitives += "{\"attributes\": {\"POSITION\": 4}, \"mode\": 0}, ";
-    std::string million = replaced(large, "16777216", "1000000");
-    const std::string many = replaced(car_with("\"type\": \"SCALAR\"}", "\"type\": \"SCALAR\"}, " + million),
+    for (int i = 0; i < 40; ++i) primitives += "{\"attributes\": {\"POSITION\": 4}}, ";
+    const std::string million = replaced(large, "16777216", "1000000");
+    const std::string many = replaced(car_with(behind, behind + ", " + million),
                                       "{\"attributes\": {\"POSITION\": 0}, \"mode\": 3}",
                                       primitives + "{\"attributes\": {\"POSITION\": 0}}");
     check_refused(many, why);
     const TemporaryFolder folder;
     CHECK(io::read_scene(folder.write("car.gltf", replaced(many, "1000000", "1000"))));
-    // One file in many buffers, and one buffer in many pictures.
+    // One file in many buffers.
     folder.write("zeros.bin", "");
-    fs::resize_file(folder.path() / "zeros.bin", 8 << 20);
-    std::string buffers, pictures;
-    for (int i = 0; i < 100; ++i) {
-        buffers += ", {\"byteLength\": 8388608, \"uri\": \"zeros.bin\"}";
-        pictures += ", {\"bufferView\": 4, \"mimeType\": \"image/png\"}";
+    fs::resize_file(folder.path() / "zeros.bin", 4 << 20);
+    std::string buffers, views, pictures, textures, materials, used;
+    for (int i = 1; i <= 100; ++i) {
+        const std::string number = std::to_string(i);
+        buffers += ", {\"byteLength\": 4194304, \"uri\": \"zeros.bin\"}";
+        views += ", {\"buffer\": " + number + ", \"byteLength\": 4194304}";
+        pictures += ", {\"bufferView\": " + std::to_string(i + 3) + ", \"mimeType\": \"image/png\"}";
+        textures += ", {\"source\": " + number + "}";
+        materials += ", {\"pbrMetallicRoughness\": {\"baseColorTexture\": {\"index\": " + number + "}}}";
+        used +=
+            "{\"attributes\": {\"POSITION\": 0}, \"mode\": 3, \"material\": " + std::to_string(i + 2) + "}, ";
     }
-    const std::string zeros = replaced(car_text(), "\"}]\n}", "\"}" + buffers + "]\n}");
-    const std::string shown = replaced(
-        replaced(
-            replaced(car_text(), "\"}]\n}", "\"}, {\"byteLength\": 8388608, \"uri\": \"zeros.bin\"}]\n}"),
-            "\"byteLength\": 12}", "\"byteLength\": 12}, {\"buffer\": 1, \"byteLength\": 8388608}"),
-        "ggg==\"}", "ggg==\"}" + pictures);
-    for (const std::string& text : {zeros, shown}) {
-        const auto scene = io::read_scene(folder.write("car.gltf", text));
-        REQUIRE_FALSE(scene);
-        CHECK_MESSAGE(scene.error().find("more than 512 MiB of memory") != std::string::npos, scene.error());
-    }
+    std::string text = replaced(car_text(), "\"}]\n}", "\"}" + buffers + "]\n}");
+    text = replaced(text, "\"byteLength\": 12}", "\"byteLength\": 12}" + views);
+    text = replaced(text, "ggg==\"}", "ggg==\"}" + pictures);
+    text = replaced(text, "{\"source\": 0}", "{\"source\": 0}" + textures);
+    text = replaced(text, "\"normalTexture\": {\"index\": 0}}",
+                    "\"normalTexture\": {\"index\": 0}}" + materials);
+    text = replaced(text, "{\"attributes\": {\"POSITION\": 0}, \"mode\": 3}",
+                    used + "{\"attributes\": {\"POSITION\": 0}, \"mode\": 3}");
+    const scene::Scene scene = read_well(folder.write("car.gltf", text));
+    CHECK(has_notice(scene, "without its texture '*1': it is none of"));
+    CHECK(has_notice(scene, "more notices of this kind"));
 }
 
-TEST_CASE("a glTF camera whose field of view is no number is lost, and told") {
+TEST_CASE("a glTF camera whose field of view cannot be is lost, and told") {
     const TemporaryFolder folder;
-    const scene::Scene scene =
-        read_well(folder.write("car.gltf", car_with("\"yfov\": 0.5235988", "\"yfov\": 1e39")));
-    CHECK(node_of(scene, "Presenter").type == scene::NodeType::assembly);
-    CHECK(has_notice(scene, "a camera is ignored: its field of view is not finite"));
+    for (const char* yfov : {"1e39", "0", "3.15"}) {
+        const scene::Scene scene = read_well(
+            folder.write("car.gltf", car_with("\"yfov\": 0.5235988", "\"yfov\": " + std::string(yfov))));
+        CHECK(node_of(scene, "Presenter").type == scene::NodeType::assembly);
+        CHECK(has_notice(scene, "a camera is ignored: its field of view is not between 0 and 180 degrees"));
+    }
 }
 
 TEST_CASE("a black glTF light is black") {
@@ -382,7 +383,7 @@ TEST_CASE("positions of a glTF file are numbers") {
     check_refused(car_with(buffer, "base64,AACAfwAA"), "a vertex of mesh 'Door'");  // infinite
 }
 
-TEST_CASE("a chain of glTF nodes is read or refused, however long") {
+TEST_CASE("a chain of glTF nodes is read, however long") {
     const auto chain = [](int length) {
         std::string nodes = "{\"mesh\": 0}";
         for (int i = 0; i < length; ++i) nodes += ", {\"children\": [" + std::to_string(i) + "]}";
@@ -394,6 +395,5 @@ TEST_CASE("a chain of glTF nodes is read or refused, however long") {
         return text;
     };
     const TemporaryFolder folder;
-    CHECK(read_well(folder.write("chain.gltf", chain(900))).nodes().size() == 902);
-    check_refused(chain(100'000), "nested more than 1000 deep");
+    CHECK(read_well(folder.write("chain.gltf", chain(100'000))).nodes().size() == 100'002);
 }

@@ -4,13 +4,11 @@ namespace vrut::io {
 
 /// The formats that assimp reads for us. Of the others that it knows, none carries cars that do not come in
 /// one of these as well, and each would be one more that could go wrong on files from anywhere.
-enum class AssimpFormat { gltf, obj, stl, ply, collada, fbx };
+enum class AssimpFormat { obj, stl, ply, collada, fbx };
 
 /// What assimp calls its reader of the format.
 constexpr const char* importer_name(AssimpFormat format) {
     switch (format) {
-        case AssimpFormat::gltf:
-            return "glTF2 Importer";
         case AssimpFormat::obj:
             return "Wavefront Object Importer";
         case AssimpFormat::stl:

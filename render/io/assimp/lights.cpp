@@ -3,16 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/assimp/materials.hpp"
-
 namespace vrut::io {
 
 namespace {
 
 glm::dvec3 vector_of(const aiVector3D& from) { return {from.x, from.y, from.z}; }
 
-/// The vertical field of view in degrees; not finite if the file's is not. check_gltf() hides the aspect
-/// ratio of glTF from assimp, whose horizontal field of view then is the file's vertical one.
+/// The vertical field of view in degrees; not finite if the file's is not.
 double field_of_view(const aiCamera& from) {
     const double aspect = from.mAspect > 0 ? from.mAspect : 1;
     return glm::degrees(2 * std::atan(std::tan(double{from.mHorizontalFOV} / 2) / aspect));
@@ -24,20 +21,17 @@ bool is_unread(const aiCamera& from, AssimpFormat format) {
     return format == AssimpFormat::collada && std::abs(from.mHorizontalFOV - 0.013708F) < 1e-5F;
 }
 
-glm::dvec3 color_of(const aiLight& from, AssimpFormat format) {
+glm::dvec3 color_of(const aiLight& from) {
     const aiColor3D& color = from.mColorDiffuse;  // times the strength
     const float most = std::max({color.r, color.g, color.b});
     if (!std::isfinite(most)) return glm::dvec3(1);
-    if (format == AssimpFormat::gltf) return srgb_from_linear(most > 0 ? color * (1 / most) : color);
     return glm::clamp(glm::dvec3(color.r, color.g, color.b) / std::max(1.0, double{most}), 0.0, 1.0);
 }
 
 /// The full cone, in degrees.
 double cone_of(const aiLight& from, AssimpFormat format) {
-    const double angle = format == AssimpFormat::gltf      ? 2 * double{from.mAngleOuterCone}
-                         : format == AssimpFormat::collada ? double{from.mAngleInnerCone}
-                                                           // as the file has it
-                                                           : double{from.mAngleOuterCone};
+    const double angle =
+        format == AssimpFormat::collada ? double{from.mAngleInnerCone} : double{from.mAngleOuterCone};
     return std::isfinite(angle) ? std::clamp(glm::degrees(angle), 0.0, 180.0) : 90;
 }
 
@@ -109,7 +103,7 @@ std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat forma
                 "an area or ambient light is ignored: only point, directional and spot lights are supported");
             return std::nullopt;
     }
-    light.color = glm::dvec4(color_of(from, format), 1);
+    light.color = glm::dvec4(color_of(from), 1);
     light.attenuation = attenuation_of(from, format, warnings);
     if (light.type == scene::LightData::Type::spot) light.angle = cone_of(from, format);
     if (light.type != scene::LightData::Type::point) node.matrix = turn_to(vector_of(from.mDirection));

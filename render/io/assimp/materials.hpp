@@ -15,7 +15,4 @@ scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
                                  const std::filesystem::path& folder, AssimpFormat format,
                                  ConversionWarnings& warnings);
 
-/// Linear light to sRGB (IEC 61966-2-1), each channel from 0 to 1.
-glm::dvec3 srgb_from_linear(const aiColor3D& color);
-
 }  // namespace vrut::io

@@ -158,7 +158,7 @@ scene::Geometry convert_geometry(aiMesh& mesh, AssimpFormat format, unsigned tex
         move_normals(mesh, geometry, warnings);  // there each triangle has its own
     move_texcoords(mesh, texcoord_set, geometry);
     move_colors(mesh, geometry, warnings);
-    if (format != AssimpFormat::gltf && !geometry.triangles.empty()) weld(geometry);
+    if (!geometry.triangles.empty()) weld(geometry);
     return geometry;
 }
 

@@ -2,23 +2,12 @@
 
 #include <assimp/mesh.h>
 
-#include <cmath>
-#include <stdexcept>
-#include <string>
-
 #include "io/assimp/format.hpp"
 #include "io/conversion_warnings.hpp"
+#include "io/import_checks.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::io {
-
-/// The file's scene cannot be read. The message does not name the file.
-struct ImportError : std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
-/// True for a finite coordinate whose square stays in the range of float on the GPU, as in scene text.
-inline bool is_coordinate(float value) { return std::abs(value) <= 1e15F; }
 
 /// Throws ImportError for a face without vertices or with a vertex index out of range: assimp would crash on
 /// them.

@@ -20,7 +20,6 @@
 #include "io/assimp/ply_check.hpp"
 #include "io/assimp/text.hpp"
 #include "io/assimp/textures.hpp"
-#include "io/gltf/check.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
 #include "mesh/watertight.hpp"
@@ -51,7 +50,7 @@ public:
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_);
         make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
-        if (format_ != AssimpFormat::gltf) find_single_sided();
+        find_single_sided();
         return std::move(parts_);
     }
 
@@ -73,9 +72,11 @@ private:
             parts_.materials.push_back(
                 convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, warnings_));
             parts_.materials.back().id = materials_[i];
-            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i], format_));
+            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i]));
         }
-        decode_embedded_textures(scene_, parts_.materials, parts_.textures, path_.string(), parts_.notices);
+        decode_embedded_textures(parts_, path_, [&](const std::string& name, std::uint64_t max_pixels) {
+            return decode_embedded_texture(scene_, name, max_pixels);
+        });
     }
 
     void convert_meshes() {
@@ -164,8 +165,7 @@ private:
     /// Returns true if assimp added this root to hold what the file has.
     bool is_made_up(const aiNode& root, const glm::dmat4& matrix) const {
         return root.mNumMeshes == 0 && matrix == glm::dmat4(1) && cameras_.count(root.mName.C_Str()) == 0 &&
-               lights_.count(root.mName.C_Str()) == 0 &&
-               (format_ != AssimpFormat::gltf || text_of(root.mName) == "ROOT");
+               lights_.count(root.mName.C_Str()) == 0;
     }
 
     /// Returns true if it is one of the many that assimp makes of a single node's turns, pivots and shifts in
@@ -265,14 +265,6 @@ void leave_only(Assimp::Importer& importer, const char* reader) {
     }
 }
 
-std::uint64_t count_triangles(const aiScene& scene) {
-    std::uint64_t count = 0;
-    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
-        if ((scene.mMeshes[i]->mPrimitiveTypes & aiPrimitiveType_TRIANGLE) != 0)
-            count += scene.mMeshes[i]->mNumFaces;
-    return count;
-}
-
 /// Polygons become triangles, once they are known to be some.
 void check_and_triangulate(Assimp::Importer& importer) {
     const aiScene& scene = *importer.GetScene();
@@ -297,35 +289,24 @@ std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) 
     return "it cannot be read: " + excerpt(error, 300);
 }
 
-std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format, std::string head,
+std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format,
                                 ConversionWarnings& warnings) {
     Assimp::Importer importer;
     leave_only(importer, importer_name(format));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
-    auto* files = new SceneFiles(path, std::move(head));
+    auto* files = new SceneFiles(path);
     importer.SetIOHandler(files);  // which it deletes
     if (importer.ReadFile(files->main_name(), 0) == nullptr) throw ImportError(fault_of(importer, *files));
     if (!files->rejection().empty()) warnings.add(files->rejection());
-    if (format != AssimpFormat::gltf) check_and_triangulate(importer);
+    check_and_triangulate(importer);
     return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
-}
-
-std::unique_ptr<aiScene> import_gltf(const std::filesystem::path& path, ConversionWarnings& warnings) {
-    auto checked = check_gltf(path);
-    if (!checked) throw ImportError(checked.error());
-    warnings = std::move(checked->warnings);
-    auto scene = import(path, AssimpFormat::gltf, std::move(checked->head), warnings);
-    if (count_triangles(*scene) != checked->triangles)
-        throw ImportError("a primitive has a vertex index out of range");
-    return scene;
 }
 
 std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, AssimpFormat format,
                                         ConversionWarnings& warnings) {
-    if (format == AssimpFormat::gltf) return import_gltf(path, warnings);
     if (format == AssimpFormat::ply)
         if (const auto fault = ply_error(path)) throw ImportError(*fault);
-    return import(path, format, {}, warnings);
+    return import(path, format, warnings);
 }
 
 }  // namespace

@@ -3,11 +3,11 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
-#include <vector>
+#include <tl/expected.hpp>
 
-#include "io/assimp/format.hpp"
 #include "io/conversion_warnings.hpp"
 #include "scene/scene.hpp"
 
@@ -20,21 +20,14 @@ unsigned texcoord_set_of(const aiMaterial& material);
 /// Sets the name of the material's base colour or diffuse texture, if it has one: a file in `folder`, or `*`
 /// and a number for a texture embedded in the scene's file.
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
-                      AssimpFormat format, scene::Material& material, ConversionWarnings& warnings);
+                      scene::Material& material, ConversionWarnings& warnings);
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings);
 
-/// Returns glTF's alphaMode.
-std::string alpha_mode(const aiMaterial& material);
 /// Returns true if the alpha of the material's texture has no effect.
-bool ignores_alpha(const aiMaterial& material, AssimpFormat format);
+bool ignores_alpha(const aiMaterial& material);
 
-/// Decodes the embedded textures that `materials` name into `textures`, and frees their bytes.
-void decode_embedded_textures(aiScene& scene, std::vector<scene::Material>& materials,
-                              std::vector<scene::Texture>& textures, const std::string& file,
-                              std::vector<std::string>& notices);
-
-/// Gives opaque copies of their textures to the materials that ignore alpha.
-void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
-                          std::vector<scene::Texture>& textures);
+/// Decodes the embedded texture of that name, `*` and a number, and frees its bytes.
+tl::expected<scene::Image, std::string> decode_embedded_texture(aiScene& scene, const std::string& name,
+                                                                std::uint64_t max_pixels);
 
 }  // namespace vrut::io

@@ -7,7 +7,6 @@ namespace vrut::io {
 
 namespace {
 
-constexpr double kDielectric = 0.22;    // how a reflectance of 4 % displays
 constexpr double kVisible = 0.5 / 255;  // what rounds to the same byte is the same
 constexpr double kSharpest = 10'000;    // Phong's exponent, which is what the reader gives smoother ones
 
@@ -30,7 +29,7 @@ struct Highlight {
 
 /// The nearest to `wanted` with k in a range and q from 0 to k, for the displayed base colour c.
 Highlight fit(const glm::dvec3& wanted, const glm::dvec3& c, double least_k, double most_k) {
-    const glm::dvec3 a(kDielectric), b = c - kDielectric;
+    const glm::dvec3 a(kGltfDielectric), b = c - kGltfDielectric;
     const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b);
     const double determinant = aa * bb - ab * ab;
     // With a grey base there are many: the one without metal.

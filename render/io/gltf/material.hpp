@@ -7,6 +7,9 @@
 
 namespace vrut::io {
 
+/// How a reflectance of 4 %, what most surfaces reflect, displays.
+inline constexpr double kGltfDielectric = 0.22;
+
 /// The factors of a glTF material; colours are linear, 0 to 1.
 struct GltfMaterial {
     glm::dvec3 base{1}, emission{0};
@@ -21,7 +24,7 @@ struct GltfMaterial {
 /// Returns the linear colour of an sRGB colour, both 0 to 1 (IEC 61966-2-1).
 glm::dvec3 linear_from_srgb(const glm::dvec3& displayed);
 
-/// Returns the glTF material that the reader's rule (assimp_scene.hpp) turns into `material`, or the nearest
+/// Returns the glTF material that the reader's rule (reader.hpp) turns into `material`, or the nearest
 /// one; what differs is added to `warnings`. With a texture the base colour factor is white.
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,
                            ConversionWarnings& warnings);

@@ -1,0 +1,151 @@
+#include "io/gltf/material_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "io/gltf/material.hpp"
+#include "io/import_checks.hpp"
+
+namespace vrut::io {
+
+namespace {
+
+const GltfJson& empty_object() {
+    static const GltfJson kEmpty = GltfJson::object();
+    return kEmpty;
+}
+
+double srgb_encoded(double linear) {
+    const double light = std::clamp(linear, 0.0, 1.0);
+    if (light == 1) return 1;  // which pow() misses
+    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
+/// Phong's exponent that is about as sharp as the roughness.
+double phong_exponent(double roughness) {
+    const double sharpness = std::pow(std::max(roughness, 0.01), -4);
+    return std::clamp((sharpness - 1) / 2, 1.0, 10'000.0);
+}
+
+const GltfJson& element(const GltfJson& document, const char* list, std::uint32_t index, const char* what) {
+    const GltfJson& elements = array_in(document, list);
+    if (index >= elements.size())
+        throw ImportError("there is no " + std::string(what) + " " + std::to_string(index));
+    return elements[index];
+}
+
+class MaterialReader {
+public:
+    MaterialReader(const GltfJson& document, const GltfJson& json, ConversionWarnings& warnings)
+        : document_(document),
+          json_(json),
+          metallic_roughness_(object_in(json, "pbrMetallicRoughness")),
+          glossiness_(extension_in(json, "KHR_materials_pbrSpecularGlossiness")),
+          warnings_(warnings) {}
+
+    ReadGltfMaterial read() {
+        scene::Material& material = result_.material;
+        material.name = string_in(json_, "name");
+        material.two_sided = boolean_in(json_, "doubleSided", false);
+        const std::string& alpha_mode = string_in(json_, "alphaMode");
+        result_.ignores_alpha = alpha_mode.empty() || alpha_mode == "OPAQUE";
+        const bool glossy =
+            json_.contains("extensions") && object_in(json_, "extensions").contains(kGlossiness);
+        const glm::dvec4 color = glossy ? vector_in<4>(glossiness_, "diffuseFactor", glm::dvec4(1))
+                                        : vector_in<4>(metallic_roughness_, "baseColorFactor", glm::dvec4(1));
+        material.diffuse =
+            glm::dvec4(srgb_from_linear(color), alpha_mode == "BLEND" ? std::clamp(color.a, 0.0, 1.0) : 1.0);
+        material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
+        material.emission =
+            glm::dvec4(srgb_from_linear(vector_in<3>(json_, "emissiveFactor", glm::dvec3(0))), 1);
+        set_highlight(glossy);
+        set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
+                           : object_in(metallic_roughness_, "baseColorTexture"));
+        report_textures();
+        return std::move(result_);
+    }
+
+private:
+    static constexpr const char* kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+    void set_highlight(bool glossy) {
+        const auto part = [](const GltfJson& parent, const char* name) {
+            return std::clamp(number_in(parent, name, 1), 0.0, 1.0);
+        };
+        scene::Material& material = result_.material;
+        const double roughness =
+            glossy ? 1 - part(glossiness_, "glossinessFactor") : part(metallic_roughness_, "roughnessFactor");
+        const glm::dvec3 color(material.diffuse);
+        const glm::dvec3 reflected =
+            glossy
+                ? srgb_from_linear(vector_in<3>(glossiness_, "specularFactor", glm::dvec3(1)))
+                : kGltfDielectric + (color - kGltfDielectric) * part(metallic_roughness_, "metallicFactor");
+        material.specular = glm::dvec4((1 - roughness) * reflected, 1);
+        material.shininess = phong_exponent(roughness);
+    }
+
+    /// The texture that a textureInfo refers to; empty where it refers to none.
+    const GltfJson& texture_of(const GltfJson& info) const {
+        const auto index = index_in(info, "index");
+        return index ? element(document_, "textures", *index, "texture") : empty_object();
+    }
+
+    /// An image that every program reads goes before those of extensions.
+    std::optional<std::uint32_t> image_of(const GltfJson& info) const {
+        const GltfJson& texture = texture_of(info);
+        if (const auto image = index_in(texture, "source")) return image;
+        for (const char* extension : {"EXT_texture_webp", "KHR_texture_basisu", "MSFT_texture_dds"})
+            if (const auto image = index_in(extension_in(texture, extension), "source")) return image;
+        return std::nullopt;
+    }
+
+    void set_texture(const GltfJson& info) {
+        result_.image = image_of(info);
+        if (!result_.image) return;
+        result_.mapping.set = index_in(info, "texCoord").value_or(0);
+        report_sampling(info);
+        if (glm::dvec3(result_.material.diffuse) != glm::dvec3(1))
+            warnings_.add("a texture is not multiplied by the base or diffuse colour");
+    }
+
+    void report_sampling(const GltfJson& info) {
+        const auto sampler = index_in(texture_of(info), "sampler");
+        if (!sampler) return;
+        constexpr std::uint64_t kRepeat = 10497;
+        for (const char* wrap : {"wrapS", "wrapT"})
+            if (size_in(element(document_, "samplers", *sampler, "sampler"), wrap, kRepeat) != kRepeat)
+                warnings_.add("a texture repeats where the file clamps or mirrors it");
+    }
+
+    void report_textures() {
+        const auto report = [&](const GltfJson& parent, const char* name, const char* what) {
+            const bool there = image_of(object_in(parent, name)).has_value();
+            if (there) warnings_.add(what);
+            return there;
+        };
+        report(json_, "normalTexture", "a normal map is ignored");
+        report(json_, "occlusionTexture", "an occlusion texture is ignored");
+        report(metallic_roughness_, "metallicRoughnessTexture", "a metallic-roughness texture is ignored");
+        report(glossiness_, "specularGlossinessTexture", "a specular texture is ignored");
+        if (report(json_, "emissiveTexture", "an emissive texture is ignored"))
+            result_.material.emission = {0, 0, 0, 1};
+    }
+
+    const GltfJson &document_, &json_, &metallic_roughness_, &glossiness_;
+    ConversionWarnings& warnings_;
+    ReadGltfMaterial result_;
+};
+
+}  // namespace
+
+glm::dvec3 srgb_from_linear(const glm::dvec3& color) {
+    return {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
+}
+
+ReadGltfMaterial read_gltf_material(const GltfJson& document, std::optional<std::uint32_t> index,
+                                    ConversionWarnings& warnings) {
+    const GltfJson& json = index ? element(document, "materials", *index, "material") : empty_object();
+    return MaterialReader(document, json, warnings).read();
+}
+
+}  // namespace vrut::io

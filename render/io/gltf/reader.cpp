@@ -1,0 +1,199 @@
+#include "io/gltf/reader.hpp"
+
+#include <map>
+
+#include "io/gltf/buffers.hpp"
+#include "io/gltf/cameras_lights.hpp"
+#include "io/gltf/extensions.hpp"
+#include "io/gltf/geometry.hpp"
+#include "io/gltf/images.hpp"
+#include "io/gltf/material_reader.hpp"
+#include "io/gltf/node_tree.hpp"
+#include "io/import_checks.hpp"
+#include "io/scene_textures.hpp"
+
+namespace vrut::io {
+
+namespace {
+
+/// Builds the parts of a scene.
+class GltfConverter {
+public:
+    GltfConverter(const std::filesystem::path& path, const ReadProgress& progress)
+        : path_(path),
+          progress_(progress),
+          file_(read_gltf_file(path)),
+          document_(file_.document),
+          buffers_(path, file_),
+          tree_(document_) {}
+
+    scene::SceneParts convert() {
+        parts_.name = path_.stem().string();
+        check_extensions(document_, warnings_);
+        report_lists();
+        convert_materials();
+        convert_meshes();
+        convert_nodes();
+        convert_images();
+        return std::move(parts_);
+    }
+
+private:
+    void report_lists() {
+        warnings_.add("a skin is ignored: its mesh is shown undeformed", array_in(document_, "skins").size());
+        warnings_.add("an animation is ignored", array_in(document_, "animations").size());
+    }
+
+    // --- materials
+
+    using MaterialNumber = std::optional<std::uint32_t>;  // in the file; none: the default one
+
+    /// Of the meshes that are shown, in their order; the default one comes last.
+    void convert_materials() {
+        bool needs_default = false;
+        for (const std::uint32_t mesh : tree_.meshes())
+            for (const GltfJson& primitive : primitives_of(mesh)) {
+                const MaterialNumber number = index_in(primitive, "material");
+                needs_default = needs_default || !number;
+                if (number) add_material(number);
+            }
+        if (needs_default) add_material(std::nullopt);
+    }
+
+    void add_material(MaterialNumber number) {
+        const auto [found, is_new] =
+            material_indices_.emplace(number, static_cast<scene::Index>(materials_.size()));
+        if (!is_new) return;
+        ReadGltfMaterial read = read_gltf_material(document_, number, warnings_);
+        read.material.id = found->second;
+        if (read.image) read.material.image = image_name(document_, *read.image, path_.parent_path());
+        parts_.materials.push_back(read.material);
+        materials_.push_back(std::move(read));
+    }
+
+    // --- meshes
+
+    const GltfJson& mesh_json(std::uint32_t mesh) const { return array_in(document_, "meshes")[mesh]; }
+    const GltfJson& primitives_of(std::uint32_t mesh) const {
+        return array_in(mesh_json(mesh), "primitives");
+    }
+
+    std::string name_of(std::uint32_t mesh) const {
+        const std::string& name = string_in(mesh_json(mesh), "name");
+        return name.empty() ? "meshes[" + std::to_string(mesh) + "]" : name;
+    }
+
+    void convert_meshes() {
+        std::size_t done = 0;
+        for (const std::uint32_t mesh : tree_.meshes()) {
+            convert_mesh(mesh);
+            if (progress_)
+                progress_(static_cast<double>(++done) / static_cast<double>(tree_.meshes().size()));
+        }
+        if (parts_.geometries.empty()) throw ImportError("it has no triangles");
+    }
+
+    /// A part for each of its primitives that can be drawn.
+    void convert_mesh(std::uint32_t mesh) {
+        const GltfJson& primitives = primitives_of(mesh);
+        std::vector<scene::Node>& shown = shown_[mesh];
+        for (std::size_t i = 0; i < primitives.size(); ++i) {
+            report_lost_parts(primitives[i]);
+            if (!has_triangles(primitives[i])) continue;
+            scene::Node& node = shown.emplace_back();
+            node.name = name_of(mesh) + (primitives.size() > 1 ? "-" + std::to_string(i) : "");
+            node.type = scene::NodeType::geometry;
+            const scene::Index material = material_indices_.at(index_in(primitives[i], "material"));
+            node.data = scene::GeometryData{add_geometry(primitives[i], material, node.name), material};
+        }
+    }
+
+    void report_lost_parts(const GltfJson& primitive) {
+        if (!has_triangles(primitive))
+            warnings_.add("a primitive of points or lines is ignored: only triangles are supported");
+        if (!array_in(primitive, "targets").empty()) warnings_.add("morph targets are ignored");
+        for (const auto& attribute : object_in(primitive, "attributes").items())
+            if (attribute.key().starts_with("COLOR")) warnings_.add("vertex colours are ignored");
+    }
+
+    scene::Index add_geometry(const GltfJson& primitive, scene::Index material, const std::string& name) {
+        const GltfTextureMapping& mapping = materials_[static_cast<std::size_t>(material)].mapping;
+        scene::Geometry geometry =
+            read_gltf_geometry(document_, primitive, mapping, name, buffers_, warnings_);
+        geometry.id = static_cast<scene::Id>(parts_.geometries.size());
+        parts_.geometries.push_back(std::move(geometry));
+        return static_cast<scene::Index>(parts_.geometries.size() - 1);
+    }
+
+    // --- nodes
+
+    void convert_nodes() {
+        std::vector<scene::Id> ids;
+        for (const GltfTreeNode& node : tree_.nodes())
+            ids.push_back(add_node(node, node.parent == scene::kNone
+                                             ? scene::Id{0}
+                                             : ids[static_cast<std::size_t>(node.parent)]));
+    }
+
+    /// What a node shows: it alone is the node itself, several hang below it.
+    scene::Id add_node(const GltfTreeNode& from, scene::Id parent) {
+        std::vector<scene::Node> contents;
+        if (from.mesh) contents = shown_.at(*from.mesh);
+        if (auto camera = read_gltf_camera(document_, from.json, warnings_))
+            contents.push_back(*std::move(camera));
+        if (auto light = read_gltf_light(document_, from.json, warnings_))
+            contents.push_back(*std::move(light));
+        const bool alone = contents.size() == 1 && !from.has_children;
+        scene::Node node = alone ? std::move(contents.front()) : scene::Node{};
+        node.name = from.name;
+        node.matrix = from.matrix;
+        const scene::Id id = add(std::move(node), parent);
+        if (!alone)
+            for (scene::Node& content : contents) add(std::move(content), id);
+        return id;
+    }
+
+    scene::Id add(scene::Node node, scene::Id parent) {
+        node.id = static_cast<scene::Id>(parts_.nodes.size()) + 1;
+        parts_.nodes.push_back({std::move(node), parent});
+        return parts_.nodes.back().node.id;
+    }
+
+    // --- images
+
+    void convert_images() {
+        decode_embedded_textures(parts_, path_, [&](const std::string& name, std::uint64_t max_pixels) {
+            return decode_gltf_image(document_, buffers_, name, max_pixels);
+        });
+        warnings_.append_to(parts_.notices, path_.string());
+        read_textures(parts_, path_, progress_);
+        std::vector<bool> ignore_alpha;
+        for (const ReadGltfMaterial& material : materials_) ignore_alpha.push_back(material.ignores_alpha);
+        make_textures_opaque(parts_.materials, ignore_alpha, parts_.textures);
+    }
+
+    const std::filesystem::path& path_;
+    const ReadProgress& progress_;
+    GltfFile file_;
+    const GltfJson& document_;
+    GltfBuffers buffers_;
+    GltfNodeTree tree_;
+    scene::SceneParts parts_;
+    ConversionWarnings warnings_;
+    std::map<MaterialNumber, scene::Index> material_indices_;
+    std::vector<ReadGltfMaterial> materials_;                  // for each of ours
+    std::map<std::uint32_t, std::vector<scene::Node>> shown_;  // what a mesh shows
+};
+
+}  // namespace
+
+PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+    try {
+        if (progress) progress(0);
+        return GltfConverter(path, progress).convert();
+    } catch (const ImportError& error) {
+        return tl::unexpected(path.string() + ": " + error.what());
+    }
+}
+
+}  // namespace vrut::io

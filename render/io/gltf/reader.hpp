@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+
+#include "io/read_scene.hpp"
+
+namespace vrut::io {
+
+/// Reads a glTF 2.0 file, text (.gltf) or binary (.glb), with its images and buffers, which lie in its folder
+/// or below it or inside it (Khronos, glTF 2.0 Specification). Its nodes become assemblies and geometry
+/// nodes, numbered from the root downwards as they stand in the file; a mesh that several nodes show is one
+/// geometry. What of the file does not come into the scene is told by notices.
+///
+/// One unit is a metre. Colours of glTF are linear, ours are as displayed: c below is a colour factor through
+/// the transfer curve of sRGB (IEC 61966-2-1). A material with base colour c, metallic m and roughness r
+/// becomes
+///     diffuse   c, with the base colour's alpha where alphaMode is BLEND, else 1
+///     ambient   c / 10
+///     specular  (1 - r) (0.22 + (c - 0.22) m): 0.22 is how 4 %, what most surfaces reflect, displays
+///     shininess (1 / r^4 - 1) / 2, from 1 to 10,000: Phong's exponent that is about as sharp as roughness r
+///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
+///     emission  the emissive factor's c, or black where there is an emissive texture
+/// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
+/// alphaMode is not OPAQUE.
+PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
+
+}  // namespace vrut::io

@@ -1,0 +1,266 @@
+#include <doctest/doctest.h>
+#include <draco/compression/encode.h>
+#include <draco/mesh/triangle_soup_mesh_builder.h>
+#include <meshoptimizer.h>
+
+#include "gltf_builder.hpp"
+
+using namespace vrut;
+
+namespace {
+
+using Points = std::vector<glm::dvec3>;
+const Points kTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+
+bool contains(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+/// Marks the last buffer view as compressed, of which it becomes the fallback that has no data.
+void compress(GltfBuilder& file, std::size_t count, std::size_t stride, const char* mode,
+              const char* filter = "NONE") {
+    nlohmann::json& view = file.document["bufferViews"].back();
+    view["extensions"]["EXT_meshopt_compression"] = {{"buffer", 0},
+                                                     {"byteOffset", view["byteOffset"]},
+                                                     {"byteLength", view["byteLength"]},
+                                                     {"byteStride", stride},
+                                                     {"count", count},
+                                                     {"mode", mode},
+                                                     {"filter", filter}};
+    view["buffer"] = 1;
+    view["byteOffset"] = 0;
+    view["byteLength"] = count * stride;
+}
+
+template <class Vertex>
+void add_compressed_vertices(GltfBuilder& file, const std::vector<Vertex>& vertices,
+                             const char* filter = "NONE") {
+    std::string data(meshopt_encodeVertexBufferBound(vertices.size(), sizeof(Vertex)), '\0');
+    data.resize(meshopt_encodeVertexBuffer(reinterpret_cast<unsigned char*>(data.data()), data.size(),
+                                           vertices.data(), vertices.size(), sizeof(Vertex)));
+    file.add_view(data);
+    compress(file, vertices.size(), sizeof(Vertex), "ATTRIBUTES", filter);
+}
+
+/// A quad of quantized positions, filtered normals and indices, all compressed.
+GltfBuilder meshopt_file(const char* mode) {
+    GltfBuilder file;
+    const std::vector<glm::i16vec4> positions = {
+        {0, 0, 0, 0}, {100, 0, 0, 0}, {100, 100, 0, 0}, {0, 100, 0, 0}};
+    add_compressed_vertices(file, positions);
+    file.primitive()["attributes"]["POSITION"] = file.add_accessor(0, 5122, "VEC3", 4);
+    const std::vector<glm::vec4> up(4, {0, 0, 1, 0});
+    std::vector<glm::i8vec4> normals(4);
+    meshopt_encodeFilterOct(normals.data(), 4, 4, 8, &up[0].x);
+    add_compressed_vertices(file, normals, "OCTAHEDRAL");
+    file.primitive()["attributes"]["NORMAL"] = file.add_accessor(1, 5120, "VEC3", 4, true);
+    const std::vector<unsigned> indices = {0, 1, 2, 0, 2, 3};
+    std::string data(100, '\0');
+    auto* const out = reinterpret_cast<unsigned char*>(data.data());
+    data.resize(mode == std::string("TRIANGLES")
+                    ? meshopt_encodeIndexBuffer(out, data.size(), indices.data(), 6)
+                    : meshopt_encodeIndexSequence(out, data.size(), indices.data(), 6));
+    file.add_view(data);
+    compress(file, 6, 2, mode);
+    file.primitive()["indices"] = file.add_accessor(2, 5123, "SCALAR", 6);
+    file.document["buffers"] = {
+        {{"byteLength", file.bytes.size()}, {"uri", "a.bin"}},
+        {{"byteLength", 1000}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+    file.document["extensionsUsed"] =
+        file.document["extensionsRequired"] = {"EXT_meshopt_compression", "KHR_mesh_quantization"};
+    return file;
+}
+
+/// A strip of so many quads along x, compressed, with its positions and texture coordinates.
+GltfBuilder draco_file(int quads, int index_component) {
+    draco::TriangleSoupMeshBuilder builder;
+    builder.Start(2 * quads);
+    const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+    const int texcoords = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
+    for (int i = 0; i < 2 * quads; ++i) {
+        const auto x = static_cast<float>(i / 2);
+        const glm::vec3 a(x, 0, 0), b(x + 1, 0, 0), c(x + 1, 1, 0), d(x, 1, 0);
+        const glm::vec3 corners[] = {a, i % 2 == 0 ? b : c, i % 2 == 0 ? c : d};
+        const draco::FaceIndex face(static_cast<unsigned>(i));
+        builder.SetAttributeValuesForFace(positions, face, &corners[0], &corners[1], &corners[2]);
+        builder.SetAttributeValuesForFace(texcoords, face, &corners[0], &corners[1], &corners[2]);
+    }
+    const auto mesh = builder.Finalize();
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    REQUIRE(encoder.EncodeMeshToBuffer(*mesh, &buffer).ok());
+    GltfBuilder file;
+    file.add_view(std::string(buffer.data(), buffer.size()));
+    const std::size_t vertices = mesh->num_points();
+    file.primitive()["attributes"] = {{"POSITION", file.add_accessor(-1, 5126, "VEC3", vertices)},
+                                      {"TEXCOORD_0", file.add_accessor(-1, 5126, "VEC2", vertices)}};
+    file.primitive()["indices"] =
+        file.add_accessor(-1, index_component, "SCALAR", static_cast<std::size_t>(6 * quads));
+    file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {
+        {"bufferView", 0},
+        {"attributes",
+         {{"POSITION", mesh->attribute(positions)->unique_id()},
+          {"TEXCOORD_0", mesh->attribute(texcoords)->unique_id()}}}};
+    file.document["extensionsUsed"] = file.document["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+    return file;
+}
+
+}  // namespace
+
+TEST_CASE("attributes of a glTF mesh may be integers (KHR_mesh_quantization)") {
+    GltfBuilder file;
+    nlohmann::json& attributes = file.primitive()["attributes"];
+    attributes["POSITION"] = file.add_array<std::int16_t>({0, 0, 0, 3, 0, 0, 0, -2, 0}, 5122, "VEC3", 3);
+    attributes["NORMAL"] =
+        file.add_array<std::int8_t>({0, 0, 127, 0, 0, 127, 0, 0, -128}, 5120, "VEC3", 3, true);
+    attributes["TEXCOORD_0"] =
+        file.add_array<std::uint16_t>({0, 0, 65535, 0, 0, 65535}, 5123, "VEC2", 2, true);
+    const scene::Scene scene = file.read();
+    CHECK(scene.geometries()[0].positions == Points{{0, 0, 0}, {3, 0, 0}, {0, -2, 0}});
+    CHECK(scene.geometries()[0].normals == std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0, -1}});
+    CHECK(scene.geometries()[0].texcoords == std::vector<glm::vec2>{{0, 1}, {1, 1}, {0, 0}});
+    CHECK(scene.notices().empty());
+
+    attributes["POSITION"] =
+        file.add_array<std::uint8_t>({0, 0, 0, 255, 0, 0, 0, 51, 0}, 5121, "VEC3", 3, true);
+    CHECK(rounded_positions(file.read()) == Points{{0, 0, 0}, {1, 0, 0}, {0, 0.2, 0}});
+}
+
+TEST_CASE("elements of a glTF buffer view may lie between others") {
+    GltfBuilder file;
+    file.add_triangle();
+    const int view = file.add_view(std::string("\x01\xFF\xFF\xFF\x02\xFF\xFF\xFF\x00\xFF\xFF\xFF", 12));
+    file.document["bufferViews"].back()["byteStride"] = 4;
+    file.primitive()["indices"] = file.add_accessor(view, 5121, "SCALAR", 3);
+    CHECK(file.read().geometries()[0].triangles == std::vector<glm::uvec3>{{1, 2, 0}});
+    file.document["bufferViews"].back()["byteStride"] = 256;
+    CHECK(contains(file.error(), "a bufferView's byteStride exceeds 252"));
+}
+
+TEST_CASE("values of a sparse glTF accessor are in their places, over others or zeros") {
+    GltfBuilder file;
+    file.add_triangle();
+    const int index = file.add_view(std::string("\x02", 1));
+    const float moved[] = {5, 6, 7};
+    const int value = file.add_view(std::string(reinterpret_cast<const char*>(moved), sizeof moved));
+    nlohmann::json& accessor = file.document["accessors"][0];
+    accessor["sparse"] = {{"count", 1},
+                          {"indices", {{"bufferView", index}, {"componentType", 5121}}},
+                          {"values", {{"bufferView", value}}}};
+    CHECK(file.read().geometries()[0].positions == Points{{0, 0, 0}, {1, 0, 0}, {5, 6, 7}});
+    accessor.erase("bufferView");
+    CHECK(file.read().geometries()[0].positions == Points{{0, 0, 0}, {0, 0, 0}, {5, 6, 7}});
+    accessor["count"] = 2;
+    CHECK(contains(file.error(), "a sparse accessor has an index out of range"));
+    accessor["sparse"].erase("values");
+    CHECK(contains(file.error(), "lacks a member 'bufferView'"));
+}
+
+TEST_CASE("compressed buffer views are decompressed (EXT_meshopt_compression), fallbacks not looked at") {
+    for (const char* mode : {"TRIANGLES", "INDICES"}) {
+        const scene::Scene scene = meshopt_file(mode).read();
+        const scene::Geometry& geometry = scene.geometries()[0];
+        CHECK(geometry.positions == Points{{0, 0, 0}, {100, 0, 0}, {100, 100, 0}, {0, 100, 0}});
+        CHECK(geometry.normals == std::vector(4, glm::vec3(0, 0, 1)));
+        CHECK(scene.triangle_count() == 2);
+        CHECK(scene.notices().empty());
+    }
+}
+
+TEST_CASE("damaged meshopt data are refused in a sentence") {
+    const auto error_with = [](int view, const char* member, const nlohmann::json& value) {
+        GltfBuilder file = meshopt_file("TRIANGLES");
+        file.document["bufferViews"][static_cast<std::size_t>(view)]["extensions"]["EXT_meshopt_compression"]
+                     [member] = value;
+        return file.error();
+    };
+    CHECK(contains(error_with(0, "byteLength", 3), "compressed by EXT_meshopt_compression is damaged"));
+    CHECK(contains(error_with(0, "byteStride", 6), "its byteStride does not fit its mode"));
+    CHECK(contains(error_with(0, "byteStride", 512), "its byteStride does not fit its mode"));
+    CHECK(contains(error_with(2, "byteStride", 3), "its byteStride does not fit its mode"));
+    CHECK(contains(error_with(2, "count", 5), "its mode does not fit"));
+    CHECK(contains(error_with(0, "mode", "POINTS"), "its byteStride does not fit its mode"));
+    CHECK(contains(error_with(1, "filter", "QUATERNION"), "its filter does not fit"));
+    CHECK(contains(error_with(1, "filter", "?"), "its filter does not fit"));
+    CHECK(contains(error_with(0, "count", 4294967295), "more than 256 MiB of memory"));
+    CHECK(contains(error_with(0, "count", 4294967296), "its count is too large"));
+    CHECK(contains(error_with(0, "byteOffset", 1 << 30), "exceeds its buffer"));
+}
+
+TEST_CASE(
+    "compressed primitives are decompressed (KHR_draco_mesh_compression), whatever their indices' type") {
+    for (const int component : {5121, 5123, 5125}) {
+        const scene::Scene scene = draco_file(100, component).read();
+        const scene::Geometry& geometry = scene.geometries()[0];
+        CHECK(scene.triangle_count() == 200);
+        CHECK(geometry.positions.size() == 202);
+        CHECK(geometry.bounds.min == glm::dvec3(0, 0, 0));
+        CHECK(geometry.bounds.max.x == doctest::Approx(100));
+        REQUIRE(geometry.texcoords.size() == 202);
+        CHECK(geometry.texcoords[0].y == doctest::Approx(1 - geometry.positions[0].y));
+        CHECK(scene.notices().empty());
+    }
+}
+
+TEST_CASE("damaged draco data are refused in a sentence") {
+    GltfBuilder file = draco_file(2, 5123);
+    const std::string bytes = file.bytes;
+    for (std::size_t i = 0; i < bytes.size(); ++i) {  // they may also stay readable
+        file.bytes[i] = static_cast<char>(~bytes[i]);
+        const TemporaryFolder folder;
+        folder.write("a.bin", file.bytes);
+        const auto scene = io::read_scene(folder.write("a.gltf", file.text()));
+        file.bytes = bytes;
+        if (!scene) CHECK(contains(scene.error(), "a.gltf: "));
+    }
+    file.bytes.resize(20);
+    file.document.erase("buffers");
+    file.document["bufferViews"][0]["byteLength"] = 20;
+    CHECK(contains(file.error(), "compressed by KHR_draco_mesh_compression is damaged"));
+    GltfBuilder other = draco_file(2, 5123);
+    other.primitive()["extensions"]["KHR_draco_mesh_compression"]["attributes"]["POSITION"] = 77;
+    CHECK(contains(other.error(), "compressed by KHR_draco_mesh_compression is damaged"));
+}
+
+TEST_CASE("the buffers of a binary glTF file may be data URIs or files too") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["buffers"] = {
+        {{"byteLength", file.bytes.size()}},
+        {{"byteLength", 36},
+         {"uri", "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAAAAQAAAAAAAAAAAAAAAAAAAAEAAAAAA"}},
+        {{"byteLength", 36}, {"uri", "b.bin"}}};
+    const auto glb = [&](int buffer, bool with_chunk) {
+        file.document["bufferViews"][0]["buffer"] = buffer;
+        std::string json = file.document.dump();
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        const auto word = [](std::size_t value) {
+            const auto number = static_cast<std::uint32_t>(value);
+            return std::string(reinterpret_cast<const char*>(&number), 4);
+        };
+        std::string chunks = word(json.size()) + "JSON" + json;
+        if (with_chunk) chunks += word(file.bytes.size()) + std::string("BIN\0", 4) + file.bytes;
+        return "glTF" + word(2) + word(12 + chunks.size()) + chunks;
+    };
+    const TemporaryFolder folder;
+    folder.write("b.bin", file.bytes.substr(0, 36));
+    const auto right = [&](int buffer, bool with_chunk = true) {
+        return read_well(folder.write("a.glb", glb(buffer, with_chunk))).geometries()[0].positions[1];
+    };
+    CHECK(right(0) == glm::dvec3(1, 0, 0));
+    CHECK(right(1) == glm::dvec3(2, 0, 0));
+    CHECK(right(2) == glm::dvec3(1, 0, 0));
+    file.primitive()["attributes"].erase("TEXCOORD_0");
+    CHECK(right(1, false) == glm::dvec3(2, 0, 0));
+    check_refused_file("a.glb", glb(0, false), "buffer 0 has no data");
+}
+
+TEST_CASE("a required glTF extension that is not supported refuses the file, unless it is about looks") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["extensionsUsed"] = file.document["extensionsRequired"] = {"KHR_materials_transmission"};
+    CHECK(has_notice(file.read(), "the glTF extension KHR_materials_transmission is not supported"));
+    file.document["extensionsRequired"].push_back("EXT_else");
+    CHECK(contains(file.error(),
+                   "it requires the glTF extension EXT_else, which is not supported: export it without"));
+}
