@@ -264,3 +264,72 @@ TEST_CASE("a required glTF extension that is not supported refuses the file, unl
     CHECK(contains(file.error(),
                    "it requires the glTF extension EXT_else, which is not supported: export it without"));
 }
+
+TEST_CASE("instances of a glTF mesh are nodes with one geometry (EXT_mesh_gpu_instancing)") {
+    GltfBuilder file;
+    file.add_triangle();
+    nlohmann::json& node = file.document["nodes"][0];
+    nlohmann::json& attributes = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    attributes["TRANSLATION"] = file.add_array<float>({1, 2, 3, 4, 5, 6}, 5126, "VEC3", 3);
+    attributes["ROTATION"] = file.add_array<std::int8_t>({0, 0, 0, 127, 0, 127, 0, 0}, 5120, "VEC4", 4, true);
+    attributes["SCALE"] = file.add_array<float>({2, 2, 2, 1, 1, 1}, 5126, "VEC3", 3);
+    file.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+    const scene::Scene scene = file.read();
+    CHECK(scene.geometries().size() == 1);
+    CHECK(scene.triangle_count() == 2);
+    const scene::Node& part = node_of(scene, "Part");
+    REQUIRE(part.children.size() == 2);
+    const scene::Node& first = scene.nodes()[static_cast<std::size_t>(part.children[0])];
+    const scene::Node& second = scene.nodes()[static_cast<std::size_t>(part.children[1])];
+    CHECK(first.name == "Mesh");
+    CHECK(first.matrix == glm::dmat4(2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 1, 2, 3, 1));
+    CHECK(is_near(second.matrix[0], {-1, 0, 0, 0}));
+    CHECK(second.matrix[3] == glm::dvec4(4, 5, 6, 1));
+    CHECK(scene.notices().empty());
+
+    // Each instance of several parts is a node above them.
+    file.document["meshes"][0]["primitives"].push_back(file.primitive());
+    const scene::Scene several = file.read();
+    CHECK(several.nodes().size() == 1 + 1 + 2 * 3);
+    CHECK(parent_of(several, node_of(several, "Mesh-1")).name == "Mesh");
+
+    attributes["SCALE"] = file.add_array<float>({2, 2, 2}, 5126, "VEC3", 3);
+    CHECK(contains(file.error(), "differ in count"));
+    attributes.erase("SCALE");
+    attributes.erase("ROTATION");
+    attributes["TRANSLATION"] = file.add_accessor(-1, 5126, "VEC3", 4'000'000);
+    CHECK(contains(file.error(), "more than 256 MiB of memory"));
+    attributes["TRANSLATION"] = file.add_array<float>({1, 2, INFINITY}, 5126, "VEC3", 3);
+    CHECK(contains(file.error(), "the matrix of an instance"));
+}
+
+TEST_CASE("the transform of a glTF texture is in the texture coordinates (KHR_texture_transform)") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.add_floats("TEXCOORD_1", {0, 0, 0.5, 0, 0, 0.5}, 2);
+    file.document["images"] = {{{"uri", "none.png"}}};
+    file.document["textures"] = {{{"source", 0}}};
+    nlohmann::json& info = file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+    info["index"] = 0;
+    file.primitive()["material"] = 0;
+    const auto texcoords = [&] {
+        const scene::Scene scene = file.read();
+        std::vector<glm::vec2> all;  // as glTF has them, downwards
+        for (const glm::vec2& uv : scene.geometries()[0].texcoords)
+            all.push_back(glm::round(glm::vec2(uv.x, 1 - uv.y) * 100.0F) / 100.0F);
+        return all;
+    };
+    using TexCoords = std::vector<glm::vec2>;
+    CHECK(texcoords() == TexCoords{{0, 0}, {1, 0}, {0, 1}});
+    nlohmann::json& transform = info["extensions"]["KHR_texture_transform"];
+    transform["offset"] = {0.25, 0.5};
+    transform["scale"] = {2, 4};
+    CHECK(texcoords() == TexCoords{{0.25, 0.5}, {2.25, 0.5}, {0.25, 4.5}});
+    // The specification's example: the lower left quadrant, turned by a quarter.
+    transform = {{"offset", {0, 1}}, {"rotation", 1.57079632679}, {"scale", {0.5, 0.5}}};
+    CHECK(texcoords() == TexCoords{{0, 1}, {0, 0.5}, {0.5, 1}});
+    transform = {{"texCoord", 1}};
+    CHECK(texcoords() == TexCoords{{0, 0}, {0.5, 0}, {0, 0.5}});
+    transform = {{"rotation", "much"}};
+    CHECK(contains(file.error(), "a member 'rotation' that is not a number"));
+}

@@ -102,7 +102,11 @@ private:
     void set_texture(const GltfJson& info) {
         result_.image = image_of(info);
         if (!result_.image) return;
-        result_.mapping.set = index_in(info, "texCoord").value_or(0);
+        const GltfJson& transform = extension_in(info, "KHR_texture_transform");
+        const GltfJson& set = transform.contains("texCoord") ? transform : info;
+        result_.mapping = {
+            index_in(set, "texCoord").value_or(0), vector_in<2>(transform, "offset", glm::dvec2(0)),
+            vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
         report_sampling(info);
         if (glm::dvec3(result_.material.diffuse) != glm::dvec3(1))
             warnings_.add("a texture is not multiplied by the base or diffuse colour");

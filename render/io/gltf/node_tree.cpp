@@ -1,8 +1,8 @@
 #include "io/gltf/node_tree.hpp"
 
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 
+#include "io/gltf/instances.hpp"
 #include "io/import_checks.hpp"
 #include "io/vrut/tokenizer.hpp"
 
@@ -16,12 +16,9 @@ glm::dmat4 matrix_in(const GltfJson& node) {
     for (std::size_t i = 0; i < 16 && numbers != nullptr; ++i)
         matrix[static_cast<int>(i / 4)][static_cast<int>(i % 4)] = (*numbers)[i].get<double>();
     if (numbers != nullptr) return matrix;
-    const glm::dvec4 r = vector_in<4>(node, "rotation", glm::dvec4(0, 0, 0, 1));  // x, y, z, w
-    const glm::dvec3 scale = vector_in<3>(node, "scale", glm::dvec3(1));
-    matrix = glm::dmat4(glm::mat3_cast(glm::dquat(r.w, r.x, r.y, r.z)));
-    for (int i = 0; i < 3; ++i) matrix[i] *= scale[i];
-    matrix[3] = glm::dvec4(vector_in<3>(node, "translation", glm::dvec3(0)), 1);
-    return matrix;
+    return matrix_of(vector_in<3>(node, "translation", glm::dvec3(0)),
+                     vector_in<4>(node, "rotation", glm::dvec4(0, 0, 0, 1)),
+                     vector_in<3>(node, "scale", glm::dvec3(1)));
 }
 
 /// Throws where it is not affine.

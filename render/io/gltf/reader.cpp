@@ -7,6 +7,7 @@
 #include "io/gltf/extensions.hpp"
 #include "io/gltf/geometry.hpp"
 #include "io/gltf/images.hpp"
+#include "io/gltf/instances.hpp"
 #include "io/gltf/material_reader.hpp"
 #include "io/gltf/node_tree.hpp"
 #include "io/import_checks.hpp"
@@ -135,18 +136,31 @@ private:
                                              : ids[static_cast<std::size_t>(node.parent)]));
     }
 
-    /// What a node shows: it alone is the node itself, several hang below it.
     scene::Id add_node(const GltfTreeNode& from, scene::Id parent) {
+        std::vector<scene::Node> shown;
+        if (from.mesh) shown = shown_.at(*from.mesh);
+        const auto instances = read_gltf_instances(document_, from.json, buffers_);
         std::vector<scene::Node> contents;
-        if (from.mesh) contents = shown_.at(*from.mesh);
+        if (!instances) contents = shown;
         if (auto camera = read_gltf_camera(document_, from.json, warnings_))
             contents.push_back(*std::move(camera));
         if (auto light = read_gltf_light(document_, from.json, warnings_))
             contents.push_back(*std::move(light));
-        const bool alone = contents.size() == 1 && !from.has_children;
+        const bool may_be_one = !instances && !from.has_children;
+        const scene::Id id = add_with(std::move(contents), from.name, from.matrix, parent, may_be_one);
+        if (instances && !shown.empty())
+            for (const glm::dmat4& matrix : *instances)
+                add_with(shown, name_of(*from.mesh), matrix, id, true);
+        return id;
+    }
+
+    /// What a node shows hangs below it, or is the node itself where it is alone and may be.
+    scene::Id add_with(std::vector<scene::Node> contents, const std::string& name, const glm::dmat4& matrix,
+                       scene::Id parent, bool may_be_one) {
+        const bool alone = may_be_one && contents.size() == 1;
         scene::Node node = alone ? std::move(contents.front()) : scene::Node{};
-        node.name = from.name;
-        node.matrix = from.matrix;
+        node.name = name;
+        node.matrix = matrix;
         const scene::Id id = add(std::move(node), parent);
         if (!alone)
             for (scene::Node& content : contents) add(std::move(content), id);
@@ -154,6 +168,7 @@ private:
     }
 
     scene::Id add(scene::Node node, scene::Id parent) {
+        buffers_.charge(sizeof(scene::SceneParts::PartNode) + node.name.size());
         node.id = static_cast<scene::Id>(parts_.nodes.size()) + 1;
         parts_.nodes.push_back({std::move(node), parent});
         return parts_.nodes.back().node.id;

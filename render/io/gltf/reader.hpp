@@ -8,8 +8,9 @@ namespace vrut::io {
 
 /// Reads a glTF 2.0 file, text (.gltf) or binary (.glb), with its images and buffers, which lie in its folder
 /// or below it or inside it (Khronos, glTF 2.0 Specification). Its nodes become assemblies and geometry
-/// nodes, numbered from the root downwards as they stand in the file; a mesh that several nodes show is one
-/// geometry. What of the file does not come into the scene is told by notices.
+/// nodes, numbered from the root downwards as they stand in the file; a mesh that several nodes show, or one
+/// in several instances (EXT_mesh_gpu_instancing), is one geometry. What of the file does not come into the
+/// scene is told by notices.
 ///
 /// One unit is a metre. Colours of glTF are linear, ours are as displayed: c below is a colour factor through
 /// the transfer curve of sRGB (IEC 61966-2-1). A material with base colour c, metallic m and roughness r
@@ -21,7 +22,7 @@ namespace vrut::io {
 ///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
 ///     emission  the emissive factor's c, or black where there is an emissive texture
 /// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
-/// alphaMode is not OPAQUE.
+/// alphaMode is not OPAQUE. How the image lies (KHR_texture_transform) is in the texture coordinates.
 PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 }  // namespace vrut::io
