@@ -333,3 +333,62 @@ TEST_CASE("the transform of a glTF texture is in the texture coordinates (KHR_te
     transform = {{"rotation", "much"}};
     CHECK(contains(file.error(), "a member 'rotation' that is not a number"));
 }
+
+TEST_CASE("the variants of a glTF material are children of a switch (KHR_materials_variants)") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["materials"] = {{{"name", "Red"}}, {{"name", "Blue"}}, {{"name", "Chrome"}}};
+    file.document["extensions"]["KHR_materials_variants"]["variants"] = {{{"name", "Sport"}},
+                                                                         {{"name", "Town"}}};
+    file.document["extensionsUsed"] = {"KHR_materials_variants"};
+    file.primitive()["material"] = 1;
+    nlohmann::json& mappings = file.primitive()["extensions"]["KHR_materials_variants"]["mappings"];
+    mappings = {{{"material", 0}, {"variants", {0}}}, {{"material", 1}, {"variants", {1}}}};
+    // Beside it a part that is chrome in one variant, and one that is the same in all.
+    nlohmann::json& primitives = file.document["meshes"][0]["primitives"];
+    nlohmann::json rim = file.primitive(), body = file.primitive();
+    rim["extensions"]["KHR_materials_variants"]["mappings"] = {{{"material", 2}, {"variants", {0}}}};
+    body.erase("extensions");
+    primitives.push_back(rim);
+    primitives.push_back(body);
+    const auto materials_of = [](const scene::Scene& scene, const scene::Node& part) {
+        std::vector<std::string> names;
+        for (const scene::Index child : part.children) {
+            const scene::Node& choice = scene.nodes()[static_cast<std::size_t>(child)];
+            names.push_back(choice.name + ": " +
+                            scene.material(std::get<scene::GeometryData>(choice.data).material).name);
+        }
+        return names;
+    };
+    using Names = std::vector<std::string>;
+    const scene::Scene scene = file.read();
+    const scene::Node& paint = node_of(scene, "Mesh-0");
+    REQUIRE(paint.type == scene::NodeType::switch_);
+    CHECK(materials_of(scene, paint) == Names{"Sport: Red", "Town: Blue"});
+    CHECK(std::get<scene::SwitchData>(paint.data).active_child == 1);  // what other programs show
+    CHECK(materials_of(scene, node_of(scene, "Mesh-1")) == Names{"Sport: Chrome", "Town: Blue"});
+    CHECK(node_of(scene, "Mesh-2").type == scene::NodeType::geometry);
+    CHECK(scene.geometries().size() == 3);
+    CHECK(scene.notices().empty());
+
+    // What is shown without variants is none of them.
+    file.primitive()["material"] = 2;
+    const scene::Scene other = file.read();
+    CHECK(materials_of(other, node_of(other, "Mesh-0")) ==
+          Names{"default: Chrome", "Sport: Red", "Town: Blue"});
+    CHECK(materials_of(other, node_of(other, "Mesh-1")) ==
+          Names{"default: Blue", "Sport: Chrome", "Town: Blue"});
+    CHECK(std::get<scene::SwitchData>(node_of(other, "Mesh-0").data).active_child == 0);
+
+    // A texture that lies in another way needs texture coordinates of its own.
+    file.document["images"] = {{{"uri", "none.png"}}};
+    file.document["textures"] = {{{"source", 0}}};
+    file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {
+        {"index", 0}, {"extensions", {{"KHR_texture_transform", {{"offset", {0.5, 0}}}}}}};
+    CHECK(file.read().geometries().size() == 4);
+
+    mappings[0]["variants"] = {7};
+    CHECK(contains(file.error(), "there is no variant 7"));
+    mappings[0] = {{"material", 9}, {"variants", {0}}};
+    CHECK(contains(file.error(), "there is no material 9"));
+}

@@ -10,12 +10,19 @@
 #include "io/gltf/instances.hpp"
 #include "io/gltf/material_reader.hpp"
 #include "io/gltf/node_tree.hpp"
+#include "io/gltf/variants.hpp"
 #include "io/import_checks.hpp"
 #include "io/scene_textures.hpp"
 
 namespace vrut::io {
 
 namespace {
+
+/// What a node shows: a node, and below a switch what there is to choose.
+struct Content {
+    scene::Node node;
+    std::vector<scene::Node> choices;
+};
 
 /// Builds the parts of a scene.
 class GltfConverter {
@@ -26,7 +33,8 @@ public:
           file_(read_gltf_file(path)),
           document_(file_.document),
           buffers_(path, file_),
-          tree_(document_) {}
+          tree_(document_),
+          variants_(document_, tree_.meshes()) {}
 
     scene::SceneParts convert() {
         parts_.name = path_.stem().string();
@@ -47,21 +55,23 @@ private:
 
     // --- materials
 
-    using MaterialNumber = std::optional<std::uint32_t>;  // in the file; none: the default one
-
     /// Of the meshes that are shown, in their order; the default one comes last.
     void convert_materials() {
         bool needs_default = false;
+        const auto add = [&](GltfMaterialNumber number) {
+            needs_default = needs_default || !number;
+            if (number) add_material(number);
+        };
         for (const std::uint32_t mesh : tree_.meshes())
             for (const GltfJson& primitive : primitives_of(mesh)) {
-                const MaterialNumber number = index_in(primitive, "material");
-                needs_default = needs_default || !number;
-                if (number) add_material(number);
+                add(index_in(primitive, "material"));
+                for (const GltfVariants::Choice& choice : variants_.choices_of(primitive))
+                    add(choice.material);
             }
         if (needs_default) add_material(std::nullopt);
     }
 
-    void add_material(MaterialNumber number) {
+    void add_material(GltfMaterialNumber number) {
         const auto [found, is_new] =
             material_indices_.emplace(number, static_cast<scene::Index>(materials_.size()));
         if (!is_new) return;
@@ -73,6 +83,9 @@ private:
     }
 
     // --- meshes
+
+    /// Those of one primitive by how its texture lies.
+    using GeometryIndices = std::map<decltype(GltfTextureMapping().key()), scene::Index>;
 
     const GltfJson& mesh_json(std::uint32_t mesh) const { return array_in(document_, "meshes")[mesh]; }
     const GltfJson& primitives_of(std::uint32_t mesh) const {
@@ -97,16 +110,35 @@ private:
     /// A part for each of its primitives that can be drawn.
     void convert_mesh(std::uint32_t mesh) {
         const GltfJson& primitives = primitives_of(mesh);
-        std::vector<scene::Node>& shown = shown_[mesh];
+        std::vector<Content>& shown = shown_[mesh];
         for (std::size_t i = 0; i < primitives.size(); ++i) {
             report_lost_parts(primitives[i]);
             if (!has_triangles(primitives[i])) continue;
-            scene::Node& node = shown.emplace_back();
-            node.name = name_of(mesh) + (primitives.size() > 1 ? "-" + std::to_string(i) : "");
-            node.type = scene::NodeType::geometry;
-            const scene::Index material = material_indices_.at(index_in(primitives[i], "material"));
-            node.data = scene::GeometryData{add_geometry(primitives[i], material, node.name), material};
+            const std::string suffix = primitives.size() > 1 ? "-" + std::to_string(i) : "";
+            shown.push_back(convert_primitive(primitives[i], name_of(mesh) + suffix));
         }
+    }
+
+    /// Where there are variants, a switch with a part for each.
+    Content convert_primitive(const GltfJson& primitive, const std::string& name) {
+        GeometryIndices geometries;
+        const auto convert = [&](const std::string& part_name, GltfMaterialNumber number) {
+            scene::Node node;
+            node.name = part_name;
+            node.type = scene::NodeType::geometry;
+            const scene::Index material = material_indices_.at(number);
+            node.data = scene::GeometryData{add_geometry(primitive, material, name, geometries), material};
+            return node;
+        };
+        const std::vector<GltfVariants::Choice> choices = variants_.choices_of(primitive);
+        if (choices.empty()) return {convert(name, index_in(primitive, "material")), {}};
+        Content content;
+        content.node.name = name;
+        content.node.type = scene::NodeType::switch_;
+        content.node.data = scene::SwitchData{variants_.default_choice()};
+        for (const GltfVariants::Choice& choice : choices)
+            content.choices.push_back(convert(choice.name, choice.material));
+        return content;
     }
 
     void report_lost_parts(const GltfJson& primitive) {
@@ -117,13 +149,17 @@ private:
             if (attribute.key().starts_with("COLOR")) warnings_.add("vertex colours are ignored");
     }
 
-    scene::Index add_geometry(const GltfJson& primitive, scene::Index material, const std::string& name) {
+    scene::Index add_geometry(const GltfJson& primitive, scene::Index material, const std::string& name,
+                              GeometryIndices& known) {
         const GltfTextureMapping& mapping = materials_[static_cast<std::size_t>(material)].mapping;
+        const auto [found, is_new] =
+            known.emplace(mapping.key(), static_cast<scene::Index>(parts_.geometries.size()));
+        if (!is_new) return found->second;
         scene::Geometry geometry =
             read_gltf_geometry(document_, primitive, mapping, name, buffers_, warnings_);
-        geometry.id = static_cast<scene::Id>(parts_.geometries.size());
+        geometry.id = found->second;
         parts_.geometries.push_back(std::move(geometry));
-        return static_cast<scene::Index>(parts_.geometries.size() - 1);
+        return found->second;
     }
 
     // --- nodes
@@ -137,15 +173,14 @@ private:
     }
 
     scene::Id add_node(const GltfTreeNode& from, scene::Id parent) {
-        std::vector<scene::Node> shown;
+        std::vector<Content> shown, contents;
         if (from.mesh) shown = shown_.at(*from.mesh);
         const auto instances = read_gltf_instances(document_, from.json, buffers_);
-        std::vector<scene::Node> contents;
         if (!instances) contents = shown;
         if (auto camera = read_gltf_camera(document_, from.json, warnings_))
-            contents.push_back(*std::move(camera));
+            contents.push_back({*std::move(camera), {}});
         if (auto light = read_gltf_light(document_, from.json, warnings_))
-            contents.push_back(*std::move(light));
+            contents.push_back({*std::move(light), {}});
         const bool may_be_one = !instances && !from.has_children;
         const scene::Id id = add_with(std::move(contents), from.name, from.matrix, parent, may_be_one);
         if (instances && !shown.empty())
@@ -155,15 +190,21 @@ private:
     }
 
     /// What a node shows hangs below it, or is the node itself where it is alone and may be.
-    scene::Id add_with(std::vector<scene::Node> contents, const std::string& name, const glm::dmat4& matrix,
+    scene::Id add_with(std::vector<Content> contents, const std::string& name, const glm::dmat4& matrix,
                        scene::Id parent, bool may_be_one) {
         const bool alone = may_be_one && contents.size() == 1;
-        scene::Node node = alone ? std::move(contents.front()) : scene::Node{};
-        node.name = name;
-        node.matrix = matrix;
-        const scene::Id id = add(std::move(node), parent);
+        Content content = alone ? std::move(contents.front()) : Content{};
+        content.node.name = name;
+        content.node.matrix = matrix;
+        const scene::Id id = add(std::move(content), parent);
         if (!alone)
-            for (scene::Node& content : contents) add(std::move(content), id);
+            for (Content& below : contents) add(std::move(below), id);
+        return id;
+    }
+
+    scene::Id add(Content content, scene::Id parent) {
+        const scene::Id id = add(std::move(content.node), parent);
+        for (scene::Node& choice : content.choices) add(std::move(choice), id);
         return id;
     }
 
@@ -193,11 +234,12 @@ private:
     const GltfJson& document_;
     GltfBuffers buffers_;
     GltfNodeTree tree_;
+    GltfVariants variants_;
     scene::SceneParts parts_;
     ConversionWarnings warnings_;
-    std::map<MaterialNumber, scene::Index> material_indices_;
-    std::vector<ReadGltfMaterial> materials_;                  // for each of ours
-    std::map<std::uint32_t, std::vector<scene::Node>> shown_;  // what a mesh shows
+    std::map<GltfMaterialNumber, scene::Index> material_indices_;
+    std::vector<ReadGltfMaterial> materials_;              // for each of ours
+    std::map<std::uint32_t, std::vector<Content>> shown_;  // what a mesh shows
 };
 
 }  // namespace

@@ -9,8 +9,9 @@ namespace vrut::io {
 /// Reads a glTF 2.0 file, text (.gltf) or binary (.glb), with its images and buffers, which lie in its folder
 /// or below it or inside it (Khronos, glTF 2.0 Specification). Its nodes become assemblies and geometry
 /// nodes, numbered from the root downwards as they stand in the file; a mesh that several nodes show, or one
-/// in several instances (EXT_mesh_gpu_instancing), is one geometry. What of the file does not come into the
-/// scene is told by notices.
+/// in several instances (EXT_mesh_gpu_instancing), is one geometry. A primitive whose material depends on the
+/// variant (KHR_materials_variants) is a switch with a child for each variant. What of the file does not come
+/// into the scene is told by notices.
 ///
 /// One unit is a metre. Colours of glTF are linear, ours are as displayed: c below is a colour factor through
 /// the transfer curve of sRGB (IEC 61966-2-1). A material with base colour c, metallic m and roughness r
