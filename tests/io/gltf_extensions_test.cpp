@@ -392,3 +392,30 @@ TEST_CASE("the variants of a glTF material are children of a switch (KHR_materia
     mappings[0] = {{"material", 9}, {"variants", {0}}};
     CHECK(contains(file.error(), "there is no material 9"));
 }
+
+TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 1, 0.5}}, {"roughnessFactor", 0}}},
+         {"alphaMode", "BLEND"},
+         {"emissiveFactor", {0, 1, 0}},
+         {"extensions", {{"KHR_materials_unlit", nlohmann::json::object()}}}}};
+    file.primitive()["material"] = 0;
+    const scene::Scene scene = file.read();
+    const scene::Material& material = scene.materials()[0];
+    const glm::dvec4 black(0, 0, 0, 1);
+    CHECK(material.emission == glm::dvec4(1, 0, 1, 1));
+    CHECK(material.diffuse == glm::dvec4(0, 0, 0, 0.5));
+    CHECK(material.ambient == black);
+    CHECK(material.specular == black);
+    CHECK(scene.notices().empty());
+
+    file.document["images"] = {{{"uri", "none.png"}}};
+    file.document["textures"] = {{{"source", 0}}};
+    file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    const scene::Scene textured = file.read();
+    CHECK(textured.materials()[0].diffuse == glm::dvec4(1, 0, 1, 0.5));
+    CHECK(textured.materials()[0].emission == black);
+    CHECK(has_notice(textured, "the texture of an unlit material is lit"));
+}

@@ -14,7 +14,8 @@ namespace {
 constexpr std::string_view kSupported[] = {
     "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
     "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_variants",     "KHR_mesh_quantization",   "KHR_texture_transform",
+    "KHR_materials_unlit",        "KHR_materials_variants",  "KHR_mesh_quantization",
+    "KHR_texture_transform",
 };
 
 /// Without it the shapes are there, and look another way.

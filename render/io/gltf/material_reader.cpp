@@ -49,8 +49,7 @@ public:
         material.two_sided = boolean_in(json_, "doubleSided", false);
         const std::string& alpha_mode = string_in(json_, "alphaMode");
         result_.ignores_alpha = alpha_mode.empty() || alpha_mode == "OPAQUE";
-        const bool glossy =
-            json_.contains("extensions") && object_in(json_, "extensions").contains(kGlossiness);
+        const bool glossy = has_extension(kGlossiness);
         const glm::dvec4 color = glossy ? vector_in<4>(glossiness_, "diffuseFactor", glm::dvec4(1))
                                         : vector_in<4>(metallic_roughness_, "baseColorFactor", glm::dvec4(1));
         material.diffuse =
@@ -62,11 +61,25 @@ public:
         set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
                            : object_in(metallic_roughness_, "baseColorTexture"));
         report_textures();
+        if (has_extension("KHR_materials_unlit")) make_unlit();
         return std::move(result_);
     }
 
 private:
     static constexpr const char* kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+    bool has_extension(const char* name) const { return object_in(json_, "extensions").contains(name); }
+
+    /// Its colour is seen whatever the light. An image, which only light shows, stays.
+    void make_unlit() {
+        scene::Material& material = result_.material;
+        const glm::dvec4 black(0, 0, 0, 1);
+        material.specular = material.emission = black;
+        if (result_.image) return warnings_.add("the texture of an unlit material is lit");
+        material.emission = glm::dvec4(glm::dvec3(material.diffuse), 1);
+        material.diffuse = glm::dvec4(0, 0, 0, material.diffuse.a);
+        material.ambient = black;
+    }
 
     void set_highlight(bool glossy) {
         const auto part = [](const GltfJson& parent, const char* name) {

@@ -23,7 +23,9 @@ namespace vrut::io {
 ///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
 ///     emission  the emissive factor's c, or black where there is an emissive texture
 /// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
-/// alphaMode is not OPAQUE. How the image lies (KHR_texture_transform) is in the texture coordinates.
+/// alphaMode is not OPAQUE. One that is unlit (KHR_materials_unlit) has c as its emission and is black else,
+/// but where it has an image, which only light shows: that has no highlight. How the image lies
+/// (KHR_texture_transform) is in the texture coordinates.
 PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
 
 }  // namespace vrut::io
