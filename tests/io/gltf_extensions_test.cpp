@@ -4,6 +4,7 @@
 #include <meshoptimizer.h>
 
 #include "gltf_builder.hpp"
+#include "image_bytes.hpp"
 
 using namespace vrut;
 
@@ -418,4 +419,24 @@ TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)
     CHECK(textured.materials()[0].diffuse == glm::dvec4(1, 0, 1, 0.5));
     CHECK(textured.materials()[0].emission == black);
     CHECK(has_notice(textured, "the texture of an unlit material is lit"));
+}
+
+TEST_CASE("a glTF texture has its image from an extension where it has no other") {
+    GltfBuilder file;
+    file.add_triangle();
+    const std::string data = flat_png(2, 2, {1, 2, 3, 255});
+    file.document["images"] = {{{"bufferView", file.add_view("\xABKTX 20\xBB\r\n\x1A\n")}},
+                               {{"bufferView", file.add_view(data)}}};
+    file.document["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
+    file.document["extensionsUsed"] = file.document["extensionsRequired"] = {"KHR_texture_basisu"};
+    file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
+    file.primitive()["material"] = 0;
+    const scene::Scene compressed = file.read();
+    CHECK(has_notice(compressed,
+                     "without its texture '*0': it is KTX2, which is not supported: save it as PNG"));
+    CHECK(compressed.notices().size() == 1);
+    file.document["textures"][0]["extensions"]["EXT_texture_webp"]["source"] = 1;
+    CHECK(file.read().textures().size() == 1);
+    file.document["textures"][0] = {{"source", 1}, {"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}};
+    CHECK(file.read().textures().size() == 1);
 }
