@@ -417,6 +417,35 @@ TEST_CASE("harmless faults do not refuse a file") {
                        "the matrix of node 'Door' is not affine");
 }
 
+TEST_CASE("polygons of many corners are covered") {
+    // A star of 600 corners, 1 and 2 from its middle: each of its points adds sin(2 pi / 600) to its area.
+    constexpr int kCorners = 600;
+    std::string vertices, face = "f", turned = "f";
+    for (int i = 0; i < kCorners; ++i) {
+        const double angle = 2 * M_PI * i / kCorners, radius = 1 + i % 2;
+        vertices += "v " + std::to_string(radius * std::cos(angle)) + " " +
+                    std::to_string(radius * std::sin(angle)) + " 0\n";
+        face += " " + std::to_string(i + 1);
+        turned += " " + std::to_string(kCorners - i);
+    }
+    const TemporaryFolder folder;
+    const scene::Scene scene =
+        read_well(folder.write("a.obj", vertices + face + "\nf 1 2 3 4 5\n" + turned + "\nf 1 2 3\n"));
+    REQUIRE(scene.geometries().size() == 1);
+    const scene::Geometry& geometry = scene.geometries()[0];
+    CHECK(geometry.triangles.size() == 2 * (kCorners - 2) + 3 + 1);
+    double front = 0, back = 0;
+    for (const glm::uvec3& t : geometry.triangles) {
+        const glm::dvec3 a = geometry.positions[t.x];
+        const double area = glm::cross(geometry.positions[t.y] - a, geometry.positions[t.z] - a).z / 2;
+        (area > 0 ? front : back) += area;
+    }
+    CHECK(read_well(folder.write("b.obj", vertices + face + "\n")).triangle_count() == kCorners - 2);
+    const double star = kCorners * std::sin(2 * M_PI / kCorners);
+    CHECK(std::abs(back + star) < 1e-4);
+    CHECK(std::abs(front - star) < 0.1);
+}
+
 TEST_CASE("a picture lies on the texture coordinates that its material names") {
     std::string text = text_of("panel.dae");
     const auto replace = [&](const std::string& from, const std::string& to) {

@@ -141,6 +141,7 @@ void weld(scene::Geometry& geometry) {
 
 void check_faces(const aiMesh& mesh) {
     if (!mesh.HasPositions()) throw ImportError(called(mesh) + " has no vertices");
+    require_coordinates(mesh.mVertices, "vertex", mesh);
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
         if (face->mNumIndices == 0) throw ImportError(called(mesh) + " has a face without vertices");
         for (unsigned i = 0; i < face->mNumIndices; ++i)

@@ -9,8 +9,8 @@
 
 namespace vrut::io {
 
-/// Throws ImportError for a face without vertices or with a vertex index out of range: assimp would crash on
-/// them.
+/// Throws ImportError for a face without vertices or with a vertex index out of range, on which assimp would
+/// crash, and for a vertex without coordinates (is_coordinate()).
 void check_faces(const aiMesh& mesh);
 
 /// Converts the triangles of a mesh that passed check_faces(), by the rules in assimp/scene.hpp. Frees the

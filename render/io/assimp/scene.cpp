@@ -18,6 +18,7 @@
 #include "io/assimp/materials.hpp"
 #include "io/assimp/meshes.hpp"
 #include "io/assimp/ply_check.hpp"
+#include "io/assimp/polygons.hpp"
 #include "io/assimp/text.hpp"
 #include "io/assimp/textures.hpp"
 #include "io/scene_textures.hpp"
@@ -268,7 +269,10 @@ void leave_only(Assimp::Importer& importer, const char* reader) {
 /// Polygons become triangles, once they are known to be some.
 void check_and_triangulate(Assimp::Importer& importer) {
     const aiScene& scene = *importer.GetScene();
-    for (unsigned i = 0; i < scene.mNumMeshes; ++i) check_faces(*scene.mMeshes[i]);
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        check_faces(*scene.mMeshes[i]);
+        triangulate_large_polygons(*scene.mMeshes[i]);
+    }
     if (importer.ApplyPostProcessing(aiProcess_Triangulate) == nullptr)
         throw ImportError("its polygons cannot be triangulated");
 }

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <assimp/mesh.h>
+
+namespace vrut::io {
+
+/// Makes triangles of a mesh's faces with many corners, since assimp 5.2 takes time by the square of their
+/// number. The mesh must have passed check_faces().
+void triangulate_large_polygons(aiMesh& mesh);
+
+}  // namespace vrut::io
