@@ -446,6 +446,13 @@ TEST_CASE("polygons of many corners are covered") {
     CHECK(std::abs(front - star) < 0.1);
 }
 
+TEST_CASE("an empty solid beside others is no fault") {
+    const TemporaryFolder folder;
+    const scene::Scene scene =
+        read_well(folder.write("a.stl", text_of("panel.stl") + "solid nothing\nendsolid nothing\n"));
+    CHECK(scene.geometries().size() == read_panel("panel.stl").geometries().size());
+}
+
 TEST_CASE("a picture lies on the texture coordinates that its material names") {
     std::string text = text_of("panel.dae");
     const auto replace = [&](const std::string& from, const std::string& to) {
@@ -505,6 +512,8 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
         {"a.obj", "", "too small"},
         {"a.obj", "nothing that a model is made of\n", "no triangles"},
         {"a.obj", triangle, "no triangles"},
+        {"a.obj", triangle + "p 1 2 3\n", "it has no triangles, only points or lines"},
+        {"a.obj", triangle + "l 1 2 3\n", "it has no triangles, only points or lines"},
         {"a.obj", triangle + "f 1 2 9\n", "index out of range"},
         {"a.obj", triangle + "f -1 -2 -9\n", "index out of range"},
         {"a.obj", triangle + "f 99999999999999999999 1 2\n", "index out of range"},
@@ -550,21 +559,32 @@ TEST_CASE("files of other programs that are none are refused in a sentence") {
          "line 13: expected a count of 'edge'"},
         {"a.ply", with(ply, "element face", "element vertex 7\nelement face"),
          "'vertex' once, found it twice"},
+        {"a.ply", with(ply, "element face", "element tristrips"),
+         "line 13: 'tristrips', strips of triangles, cannot be read: export it with faces"},
+        {"a.ply", with(ply, "element face 1", "element face 0"), "only points or lines"},
         {"a.ply", binary_ply(4'000'000'000, 1), "line 3: expected a count of 'vertex'"},
         {"a.ply", binary_ply(5, 1), "line 3: expected a count of 'vertex' that fits into the file, found 5"},
         {"a.ply", binary_ply(3, 4'000'000'000), "line 7: expected a count of 'face'"},
+        {"a.stl", "solid a\nendsolid a\n", "no triangles"},
         {"a.dae", "", "malformed XML"},
         {"a.dae", dae.substr(0, dae.size() / 2), "malformed XML"},
         {"a.dae", with(dae, "3 3</p>", "9 3</p>"), "Invalid data index"},
         {"a.dae", with(dae, "0 0 0 1 0 0", "0 0 0 1e999 0 0"), "a vertex of mesh 'Panel' is not a number"},
         {"a.dae", with(dae, "url=\"#Scene\"", "url=\"#none\""), "Unable to resolve visual_scene"},
+        {"a.dae", with(dae, "<instance_visual_scene url=\"#Scene\"/>", ""), "it has no scene to show"},
         {"a.dae", with(dae, "<vcount>4<", "<vcount>400<"), "index count"},
         {"a.dae", with(dae, "<translate>1 2 3", "<translate>1 2e30 3"), "the matrix of node 'Car'"},
         {"a.fbx", "", "unexpected end of file"},
         {"a.fbx", "nothing that a model is made of\n", "unexpected token"},
         {"a.fbx", fbx.substr(0, fbx.size() / 2), "FBX-Parser"},
+        {"a.fbx", with(fbx, "FBXVersion: 7", "FBXVersion: 6"),
+         "it is FBX of a version before 7.1, which cannot be read: export it as FBX 2011 or later"},
         {"a.fbx", "Kaydara FBX Binary  " + std::string(1, '\0') + "\x1a" + std::string(40, '\x7f'),
          "written by assimp 5.2"},
+        {"a.fbx",
+         "Kaydara FBX Binary  " + std::string("\0\x1a\0\xe8\x1c\0\0\x60\0\0\0\1\0\0\0\1\0\0\0\1AZ", 22) +
+             std::string(90, '\0'),
+         "its contents are damaged, or newer than FBX 2013"},
         {"a.fbx", with(fbx, "0,1,2,-4", "0,1,9,-4"), "no triangles"},
         {"a.fbx", with(fbx, "0,1,2,-4", "0,1,2,3"), "no triangles"},
         {"a.fbx", with(fbx, "0,0,0,1,0,0,1,1,0", "0,0,0,1,0,0,1,1e999,0"),

@@ -97,7 +97,8 @@ void move_triangles(aiMesh& mesh, scene::Geometry& geometry) {
         geometry.triangles.emplace_back(i[0], i[1], i[2]);
         last = std::max({last, i[0], i[1], i[2]});
     }
-    if (last >= mesh.mNumVertices) throw ImportError(called(mesh) + " has a vertex index out of range");
+    if (mesh.mNumFaces > 0 && last >= mesh.mNumVertices)
+        throw ImportError(called(mesh) + " has a vertex index out of range");
     release(mesh.mFaces);
     mesh.mNumFaces = 0;
 }
@@ -140,7 +141,7 @@ void weld(scene::Geometry& geometry) {
 }  // namespace
 
 void check_faces(const aiMesh& mesh) {
-    if (!mesh.HasPositions()) throw ImportError(called(mesh) + " has no vertices");
+    if (!mesh.HasPositions() && mesh.mNumFaces > 0) throw ImportError(called(mesh) + " has no vertices");
     require_coordinates(mesh.mVertices, "vertex", mesh);
     for (const aiFace* face = mesh.mFaces; face != mesh.mFaces + mesh.mNumFaces; ++face) {
         if (face->mNumIndices == 0) throw ImportError(called(mesh) + " has a face without vertices");

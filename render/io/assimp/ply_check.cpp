@@ -87,6 +87,9 @@ private:
             count.empty() || error != std::errc() || at != end)
             throw PlyError{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
                            "', found '" + excerpt(count) + "'"};
+        if (element.name == "tristrips" && element.count > 0)  // of which assimp 5.2 reads one triangle
+            throw PlyError{"line " + element.line +
+                           ": 'tristrips', strips of triangles, cannot be read: export it with faces"};
         if (!names_.insert(element.name).second)
             throw PlyError{"line " + element.line + ": expected element '" + excerpt(element.name) +
                            "' once, found it twice"};

@@ -85,7 +85,13 @@ private:
             if (progress_) progress_(0.5 + 0.5 * i / scene_.mNumMeshes);
             geometries_.push_back(add_geometry(*scene_.mMeshes[i]));
         }
-        if (parts_.geometries.empty()) throw ImportError("it has no triangles");
+        if (!parts_.geometries.empty()) return;
+        const bool other =
+            std::any_of(scene_.mMeshes, scene_.mMeshes + scene_.mNumMeshes, [](const aiMesh* mesh) {
+                return (mesh->mPrimitiveTypes & (aiPrimitiveType_POINT | aiPrimitiveType_LINE)) != 0;
+            });
+        throw ImportError(other ? "it has no triangles, only points or lines: export its surfaces as polygons"
+                                : "it has no triangles");
     }
 
     /// kNone: there is nothing in it that could be drawn.
@@ -284,9 +290,14 @@ std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) 
         {"No suitable reader", "its contents do not match its file extension"},
         {"STL storage representation",
          "it is neither ASCII STL nor binary STL of the size that its triangle count requires"},
+        {"unsupported, old format version",
+         "it is FBX of a version before 7.1, which cannot be read: export it as FBX 2011 or later"},
         {"block offset is out of range",
          "it is truncated, or it is binary FBX written by assimp 5.2, which assimp cannot read: export it "
          "with another program"},
+        {"FBX-Tokenize (offset",
+         "its contents are damaged, or newer than FBX 2013: export it again, as FBX 2013"},
+        {"Collada: File came out empty", "it has no scene to show"},
     };
     for (const auto& [part, meaning] : kKnown)
         if (error.find(part) != std::string::npos) return meaning;
