@@ -299,6 +299,12 @@ TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
     CHECK(scene.notices().size() == 2);
 }
 
+TEST_CASE("a camera looks at its target") {
+    const scene::Scene scene = read_panel("panel.fbx", "\"Model::Handle\"", "\"Model::Presenter.Target\"");
+    const auto& camera = std::get<scene::CameraData>(node_of(scene, "Presenter").data);
+    CHECK(is_near(glm::dvec4(camera.focus, 1), {5, 5, 6, 1}));
+}
+
 TEST_CASE("FBX axes that are none are left as they are") {
     const scene::Scene scene = read_panel("panel.fbx", "\"FrontAxis\", \"int\", \"Integer\", \"\",1",
                                           "\"FrontAxis\", \"int\", \"Integer\", \"\",7");

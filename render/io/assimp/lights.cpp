@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
+#include <vector>
 
 namespace vrut::io {
 
@@ -81,6 +84,28 @@ std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat for
     camera.focus = vector_of(from.mLookAt);
     camera.up = vector_of(from.mUp);
     return node;
+}
+
+void look_at_targets(scene::SceneParts& parts) {
+    std::vector<glm::dmat4> world;  // of node i, whose id is i + 1
+    std::map<std::string, glm::dvec3> places;
+    for (const auto& part : parts.nodes) {
+        const bool below = part.parent_id > 0;
+        const glm::dmat4 parent = below ? world[static_cast<std::size_t>(part.parent_id - 1)] : glm::dmat4(1);
+        world.push_back(parent * part.node.matrix);
+        places.emplace(part.node.name, world.back()[3]);
+    }
+    for (std::size_t i = 0; i < parts.nodes.size(); ++i) {
+        auto& [node, parent_id, line] = parts.nodes[i];
+        auto* camera = std::get_if<scene::CameraData>(&node.data);
+        if (!camera) continue;
+        auto target = places.find(node.name + ".Target");
+        if (target == places.end() && parent_id > 0)
+            target = places.find(parts.nodes[static_cast<std::size_t>(parent_id - 1)].node.name + ".Target");
+        if (target == places.end()) continue;
+        const glm::dvec3 focus(glm::inverse(world[i]) * glm::dvec4(target->second, 1));
+        if (glm::dot(focus, focus) > 0 && glm::dot(focus, focus) < 1e30) camera->focus = focus;
+    }
 }
 
 std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat format,

@@ -18,4 +18,8 @@ std::optional<scene::Node> convert_camera(const aiCamera& from, AssimpFormat for
 std::optional<scene::Node> convert_light(const aiLight& from, AssimpFormat format,
                                          ConversionWarnings& warnings);
 
+/// Lets each camera whose target is a node of its own, named as the camera or its node with `.Target` behind
+/// it as 3ds Max does, look at that node. Parents stand before their children.
+void look_at_targets(scene::SceneParts& parts);
+
 }  // namespace vrut::io

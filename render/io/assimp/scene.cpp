@@ -45,6 +45,7 @@ public:
         convert_materials();
         convert_meshes();
         convert_nodes();
+        look_at_targets(parts_);
         warnings_.add("a camera or light that no node references is ignored",
                       cameras_.size() + lights_.size());
         warnings_.add("an animation is ignored", scene_.mNumAnimations);
