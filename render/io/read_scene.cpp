@@ -14,7 +14,8 @@ namespace {
 
 struct ReaderEntry {
     const char* extension;
-    PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress);
+    PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress,
+                        const ReadOptions& options);
     bool foreign;  ///< a foreign library reads what matters of it
 };
 
@@ -73,7 +74,8 @@ bool has_foreign_reader(const std::filesystem::path& path) {
     return format != nullptr && format->foreign;
 }
 
-PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress) {
+PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress,
+                             const ReadOptions& options) {
     const std::string file = path.string();
     const ReaderEntry* const format = reader_of(path);
     if (const auto fault = base::file_error(path)) return tl::unexpected(file + ": " + *fault);
@@ -84,11 +86,12 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
     if (format == nullptr)
         return tl::unexpected(file + ": this file extension cannot be read; supported are " +
                               read_extensions());
-    return format->read(path, progress);
+    return format->read(path, progress, options);
 }
 
-ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress) {
-    auto parts = read_scene_parts(path, progress);
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress,
+                      const ReadOptions& options) {
+    auto parts = read_scene_parts(path, progress, options);
     if (!parts) return tl::unexpected(parts.error());
     return build_scene(*std::move(parts), path.string());
 }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <tl/expected.hpp>
+#include <vector>
 
 #include "scene/scene.hpp"
 
@@ -14,6 +15,12 @@ using ReadResult = tl::expected<scene::Scene, std::string>;
 
 /// Called now and then with the fraction that has been read, 0 to 1.
 using ReadProgress = std::function<void(double)>;
+
+/// What files do not tell of themselves.
+struct ReadOptions {
+    std::vector<std::filesystem::path> texture_folders{};  ///< where else textures lie, see read_textures()
+    bool z_up = false;                                     ///< z is up in OBJ, STL and PLY, not y
+};
 
 /// What the reader of a format hands over, or the same kind of sentence.
 using PartsResult = tl::expected<scene::SceneParts, std::string>;
@@ -33,10 +40,12 @@ std::string read_extensions();
 bool has_foreign_reader(const std::filesystem::path& path);
 
 /// What read_scene() reads, before Scene::build.
-PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {});
+PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {},
+                             const ReadOptions& options = {});
 
 /// Reads a scene file in any known format, chosen by the file's ending, and the images that it names
 /// (read_textures()).
-ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
+ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
+                      const ReadOptions& options = {});
 
 }  // namespace vrut::io

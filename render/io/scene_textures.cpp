@@ -17,12 +17,18 @@ namespace fs = std::filesystem;
 
 using TextureResult = tl::expected<scene::Index, std::string>;
 
+struct FoundFile {
+    fs::path path;
+    std::string name;  ///< relative to the scene's folder, or absolute
+};
+
 class TextureReader {
 public:
     TextureReader(scene::SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
-                  std::uint64_t max_pixels)
+                  const std::vector<fs::path>& folders, std::uint64_t max_pixels)
         : textures_(parts.textures),
           folder_(scene_file.parent_path()),
+          folders_(folders),
           progress_(progress),
           pixels_left_(max_pixels) {
         for (const scene::Texture& texture : textures_)
@@ -30,25 +36,36 @@ public:
     }
 
     TextureResult read(const std::string& name) {
-        const auto file = base::find_below(folder_, name);
+        const auto file = find(name);
         if (!file) return tl::unexpected(file.error());
-        if (const auto known = known_.find(file->string()); known != known_.end()) return known->second;
+        const std::string path = file->path.string();
+        if (const auto known = known_.find(path); known != known_.end()) return known->second;
         if (progress_) progress_(1);
-        return known_.emplace(file->string(), read_new(*file, name)).first->second;
+        return known_.emplace(path, read_new(*file)).first->second;
     }
 
 private:
-    TextureResult read_new(const fs::path& file, const std::string& name) {
-        auto image = read_image_file(file, std::min(pixels_left_, kMaxImagePixels));
+    tl::expected<FoundFile, std::string> find(const std::string& name) const {
+        const auto file = base::find_below(folder_, name);
+        if (file) return FoundFile{*file, name};
+        const std::string last = name.substr(name.rfind('/') + 1);
+        for (const fs::path& folder : folders_)
+            if (const auto found = base::find_below(folder, last)) return FoundFile{*found, found->string()};
+        return tl::unexpected(file.error());
+    }
+
+    TextureResult read_new(const FoundFile& file) {
+        auto image = read_image_file(file.path, std::min(pixels_left_, kMaxImagePixels));
         if (!image) return tl::unexpected(image.error());
         pixels_left_ -= image->rgba.size() / 4;
         const bool transparent = has_transparent_pixel(*image);
-        textures_.push_back({name, *std::move(image), transparent});
+        textures_.push_back({file.name, *std::move(image), transparent});
         return static_cast<scene::Index>(textures_.size() - 1);
     }
 
     std::vector<scene::Texture>& textures_;
     const fs::path folder_;
+    const std::vector<fs::path>& folders_;
     const ReadProgress& progress_;
     std::uint64_t pixels_left_;
     std::map<std::string, TextureResult> known_;  // by the file's own path
@@ -83,8 +100,8 @@ bool has_transparent_pixel(const scene::Image& image) {
 }
 
 void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const ReadProgress& progress,
-                   std::uint64_t max_pixels) {
-    TextureReader reader(parts, scene_file, progress, max_pixels);
+                   const std::vector<fs::path>& folders, std::uint64_t max_pixels) {
+    TextureReader reader(parts, scene_file, progress, folders, max_pixels);
     Notices notices;
     const auto say = [&](const std::string& what) { notices.add(scene_file.string() + ": " + what); };
     const auto read = [&](const scene::Material& material, const std::string& image, scene::Index& texture) {

@@ -15,10 +15,12 @@ inline constexpr std::uint64_t kMaxTexturePixels = std::uint64_t{1} << 28;
 bool has_transparent_pixel(const scene::Image& image);
 
 /// Reads the image files that the parts' materials and cube maps name into textures, each file once. Names
-/// are relative to the folder of `scene_file`. A file outside of that folder (symbolic links resolved), an
-/// unreadable one, and a cube map without six squares of one size are omitted with a notice.
+/// are relative to the folder of `scene_file`. A file that is not there is looked for in `folders`, by its
+/// name without folders. A file outside of all these (symbolic links resolved), an unreadable one, and a cube
+/// map without six squares of one size are omitted with a notice.
 void read_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
-                   const ReadProgress& progress = {}, std::uint64_t max_pixels = kMaxTexturePixels);
+                   const ReadProgress& progress = {}, const std::vector<std::filesystem::path>& folders = {},
+                   std::uint64_t max_pixels = kMaxTexturePixels);
 
 /// Decodes an image that lies inside the scene's file, by its name, of at most so many pixels.
 using EmbeddedDecoder =

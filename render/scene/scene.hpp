@@ -28,7 +28,7 @@ inline constexpr Index kNone = -1;
 
 /// An image file that materials and backgrounds show.
 struct Texture {
-    std::string file;  ///< relative to the scene's
+    std::string file;  ///< relative to the scene's, or absolute
     Image image;
     bool transparent = false;  ///< some alpha is below 255
 };

@@ -137,6 +137,24 @@ void add_log_level(Command& command) {
         ->group(kGeneral);
 }
 
+/// What files of scenes do not tell.
+void add_reading(Command& command, io::ReadOptions& read) {
+    command
+        .add_option("--textures", read.texture_folders,
+                    "Look in this folder for textures that are not where the scene says, nor beside it.")
+        ->check([](const std::string& path) {
+            return std::filesystem::is_directory(path) ? std::string() : "there is no folder '" + path + "'";
+        })
+        ->allow_extra_args(false)  // what follows the one is the scene
+        ->type_name("DIR")
+        ->group(kScene);
+    add_choice(
+        command, "--up-axis", {"y", "z"}, [&read](const std::string& axis) { read.z_up = axis == "z"; },
+        "Take this axis for up in OBJ, STL and PLY files, which do not tell.")
+        ->default_str("y")
+        ->group(kScene);
+}
+
 std::vector<Entry> statuses(const std::string& done,
                             const std::string& wrong_usage = "The command line is wrong.") {
     return {{std::to_string(kDone), done},
@@ -179,6 +197,7 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
     add_folder(*command, "--scenes", arguments.scenes,
                "Let clients open the scenes in this folder and below.")
         ->group(kScene);
+    add_reading(*command, arguments.read);
     add_folder(*command, "--record", arguments.record, "Let clients record sessions into this folder.")
         ->group(kScene);
     add_device(*command, arguments.device);
@@ -311,6 +330,7 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         ->type_name("JSON")
         ->group(kScene);
     add_patches(*command, arguments);
+    add_reading(*command, arguments.read);
     add_drawing(*command, arguments);
     command->exit_statuses = statuses("The image is written.");
     command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
@@ -369,6 +389,7 @@ std::shared_ptr<Command> describe_convert(ConvertArguments& arguments) {
         ->required();
     add_file(*command, "OUT", arguments.out, "Write this scene file: " + io::written_extensions() + ".")
         ->required();
+    add_reading(*command, arguments.read);
     command->exit_statuses =
         statuses("The file is written.", "The command line is wrong, as where OUT is of no format or is IN.");
     command->examples = {

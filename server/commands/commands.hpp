@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "io/read_scene.hpp"
+
 /// What the program's subcommands do. Each throws std::exception with one sentence; main prints it.
 namespace vrut::server::commands {
 
 struct ServeArguments {
     std::filesystem::path scene;  ///< empty: the car
+    io::ReadOptions read;
     std::string listen = "127.0.0.1:8080";
     std::vector<std::string> allowed_origins;
     std::optional<int> device;
@@ -24,6 +27,7 @@ void serve_command(const ServeArguments& arguments);
 
 struct RenderArguments {
     std::filesystem::path scene, output;
+    io::ReadOptions read;
     int width = 1280, height = 720;
     int samples = 4;
     double detail = 0;
@@ -58,6 +62,7 @@ void info_command(const InfoArguments& arguments);
 
 struct ConvertArguments {
     std::filesystem::path in, out;
+    io::ReadOptions read;
 };
 /// What the new file does not hold goes to standard error, a line each.
 void convert_command(const ConvertArguments& arguments);

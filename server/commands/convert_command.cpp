@@ -47,7 +47,8 @@ std::vector<std::string> convert(const ConvertArguments& arguments) {
     std::optional<observe::Progress> bar;
     if (isatty(STDERR_FILENO) == 1) bar.emplace();
     const auto scene =
-        scenes::import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()));
+        scenes::import_scene(arguments.in, shown(bar, 0, 0.6, "reading " + arguments.in.filename().string()),
+                             {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
     auto lost = io::write_scene(*scene, arguments.out,
                                 shown(bar, 0.6, 1, "writing " + arguments.out.filename().string()),

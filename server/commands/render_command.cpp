@@ -61,7 +61,7 @@ scene::Camera wanted_camera(const RenderArguments& arguments, const room::Room& 
 
 plan::View view_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
-    auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name));
+    auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name), {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
     for (const protocol::Notice& notice : scene->notices)
         observe::log_warning("notice", {{"text", notice.message}});

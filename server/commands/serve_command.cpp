@@ -84,9 +84,10 @@ void serve_command(const ServeArguments& arguments) {
     }
 
     const std::filesystem::path path = arguments.scene.empty() ? default_scene() : arguments.scene;
-    options.library = scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes), {}, path);
+    options.library =
+        scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes), {{}, arguments.read}, path);
     const std::string& name = options.library.start_name();
-    auto scene = scenes::load_scene(path, name, observe::loading_bar(name));
+    auto scene = scenes::load_scene(path, name, observe::loading_bar(name), options.library.options());
     if (!scene) throw std::runtime_error(scene.error());
     scene->changes = scenes::stored_changes(scene->sha256);
     options.keep_changes = scenes::store_changes;

@@ -83,7 +83,7 @@ std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
     if (!found.path) return found.path.error();
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     try {
-        loader_.start(*found.path, found.name, description_, library_.limits());
+        loader_.start(*found.path, found.name, description_, library_.options());
     } catch (const std::system_error& error) {
         return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
     }

@@ -55,20 +55,29 @@ void write_all(std::string_view bytes) {
     }
 }
 
+/// Of arguments from `y|z` on, which end with a null pointer.
+io::ReadOptions options_of(char** arguments) {
+    io::ReadOptions options;
+    options.z_up = std::strcmp(*arguments, "z") == 0;
+    while (*++arguments != nullptr) options.texture_folders.emplace_back(*arguments);
+    return options;
+}
+
 void report(double fraction) { write_all({reinterpret_cast<const char*>(&fraction), sizeof fraction}); }
 
 }  // namespace
 
-bool is_import_process(int argc, char** argv) { return argc == 5 && std::strcmp(argv[1], "import") == 0; }
+bool is_import_process(int argc, char** argv) { return argc >= 6 && std::strcmp(argv[1], "import") == 0; }
 
 /// Ends without freeing what it has read: the system does that at once.
 void run_import_process(char** argv) try {
     limit_itself(std::strtoull(argv[3], nullptr, 10), std::strtoull(argv[4], nullptr, 10));
     report(0);  // the first: whether the parent lives, whose end before limit_itself() was not noticed
-    const SandboxGaps gaps = enter_sandbox(argv[2]);
+    const io::ReadOptions options = options_of(argv + 5);
+    const SandboxGaps gaps = enter_sandbox(argv[2], options.texture_folders);
     if (gaps.files) report(kFilesOpen);
     if (gaps.system_calls) report(kCallsOpen);
-    io::PartsResult parts = io::read_scene_parts(argv[2], report);
+    io::PartsResult parts = io::read_scene_parts(argv[2], report, options);
     report(kReady);
     io::serialize_parts(std::move(parts), write_all);
     _exit(0);

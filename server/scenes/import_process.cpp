@@ -163,14 +163,13 @@ std::string memory_text(std::uint64_t bytes) { return std::to_string(bytes >> 20
 /// The reading of one file in a child process, as long as the object lives.
 class Import {
 public:
-    Import(const std::filesystem::path& path, const io::ReadProgress& progress, const ImportLimits& limits)
+    Import(const std::filesystem::path& path, const io::ReadProgress& progress, const ImportLimits& limits,
+           const io::ReadOptions& options)
         : path_(path),
           progress_(progress),
           limits_(limits),
           end_(base::Clock::now() + limits.time),
-          child_(SpawnSetup(pipe_.in.number())
-                     .start({"vrut-preview", "import", path.string(), std::to_string(limits.bytes),
-                             std::to_string(limits.time.count())})) {
+          child_(SpawnSetup(pipe_.in.number()).start(arguments(path, limits, options))) {
         pipe_.in.close();
     }
 
@@ -190,6 +189,18 @@ private:
         using std::runtime_error::runtime_error;
     };
 
+    /// See run_import_process().
+    static std::vector<std::string> arguments(const std::filesystem::path& path, const ImportLimits& limits,
+                                              const io::ReadOptions& options) {
+        std::vector<std::string> all = {"vrut-preview",
+                                        "import",
+                                        path.string(),
+                                        std::to_string(limits.bytes),
+                                        std::to_string(limits.time.count()),
+                                        options.z_up ? "z" : "y"};
+        for (const std::filesystem::path& folder : options.texture_folders) all.push_back(folder.string());
+        return all;
+    }
     void handle(double report) {
         if (report == kFilesOpen || report == kCallsOpen)
             warn_of_open_reader(report == kFilesOpen);
@@ -273,9 +284,9 @@ std::string out_of_memory(const std::filesystem::path& path) {
 }
 
 io::ReadResult import_scene(const std::filesystem::path& path, const io::ReadProgress& progress,
-                            const std::optional<ImportLimits>& limits) try {
-    if (!io::has_foreign_reader(path)) return io::read_scene(path, progress);
-    Import reading(path, progress, limits ? *limits : import_limits(path));
+                            const ImportOptions& options) try {
+    if (!io::has_foreign_reader(path)) return io::read_scene(path, progress, options.read);
+    Import reading(path, progress, options.limits ? *options.limits : import_limits(path), options.read);
     auto parts = reading.read();
     if (!parts) return tl::unexpected(parts.error());
     return io::build_scene(*std::move(parts), path.string());  // while the child ends

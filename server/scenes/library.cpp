@@ -19,11 +19,11 @@ namespace fs = std::filesystem;
 
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
                                                   const io::ReadProgress& progress,
-                                                  const std::optional<ImportLimits>& limits) try {
+                                                  const ImportOptions& options) try {
     constexpr std::chrono::milliseconds kBetweenPolls{50};
     base::AbandonableTask<std::string> sum(
         [path](const std::stop_token& stop) { return sha256_of(path, stop); });  // while the file is read
-    auto scene = import_scene(path, progress, limits);
+    auto scene = import_scene(path, progress, options);
     if (!scene) return tl::unexpected(scene.error());
     do {
         if (progress) progress(1);
@@ -52,8 +52,8 @@ bool can_be_asked_for(const std::string& name) {
 
 }  // namespace
 
-SceneLibrary::SceneLibrary(fs::path folder, std::optional<ImportLimits> limits, fs::path start)
-    : folder_(std::move(folder)), start_(std::move(start)), limits_(limits) {
+SceneLibrary::SceneLibrary(fs::path folder, ImportOptions options, fs::path start)
+    : folder_(std::move(folder)), start_(std::move(start)), options_(std::move(options)) {
     if (start_.empty()) return;
     std::error_code error;
     const fs::path file = fs::weakly_canonical(start_, error);

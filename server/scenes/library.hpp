@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <tl/expected.hpp>
@@ -17,7 +16,7 @@ namespace vrut::server::scenes {
 /// name that the client asked for.
 tl::expected<LoadedScene, std::string> load_scene(const std::filesystem::path& path, const std::string& name,
                                                   const io::ReadProgress& progress = {},
-                                                  const std::optional<ImportLimits>& limits = {});
+                                                  const ImportOptions& options = {});
 
 /// The scenes that clients may open: those in a folder, and the one that the server starts with, wherever it
 /// lies.
@@ -26,15 +25,15 @@ public:
     /// There are none.
     SceneLibrary() = default;
     /// An empty path: no folder, or no start scene.
-    explicit SceneLibrary(std::filesystem::path folder, std::optional<ImportLimits> limits = {},
+    explicit SceneLibrary(std::filesystem::path folder, ImportOptions options = {},
                           std::filesystem::path start = {});
 
     /// The start scene's: its path in the folder, else its file's name, with the name of the folder above
     /// where the folder of scenes has another of that name.
     const std::string& start_name() const { return start_name_; }
 
-    /// Of reading each of its scenes; none: import_limits().
-    const std::optional<ImportLimits>& limits() const { return limits_; }
+    /// Of reading each of its scenes.
+    const ImportOptions& options() const { return options_; }
 
     /// The file of this name, which may lie in a folder below, but nowhere else, or is the start scene; or
     /// why there is none.
@@ -53,7 +52,7 @@ private:
 
     std::filesystem::path folder_, start_;
     std::string start_name_;
-    std::optional<ImportLimits> limits_;
+    ImportOptions options_;
 };
 
 /// SHA-256 of a file in hexadecimal. Throws std::runtime_error, also where it is asked to stop.

@@ -52,8 +52,8 @@ io::ReadProgress progress_of(const std::string& name, std::function<void(SceneLo
 
 /// Throws what `progress` throws, unless it is a std::exception.
 SceneLoaded load(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
-                 const io::ReadProgress& progress, const std::optional<ImportLimits>& limits) try {
-    SceneLoaded loaded{name, load_scene(path, name, progress, limits)};
+                 const io::ReadProgress& progress, const ImportOptions& options) try {
+    SceneLoaded loaded{name, load_scene(path, name, progress, options)};
     progress(1);
     if (!loaded.scene) return loaded;
     loaded.levels = levels_of(loaded.scene->sha256, renderer);
@@ -75,10 +75,10 @@ SceneLoader::SceneLoader(std::function<void(SceneLoading)> on_progress,
 SceneLoader::~SceneLoader() { listener_->close(); }
 
 void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
-                        const std::string& renderer, const std::optional<ImportLimits>& limits) {
-    task_.emplace([path, name, renderer, limits, listener = listener_](const std::stop_token& stop) {
+                        const std::string& renderer, const ImportOptions& options) {
+    task_.emplace([path, name, renderer, options, listener = listener_](const std::stop_token& stop) {
         const auto report = [listener](SceneLoading loading) { listener->report(std::move(loading)); };
-        listener->report(load(path, name, renderer, progress_of(name, report, stop), limits));
+        listener->report(load(path, name, renderer, progress_of(name, report, stop), options));
     });
 }
 

@@ -39,7 +39,7 @@ public:
     /// Reads a scene, what is kept of it, and the levels that are kept for `renderer`; not while busy().
     /// Throws std::system_error where no thread can be had.
     void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
-               const std::optional<ImportLimits>& limits);
+               const ImportOptions& options);
     /// To be called after `on_loaded`.
     void finish() { task_.reset(); }
     /// Asks for the end of the reading; the destructor waits the less for it.

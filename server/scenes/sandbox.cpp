@@ -38,7 +38,8 @@ void allow_to_read(const base::Descriptor& ruleset, const std::filesystem::path&
     syscall(SYS_landlock_add_rule, ruleset.number(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
 }
 
-bool confine_files(const std::filesystem::path& scene_file) {
+bool confine_files(const std::filesystem::path& scene_file,
+                   const std::vector<std::filesystem::path>& folders) {
     const landlock_ruleset_attr attributes{kAccesses};
     const base::Descriptor ruleset(
         static_cast<int>(syscall(SYS_landlock_create_ruleset, &attributes, sizeof attributes, 0)));
@@ -46,6 +47,7 @@ bool confine_files(const std::filesystem::path& scene_file) {
     const std::filesystem::path folder = scene_file.parent_path();
     allow_to_read(ruleset, folder.empty() ? "." : folder);
     allow_to_read(ruleset, scene_file);  // which may be a link out of the folder: somebody has named it
+    for (const std::filesystem::path& other : folders) allow_to_read(ruleset, other);
     return syscall(SYS_landlock_restrict_self, ruleset.number(), 0) == 0;
 }
 
@@ -131,14 +133,15 @@ bool confine_system_calls() {
 
 }  // namespace
 
-SandboxGaps enter_sandbox(const std::filesystem::path& scene_file) {
+SandboxGaps enter_sandbox(const std::filesystem::path& scene_file,
+                          const std::vector<std::filesystem::path>& folders) {
 #ifdef VRUT_SANITIZED
     __sanitizer_sandbox_arguments nothing_left_open{};
     __sanitizer_sandbox_on_notify(&nothing_left_open);  // they look at /proc/self while they can
 #endif
     prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
     SandboxGaps gaps;
-    gaps.files = !confine_files(scene_file);
+    gaps.files = !confine_files(scene_file, folders);
     gaps.system_calls = !confine_system_calls();
     return gaps;
 }

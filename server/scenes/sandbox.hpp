@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 namespace vrut::server::scenes {
 
@@ -10,10 +11,11 @@ struct SandboxGaps {
     bool system_calls = false;  ///< seccomp, or a list of calls for this kind of processor
 };
 
-/// Confines the calling thread and its children for good. They may open `scene_file` and files in and below
-/// its folder, for reading only; links that lead elsewhere fail. System calls for sockets, new processes,
-/// signals to other processes and lists of folders fail. Open descriptors stay open. If the kernel lacks one
-/// part, the other still holds.
-SandboxGaps enter_sandbox(const std::filesystem::path& scene_file);
+/// Confines the calling thread and its children for good. They may open `scene_file`, and files in and below
+/// its folder and `folders`, for reading only; links that lead elsewhere fail. System calls for sockets, new
+/// processes, signals to other processes and lists of folders fail. Open descriptors stay open. If the kernel
+/// lacks one part, the other still holds.
+SandboxGaps enter_sandbox(const std::filesystem::path& scene_file,
+                          const std::vector<std::filesystem::path>& folders = {});
 
 }  // namespace vrut::server::scenes

@@ -88,6 +88,21 @@ test('models convert, and draw the same picture', { skip: MODELS ? false : 'VRUT
   for (const model of models) checkConversions(path.join(MODELS, model));
 });
 
+test('textures come from other folders, and z may be up', () => {
+  fs.mkdirSync(file('other'));
+  fs.writeFileSync(file('other/my.mtl'), 'newmtl A\nmap_Kd /home/me/letter.png\n');
+  fs.writeFileSync(file('other/my.obj'), 'mtllib my.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 2\nvt 0 0\nusemtl A\nf 1/1 2/1 3/1\n');
+  const textures = path.join(TEACHING, 'textures');
+  const options = ['--textures', folder, '--textures', textures, '--up-axis', 'z'];
+  assert.match(succeeds('convert', file('other/my.obj'), file('x.vrut')).stderr, /without its texture/);
+  assert.doesNotMatch(succeeds('convert', ...options, file('other/my.obj'), file('x.vrut')).stderr, /without its texture/);
+  assert.match(fs.readFileSync(file('x.vrut'), 'utf8'), /image "x\.textures\/0-letter\.png"/);
+  assert.match(fs.readFileSync(file('x.vrut'), 'utf8'), /matrix 1 0 0 0 +0 0 1 0 +0 -1 0 0 +0 0 0 1/);
+  assert.doesNotMatch(succeeds('render', ...options, file('other/my.obj'), '-o', file('x.png'), '--size', '16x9').stderr, /without its texture/);
+  for (const command of ['convert', 'serve', 'render'])
+    fails(2, /--textures: there is no folder 'none'/, command, file('other/my.obj'), '--textures', 'none');
+});
+
 test('what is lost is told, a line each', () => {
   const lost = convert(path.join(TEACHING, 'cube-map.vrut'), file('x.glb'));
   assert.ok(lost.includes(`${file('x.glb')}: a background is lost`), lost.join('\n'));

@@ -459,6 +459,21 @@ TEST_CASE("an empty solid beside others is no fault") {
     CHECK(scene.geometries().size() == read_panel("panel.stl").geometries().size());
 }
 
+TEST_CASE("z is up where the user says so, in formats that do not tell") {
+    const TemporaryFolder folder;
+    for (const char* name : {"panel.obj", "panel.stl", "panel.ply", "panel.dae", "panel.fbx"}) {
+        CAPTURE(name);
+        const fs::path path = folder.write(name, text_of(name));
+        const auto as_is = io::read_scene(path), turned = io::read_scene(path, {}, {.z_up = true});
+        REQUIRE(as_is);
+        REQUIRE(turned);
+        const math::Bounds before = scene::place(*as_is).bounds, after = scene::place(*turned).bounds;
+        const bool tells = path.extension() == ".dae" || path.extension() == ".fbx";
+        CHECK(after.min == (tells ? before.min : glm::dvec3(before.min.x, before.min.z, -before.max.y)));
+        CHECK(after.max == (tells ? before.max : glm::dvec3(before.max.x, before.max.z, -before.min.y)));
+    }
+}
+
 TEST_CASE("a picture lies on the texture coordinates that its material names") {
     std::string text = text_of("panel.dae");
     const auto replace = [&](const std::string& from, const std::string& to) {

@@ -105,6 +105,39 @@ TEST_CASE("pictures outside of the scene's folder are never read") {
     check_notice(notice_of(folder, "other.png"), {"it lies outside of the scene's folder"});
 }
 
+TEST_CASE("a picture that is not where the scene says is found in another folder") {
+    const TemporaryFolder folder;
+    const auto read = [&](const std::string& name) {
+        auto scene = io::read_scene(
+            folder.write("cars/car.vrut", "vrut-text 1\n" + material(1, name)), {},
+            {.texture_folders = {folder.path() / "none", folder.path() / "maps", folder.path() / "more"}});
+        REQUIRE_MESSAGE(scene, scene.error());
+        return *std::move(scene);
+    };
+    folder.write("outside.png", flat_png(2, 2, kSolid));
+    folder.write("maps/deep/below.png", flat_png(2, 2, kSolid));
+    folder.write("maps/paint.png", flat_png(3, 3, kSolid));
+    folder.write("more/paint.png", flat_png(4, 4, kSolid));
+    folder.write("more/wheel.png", flat_png(5, 5, kSolid));
+    fs::create_symlink("../outside.png", folder.path() / "maps/leads-out.png");
+    const std::pair<std::string, int> found[] = {{"paint.png", 3},
+                                                 {"old/paint.png", 3},
+                                                 {"/home/me/paint.png", 3},
+                                                 {"../paint.png", 3},
+                                                 {"wheel.png", 5}};
+    for (const auto& [name, width] : found) {
+        const scene::Scene scene = read(name);
+        CHECK(scene.notices().empty());
+        REQUIRE(scene.textures().size() == 1);
+        CHECK(scene.textures()[0].image.width == width);
+        CHECK(fs::path(scene.textures()[0].file).is_absolute());
+    }
+    for (const std::string name : {"none.png", "below.png", "outside.png", "leads-out.png", "maps/..", "x/"})
+        CHECK_MESSAGE(read(name).textures().empty(), name);
+    folder.write("cars/paint.png", flat_png(6, 6, kSolid));
+    CHECK(read("paint.png").textures()[0].image.width == 6);
+}
+
 TEST_CASE("a picture that cannot be read is left out with a notice") {
     const TemporaryFolder folder;
     folder.write("cars/text.png", "no picture");
@@ -154,7 +187,7 @@ TEST_CASE("the pictures of a scene are limited together") {
         parts.materials[i].id = static_cast<scene::Id>(i);
         parts.materials[i].image = names[i];
     }
-    io::read_textures(parts, folder.path() / "car.vrut", {}, 150);
+    io::read_textures(parts, folder.path() / "car.vrut", {}, {}, 150);
     const scene::Index wanted[] = {0, scene::kNone, 1, 0};
     for (std::size_t i = 0; i < 4; ++i) CHECK(parts.materials[i].texture == wanted[i]);
     REQUIRE(parts.notices.size() == 1);

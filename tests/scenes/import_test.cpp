@@ -106,7 +106,7 @@ std::size_t open_descriptors() {
 /// A server of one triangle and a folder of scenes, and two who look at it.
 struct Room {
     explicit Room(const fs::path& scenes, const ImportLimits& limits)
-        : server(FakeRenderer{}, with(SceneLibrary(scenes, limits))),
+        : server(FakeRenderer{}, with(SceneLibrary(scenes, {limits, {}}))),
           presenter(server.port()),
           watcher(server.port()) {
         was = presenter.join()["scene"];
@@ -267,7 +267,7 @@ TEST_CASE("what crashes assimp, or lets it go on for ever, ends in a sentence") 
     for (const auto& tried : kFiles) {
         CAPTURE(tried.file);
         const fs::path path = folder.write(tried.file, tried.text);
-        const auto scene = import_scene(path, {}, ImportLimits{kAmple.bytes, 2s});
+        const auto scene = import_scene(path, {}, {ImportLimits{kAmple.bytes, 2s}, {}});
         REQUIRE_FALSE(scene);
         CHECK(scene.error().starts_with(path.string() + ": "));
         CHECK(scene.error().find('\n') == std::string::npos);
@@ -303,6 +303,20 @@ TEST_CASE("a server that ends takes its reader with it, at once") {
     CHECK(child(false) == 0);
 }
 
+TEST_CASE("the process that reads a file looks into other folders, and knows which axis is up") {
+    const TemporaryFolder folder;
+    folder.write("a.mtl", "newmtl M\nKd 1 1 1\nmap_Kd C:\\maps\\letter.png\n");
+    const fs::path path =
+        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 2\nvt 0 0\nusemtl M\nf 1/1 2/1 3/1\n");
+    CHECK(import_scene(path)->textures().empty());
+    const auto scene =
+        import_scene(path, {}, {{}, {.texture_folders = {VRUT_SCENES "/teaching/textures"}, .z_up = true}});
+    REQUIRE(scene);
+    CHECK(scene->notices().empty());
+    CHECK(scene->textures().size() == 1);
+    CHECK(scene::place(*scene).bounds.max == glm::dvec3(1, 2, 0));
+}
+
 TEST_CASE("reading leaves neither processes nor descriptors") {
     const TemporaryFolder folder;
     const fs::path heap = write_heap(folder, 10);
@@ -312,7 +326,7 @@ TEST_CASE("reading leaves neither processes nor descriptors") {
     for (int i = 0; i < 5; ++i) {
         CHECK(import_scene(heap)->triangle_count() == 10);
         CHECK_FALSE(import_scene(none));
-        CHECK_FALSE(import_scene(heap, {}, ImportLimits{kAmple.bytes, 0s}));
+        CHECK_FALSE(import_scene(heap, {}, {ImportLimits{kAmple.bytes, 0s}, {}}));
         const auto stop = [](double) { throw std::runtime_error("enough"); };
         CHECK_THROWS_WITH(import_scene(heap, stop), "enough");
     }

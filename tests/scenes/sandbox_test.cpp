@@ -108,6 +108,21 @@ TEST_CASE("of files, those of the scene's folder are open, and for reading only"
           }) == EACCES);
 }
 
+TEST_CASE("folders of textures are open, and for reading only" * doctest::skip(!kernel_has_landlock())) {
+    const SceneFolder scene;
+    const fs::path maps = fs::path(scene.folder.write("maps/a.png", "no picture")).parent_path();
+    const auto with_maps = [&](const fs::path& path, int how) {
+        return in_a_process([&] {
+            enter_sandbox(scene.file, {maps});
+            return error_of(open(path.c_str(), how));
+        });
+    };
+    CHECK(with_maps(maps / "a.png", O_RDONLY) == 0);
+    CHECK(with_maps(scene.file, O_RDONLY) == 0);
+    CHECK(with_maps(maps / "a.png", O_WRONLY) == EACCES);
+    CHECK(with_maps(scene.beside, O_RDONLY) == EACCES);
+}
+
 TEST_CASE("a scene that somebody names by a link is open, and what lies beside the link" *
           doctest::skip(!kernel_has_landlock())) {
     const SceneFolder scene;

@@ -33,8 +33,14 @@ namespace {
 class AssimpConverter {
 public:
     AssimpConverter(aiScene& scene, AssimpFormat format, ConversionWarnings warnings,
-                    const std::filesystem::path& path, const ReadProgress& progress)
-        : scene_(scene), format_(format), path_(path), progress_(progress), warnings_(std::move(warnings)) {}
+                    const std::filesystem::path& path, const ReadProgress& progress,
+                    const ReadOptions& options)
+        : scene_(scene),
+          format_(format),
+          path_(path),
+          progress_(progress),
+          options_(options),
+          warnings_(std::move(warnings)) {}
 
     scene::SceneParts convert() {
         parts_.name = path_.stem().string();
@@ -50,7 +56,7 @@ public:
                       cameras_.size() + lights_.size());
         warnings_.add("an animation is ignored", scene_.mNumAnimations);
         warnings_.append_to(parts_.notices, path_.string());
-        read_textures(parts_, path_, progress_);
+        read_textures(parts_, path_, progress_, options_.texture_folders);
         make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
         find_single_sided();
         return std::move(parts_);
@@ -154,7 +160,8 @@ private:
                 open.push_back({node.mChildren[i], id, matrix * matrix_of(*node.mChildren[i])});
         };
         const aiNode& root = *scene_.mRootNode;
-        const glm::dmat4 matrix = upright_from_file(scene_, format_, warnings_) * matrix_of(root);
+        const glm::dmat4 matrix =
+            upright_from_file(scene_, format_, options_.z_up, warnings_) * matrix_of(root);
         if (is_made_up(root, matrix))
             open_children(root, 0, glm::dmat4(1));
         else
@@ -255,6 +262,7 @@ private:
     const AssimpFormat format_;
     const std::filesystem::path& path_;
     const ReadProgress& progress_;
+    const ReadOptions& options_;
     scene::SceneParts parts_;
     ConversionWarnings warnings_;
     std::vector<scene::Index> materials_, geometries_;  // ours for each of assimp's
@@ -328,13 +336,13 @@ std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, Assim
 }  // namespace
 
 PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,
-                              const ReadProgress& progress) {
+                              const ReadProgress& progress, const ReadOptions& options) {
     try {
         if (progress) progress(0);
         ConversionWarnings warnings;
         const auto scene = import_checked(path, format, warnings);
         if (progress) progress(0.5);
-        return AssimpConverter(*scene, format, std::move(warnings), path, progress).convert();
+        return AssimpConverter(*scene, format, std::move(warnings), path, progress, options).convert();
     } catch (const ImportError& error) {
         return tl::unexpected(path.string() + ": " + error.what());
     }

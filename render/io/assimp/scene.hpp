@@ -27,14 +27,15 @@ namespace vrut::io {
 /// (is_watertight()), which look the same from one side. What is wound inwards may be a room or a mistake:
 /// both are right when two-sided. Normals are the file's; without any, and in STL, triangles are flat. Equal
 /// vertices become one. y is up in Collada and FBX, whatever the file's axis; in OBJ, STL and PLY, which do
-/// not tell, it is y. FBX keeps its unit, Collada is scaled to metres.
+/// not tell, it is y, or z by ReadOptions::z_up. FBX keeps its unit, Collada is scaled to metres.
 PartsResult read_assimp_scene(const std::filesystem::path& path, AssimpFormat format,
-                              const ReadProgress& progress = {});
+                              const ReadProgress& progress = {}, const ReadOptions& options = {});
 
 /// For the table of readers.
 template <AssimpFormat format>
-PartsResult read_assimp_scene(const std::filesystem::path& path, const ReadProgress& progress) {
-    return read_assimp_scene(path, format, progress);
+PartsResult read_assimp_scene(const std::filesystem::path& path, const ReadProgress& progress,
+                              const ReadOptions& options) {
+    return read_assimp_scene(path, format, progress, options);
 }
 
 }  // namespace vrut::io

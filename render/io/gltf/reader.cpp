@@ -27,9 +27,10 @@ struct Content {
 /// Builds the parts of a scene.
 class GltfConverter {
 public:
-    GltfConverter(const std::filesystem::path& path, const ReadProgress& progress)
+    GltfConverter(const std::filesystem::path& path, const ReadProgress& progress, const ReadOptions& options)
         : path_(path),
           progress_(progress),
+          options_(options),
           file_(read_gltf_file(path)),
           document_(file_.document),
           buffers_(path, file_),
@@ -222,7 +223,7 @@ private:
             return decode_gltf_image(document_, buffers_, name, max_pixels);
         });
         warnings_.append_to(parts_.notices, path_.string());
-        read_textures(parts_, path_, progress_);
+        read_textures(parts_, path_, progress_, options_.texture_folders);
         std::vector<bool> ignore_alpha;
         for (const ReadGltfMaterial& material : materials_) ignore_alpha.push_back(material.ignores_alpha);
         make_textures_opaque(parts_.materials, ignore_alpha, parts_.textures);
@@ -230,6 +231,7 @@ private:
 
     const std::filesystem::path& path_;
     const ReadProgress& progress_;
+    const ReadOptions& options_;
     GltfFile file_;
     const GltfJson& document_;
     GltfBuffers buffers_;
@@ -244,10 +246,11 @@ private:
 
 }  // namespace
 
-PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress,
+                            const ReadOptions& options) {
     try {
         if (progress) progress(0);
-        return GltfConverter(path, progress).convert();
+        return GltfConverter(path, progress, options).convert();
     } catch (const ImportError& error) {
         return tl::unexpected(path.string() + ": " + error.what());
     }

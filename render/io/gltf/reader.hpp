@@ -26,6 +26,7 @@ namespace vrut::io {
 /// alphaMode is not OPAQUE. One that is unlit (KHR_materials_unlit) has c as its emission and is black else,
 /// but where it has an image, which only light shows: that has no highlight. How the image lies
 /// (KHR_texture_transform) is in the texture coordinates.
-PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
+PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
+                            const ReadOptions& options = {});
 
 }  // namespace vrut::io

@@ -283,11 +283,12 @@ PartsResult read_osb_parts(std::string_view bytes, const std::string& file, cons
     }
 }
 
-PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress) {
+PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress,
+                           const ReadOptions& options) {
     const auto bytes = base::read_bytes(path);
     if (!bytes) return tl::unexpected(path.string() + ": " + bytes.error());
     auto parts = read_osb_parts(*bytes, path.string(), progress);
-    if (parts) read_textures(*parts, path, progress);
+    if (parts) read_textures(*parts, path, progress, options.texture_folders);
     return parts;
 }
 

@@ -21,7 +21,8 @@ namespace vrut::io {
 /// TextureChunk as the image: one without compression inside the file, or a file in its folder or below.
 ///
 /// Errors say "FILE: at byte N: expected …, found …". Takes at most 200 times the file's memory.
-PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress = {});
+PartsResult read_osb_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
+                           const ReadOptions& options = {});
 
 /// The same from memory, without the images that lie outside; `file` names it in errors and notices.
 PartsResult read_osb_parts(std::string_view bytes, const std::string& file,

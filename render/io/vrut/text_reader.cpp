@@ -460,12 +460,13 @@ PartsResult read_vrut_parts(std::string_view text, const std::string& file, cons
     return parse_parts(source_of(text), file, progress, threads > 0 ? threads : reading_threads());
 }
 
-PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress) try {
+PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress,
+                           const ReadOptions& options) try {
     const std::string file = path.string();
     auto reader = base::FileReader::open(path);
     if (!reader) return tl::unexpected(file + ": " + reader.error());
     auto parts = parse_parts(source_of(*reader), file, progress, reading_threads());
-    if (parts) read_textures(*parts, path, progress);
+    if (parts) read_textures(*parts, path, progress, options.texture_folders);
     return parts;
 } catch (const CutShort&) {
     return tl::unexpected(path.string() + ": " + std::string(base::kCutShort));

@@ -19,7 +19,8 @@ PartsResult read_vrut_parts(std::string_view text, const std::string& file, cons
 
 /// Returns the same of a file, with the images that it names. No more than a few megabytes of the text are in
 /// memory at a time.
-PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress = {});
+PartsResult read_vrut_file(const std::filesystem::path& path, const ReadProgress& progress = {},
+                           const ReadOptions& options = {});
 
 /// Returns the same as a built scene, without the images that the text names.
 ReadResult read_vrut_text(std::string_view text, const std::string& file, const ReadProgress& progress = {});
