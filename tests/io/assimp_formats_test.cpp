@@ -423,6 +423,68 @@ TEST_CASE("harmless faults do not refuse a file") {
                        "the matrix of node 'Door' is not affine");
 }
 
+TEST_CASE("z is up where the user says so, in formats that do not tell") {
+    const TemporaryFolder folder;
+    for (const char* name : {"panel.obj", "panel.stl", "panel.ply", "panel.dae", "panel.fbx"}) {
+        CAPTURE(name);
+        const fs::path path = folder.write(name, text_of(name));
+        const auto as_is = io::read_scene(path), turned = io::read_scene(path, {}, {.z_up = true});
+        REQUIRE(as_is);
+        REQUIRE(turned);
+        const math::Bounds before = scene::place(*as_is).bounds, after = scene::place(*turned).bounds;
+        const bool tells = path.extension() == ".dae" || path.extension() == ".fbx";
+        CHECK(after.min == (tells ? before.min : glm::dvec3(before.min.x, before.min.z, -before.max.y)));
+        CHECK(after.max == (tells ? before.max : glm::dvec3(before.max.x, before.max.z, -before.min.y)));
+    }
+}
+
+TEST_CASE("a notice says that a scene seems to lie on its side") {
+    const TemporaryFolder folder;
+    const auto seems_z_up = [&](const std::string& name, const std::string& text) {
+        return has_notice(read_well(folder.write(name, text)),
+                          "it seems to lie on its side: --up-axis z turns it upright");
+    };
+    const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ply = text_of("panel.ply");
+    CHECK_FALSE(seems_z_up("a.obj", triangle));
+    CHECK(seems_z_up("a.obj", "# Z-up, metres\n" + triangle));
+    CHECK(seems_z_up("a.obj", "# Up axis: Z\n" + triangle));
+    for (const char* comment : {"# y-up", "# group Z", "# Blender v2.79 (sub 0) OBJ File"})
+        CHECK_FALSE(seems_z_up("a.obj", comment + ("\n" + triangle)));
+    CHECK_FALSE(seems_z_up("a.ply", ply));
+    CHECK(seems_z_up("a.ply",
+                     std::string(ply).insert(ply.find("element"), "comment Created by Blender 2.93.0\n")));
+    const std::string stl = text_of("panel.stl");
+    for (const auto& [head, z_up] :
+         {std::pair("Exported from Blender-2.93.1 (sub 0)", true), {"STL output from Blender", false}}) {
+        CHECK(seems_z_up("a.stl", "solid " + std::string(head) + stl.substr(stl.find('\n'))) == z_up);
+    }
+    // Four wheels: small triangles.
+    const auto car = [&](const std::string& name, char up) {
+        std::string text;
+        for (const auto& [x, y] : {std::pair(0, 0), {4, 0}, {0, 2}, {4, 2}}) {
+            const std::string ends[] = {" 0", " 1", " 0"};
+            text += "o " + name + std::to_string(10 * x + y) + "\n";
+            for (int i = 0; i < 3; ++i) {
+                const std::string at = std::to_string(y + i % 2);
+                text += "v " + std::to_string(x + i / 2) +
+                        (up == 'z' ? " " + at + ends[i] : ends[i] + " " + at) + "\n";
+            }
+            text += "f -3 -2 -1\n";
+        }
+        return text;
+    };
+    CHECK(seems_z_up("a.obj", car("Wheel_", 'z')));
+    CHECK_FALSE(seems_z_up("a.obj", car("Wheel_", 'y')));
+    CHECK_FALSE(seems_z_up("a.obj", car("Panel_", 'z')));
+    // What stands on the ground.
+    const auto standing = [](const char* corners) { return std::string(corners) + "f 1 2 3\nf 1 3 4\n"; };
+    CHECK(seems_z_up("a.obj", standing("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv 0 0 3\n")));
+    CHECK_FALSE(seems_z_up("a.obj", standing("v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv 0 3 0\n")));
+    CHECK_FALSE(seems_z_up("a.obj", standing("v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv 0 0 1\n")));
+    const fs::path cone = folder.write("a.obj", standing("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv 0 0 3\n"));
+    CHECK(io::read_scene(cone, {}, {.z_up = true})->notices().empty());
+}
+
 TEST_CASE("polygons of many corners are covered") {
     // A star of 600 corners, 1 and 2 from its middle: each of its points adds sin(2 pi / 600) to its area.
     constexpr int kCorners = 600;
@@ -457,21 +519,6 @@ TEST_CASE("an empty solid beside others is no fault") {
     const scene::Scene scene =
         read_well(folder.write("a.stl", text_of("panel.stl") + "solid nothing\nendsolid nothing\n"));
     CHECK(scene.geometries().size() == read_panel("panel.stl").geometries().size());
-}
-
-TEST_CASE("z is up where the user says so, in formats that do not tell") {
-    const TemporaryFolder folder;
-    for (const char* name : {"panel.obj", "panel.stl", "panel.ply", "panel.dae", "panel.fbx"}) {
-        CAPTURE(name);
-        const fs::path path = folder.write(name, text_of(name));
-        const auto as_is = io::read_scene(path), turned = io::read_scene(path, {}, {.z_up = true});
-        REQUIRE(as_is);
-        REQUIRE(turned);
-        const math::Bounds before = scene::place(*as_is).bounds, after = scene::place(*turned).bounds;
-        const bool tells = path.extension() == ".dae" || path.extension() == ".fbx";
-        CHECK(after.min == (tells ? before.min : glm::dvec3(before.min.x, before.min.z, -before.max.y)));
-        CHECK(after.max == (tells ? before.max : glm::dvec3(before.max.x, before.max.z, -before.min.y)));
-    }
 }
 
 TEST_CASE("a picture lies on the texture coordinates that its material names") {

@@ -21,6 +21,7 @@
 #include "io/assimp/polygons.hpp"
 #include "io/assimp/text.hpp"
 #include "io/assimp/textures.hpp"
+#include "io/assimp/up_axis_guess.hpp"
 #include "io/scene_textures.hpp"
 #include "io/vrut/tokenizer.hpp"
 #include "mesh/watertight.hpp"
@@ -55,6 +56,8 @@ public:
         warnings_.add("a camera or light that no node references is ignored",
                       cameras_.size() + lights_.size());
         warnings_.add("an animation is ignored", scene_.mNumAnimations);
+        if (lacks_up_axis(format_) && !options_.z_up && seems_z_up(parts_, path_))
+            warnings_.add("it seems to lie on its side: --up-axis z turns it upright");
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
         make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
