@@ -540,6 +540,14 @@ TEST_CASE("a picture lies on the texture coordinates that its material names") {
     check_panel(geometry_of(first, node_of(first, "Door")), true);
     CHECK_FALSE(has_notice(first, "texture coordinates"));
 
+    const std::string other =
+        "<bind_vertex_input semantic=\"CHANNEL2\" input_semantic=\"TEXCOORD\" input_set=\"0\"/>";
+    replace("</instance_material>", other + "</instance_material>");
+    const scene::Scene twice = read();
+    check_panel(geometry_of(twice, node_of(twice, "Door")), true);
+    CHECK_FALSE(has_notice(twice, "texture coordinates"));
+    replace(other, "");
+
     replace("input_set=\"0\"", "input_set=\"1\"");
     replace("<input semantic=\"TEXCOORD\" source=\"#uv\" offset=\"1\" set=\"0\"/>",
             "<input semantic=\"TEXCOORD\" source=\"#zero\" offset=\"1\" set=\"0\"/>"

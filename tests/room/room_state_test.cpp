@@ -7,6 +7,7 @@
 #include "io/read_scene.hpp"
 #include "needs_folder.hpp"
 #include "room/room.hpp"
+#include "room/scene_state.hpp"
 #include "stage.hpp"
 
 using namespace stage;
@@ -295,6 +296,21 @@ TEST_CASE("home is fitted to the view until somebody moves the camera") {
     stage.say("a", R"({"type":"navigate","rotate":[10,0]})");
     stage.say("a", R"({"type":"resize","width":200,"height":200,"pixelRatio":1})");
     CHECK(distance() == doctest::Approx(tall));
+}
+
+TEST_CASE("home of a turned part is that of its own points") {
+    const auto home = [](const std::string& vertices, const std::string& matrix) {
+        const LoadedScene scene = scene_of(
+            "vrut-text 1\ngeometry 1 vertices 4 " + vertices +
+                " triangles 2 0 1 2 0 2 3 end\nnode 1 \"Plank\" geometry geometry 1 " + matrix + " end",
+            "plank.vrut");
+        return home_view(*scene.placed, 1.5, {}, nullptr);
+    };
+    const auto turned =
+        home("-5 -0.5 0 5 -0.5 0 5 0.5 0 -5 0.5 0", "matrix 0.8 -0.6 0 0 0.6 0.8 0 0 0 0 1 0 0 0 0 1");
+    const auto straight = home("-3.7 -3.4 0 4.3 2.6 0 3.7 3.4 0 -4.3 -2.6 0", "");
+    CHECK(glm::distance(turned.eye, straight.eye) < 1e-12);
+    CHECK(glm::distance(turned.focus, straight.focus) < 1e-12);
 }
 
 TEST_CASE("another scene starts anew, but for control, navigation, the way of drawing and quality") {
