@@ -136,6 +136,7 @@ void report_lost_shading(const scene::Scene& scene, const scene::Material& mater
                          ConversionWarnings& warnings) {
     warnings.add("a material's two-sided flag is lost");
     if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
+    if (material.emissive != glm::dvec3(0)) warnings.add("a material's emissive light is lost");
     const bool has_holes = material.texture != scene::kNone &&
                            scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
     if (has_holes && material.diffuse.a < 1)

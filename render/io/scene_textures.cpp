@@ -140,17 +140,20 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
         return static_cast<scene::Index>(parts.textures.size() - 1);
     };
     Notices notices;
-    for (scene::Material& material : parts.materials) {
-        if (!material.image.starts_with('*')) continue;
-        auto found = known.find(material.image);
-        if (found == known.end()) found = known.emplace(material.image, decode_new(material.image)).first;
+    const auto find = [&](const scene::Material& material, std::string& image, scene::Index& texture) {
+        if (!image.starts_with('*')) return;
+        auto found = known.find(image);
+        if (found == known.end()) found = known.emplace(image, decode_new(image)).first;
         if (found->second)
-            material.texture = *found->second;
+            texture = *found->second;
         else
             notices.add(scene_file.string() + ": material " + std::to_string(material.id) +
-                        " is drawn without its texture '" + excerpt(material.image) +
-                        "': " + found->second.error());
-        material.image.clear();  // no file that could be read
+                        " is drawn without its texture '" + excerpt(image) + "': " + found->second.error());
+        image.clear();  // no file that could be read
+    };
+    for (scene::Material& material : parts.materials) {
+        find(material, material.image, material.texture);
+        find(material, material.emissive_image, material.emissive_texture);
     }
     notices.append_to(parts.notices);
 }

@@ -406,7 +406,8 @@ TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)
     const scene::Scene scene = file.read();
     const scene::Material& material = scene.materials()[0];
     const glm::dvec4 black(0, 0, 0, 1);
-    CHECK(material.emission == glm::dvec4(1, 0, 1, 1));
+    CHECK(material.emissive == glm::dvec3(1, 0, 1));
+    CHECK(material.emission == black);
     CHECK(material.diffuse == glm::dvec4(0, 0, 0, 0.5));
     CHECK(material.ambient == black);
     CHECK(material.specular == black);
@@ -417,8 +418,53 @@ TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)
     file.document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]["index"] = 0;
     const scene::Scene textured = file.read();
     CHECK(textured.materials()[0].diffuse == glm::dvec4(1, 0, 1, 0.5));
-    CHECK(textured.materials()[0].emission == black);
-    CHECK(has_notice(textured, "the texture of an unlit material is lit"));
+    CHECK(textured.materials()[0].emissive == glm::dvec3(0));
+    CHECK(has_notice(textured, "the texture of an unlit material that is not opaque is lit"));
+
+    file.document["materials"][0].erase("alphaMode");
+    const scene::Scene opaque = file.read();
+    CHECK(opaque.materials()[0].image.empty());
+    CHECK(opaque.materials()[0].emissive_image == "none.png");
+    CHECK(opaque.materials()[0].emissive == glm::dvec3(1, 0, 1));
+    CHECK(opaque.materials()[0].diffuse == glm::dvec4(0, 0, 0, 1));
+}
+
+TEST_CASE("a glTF material sends light by itself, where its emissive texture says and as strongly as told") {
+    GltfBuilder file;
+    file.add_triangle();
+    const std::string data = flat_png(2, 2, {1, 2, 3, 255});
+    file.document["images"] = {{{"bufferView", file.add_view(data)}}};
+    file.document["textures"] = {{{"source", 0}}};
+    file.document["materials"] = {
+        {{"emissiveFactor", {0.5, 0, 1}},
+         {"emissiveTexture", {{"index", 0}}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 3}}}}}}};
+    file.document["extensionsUsed"] = {"KHR_materials_emissive_strength"};
+    file.primitive()["material"] = 0;
+    const scene::Scene scene = file.read();
+    CHECK(scene.materials()[0].emissive == glm::dvec3(1.5, 0, 3));
+    CHECK(scene.materials()[0].emissive_texture == 0);
+    CHECK(scene.materials()[0].texture == scene::kNone);
+    CHECK(scene.notices().empty());
+    file.document["materials"][0]["emissiveFactor"] = {0, 0, 0};
+    CHECK(file.read().textures().empty());
+}
+
+TEST_CASE("colours of glTF vertices are linear, floats or normalized integers") {
+    GltfBuilder file;
+    file.add_triangle();
+    const std::string bytes("\xFF\x00\x80\xFF\x00\x00\x00\x80\xFF\xFF\xFF\xFF", 12);
+    file.primitive()["attributes"]["COLOR_0"] =
+        file.add_accessor(file.add_view(bytes), 5121, "VEC4", 3, true);
+    const scene::Scene scene = file.read();
+    const std::vector<glm::vec3>& colors = scene.geometries()[0].colors;
+    REQUIRE(colors.size() == 3);
+    CHECK(colors[0].r == 1);
+    CHECK(colors[0].g == 0);
+    CHECK(colors[0].b == doctest::Approx(0.73665).epsilon(1e-5));  // 128 / 255 of the light
+    CHECK(colors[1] == glm::vec3(0));
+    CHECK(colors[2] == glm::vec3(1));
+    CHECK(has_notice(scene, "the opacity of vertex colours is ignored"));
 }
 
 TEST_CASE("a glTF texture has its image from an extension where it has no other") {

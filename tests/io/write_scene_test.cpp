@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "base/output_files.hpp"
+#include "base/srgb.hpp"
 #include "io/gltf/material.hpp"
 #include "io/image/image_file.hpp"
 #include "io/read_scene.hpp"
@@ -62,6 +63,7 @@ scene::Scene everything() {
     scene::SceneParts parts;
     parts.unit = 0.001;
     parts.geometries = {corner(1), corner(2)};
+    parts.geometries[0].colors = {{1, 0, 0}, {0, 0.5F, 1}, {1, 1, 1}};
     parts.geometries[1].normals.clear();
     parts.geometries[1].texcoords.clear();
     scene::Texture texture{"textures/a plate.png", {}, true};
@@ -213,6 +215,8 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(geometry.positions == scene.geometries()[0].positions);
         CHECK(geometry.texcoords == scene.geometries()[0].texcoords);
         CHECK(geometry.triangles == scene.geometries()[0].triangles);
+        REQUIRE(geometry.colors.size() == 3);
+        CHECK(glm::distance(geometry.colors[1], {0, 0.5F, 1}) < 1e-6F);
         CHECK(geometry.normals == std::vector<glm::vec3>{{0, 0, 1}, {0, 0, 1}, {0, 0.6F, 0.8F}});
         const auto& plain = std::get<scene::GeometryData>(node_of(read, "Plain").data);
         CHECK(read.geometries()[static_cast<std::size_t>(plain.geometry)].normals.empty());
@@ -227,7 +231,9 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(near(paint.diffuse, before.diffuse));
         CHECK(near(paint.ambient, before.ambient));
         CHECK(near(paint.specular, before.specular));
-        CHECK(near(paint.emission, before.emission));
+        CHECK(paint.emission == glm::dvec4(0, 0, 0, 1));  // it is light in glTF
+        CHECK(near(glm::dvec4(paint.emissive, 1),
+                   glm::dvec4(base::linear_from_srgb(glm::dvec3(before.emission)), 1)));
         CHECK(paint.shininess == doctest::Approx(before.shininess));
         CHECK(paint.two_sided);
         const scene::Material& glass = material_of(read, "Windscreen");
@@ -266,6 +272,7 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
                       "a camera's focus distance is lost", "a hinge is lost", "a light's attenuation is lost",
                       "a mark of presentation is lost",
                       "a material's ambient colour becomes a tenth of its diffuse colour (2 times)",
+                      "a material's emission becomes light, which brightens less what is lit",
                       "a material's reflectivity is lost", "a switch is replaced by its active child",
                       "an initially hidden geometry is omitted (3 times)", "the scene's unit is lost"});
 }
@@ -392,7 +399,8 @@ TEST_CASE("what an OBJ file has of a material and its reader does not take is to
                               after = read_well(folder.path() / "x.obj").materials()[0];
         const bool same = near(before.diffuse, after.diffuse) && near(before.ambient, after.ambient) &&
                           near(before.specular, after.specular) && near(before.emission, after.emission) &&
-                          std::abs(before.shininess - after.shininess) < 1e-4;
+                          std::abs(before.shininess - after.shininess) < 1e-4 &&
+                          before.emissive == after.emissive;
         CHECK(same == (told.size() == 1));
         REQUIRE_FALSE(told.empty());
         const std::string either = "a material's two-sided flag is lost";
@@ -405,6 +413,9 @@ TEST_CASE("what an OBJ file has of a material and its reader does not take is to
     CHECK(lost([](scene::Material&) {}) == either);
     CHECK(lost([](scene::Material& m) { m.texture = 0; }) == either);
     CHECK(lost([](scene::Material& m) { m.diffuse.a = 0.5; }) == either);
+    CHECK(lost([](scene::Material& m) {
+              m.emissive = {0.5, 0, 0};
+          }) == "a material's emissive light is lost");
     CHECK(lost([](scene::Material& m) { m.texture = 0, m.diffuse.a = 0.5; }) ==
           "a textured material's own opacity is written, but not read back");
     CHECK(lost([](scene::Material& m) {
@@ -436,7 +447,7 @@ TEST_CASE("an STL file holds the shown triangles in world space, their fronts ou
 
 TEST_CASE("a scene survives a file of its own format, pictures from inside another file too") {
     const TemporaryFolder folder;
-    CHECK(written(everything(), folder.path() / "all.glb").size() == 11);
+    CHECK(written(everything(), folder.path() / "all.glb").size() == 12);
     const scene::Scene scene = read_well(folder.path() / "all.glb");
     CHECK(written(scene, folder.path() / "all.vrut").empty());
     const scene::Scene read = read_well(folder.path() / "all.vrut");

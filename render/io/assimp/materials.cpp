@@ -67,8 +67,8 @@ scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
     if (from.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS) material.name = text_of(name);
     convert_phong(from, format, material, warnings);
     material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
-    if (has_texture(from, aiTextureType_EMISSIVE)) material.emission = {0, 0, 0, 1};
     set_texture_name(from, scene, folder, material, warnings);
+    set_emissive_texture(from, scene, folder, material, warnings);
     report_unsupported_textures(from, warnings);
     return material;
 }

@@ -18,7 +18,8 @@ namespace vrut::io {
 ///     ambient   the diffuse colour / 10: their own is to be multiplied by a light that the files do not tell
 ///     specular  the specular colour times its factor, or black where there is no exponent
 ///     shininess the exponent, from 1 to 10,000
-///     emission  the emissive colour, or black where there is an emissive texture
+///     emission  the emissive colour, or black where there is an emissive texture: that is the emissive
+///               image, as bright as the emissive colour in linear light, or as it is where that is black
 /// and the diffuse texture as the image, whose alpha counts only where it is the opacity texture too.
 /// Colours of vertices multiply ambient and diffuse, and are shown as they are where there is no material;
 /// STL and PLY without colours take the default material's. Images that are not where the file says are

@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "base/srgb.hpp"
 #include "io/assimp/text.hpp"
 #include "io/foreign_paths.hpp"
 #include "io/image/image_file.hpp"
@@ -62,6 +63,16 @@ void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::f
         warnings.add("a texture is not multiplied by the base or diffuse colour");
 }
 
+void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                          scene::Material& material, ConversionWarnings& warnings) {
+    if (!has_texture(from, aiTextureType_EMISSIVE)) return;
+    const glm::dvec3 color(material.emission);
+    material.emissive = color == glm::dvec3(0) ? glm::dvec3(1) : base::linear_from_srgb(color);
+    material.emission = {0, 0, 0, 1};
+    material.emissive_image = name_of(texture_name(from, aiTextureType_EMISSIVE), scene, folder);
+    report_unsupported_sampling(from, aiTextureType_EMISSIVE, warnings);
+}
+
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings) {
     constexpr std::pair<aiTextureType, const char*> kLost[] = {
         {aiTextureType_NORMALS, "a normal map is ignored"},
@@ -72,7 +83,6 @@ void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& war
         {aiTextureType_SHININESS, "a shininess texture is ignored"},
         {aiTextureType_REFLECTION, "a reflection map is ignored"},
         {aiTextureType_LIGHTMAP, "an occlusion texture is ignored"},
-        {aiTextureType_EMISSIVE, "an emissive texture is ignored"},
     };
     for (const auto& [type, what] : kLost)
         if (has_texture(from, type)) warnings.add(what);

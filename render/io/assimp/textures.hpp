@@ -21,6 +21,9 @@ unsigned texcoord_set_of(const aiMaterial& material);
 /// and a number for a texture embedded in the scene's file.
 void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
                       scene::Material& material, ConversionWarnings& warnings);
+/// The same of its emissive texture, which takes the place of the emission.
+void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                          scene::Material& material, ConversionWarnings& warnings);
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings);
 
 /// Returns true if the alpha of the material's texture has no effect.

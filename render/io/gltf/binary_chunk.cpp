@@ -3,6 +3,8 @@
 #include <bit>
 #include <ostream>
 
+#include "base/srgb.hpp"
+
 namespace vrut::io {
 
 namespace {
@@ -29,6 +31,7 @@ public:
         json_.close();
         if (!geometry.normals.empty()) add_array(kFloatComponent, "VEC3", count, count * 12, kVertices);
         if (!geometry.texcoords.empty()) add_array(kFloatComponent, "VEC2", count, count * 8, kVertices);
+        if (!geometry.colors.empty()) add_array(kFloatComponent, "VEC3", count, count * 12, kVertices);
         add_array(kUnsignedComponent, "SCALAR", corners, corners * 4, kIndices);
     }
 
@@ -92,6 +95,10 @@ void write_geometry(const scene::Geometry& geometry, std::ostream& out) {
     std::vector<glm::vec2> texcoords;  // glTF's v goes downwards
     for (const glm::vec2& texcoord : geometry.texcoords) texcoords.emplace_back(texcoord.x, 1 - texcoord.y);
     write_rows(texcoords, out);
+    std::vector<glm::vec3> colors;  // linear in glTF
+    for (const glm::vec3& color : geometry.colors)
+        colors.emplace_back(base::linear_from_srgb(glm::dvec3(color)));
+    write_rows(colors, out);
     write_rows(geometry.triangles, out);
 }
 
@@ -104,6 +111,7 @@ bool GltfBinaryChunk::add(const scene::Geometry& geometry) {
     found->second.positions = accessor_count_++;
     if (!geometry.normals.empty()) found->second.normals = accessor_count_++;
     if (!geometry.texcoords.empty()) found->second.texcoords = accessor_count_++;
+    if (!geometry.colors.empty()) found->second.colors = accessor_count_++;
     found->second.indices = accessor_count_++;
     return true;
 }

@@ -17,7 +17,7 @@ class GltfBinaryChunk {
 public:
     /// The accessors' indices of a geometry; kNone for arrays that it lacks.
     struct Accessors {
-        int positions = scene::kNone, normals = scene::kNone, texcoords = scene::kNone,
+        int positions = scene::kNone, normals = scene::kNone, texcoords = scene::kNone, colors = scene::kNone,
             indices = scene::kNone;
     };
 

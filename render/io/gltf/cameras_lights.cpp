@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/gltf/material_reader.hpp"
+#include "base/srgb.hpp"
 #include "io/import_checks.hpp"
 
 namespace vrut::io {
@@ -18,7 +18,7 @@ glm::dvec3 light_color(const GltfJson& json) {
     const glm::dvec3 color = vector_in<3>(json, "color", glm::dvec3(1)) * number_in(json, "intensity", 1);
     const double most = std::max({color.r, color.g, color.b});
     if (!std::isfinite(most)) return glm::dvec3(1);
-    return srgb_from_linear(most > 0 ? color / most : color);
+    return base::srgb_from_linear(most > 0 ? color / most : color);
 }
 
 std::optional<scene::LightData::Type> light_type(const std::string& name) {

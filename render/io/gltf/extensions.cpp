@@ -12,9 +12,16 @@ namespace vrut::io {
 namespace {
 
 constexpr std::string_view kSupported[] = {
-    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression", "EXT_texture_webp",
-    "KHR_draco_mesh_compression", "KHR_lights_punctual",     "KHR_materials_pbrSpecularGlossiness",
-    "KHR_materials_unlit",        "KHR_materials_variants",  "KHR_mesh_quantization",
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_mesh_quantization",
     "KHR_texture_basisu",  // the image has its own notice
     "KHR_texture_transform",
 };

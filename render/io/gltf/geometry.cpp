@@ -3,6 +3,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/srgb.hpp"
 #include "io/gltf/accessor.hpp"
 #include "io/gltf/draco.hpp"
 #include "io/import_checks.hpp"
@@ -19,7 +20,7 @@ Mode mode_of(const GltfJson& primitive) { return static_cast<Mode>(size_in(primi
 /// A primitive's arrays; those that it lacks are none.
 struct PrimitiveArrays {
     GltfArray positions;
-    std::optional<GltfArray> normals, texcoords, indices;
+    std::optional<GltfArray> normals, texcoords, colors, indices;
 };
 
 class PrimitiveReader {
@@ -34,13 +35,15 @@ public:
         const std::string texcoords = texcoord_name(texcoord_set);
         const bool compressed = !extension_in(primitive_, "KHR_draco_mesh_compression").empty();
         if (compressed)
-            draco_ = read_draco_primitive(document_, primitive_, {"POSITION", "NORMAL", texcoords}, buffers_);
+            draco_ = read_draco_primitive(document_, primitive_, {"POSITION", "NORMAL", texcoords, kColors},
+                                          buffers_);
         PrimitiveArrays arrays;
         auto positions = attribute("POSITION");
         if (!positions) throw ImportError("a primitive has no POSITION attribute");
         arrays.positions = *std::move(positions);
         arrays.normals = attribute("NORMAL");
         arrays.texcoords = attribute(texcoords);
+        arrays.colors = attribute(kColors);
         if (compressed)
             arrays.indices = std::move(draco_.indices);
         else if (const auto indices = index_in(primitive_, "indices"))
@@ -49,6 +52,8 @@ public:
     }
 
 private:
+    static constexpr const char* kColors = "COLOR_0";
+
     std::string texcoord_name(std::uint32_t set) const {
         const std::string name = "TEXCOORD_" + std::to_string(set);
         return attributes_.contains(name) ? name : "TEXCOORD_0";
@@ -86,16 +91,22 @@ void leave_out_misfits(PrimitiveArrays& arrays, ConversionWarnings& warnings) {
         arrays.texcoords.reset();
         warnings.add("texture coordinates that are not a VEC2 are ignored");
     }
-    for (auto* const array : {&arrays.normals, &arrays.texcoords})
+    if (arrays.colors && arrays.colors->components != 3 && arrays.colors->components != 4) {
+        arrays.colors.reset();
+        warnings.add("vertex colours that are not a VEC3 or VEC4 are ignored");
+    }
+    for (auto* const array : {&arrays.normals, &arrays.texcoords, &arrays.colors})
         if (*array && (*array)->count != arrays.positions.count) {
             array->reset();
-            warnings.add("normals or texture coordinates of another count than the positions are ignored");
+            warnings.add(
+                "normals, texture coordinates or colours of another count than the positions are ignored");
         }
 }
 
 void charge_memory(const PrimitiveArrays& arrays, Mode mode, GltfBuffers& buffers) {
     const std::uint64_t vertex = sizeof(glm::dvec3) + (arrays.normals ? sizeof(glm::vec3) : 0) +
-                                 (arrays.texcoords ? sizeof(glm::vec2) : 0);
+                                 (arrays.texcoords ? sizeof(glm::vec2) : 0) +
+                                 (arrays.colors ? sizeof(glm::vec3) : 0);
     const std::uint64_t drawn = arrays.indices ? arrays.indices->count : arrays.positions.count;
     buffers.charge(arrays.positions.count * vertex +
                    (mode == Mode::triangles ? drawn / 3 : drawn) * sizeof(glm::uvec3));
@@ -149,6 +160,18 @@ void read_texcoords(const GltfArray& array, const GltfTextureMapping& mapping, c
         geometry.texcoords.emplace_back(uv.x, 1 - uv.y);
     });
     if (!all) reject_coordinate("a texture coordinate", name);
+}
+
+/// They are linear.
+void read_colors(const GltfArray& array, scene::Geometry& geometry, ConversionWarnings& warnings) {
+    geometry.colors.reserve(array.count);
+    for_each_vector<3>(array, [&](const glm::vec3& color) {
+        geometry.colors.emplace_back(base::srgb_from_linear(glm::dvec3(color)));
+    });
+    bool opaque = true;
+    if (array.components == 4)
+        for_each_vector<4>(array, [&](const glm::vec4& color) { opaque = opaque && !(color.a < 1); });
+    if (!opaque) warnings.add("the opacity of vertex colours is ignored");
 }
 
 /// Puts vertices, as they come, together to triangles.
@@ -216,6 +239,7 @@ scene::Geometry read_gltf_geometry(const GltfJson& document, const GltfJson& pri
     read_triangles(arrays, mode, name, geometry);
     read_positions(arrays.positions, name, geometry);
     if (arrays.normals) read_normals(*arrays.normals, geometry, warnings);
+    if (arrays.colors) read_colors(*arrays.colors, geometry, warnings);
     if (arrays.texcoords) read_texcoords(*arrays.texcoords, mapping, name, geometry);
     return geometry;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.hpp"
+
 namespace vrut::io {
 
 namespace {
@@ -10,10 +12,8 @@ namespace {
 constexpr double kVisible = 0.5 / 255;  // what rounds to the same byte is the same
 constexpr double kSharpest = 10'000;    // Phong's exponent, which is what the reader gives smoother ones
 
-double linear(double displayed) {
-    const double value = std::clamp(displayed, 0.0, 1.0);
-    if (value == 1) return 1;
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+glm::dvec3 linear(const glm::dvec3& displayed) {
+    return base::linear_from_srgb(glm::clamp(displayed, 0.0, 1.0));
 }
 
 double largest(const glm::dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
@@ -60,7 +60,7 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
     }
     if (largest(wanted) == 0) return;  // roughness 1 has none
     material.roughness = 1 - most_k;
-    material.specular = linear_from_srgb(wanted / most_k);
+    material.specular = linear(wanted / most_k);
     if (largest(wanted) > most_k + kVisible)
         warnings.add(
             "a wide specular highlight becomes weaker: the metallic-roughness model cannot express it");
@@ -68,25 +68,25 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
 
 }  // namespace
 
-glm::dvec3 linear_from_srgb(const glm::dvec3& displayed) {
-    return {linear(displayed.r), linear(displayed.g), linear(displayed.b)};
-}
-
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& from,
                            ConversionWarnings& warnings) {
     GltfMaterial material;
     const bool has_texture = from.texture != scene::kNone;
     const glm::dvec3 diffuse(from.diffuse), c = has_texture ? glm::dvec3(1) : glm::clamp(diffuse, 0.0, 1.0);
-    material.base = linear_from_srgb(c);
+    material.base = linear(c);
     material.alpha = std::clamp(from.diffuse.a, 0.0, 1.0);
     material.blend = scene.is_transparent(from);
-    material.emission = linear_from_srgb(glm::dvec3(from.emission));
+    const glm::dvec3 emission(from.emission), emissive = linear(emission) + from.emissive;
+    material.emissive = glm::min(emissive, 1.0);
     convert_highlight(from, c, material, warnings);
     if (has_texture && largest(diffuse - c) > kVisible)
         warnings.add("the diffuse colour of a textured material becomes white");
     if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
         warnings.add("a material's ambient colour becomes a tenth of its diffuse colour");
-    if (largest(diffuse) > 1 || largest(glm::dvec3(from.emission)) > 1)
+    if (largest(emission) > kVisible &&
+        (largest(diffuse) > kVisible || from.emissive_texture != scene::kNone))
+        warnings.add("a material's emission becomes light, which brightens less what is lit");
+    if (largest(diffuse) > 1 || largest(emission) > 1 || largest(emissive) > 1)
         warnings.add("a colour above 1 is clamped to 1");
     if (from.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     return material;

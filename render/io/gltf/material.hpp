@@ -12,7 +12,7 @@ inline constexpr double kGltfDielectric = 0.22;
 
 /// The factors of a glTF material; colours are linear, 0 to 1.
 struct GltfMaterial {
-    glm::dvec3 base{1}, emission{0};
+    glm::dvec3 base{1}, emissive{0};
     double alpha = 1;
     bool blend = false;  ///< alphaMode BLEND, else OPAQUE
     double metallic = 0, roughness = 1;
@@ -20,9 +20,6 @@ struct GltfMaterial {
     /// Set if no metallic-roughness material has that highlight.
     std::optional<glm::dvec3> specular;
 };
-
-/// Returns the linear colour of an sRGB colour, both 0 to 1 (IEC 61966-2-1).
-glm::dvec3 linear_from_srgb(const glm::dvec3& displayed);
 
 /// Returns the glTF material that the reader's rule (reader.hpp) turns into `material`, or the nearest
 /// one; what differs is added to `warnings`. With a texture the base colour factor is white.

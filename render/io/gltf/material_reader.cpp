@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.hpp"
 #include "io/gltf/material.hpp"
 #include "io/import_checks.hpp"
 
@@ -13,12 +14,6 @@ namespace {
 const GltfJson& empty_object() {
     static const GltfJson kEmpty = GltfJson::object();
     return kEmpty;
-}
-
-double srgb_encoded(double linear) {
-    const double light = std::clamp(linear, 0.0, 1.0);
-    if (light == 1) return 1;  // which pow() misses
-    return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
 }
 
 /// Phong's exponent that is about as sharp as the roughness.
@@ -52,14 +47,13 @@ public:
         const bool glossy = has_extension(kGlossiness);
         const glm::dvec4 color = glossy ? vector_in<4>(glossiness_, "diffuseFactor", glm::dvec4(1))
                                         : vector_in<4>(metallic_roughness_, "baseColorFactor", glm::dvec4(1));
-        material.diffuse =
-            glm::dvec4(srgb_from_linear(color), alpha_mode == "BLEND" ? std::clamp(color.a, 0.0, 1.0) : 1.0);
+        material.diffuse = glm::dvec4(base::srgb_from_linear(color),
+                                      alpha_mode == "BLEND" ? std::clamp(color.a, 0.0, 1.0) : 1.0);
         material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
-        material.emission =
-            glm::dvec4(srgb_from_linear(vector_in<3>(json_, "emissiveFactor", glm::dvec3(0))), 1);
         set_highlight(glossy);
         set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
                            : object_in(metallic_roughness_, "baseColorTexture"));
+        set_emissive();
         report_textures();
         if (has_extension("KHR_materials_unlit")) make_unlit();
         return std::move(result_);
@@ -70,13 +64,17 @@ private:
 
     bool has_extension(const char* name) const { return object_in(json_, "extensions").contains(name); }
 
-    /// Its colour is seen whatever the light. An image, which only light shows, stays.
+    /// Its colour is seen whatever the light. An image whose alpha counts stays where light shows it.
     void make_unlit() {
         scene::Material& material = result_.material;
         const glm::dvec4 black(0, 0, 0, 1);
-        material.specular = material.emission = black;
-        if (result_.image) return warnings_.add("the texture of an unlit material is lit");
-        material.emission = glm::dvec4(glm::dvec3(material.diffuse), 1);
+        material.specular = black;
+        material.emissive = glm::dvec3(0);
+        result_.emissive_image.reset();
+        if (result_.image && !result_.ignores_alpha)
+            return warnings_.add("the texture of an unlit material that is not opaque is lit");
+        material.emissive = base::linear_from_srgb(glm::dvec3(material.diffuse));
+        std::swap(result_.image, result_.emissive_image);
         material.diffuse = glm::dvec4(0, 0, 0, material.diffuse.a);
         material.ambient = black;
     }
@@ -91,7 +89,7 @@ private:
         const glm::dvec3 color(material.diffuse);
         const glm::dvec3 reflected =
             glossy
-                ? srgb_from_linear(vector_in<3>(glossiness_, "specularFactor", glm::dvec3(1)))
+                ? base::srgb_from_linear(vector_in<3>(glossiness_, "specularFactor", glm::dvec3(1)))
                 : kGltfDielectric + (color - kGltfDielectric) * part(metallic_roughness_, "metallicFactor");
         material.specular = glm::dvec4((1 - roughness) * reflected, 1);
         material.shininess = phong_exponent(roughness);
@@ -115,14 +113,36 @@ private:
     void set_texture(const GltfJson& info) {
         result_.image = image_of(info);
         if (!result_.image) return;
-        const GltfJson& transform = extension_in(info, "KHR_texture_transform");
-        const GltfJson& set = transform.contains("texCoord") ? transform : info;
-        result_.mapping = {
-            index_in(set, "texCoord").value_or(0), vector_in<2>(transform, "offset", glm::dvec2(0)),
-            vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
+        result_.mapping = mapping_of(info);
         report_sampling(info);
         if (glm::dvec3(result_.material.diffuse) != glm::dvec3(1))
             warnings_.add("a texture is not multiplied by the base or diffuse colour");
+    }
+
+    /// Light of more than a thousand times white shows as no more.
+    void set_emissive() {
+        constexpr double kMost = 1000;
+        const GltfJson& strength = extension_in(json_, "KHR_materials_emissive_strength");
+        scene::Material& material = result_.material;
+        material.emissive =
+            vector_in<3>(json_, "emissiveFactor", glm::dvec3(0)) * number_in(strength, "emissiveStrength", 1);
+        for (int i = 0; i < 3; ++i)
+            material.emissive[i] = material.emissive[i] > 0 ? std::min(material.emissive[i], kMost) : 0;
+        const GltfJson& info = object_in(json_, "emissiveTexture");
+        if (material.emissive != glm::dvec3(0)) result_.emissive_image = image_of(info);
+        if (!result_.emissive_image) return;
+        const GltfTextureMapping mapping = mapping_of(info);
+        if (!result_.image) result_.mapping = mapping;
+        if (mapping.key() != result_.mapping.key())
+            warnings_.add("an emissive texture lies as the base colour texture does, not as the file says");
+        report_sampling(info);
+    }
+
+    GltfTextureMapping mapping_of(const GltfJson& info) const {
+        const GltfJson& transform = extension_in(info, "KHR_texture_transform");
+        const GltfJson& set = transform.contains("texCoord") ? transform : info;
+        return {index_in(set, "texCoord").value_or(0), vector_in<2>(transform, "offset", glm::dvec2(0)),
+                vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
     }
 
     void report_sampling(const GltfJson& info) {
@@ -136,16 +156,12 @@ private:
 
     void report_textures() {
         const auto report = [&](const GltfJson& parent, const char* name, const char* what) {
-            const bool there = image_of(object_in(parent, name)).has_value();
-            if (there) warnings_.add(what);
-            return there;
+            if (image_of(object_in(parent, name))) warnings_.add(what);
         };
         report(json_, "normalTexture", "a normal map is ignored");
         report(json_, "occlusionTexture", "an occlusion texture is ignored");
         report(metallic_roughness_, "metallicRoughnessTexture", "a metallic-roughness texture is ignored");
         report(glossiness_, "specularGlossinessTexture", "a specular texture is ignored");
-        if (report(json_, "emissiveTexture", "an emissive texture is ignored"))
-            result_.material.emission = {0, 0, 0, 1};
     }
 
     const GltfJson &document_, &json_, &metallic_roughness_, &glossiness_;
@@ -154,10 +170,6 @@ private:
 };
 
 }  // namespace
-
-glm::dvec3 srgb_from_linear(const glm::dvec3& color) {
-    return {srgb_encoded(color.r), srgb_encoded(color.g), srgb_encoded(color.b)};
-}
 
 ReadGltfMaterial read_gltf_material(const GltfJson& document, std::optional<std::uint32_t> index,
                                     ConversionWarnings& warnings) {

@@ -11,17 +11,15 @@ namespace vrut::io {
 
 /// A material of a glTF file, by the rule in reader.hpp.
 struct ReadGltfMaterial {
-    scene::Material material;            ///< without its texture
+    scene::Material material;            ///< without its textures
     std::optional<std::uint32_t> image;  ///< of its base colour
-    GltfTextureMapping mapping;          ///< how that lies on the surface
-    bool ignores_alpha = true;           ///< the image's alpha has no effect
+    std::optional<std::uint32_t> emissive_image;
+    GltfTextureMapping mapping;  ///< how these lie on the surface
+    bool ignores_alpha = true;   ///< the image's alpha has no effect
 };
 
 /// Converts a material; without an index, the one of primitives that have none. Throws ImportError.
 ReadGltfMaterial read_gltf_material(const GltfJson& document, std::optional<std::uint32_t> index,
                                     ConversionWarnings& warnings);
-
-/// Linear light to sRGB (IEC 61966-2-1), each channel from 0 to 1.
-glm::dvec3 srgb_from_linear(const glm::dvec3& color);
 
 }  // namespace vrut::io

@@ -78,7 +78,11 @@ private:
         if (!is_new) return;
         ReadGltfMaterial read = read_gltf_material(document_, number, warnings_);
         read.material.id = found->second;
-        if (read.image) read.material.image = image_name(document_, *read.image, path_.parent_path());
+        const auto name_of_image = [&](std::optional<std::uint32_t> image) {
+            return image ? image_name(document_, *image, path_.parent_path()) : std::string();
+        };
+        read.material.image = name_of_image(read.image);
+        read.material.emissive_image = name_of_image(read.emissive_image);
         parts_.materials.push_back(read.material);
         materials_.push_back(std::move(read));
     }
@@ -146,8 +150,6 @@ private:
         if (!has_triangles(primitive))
             warnings_.add("a primitive of points or lines is ignored: only triangles are supported");
         if (!array_in(primitive, "targets").empty()) warnings_.add("morph targets are ignored");
-        for (const auto& attribute : object_in(primitive, "attributes").items())
-            if (attribute.key().starts_with("COLOR")) warnings_.add("vertex colours are ignored");
     }
 
     scene::Index add_geometry(const GltfJson& primitive, scene::Index material, const std::string& name,

@@ -21,11 +21,13 @@ namespace vrut::io {
 ///     specular  (1 - r) (0.22 + (c - 0.22) m): 0.22 is how 4 %, what most surfaces reflect, displays
 ///     shininess (1 / r^4 - 1) / 2, from 1 to 10,000: Phong's exponent that is about as sharp as roughness r
 ///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
-///     emission  the emissive factor's c, or black where there is an emissive texture
+///     emissive  the emissive factor, linear as it is, times KHR_materials_emissive_strength; its texture is
+///               the emissive image
 /// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
-/// alphaMode is not OPAQUE. One that is unlit (KHR_materials_unlit) has c as its emission and is black else,
-/// but where it has an image, which only light shows: that has no highlight. How the image lies
-/// (KHR_texture_transform) is in the texture coordinates.
+/// alphaMode is not OPAQUE. One that is unlit (KHR_materials_unlit) has its base colour and its image as
+/// emissive ones and is black else, but where the image's alpha counts: it stays lit, without a highlight.
+/// How images lie (KHR_texture_transform) is in the texture coordinates. Colours of vertices become displayed
+/// ones by the same curve.
 PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
                             const ReadOptions& options = {});
 

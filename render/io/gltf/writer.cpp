@@ -4,6 +4,7 @@
 #include <map>
 #include <ostream>
 
+#include "base/srgb.hpp"
 #include "io/gltf/binary_chunk.hpp"
 #include "io/gltf/json_writer.hpp"
 #include "io/gltf/material.hpp"
@@ -37,8 +38,9 @@ public:
         shapes_ = shown_shapes(scene, warnings);
         for (const ShownShape& shape : shapes_) add_shape(shape);
         for (const scene::Index material : material_list_)
-            if (const scene::Index texture = scene_.material(material).texture; texture != scene::kNone)
-                images_.emplace(texture, 0);
+            for (const scene::Index texture :
+                 {scene_.material(material).texture, scene_.material(material).emissive_texture})
+                if (texture != scene::kNone) images_.emplace(texture, 0);
         int place = 0;
         for (auto& [texture, own] : images_) {
             own = place++;
@@ -194,7 +196,7 @@ private:
 
     void write_light(const scene::LightData& light) {
         constexpr std::string_view kTypes[] = {"point", "directional", "spot"};
-        const glm::dvec3 color = linear_from_srgb(light.color);
+        const glm::dvec3 color = base::linear_from_srgb(light.color);
         json_.open_object().string(kTypes[static_cast<std::size_t>(light.type)], "type");
         json_.numbers(&color[0], 3, "color");
         if (light.type == scene::LightData::Type::spot) {
@@ -218,6 +220,7 @@ private:
             json_.number(accessors.positions, "POSITION");
             if (accessors.normals != scene::kNone) json_.number(accessors.normals, "NORMAL");
             if (accessors.texcoords != scene::kNone) json_.number(accessors.texcoords, "TEXCOORD_0");
+            if (accessors.colors != scene::kNone) json_.number(accessors.colors, "COLOR_0");
             json_.close().number(accessors.indices, "indices").number(materials_.at(material), "material");
             json_.close().close().close();
         }
@@ -237,24 +240,24 @@ private:
         json_.open_object().string(from.name, "name").open_object("pbrMetallicRoughness");
         json_.numbers(&base[0], 4, "baseColorFactor");
         json_.number(material.metallic, "metallicFactor").number(material.roughness, "roughnessFactor");
-        write_texture(from, "baseColorTexture");
+        write_texture(from.texture, "baseColorTexture");
         json_.close();
-        if (material.emission != glm::dvec3(0)) json_.numbers(&material.emission[0], 3, "emissiveFactor");
+        if (material.emissive != glm::dvec3(0)) json_.numbers(&material.emissive[0], 3, "emissiveFactor");
+        write_texture(from.emissive_texture, "emissiveTexture");
         if (material.blend) json_.string("BLEND", "alphaMode");
         if (from.two_sided) json_.boolean(true, "doubleSided");
         if (material.specular) {
             json_.open_object("extensions").open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
             json_.numbers(&(*material.specular)[0], 3, "specularFactor");
             json_.number(1 - material.roughness, "glossinessFactor");
-            write_texture(from, "diffuseTexture");
+            write_texture(from.texture, "diffuseTexture");
             json_.close().close();
         }
         json_.close();
     }
 
-    void write_texture(const scene::Material& from, std::string_view name) {
-        if (from.texture != scene::kNone)
-            json_.open_object(name).number(images_.at(from.texture), "index").close();
+    void write_texture(scene::Index texture, std::string_view name) {
+        if (texture != scene::kNone) json_.open_object(name).number(images_.at(texture), "index").close();
     }
 
     void write_textures() {
