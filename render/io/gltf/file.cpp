@@ -60,12 +60,9 @@ GltfFile read_binary_file(const std::filesystem::path& path) {
     std::string json = chunks.contents(*length, "JSON");
     json.resize(json.find_last_not_of('\0') + 1);  // with which some programs pad it
     file.document = parse_gltf_json(json);
-    while (const auto next_length = chunks.word()) {
-        const auto next_type = chunks.word();
-        std::string bytes = chunks.contents(*next_length, "binary");
-        if (next_type == kBinaryChunk && !file.binary) file.binary = std::move(bytes);
-    }
-    return file;
+    const auto binary_length = chunks.word(), binary_type = chunks.word();
+    if (binary_type == kBinaryChunk) file.binary = chunks.contents(*binary_length, "binary");
+    return file;  // what follows is not for this version
 }
 
 GltfFile read_text_file(const std::filesystem::path& path) {
