@@ -106,7 +106,7 @@ public:
 
 private:
     struct Link {
-        unsigned previous, next;
+        unsigned previous = 0, next = 0;
         bool cut = false;
         bool reflex = false;  ///< or straight
     };

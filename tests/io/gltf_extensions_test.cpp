@@ -79,7 +79,8 @@ GltfBuilder draco_file(int quads, int index_component) {
     const int positions = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
     const int texcoords = builder.AddAttribute(draco::GeometryAttribute::TEX_COORD, 2, draco::DT_FLOAT32);
     for (int i = 0; i < 2 * quads; ++i) {
-        const auto x = static_cast<float>(i / 2);
+        const int quad = i / 2;
+        const auto x = static_cast<float>(quad);
         const glm::vec3 a(x, 0, 0), b(x + 1, 0, 0), c(x + 1, 1, 0), d(x, 1, 0);
         const glm::vec3 corners[] = {a, i % 2 == 0 ? b : c, i % 2 == 0 ? c : d};
         const draco::FaceIndex face(static_cast<unsigned>(i));

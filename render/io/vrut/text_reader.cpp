@@ -176,6 +176,21 @@ private:
         parts_.materials.push_back(std::move(material));
     }
 
+    std::vector<glm::vec2> take_texcoords() {
+        std::vector<glm::dvec2> texcoords(tokens_.take_count("a count of texture coordinates", 4));
+        for (glm::dvec2& texcoord : texcoords)
+            for (int i = 0; i < 2; ++i)
+                texcoord[i] = tokens_.take_number("a texture coordinate", -kMaxCoordinate, kMaxCoordinate);
+        return scene::texcoords_near_zero(texcoords);
+    }
+
+    std::vector<glm::vec3> take_vertex_colors() {
+        std::vector<glm::vec3> colors(tokens_.take_count("a count of colours", 6));
+        for (glm::vec3& color : colors)
+            for (int i = 0; i < 3; ++i) color[i] = static_cast<float>(tokens_.take_number("a colour", 0, 1));
+        return colors;
+    }
+
     void read_geometry(std::size_t line) {
         scene::Geometry geometry;
         geometry.id = take_id("the geometry's id");
@@ -196,20 +211,12 @@ private:
             {"texcoords",
              [&] {
                  texcoords_line = tokens_.line();
-                 std::vector<glm::dvec2> texcoords(tokens_.take_count("a count of texture coordinates", 4));
-                 for (glm::dvec2& texcoord : texcoords)
-                     for (int i = 0; i < 2; ++i)
-                         texcoord[i] =
-                             tokens_.take_number("a texture coordinate", -kMaxCoordinate, kMaxCoordinate);
-                 geometry.texcoords = scene::texcoords_near_zero(texcoords);
+                 geometry.texcoords = take_texcoords();
              }},
             {"colors",
              [&] {
                  colors_line = tokens_.line();
-                 geometry.colors.resize(tokens_.take_count("a count of colours", 6));
-                 for (glm::vec3& color : geometry.colors)
-                     for (int i = 0; i < 3; ++i)
-                         color[i] = static_cast<float>(tokens_.take_number("a colour", 0, 1));
+                 geometry.colors = take_vertex_colors();
              }},
             {"triangles",
              [&] {
