@@ -12,7 +12,7 @@ namespace vrut::io {
 /// JSON of a glTF file.
 using GltfJson = nlohmann::json;
 
-/// Parses a glTF document, without its members `extras`. Nothing recurses, and the nesting depth is bounded.
+/// Parses a glTF document. Nothing recurses, and the nesting depth is bounded.
 /// Throws ImportError.
 GltfJson parse_gltf_json(std::string_view text);
 
