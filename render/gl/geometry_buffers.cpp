@@ -114,7 +114,8 @@ void GeometryBufferPool::share(const GeometrySizes& sizes, GpuGeometry& geometry
     geometry.buffers = shared_.lock();
     if (!geometry.buffers || shared_vertices_ + sizes.vertices > vertices_at_most_ ||
         shared_triangles_ + triangles > triangles_at_most_) {
-        geometry.buffers = make_geometry_buffers({vertices_at_most_, triangles_at_most_, /*texcoords=*/true}, true);
+        geometry.buffers =
+            make_geometry_buffers({vertices_at_most_, triangles_at_most_, /*texcoords=*/true}, true);
         shared_ = geometry.buffers;
         shared_vertices_ = shared_triangles_ = 0;
     }

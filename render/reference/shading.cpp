@@ -123,8 +123,7 @@ glm::dvec3 phong(const scene::Material& material, const glm::dvec3& diffuse, con
     const glm::dvec3 reflected = interaction.normal * (2 * cosine) - to_light;
     const double highlight = std::pow(std::max(glm::dot(reflected, to_viewer), 0.0), material.shininess);
     const glm::dvec3 lit = diffuse * interaction.color + glm::dvec3(material.specular) * highlight;
-    const glm::dvec3 base =
-        glm::dvec3(material.emission) + glm::dvec3(material.ambient) * interaction.color;
+    const glm::dvec3 base = glm::dvec3(material.emission) + glm::dvec3(material.ambient) * interaction.color;
     return glm::clamp(base + lit * glm::dvec3(light.color) * (lambert * intensity), 0.0, 1.0);
 }
 
