@@ -31,7 +31,7 @@ void require_coordinates(const aiVector3D* vectors, const char* what, const aiMe
                           " is not a number from -1e15 to 1e15");
 }
 
-float in_unit_range(float value) { return std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 0.0F; }
+float displayed(float value) { return std::isfinite(value) ? std::clamp(value, 0.0F, 1.0F) : 0.0F; }
 
 /// Frees one of a mesh's arrays as soon as it is copied: both together may be large.
 template <class T>
@@ -41,7 +41,6 @@ void release(T*& array) {
 }
 
 void move_vertices(aiMesh& mesh, scene::Geometry& geometry) {
-    require_coordinates(mesh.mVertices, "vertex", mesh);
     geometry.positions.reserve(mesh.mNumVertices);
     for (const aiVector3D* v = mesh.mVertices; v != mesh.mVertices + mesh.mNumVertices; ++v)
         geometry.bounds.add(geometry.positions.emplace_back(v->x, v->y, v->z));
@@ -80,8 +79,7 @@ void move_colors(aiMesh& mesh, scene::Geometry& geometry, ConversionWarnings& wa
     geometry.colors.reserve(mesh.mNumVertices);
     bool opaque = true;
     for (const aiColor4D* color = from; color != from + mesh.mNumVertices; ++color) {
-        geometry.colors.emplace_back(in_unit_range(color->r), in_unit_range(color->g),
-                                     in_unit_range(color->b));
+        geometry.colors.emplace_back(displayed(color->r), displayed(color->g), displayed(color->b));
         opaque = opaque && !(color->a < 1);
     }
     if (!opaque) warnings.add("the opacity of vertex colours is ignored");
