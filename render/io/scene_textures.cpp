@@ -1,10 +1,13 @@
 #include "io/scene_textures.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <tuple>
 
 #include "base/file_bytes.hpp"
+#include "base/srgb.hpp"
 #include "io/image/image_file.hpp"
 #include "io/notices.hpp"
 #include "io/vrut/tokenizer.hpp"
@@ -91,6 +94,35 @@ CubeResult read_cube(TextureReader& reader, const std::vector<scene::Texture>& t
     return faces;
 }
 
+/// A change that has an effect on its texture: opaque, and the factor.
+using ChangeKey = std::tuple<bool, double, double, double>;
+constexpr ChangeKey kUnchanged{false, 1, 1, 1};
+
+ChangeKey key_of(const TextureChange& change, const scene::Texture& texture) {
+    return {change.opaque && texture.transparent, change.factor.r, change.factor.g, change.factor.b};
+}
+
+std::uint8_t displayed_byte(double light) {
+    return static_cast<std::uint8_t>(std::lround(255 * base::srgb_from_linear(light)));
+}
+
+void apply(const ChangeKey& change, scene::Texture& texture) {
+    const auto [opaque, red, green, blue] = change;
+    std::array<std::array<std::uint8_t, 256>, 3> multiplied{};
+    for (std::size_t i = 0; i < 256; ++i) {
+        const double light = base::linear_from_srgb(static_cast<double>(i) / 255);
+        multiplied[0][i] = displayed_byte(red * light);
+        multiplied[1][i] = displayed_byte(green * light);
+        multiplied[2][i] = displayed_byte(blue * light);
+    }
+    std::vector<std::uint8_t>& rgba = texture.image.rgba;
+    for (std::size_t i = 0; i < rgba.size(); i += 4) {
+        for (std::size_t k = 0; k < 3; ++k) rgba[i + k] = multiplied[k][rgba[i + k]];
+        if (opaque) rgba[i + 3] = 255;
+    }
+    if (opaque) texture.transparent = false;
+}
+
 }  // namespace
 
 bool has_transparent_pixel(const scene::Image& image) {
@@ -158,29 +190,45 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
     notices.append_to(parts.notices);
 }
 
-void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
-                          std::vector<scene::Texture>& textures) {
-    std::vector<bool> keeps_alpha(textures.size());
-    for (std::size_t i = 0; i < materials.size(); ++i)
-        if (materials[i].texture != scene::kNone && !ignore_alpha[i])
-            keeps_alpha[static_cast<std::size_t>(materials[i].texture)] = true;
-    std::map<scene::Index, scene::Index> opaque;  // by the texture that it was made from
+bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
+                     std::vector<scene::Texture>& textures, std::uint64_t max_pixels) {
+    std::map<scene::Index, std::map<ChangeKey, scene::Index>> views;  // of each texture
+    std::vector<ChangeKey> keys(materials.size());
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        const scene::Index from = materials[i].texture;
-        if (from == scene::kNone || !ignore_alpha[i] || !textures[static_cast<std::size_t>(from)].transparent)
-            continue;
-        const auto [found, is_new] = opaque.emplace(from, from);
-        if (is_new && keeps_alpha[static_cast<std::size_t>(from)]) {
-            found->second = static_cast<scene::Index>(textures.size());
-            textures.push_back(textures[static_cast<std::size_t>(from)]);
+        if (const scene::Index from = materials[i].texture; from != scene::kNone) {
+            keys[i] = key_of(changes[i], textures[static_cast<std::size_t>(from)]);
+            views[from].try_emplace(keys[i], from);
         }
-        materials[i].texture = found->second;
+        if (const scene::Index from = materials[i].emissive_texture; from != scene::kNone)
+            views[from].try_emplace(kUnchanged, from);
     }
-    for (const auto& [from, made] : opaque) {
-        scene::Texture& texture = textures[static_cast<std::size_t>(made)];
-        for (std::size_t i = 3; i < texture.image.rgba.size(); i += 4) texture.image.rgba[i] = 255;
-        texture.transparent = false;
+    for (const scene::Texture& texture : textures)
+        max_pixels -= std::min<std::uint64_t>(max_pixels, texture.image.rgba.size() / 4);
+    bool all = true;
+    for (auto& [from, changed] : views) {
+        // The last one that differs is changed in place, unless the texture is also seen as it is.
+        const std::uint64_t pixels = textures[static_cast<std::size_t>(from)].image.rgba.size() / 4;
+        const bool keeps = changed.contains(kUnchanged);
+        std::size_t left = changed.size();
+        for (auto& [key, to] : changed) {
+            --left;
+            if (key == kUnchanged) continue;
+            if (keeps || left > 0) {
+                if (pixels > max_pixels) {
+                    all = false;
+                    continue;
+                }
+                max_pixels -= pixels;
+                to = static_cast<scene::Index>(textures.size());
+                textures.push_back(textures[static_cast<std::size_t>(from)]);
+            }
+            apply(key, textures[static_cast<std::size_t>(to)]);
+        }
     }
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        if (const scene::Index from = materials[i].texture; from != scene::kNone)
+            materials[i].texture = views[from].at(keys[i]);
+    return all;
 }
 
 }  // namespace vrut::io

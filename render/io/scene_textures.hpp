@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <glm/glm.hpp>
+#include <vector>
 
 #include "io/read_scene.hpp"
 
@@ -31,8 +33,16 @@ using EmbeddedDecoder =
 void decode_embedded_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
                               const EmbeddedDecoder& decode);
 
-/// Gives opaque copies of their textures to the materials that ignore alpha.
-void make_textures_opaque(std::vector<scene::Material>& materials, const std::vector<bool>& ignore_alpha,
-                          std::vector<scene::Texture>& textures);
+/// How a material sees the image of its texture.
+struct TextureChange {
+    bool opaque = false;   ///< without its alpha
+    glm::dvec3 factor{1};  ///< by which its colours are multiplied as light, 0 to 1
+};
+
+/// Changes the textures of materials, for each of which there is a change: copies them where others see them
+/// in another way. Returns false if the textures would have more than `max_pixels` in all: then some stay as
+/// they are.
+bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
+                     std::vector<scene::Texture>& textures, std::uint64_t max_pixels = kMaxTexturePixels);
 
 }  // namespace vrut::io

@@ -121,8 +121,18 @@ TEST_CASE("materials that are Phong's follow one rule") {
     CHECK(is_near(glass.diffuse, {0.1, 0.2, 0.3, 0.4}));
     CHECK(glass.specular == glm::dvec4(0, 0, 0, 1));  // without an exponent
     CHECK(has_notice(scene, "a bump map is ignored"));
-    CHECK(has_notice(scene, "not multiplied by the base or diffuse colour"));
+    CHECK(has_notice(scene, "not multiplied by the diffuse colour"));
     CHECK(scene.notices().size() == 2);
+}
+
+TEST_CASE("an OBJ texture that is not multiplied by its colour has a notice, unless that is black") {
+    const TemporaryFolder folder;
+    folder.write("paint.png", picture());
+    const fs::path path = folder.write("panel.obj", text_of("panel.obj"));
+    for (const auto& [color, is_told] : {std::pair("0.5 1 1", true), {"0 0 0", false}, {"1 1 1", false}}) {
+        folder.write("panel.mtl", "newmtl Paint\nKd " + std::string(color) + "\nmap_Kd paint.png\n");
+        CHECK(has_notice(read_well(path), "not multiplied by the diffuse colour") == is_told);
+    }
 }
 
 TEST_CASE("a picture's alpha counts in OBJ where it is the picture of the opacity too") {
@@ -282,6 +292,7 @@ TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
     const scene::Scene scene = read_panel("panel.fbx");
     const scene::Material& paint = material_of(scene, "Paint");
     CHECK(is_near(paint.diffuse, {0.5, 0.25, 0, 0.4}));
+    CHECK_FALSE(has_notice(scene, "not multiplied"));  // the texture takes its place
     CHECK(paint.specular == glm::dvec4(0.5, 0.25, 0, 1));
     CHECK(paint.emission == glm::dvec4(0, 0, 0.25, 1));
     CHECK(paint.shininess == 50);
@@ -296,7 +307,7 @@ TEST_CASE("an FBX scene keeps its materials, cameras and lights") {
     CHECK(std::get<scene::LightData>(light.data).color == glm::dvec4(0.5, 0.25, 0, 1));
     CHECK(std::get<scene::LightData>(light.data).angle == doctest::Approx(60));
     CHECK(has_notice(scene, "it does not attenuate with distance"));
-    CHECK(scene.notices().size() == 2);
+    CHECK(scene.notices().size() == 1);
 }
 
 TEST_CASE("a camera looks at its target") {

@@ -395,6 +395,45 @@ TEST_CASE("the variants of a glTF material are children of a switch (KHR_materia
     CHECK(contains(file.error(), "there is no material 9"));
 }
 
+TEST_CASE("a glTF texture is multiplied by its material's colour, as light is") {
+    GltfBuilder file;
+    file.add_triangle();
+    const std::string data = flat_png(2, 2, {255, 128, 64, 255});
+    file.document["images"] = {{{"bufferView", file.add_view(data)}, {"mimeType", "image/png"}}};
+    file.document["textures"] = {{{"source", 0}}};
+    file.document["materials"] = {
+        {{"pbrMetallicRoughness",
+          {{"baseColorFactor", {0.5, 0, 1, 1}}, {"baseColorTexture", {{"index", 0}}}}}}};
+    file.primitive()["material"] = 0;
+    const scene::Scene scene = file.read();
+    REQUIRE(scene.textures().size() == 1);
+    const std::vector<std::uint8_t> rgba = scene.textures()[0].image.rgba;
+    CHECK(std::vector(rgba.begin(), rgba.begin() + 4) == std::vector<std::uint8_t>{188, 0, 64, 255});
+    CHECK(scene.notices().empty());
+}
+
+TEST_CASE("a glTF texture that is clamped or mirrored has a notice where it is seen to repeat") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["images"] = {{{"bufferView", file.add_view(flat_png(2, 2, {1, 2, 3, 255}))}}};
+    file.document["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
+    nlohmann::json info = {{"index", 0}};
+    const auto notices_with_scale = [&](double x, double y) {
+        info["extensions"]["KHR_texture_transform"]["scale"] = {x, y};
+        file.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}}};
+        file.primitive()["material"] = 0;
+        return file.read().notices();
+    };
+    CHECK(notices_with_scale(1, 1).empty());
+    REQUIRE(notices_with_scale(2, 1).size() == 1);
+    CHECK(contains(notices_with_scale(1, 2)[0], "a texture repeats where the file clamps or mirrors it"));
+    file.document["samplers"][0].erase("wrapT");
+    CHECK(notices_with_scale(1, 2).empty());
+    file.document["samplers"][0] = nlohmann::json::object();
+    CHECK(notices_with_scale(2, 2).empty());
+}
+
 TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)") {
     GltfBuilder file;
     file.add_triangle();

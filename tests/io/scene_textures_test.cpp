@@ -209,3 +209,48 @@ TEST_CASE("notices of pictures are few; reading can be given up between pictures
     struct Stop {};
     CHECK_THROWS_AS(io::read_textures(parts, path, [](double) { throw Stop(); }), Stop);
 }
+
+TEST_CASE("materials that see a texture in other ways get copies, and the last of them the texture itself") {
+    const scene::Texture glass{"glass.png", {1, 1, {255, 128, 0, 100}}, true};
+    const auto materials_of = [](std::initializer_list<scene::Index> textures) {
+        std::vector<scene::Material> materials;
+        for (const scene::Index texture : textures) materials.emplace_back().texture = texture;
+        return materials;
+    };
+    const io::TextureChange as_it_is, opaque{.opaque = true}, tinted{.factor = {0.5, 1, 1}},
+        both{.opaque = true, .factor = {0, 0.25, 1}};
+    const auto color_of = [](const std::vector<scene::Texture>& textures, const scene::Material& material) {
+        return textures[static_cast<std::size_t>(material.texture)].image.rgba;
+    };
+    using Color = std::vector<std::uint8_t>;
+
+    std::vector<scene::Texture> textures{glass};
+    std::vector<scene::Material> materials = materials_of({0, 0, scene::kNone, 0, 0});
+    CHECK(io::change_textures(materials, {both, opaque, tinted, both, as_it_is}, textures));
+    CHECK(textures.size() == 3);
+    CHECK(color_of(textures, materials[0]) == Color{0, 66, 0, 255});  // light of 0.216, a quarter of it
+    CHECK(color_of(textures, materials[1]) == Color{255, 128, 0, 255});
+    CHECK(materials[2].texture == scene::kNone);
+    CHECK(materials[3].texture == materials[0].texture);
+    CHECK(color_of(textures, materials[4]) == glass.image.rgba);
+    CHECK(textures[static_cast<std::size_t>(materials[4].texture)].transparent);
+    CHECK_FALSE(textures[static_cast<std::size_t>(materials[0].texture)].transparent);
+
+    textures = {glass};
+    materials = materials_of({0, 0});
+    CHECK(io::change_textures(materials, {tinted, tinted}, textures));
+    CHECK(textures.size() == 1);
+    CHECK(color_of(textures, materials[0]) == Color{188, 128, 0, 100});  // half the light
+
+    textures = {glass};
+    materials[1].texture = scene::kNone;
+    materials[1].emissive_texture = 0;  // which sees it as it is
+    CHECK(io::change_textures(materials, {tinted, tinted}, textures));
+    CHECK(textures.size() == 2);
+    CHECK(textures[0].image.rgba == glass.image.rgba);
+
+    textures = {glass};
+    materials = materials_of({0, 0, 0});
+    CHECK_FALSE(io::change_textures(materials, {opaque, tinted, both}, textures, 2));
+    CHECK(textures.size() == 2);
+}

@@ -68,6 +68,11 @@ scene::Material convert_material(const aiMaterial& from, const aiScene& scene,
     convert_phong(from, format, material, warnings);
     material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
     set_texture_name(from, scene, folder, material, warnings);
+    // In the other formats it takes the colour's place. Some programs write black with every texture.
+    const glm::dvec3 color(material.diffuse);
+    if (format == AssimpFormat::obj && !material.image.empty() && color != glm::dvec3(1) &&
+        color != glm::dvec3(0))
+        warnings.add("a texture is not multiplied by the diffuse colour");
     set_emissive_texture(from, scene, folder, material, warnings);
     report_unsupported_textures(from, warnings);
     return material;

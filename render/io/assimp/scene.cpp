@@ -60,7 +60,7 @@ public:
             warnings_.add("it seems to lie on its side: --up-axis z turns it upright");
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
-        make_textures_opaque(parts_.materials, ignore_alpha_, parts_.textures);
+        change_textures(parts_.materials, texture_changes_, parts_.textures);
         find_single_sided();
         return std::move(parts_);
     }
@@ -83,7 +83,7 @@ private:
             parts_.materials.push_back(
                 convert_material(*scene_.mMaterials[i], scene_, path_.parent_path(), format_, warnings_));
             parts_.materials.back().id = materials_[i];
-            ignore_alpha_.push_back(ignores_alpha(*scene_.mMaterials[i]));
+            texture_changes_.push_back({.opaque = ignores_alpha(*scene_.mMaterials[i])});
         }
         decode_embedded_textures(parts_, path_, [&](const std::string& name, std::uint64_t max_pixels) {
             return decode_embedded_texture(scene_, name, max_pixels);
@@ -269,7 +269,7 @@ private:
     scene::SceneParts parts_;
     ConversionWarnings warnings_;
     std::vector<scene::Index> materials_, geometries_;  // ours for each of assimp's
-    std::vector<bool> ignore_alpha_;                    // for each of ours
+    std::vector<TextureChange> texture_changes_;        // for each of ours
     IndicesByName cameras_, lights_;
 };
 

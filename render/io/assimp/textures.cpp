@@ -59,8 +59,6 @@ void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::f
     if (!has_texture(from, type)) return;
     material.image = name_of(texture_name(from, type), scene, folder);
     report_unsupported_sampling(from, type, warnings);
-    if (glm::dvec3(material.diffuse) != glm::dvec3(1))
-        warnings.add("a texture is not multiplied by the base or diffuse colour");
 }
 
 void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,

@@ -1,6 +1,7 @@
 #include "io/gltf/material_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/srgb.hpp"
@@ -43,13 +44,14 @@ public:
         material.name = string_in(json_, "name");
         material.two_sided = boolean_in(json_, "doubleSided", false);
         const std::string& alpha_mode = string_in(json_, "alphaMode");
-        result_.ignores_alpha = alpha_mode.empty() || alpha_mode == "OPAQUE";
+        result_.change.opaque = alpha_mode.empty() || alpha_mode == "OPAQUE";
         const bool glossy = has_extension(kGlossiness);
         const glm::dvec4 color = glossy ? vector_in<4>(glossiness_, "diffuseFactor", glm::dvec4(1))
                                         : vector_in<4>(metallic_roughness_, "baseColorFactor", glm::dvec4(1));
         material.diffuse = glm::dvec4(base::srgb_from_linear(color),
                                       alpha_mode == "BLEND" ? std::clamp(color.a, 0.0, 1.0) : 1.0);
         material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
+        result_.change.factor = glm::clamp(glm::dvec3(color), 0.0, 1.0);
         set_highlight(glossy);
         set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
                            : object_in(metallic_roughness_, "baseColorTexture"));
@@ -71,7 +73,7 @@ private:
         material.specular = black;
         material.emissive = glm::dvec3(0);
         result_.emissive_image.reset();
-        if (result_.image && !result_.ignores_alpha)
+        if (result_.image && !result_.change.opaque)
             return warnings_.add("the texture of an unlit material that is not opaque is lit");
         material.emissive = base::linear_from_srgb(glm::dvec3(material.diffuse));
         std::swap(result_.image, result_.emissive_image);
@@ -114,9 +116,7 @@ private:
         result_.image = image_of(info);
         if (!result_.image) return;
         result_.mapping = mapping_of(info);
-        report_sampling(info);
-        if (glm::dvec3(result_.material.diffuse) != glm::dvec3(1))
-            warnings_.add("a texture is not multiplied by the base or diffuse colour");
+        read_wrapping(info);
     }
 
     /// Light of more than a thousand times white shows as no more.
@@ -135,7 +135,7 @@ private:
         if (!result_.image) result_.mapping = mapping;
         if (mapping.key() != result_.mapping.key())
             warnings_.add("an emissive texture lies as the base colour texture does, not as the file says");
-        report_sampling(info);
+        read_wrapping(info);
     }
 
     GltfTextureMapping mapping_of(const GltfJson& info) const {
@@ -145,13 +145,15 @@ private:
                 vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
     }
 
-    void report_sampling(const GltfJson& info) {
+    void read_wrapping(const GltfJson& info) {
         const auto sampler = index_in(texture_of(info), "sampler");
         if (!sampler) return;
         constexpr std::uint64_t kRepeat = 10497;
-        for (const char* wrap : {"wrapS", "wrapT"})
-            if (size_in(element(document_, "samplers", *sampler, "sampler"), wrap, kRepeat) != kRepeat)
-                warnings_.add("a texture repeats where the file clamps or mirrors it");
+        const GltfJson& json = element(document_, "samplers", *sampler, "sampler");
+        const std::array<const char*, 2> wraps{"wrapS", "wrapT"};
+        for (int i = 0; i < 2; ++i)
+            if (size_in(json, wraps[static_cast<std::size_t>(i)], kRepeat) != kRepeat)
+                result_.repeats[i] = false;
     }
 
     void report_textures() {

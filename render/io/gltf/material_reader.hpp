@@ -5,6 +5,7 @@
 #include "io/conversion_warnings.hpp"
 #include "io/gltf/geometry.hpp"
 #include "io/gltf/json.hpp"
+#include "io/scene_textures.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::io {
@@ -15,7 +16,8 @@ struct ReadGltfMaterial {
     std::optional<std::uint32_t> image;  ///< of its base colour
     std::optional<std::uint32_t> emissive_image;
     GltfTextureMapping mapping;  ///< how these lie on the surface
-    bool ignores_alpha = true;   ///< the image's alpha has no effect
+    glm::bvec2 repeats{true};    ///< beyond 0 to 1 of its images, in the directions of u and v
+    TextureChange change;        ///< of the image of its base colour
 };
 
 /// Converts a material; without an index, the one of primitives that have none. Throws ImportError.

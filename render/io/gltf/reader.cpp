@@ -1,5 +1,6 @@
 #include "io/gltf/reader.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "io/gltf/buffers.hpp"
@@ -154,15 +155,26 @@ private:
 
     scene::Index add_geometry(const GltfJson& primitive, scene::Index material, const std::string& name,
                               GeometryIndices& known) {
-        const GltfTextureMapping& mapping = materials_[static_cast<std::size_t>(material)].mapping;
+        const ReadGltfMaterial& read = materials_[static_cast<std::size_t>(material)];
         const auto [found, is_new] =
-            known.emplace(mapping.key(), static_cast<scene::Index>(parts_.geometries.size()));
-        if (!is_new) return found->second;
-        scene::Geometry geometry =
-            read_gltf_geometry(document_, primitive, mapping, name, buffers_, warnings_);
-        geometry.id = found->second;
-        parts_.geometries.push_back(std::move(geometry));
+            known.emplace(read.mapping.key(), static_cast<scene::Index>(parts_.geometries.size()));
+        if (is_new) {
+            parts_.geometries.push_back(
+                read_gltf_geometry(document_, primitive, read.mapping, name, buffers_, warnings_));
+            parts_.geometries.back().id = found->second;
+        }
+        report_wrapping(parts_.geometries[static_cast<std::size_t>(found->second)], read.repeats);
         return found->second;
+    }
+
+    /// All textures repeat, which is seen beyond 0 to 1.
+    void report_wrapping(const scene::Geometry& geometry, const glm::bvec2& repeats) {
+        if (glm::all(repeats)) return;
+        const auto is_seen = [&](const glm::vec2& at) {
+            return (!repeats.x && (at.x < 0 || at.x > 1)) || (!repeats.y && (at.y < 0 || at.y > 1));
+        };
+        if (std::ranges::any_of(geometry.texcoords, is_seen))
+            warnings_.add("a texture repeats where the file clamps or mirrors it");
     }
 
     // --- nodes
@@ -226,9 +238,13 @@ private:
         });
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
-        std::vector<bool> ignore_alpha;
-        for (const ReadGltfMaterial& material : materials_) ignore_alpha.push_back(material.ignores_alpha);
-        make_textures_opaque(parts_.materials, ignore_alpha, parts_.textures);
+        std::vector<TextureChange> changes;
+        for (const ReadGltfMaterial& material : materials_) changes.push_back(material.change);
+        if (!change_textures(parts_.materials, changes, parts_.textures))
+            parts_.notices.push_back(
+                path_.string() +
+                ": some textures are not multiplied by the base or diffuse colour, since they "
+                "would have more than 1 GiB");
     }
 
     const std::filesystem::path& path_;
