@@ -3,7 +3,8 @@
 //
 //   VRUT_PREVIEW=build/release/server/vrut-preview node tests/corpus/try-files.mjs FOLDER OUT [SECONDS]
 //
-// SECONDS is how long a file may take, 60 without it. Memory is measured by /usr/bin/time (package `time`).
+// SECONDS is how long a file may take, 60 without it. Memory is measured by /usr/bin/time (package `time`). F3D draws
+// where there is a display: without one, put `xvfb-run` (package `xvfb`) before `node`.
 import { spawnSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';

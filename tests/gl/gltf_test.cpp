@@ -8,8 +8,12 @@ using namespace vrut;
 
 namespace {
 
+/// With the ambient colour that a white glTF material has.
 std::shared_ptr<const scene::PlacedScene> placed(const std::string& file) {
-    auto scene = io::read_scene(file);
+    auto parts = io::read_scene_parts(file);
+    REQUIRE_MESSAGE(parts, parts.error());
+    for (scene::Material& material : parts->materials) material.ambient = {0.1, 0.1, 0.1, 1};
+    auto scene = io::build_scene(*std::move(parts), file);
     REQUIRE_MESSAGE(scene, scene.error());
     return std::make_shared<scene::PlacedScene>(scene::place(*std::move(scene)));
 }

@@ -23,11 +23,11 @@ namespace vrut::io {
 ///               (a quarter of Blinn's, 2 / r^4 - 2; B. Karis, "Specular BRDF Reference", 2013)
 ///     emissive  the emissive factor, linear as it is, times KHR_materials_emissive_strength; its texture is
 ///               the emissive image
-/// two-sided as the file says, and the base colour texture as the image, whose alpha counts only where
-/// alphaMode is not OPAQUE. One that is unlit (KHR_materials_unlit) has its base colour and its image as
-/// emissive ones and is black else, but where the image's alpha counts: it stays lit, without a highlight.
-/// How images lie (KHR_texture_transform) is in the texture coordinates. Colours of vertices become displayed
-/// ones by the same curve.
+/// two-sided as the file says, and the base colour texture as the image: its linear colours are multiplied by
+/// the base colour factor, and its alpha counts only where alphaMode is not OPAQUE. One that is unlit
+/// (KHR_materials_unlit) has its base colour and its image as emissive ones and is black else, but where the
+/// image's alpha counts: it stays lit, without a highlight. How images lie (KHR_texture_transform) is in the
+/// texture coordinates. Colours of vertices become displayed ones by the same curve.
 PartsResult read_gltf_scene(const std::filesystem::path& path, const ReadProgress& progress = {},
                             const ReadOptions& options = {});
 
