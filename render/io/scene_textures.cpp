@@ -208,7 +208,7 @@ bool change_textures(std::vector<scene::Material>& materials, const std::vector<
     for (auto& [from, changed] : views) {
         // The last one that differs is changed in place, unless the texture is also seen as it is.
         const std::uint64_t pixels = textures[static_cast<std::size_t>(from)].image.rgba.size() / 4;
-        const bool keeps = changed.contains(kUnchanged);
+        bool keeps = changed.contains(kUnchanged);
         std::size_t left = changed.size();
         for (auto& [key, to] : changed) {
             --left;
@@ -216,6 +216,7 @@ bool change_textures(std::vector<scene::Material>& materials, const std::vector<
             if (keeps || left > 0) {
                 if (pixels > max_pixels) {
                     all = false;
+                    keeps = true;  // who gets no copy sees it as it is
                     continue;
                 }
                 max_pixels -= pixels;

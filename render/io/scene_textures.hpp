@@ -39,10 +39,12 @@ struct TextureChange {
     glm::dvec3 factor{1};  ///< by which its colours are multiplied as light, 0 to 1
 };
 
-/// Changes the textures of materials, for each of which there is a change: copies them where others see them
-/// in another way. Returns false if the textures would have more than `max_pixels` in all: then some stay as
-/// they are.
+/// Changes the texture of each material as told by the element of `changes` at the same index. Materials that
+/// see one texture differently get copies of it. Returns false if all textures would have more than
+/// `max_pixels`: then some materials see theirs unchanged.
 bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
                      std::vector<scene::Texture>& textures, std::uint64_t max_pixels = kMaxTexturePixels);
+inline constexpr const char* kUnchangedTextures =
+    "some textures are drawn without the colour or opacity of their materials: there is no room for copies";
 
 }  // namespace vrut::io

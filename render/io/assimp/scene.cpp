@@ -60,7 +60,8 @@ public:
             warnings_.add("it seems to lie on its side: --up-axis z turns it upright");
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
-        change_textures(parts_.materials, texture_changes_, parts_.textures);
+        if (!change_textures(parts_.materials, texture_changes_, parts_.textures))
+            parts_.notices.push_back(path_.string() + ": " + kUnchangedTextures);
         find_single_sided();
         return std::move(parts_);
     }
