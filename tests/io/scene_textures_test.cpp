@@ -253,4 +253,5 @@ TEST_CASE("materials that see a texture in other ways get copies, and the last o
     materials = materials_of({0, 0, 0});
     CHECK_FALSE(io::change_textures(materials, {opaque, tinted, both}, textures, 2));
     CHECK(textures.size() == 2);
+    CHECK(textures[0].image.rgba == glass.image.rgba);  // who gets no copy sees it as it is
 }

@@ -241,10 +241,7 @@ private:
         std::vector<TextureChange> changes;
         for (const ReadGltfMaterial& material : materials_) changes.push_back(material.change);
         if (!change_textures(parts_.materials, changes, parts_.textures))
-            parts_.notices.push_back(
-                path_.string() +
-                ": some textures are not multiplied by the base or diffuse colour, since they "
-                "would have more than 1 GiB");
+            parts_.notices.push_back(path_.string() + ": " + kUnchangedTextures);
     }
 
     const std::filesystem::path& path_;
