@@ -157,8 +157,10 @@ std::function<PreparedData()> GpuScene::make_cube_map(const std::array<scene::In
 }
 
 bool GpuScene::request_background(const plan::View& view) {
-    if (view.background.cube_map) return request_cube_map(*view.background.cube_map);
-    return view.background.texture == scene::kNone || request_texture(view.background.texture);
+    const plan::Background& background = view.background;
+    const bool has_cube_map = !background.cube_map || request_cube_map(*background.cube_map);
+    const bool shows_texture = background.texture != scene::kNone && !background.shows_cube_map();
+    return (!shows_texture || request_texture(background.texture)) && has_cube_map;
 }
 
 bool GpuScene::request_shown(const plan::View& view) {

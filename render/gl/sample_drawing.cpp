@@ -76,7 +76,7 @@ void SampleDrawing::use_target(const plan::View& view, bool rgba16) {
 /// Asks for what the sample takes. Returns true if it can be drawn.
 bool SampleDrawing::request_all(const plan::RenderJob& job) const {
     const Need need = job.interactive ? Need::soon : Need::now;
-    bool all = !BackgroundPass::is_needed(job.view) || scene_->request_background(job.view);
+    bool all = !job.view.scene || scene_->request_background(job.view);
     for (const plan::DrawCommand& command : commands_) {
         const bool edges = command.kind == Kind::edges || command.kind == Kind::edges_overlay;
         for (const plan::DrawItem& item : command.items)

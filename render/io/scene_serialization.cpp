@@ -225,6 +225,15 @@ void serialize(Stream& stream, scene::Material& material, const scene::ScenePart
     serialize_index(stream, material.texture, parts.textures.size());
     stream.text(material.emissive_image);
     serialize_index(stream, material.emissive_texture, parts.textures.size());
+    serialize_optional(stream, material.metallic_roughness, [&](scene::MetallicRoughness& surface) {
+        for (double* number : {&surface.metallic, &surface.roughness, &surface.clear_coat})
+            stream.number(*number, 0, 1);
+    });
+    stream.text(material.occlusion_roughness_metallic_image);
+    serialize_index(stream, material.occlusion_roughness_metallic_texture, parts.textures.size());
+    stream.text(material.normal_image);
+    serialize_index(stream, material.normal_texture, parts.textures.size());
+    stream.number(material.normal_scale, -kMostNumber, kMostNumber);
 }
 
 template <class Vector>
@@ -290,6 +299,7 @@ void serialize_cube_map(Stream& stream, scene::BackgroundData& data,
         }
     });
     stream.require(data.cube_map || !data.cube_textures, "names of a cube map's images");
+    serialize_flag(stream, data.only_reflected);
 }
 
 /// The alternative that belongs to the node's type.

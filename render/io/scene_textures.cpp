@@ -147,6 +147,9 @@ void read_textures(scene::SceneParts& parts, const fs::path& scene_file, const R
     for (scene::Material& material : parts.materials) {
         read(material, material.image, material.texture);
         read(material, material.emissive_image, material.emissive_texture);
+        read(material, material.occlusion_roughness_metallic_image,
+             material.occlusion_roughness_metallic_texture);
+        read(material, material.normal_image, material.normal_texture);
     }
     for (auto& [node, parent_id, line] : parts.nodes) {
         auto* background = std::get_if<scene::BackgroundData>(&node.data);
@@ -186,6 +189,9 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
     for (scene::Material& material : parts.materials) {
         find(material, material.image, material.texture);
         find(material, material.emissive_image, material.emissive_texture);
+        find(material, material.occlusion_roughness_metallic_image,
+             material.occlusion_roughness_metallic_texture);
+        find(material, material.normal_image, material.normal_texture);
     }
     notices.append_to(parts.notices);
 }
@@ -199,8 +205,10 @@ bool change_textures(std::vector<scene::Material>& materials, const std::vector<
             keys[i] = key_of(changes[i], textures[static_cast<std::size_t>(from)]);
             views[from].try_emplace(keys[i], from);
         }
-        if (const scene::Index from = materials[i].emissive_texture; from != scene::kNone)
-            views[from].try_emplace(kUnchanged, from);
+        for (const scene::Index from :
+             {materials[i].emissive_texture, materials[i].occlusion_roughness_metallic_texture,
+              materials[i].normal_texture})
+            if (from != scene::kNone) views[from].try_emplace(kUnchanged, from);
     }
     for (const scene::Texture& texture : textures)
         max_pixels -= std::min<std::uint64_t>(max_pixels, texture.image.rgba.size() / 4);

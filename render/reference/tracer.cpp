@@ -164,7 +164,8 @@ glm::dvec3 Tracer::environment(const PathRay& path, const SurfaceInteraction& in
 }
 
 glm::dvec3 Tracer::background(const PathRay& path) const {
-    if (cube_map_) return cube_map_->sample(path.ray.direction, path.ray.ddirection_dxy);
+    if (view_.background.shows_cube_map())
+        return cube_map_->sample(path.ray.direction, path.ray.ddirection_dxy);
     if (view_.scene && view_.background.texture != scene::kNone) {
         const glm::dvec2 pixel = 1.0 / glm::dvec2(view_.width, view_.height);
         const glm::dvec2 uv(path.raster.x * pixel.x, 1 - path.raster.y * pixel.y);

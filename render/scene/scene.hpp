@@ -33,6 +33,14 @@ struct Texture {
     bool transparent = false;  ///< some alpha is below 255
 };
 
+/// A surface as glTF describes it: how much of it is metal, and how rough it is, 0 to 1. `clear_coat` is how
+/// much of it lies under a smooth, clear layer.
+struct MetallicRoughness {
+    double metallic = 0, roughness = 1, clear_coat = 0;
+
+    bool operator==(const MetallicRoughness&) const = default;
+};
+
 /// RGBA 0 to 1 as displayed: no gamma anywhere.
 struct Material {
     Id id = 0;
@@ -51,6 +59,17 @@ struct Material {
     Index texture = kNone;       ///< what was read from there; kNone where nothing could be
     std::string emissive_image;  ///< its linear colours multiply `emissive`
     Index emissive_texture = kNone;
+    /// Light is computed by it (Cook and Torrance 1982), with the diffuse colour as the base colour; the
+    /// other colours, the shininess and the reflectivity are for programs that do not know it. None: by
+    /// Phong's equation.
+    std::optional<MetallicRoughness> metallic_roughness;
+    /// Red multiplies the light of the surroundings, green the roughness, blue the metal.
+    std::string occlusion_roughness_metallic_image;
+    Index occlusion_roughness_metallic_texture = kNone;
+    /// Normals in the space of the texture coordinates: RGB from 0 to 1 is -1 to 1 along u, v and the normal.
+    std::string normal_image;
+    Index normal_texture = kNone;
+    double normal_scale = 1;  ///< multiplies what they have along u and v
 };
 
 struct Geometry {
@@ -107,6 +126,7 @@ struct BackgroundData {
     std::optional<std::array<std::string, 6>> cube_map;  ///< px nx py ny pz nz
     /// What was read from there: squares of one size, or none.
     std::optional<std::array<Index, 6>> cube_textures;
+    bool only_reflected = false;  ///< surfaces reflect the cube map; behind them the material is seen
 };
 
 /// How a door or a lid opens: it turns about an axis of its own space, through its own origin.

@@ -14,7 +14,7 @@ using protocol::Error;
 namespace {
 
 std::optional<std::string> picture_of(const scene::BackgroundData& data, const scene::Scene& scene) {
-    if (data.cube_map) return (*data.cube_map)[0];
+    if (data.cube_map && !data.only_reflected) return (*data.cube_map)[0];
     const std::string& image = scene.material(data.material).image;
     return image.empty() ? std::nullopt : std::optional(image);
 }
@@ -276,11 +276,11 @@ namespace {
 plan::Background background_of(const protocol::BackgroundsState& backgrounds,
                                const scene::PlacedScene& placed, const glm::dvec3& eye) {
     const scene::Index node = find_node(*placed.scene, backgrounds.active);
-    if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color), scene::kNone, {}};
+    if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color)};
     const auto& data =
         std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
     return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),
-            placed.scene->material(data.material).texture, data.cube_textures};
+            placed.scene->material(data.material).texture, data.cube_textures, data.only_reflected};
 }
 
 }  // namespace

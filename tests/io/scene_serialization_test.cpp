@@ -20,7 +20,9 @@ constexpr const char* kText = R"(vrut-text 1
 unit 0.001
 material 3 "Paint" ambient 0.02 0.01 0 1 diffuse 0.6 0.02 0.03 0.5 specular 0.8 0.7 0.6 1
   emission 0.1 0.2 0.3 1 shininess 64 reflectivity 0.25 two-sided 1 image "red.png"
-  emissive 0.5 0 2 emissive-image "red.png" end
+  emissive 0.5 0 2 emissive-image "red.png"
+  metallic-roughness 0.25 0.5 clear-coat 0.75 occlusion-roughness-metallic-image "red.png"
+  normal-image "a.png" normal-scale 0.5 end
 material 12 "Grey" image "no such.png" end
 geometry 7 vertices 4 0 0 0  1 0 0  0 1 0  1 1 -0.25 normals 4 0 0 1  0 0 1  0 0 1  0 1 0
   texcoords 4 0 0  1 0  0 1  1.5 -2 colors 4 1 0 0  0 0.5 0  0 0 1  1 1 1 triangles 2 0 1 2  2 1 3 end
@@ -32,7 +34,7 @@ node 6 "Presenter" camera eye 3 1 4 focus 0 0.7 0.5 up 1 2 3 fov 41 look 0.75 en
 node 8 "Lamp" light type spot color 0.1 0.2 0.3 1 attenuation 4 5 6 angle 33 end
 node 9 "Wheels" switch parent 4 active-child -2 end
 node 10 "Far or near" lod parent 4 ranges 10 40.5 end
-node 13 "Sky" background material 12 cube-map "a.png" "a.png" "red.png" "a.png" "a.png" "a.png" end
+node 13 "Sky" background material 12 cube-map "a.png" "a.png" "red.png" "a.png" "a.png" "a.png" only-reflected 1 end
 node 14 "Horn" sound parent 9 end
 )";
 

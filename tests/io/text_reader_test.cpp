@@ -19,6 +19,8 @@ material 3 "Paint \"red\" \\ #1"
   ambient 0.02 0.01 0 1   diffuse 0.6 0.02 0.03 0.5   specular 0.8 0.7 0.6 1   emission 0.1 0.2 0.3 1
   shininess 64   reflectivity 0.25   two-sided 1
   emissive 0.5 0 2   emissive-image "textures/glow.png"
+  metallic-roughness 0.25 0.5   clear-coat 0.75   occlusion-roughness-metallic-image "textures/worn.png"
+  normal-image "textures/leather.png"   normal-scale 0.5
   image "textures/plate.png"
 end
 geometry 7
@@ -39,7 +41,7 @@ node 8 "Lamp" light      parent 0   type spot   color 0.1 0.2 0.3 1   attenuatio
 node 9 "Wheels" switch   parent 4   active-child -2   end
 node 10 "Far or near" lod parent 4  ranges 10 40.5   end
 node 11 "Studio" background parent 0   material 12   end
-node 13 "Sky" background material 12 cube-map "px.png" "nx.png" "py.png" "ny.png" "pz.png" "nz.png"   end
+node 13 "Sky" background material 12 cube-map "px.png" "nx.png" "py.png" "ny.png" "pz.png" "nz.png"   only-reflected 1   end
 node 14 "Horn" sound parent 9 end
 material 12 "Grey" end
 )";
@@ -91,6 +93,10 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.image == "textures/plate.png");
     CHECK(paint.emissive == glm::dvec3(0.5, 0, 2));
     CHECK(paint.emissive_image == "textures/glow.png");
+    CHECK(paint.metallic_roughness == scene::MetallicRoughness{0.25, 0.5, 0.75});
+    CHECK(paint.occlusion_roughness_metallic_image == "textures/worn.png");
+    CHECK(paint.normal_image == "textures/leather.png");
+    CHECK(paint.normal_scale == 0.5);
     const scene::Material& grey = scene.materials()[1];
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
     CHECK(grey.diffuse == glm::dvec4(0.8, 0.8, 0.8, 1));
@@ -172,6 +178,8 @@ TEST_CASE("nodes of every type") {
     CHECK_FALSE(data_of<scene::BackgroundData>(scene, 11).cube_map);
     const auto& sky = data_of<scene::BackgroundData>(scene, 13);
     REQUIRE(sky.cube_map);
+    CHECK(sky.only_reflected);
+    CHECK_FALSE(data_of<scene::BackgroundData>(scene, 11).only_reflected);
     CHECK(*sky.cube_map ==
           std::array<std::string, 6>{"px.png", "nx.png", "py.png", "ny.png", "pz.png", "nz.png"});
     CHECK(node_of(scene, 13).parent == 0);

@@ -34,7 +34,9 @@ scene::Scene read(const std::string& text, const std::string& file) {
 bool same(const scene::Material& a, const scene::Material& b) {
     const auto members = [](const scene::Material& m) {
         return std::tie(m.id, m.name, m.ambient, m.diffuse, m.specular, m.emission, m.shininess,
-                        m.reflectivity, m.two_sided, m.emissive, m.image, m.emissive_image);
+                        m.reflectivity, m.two_sided, m.emissive, m.image, m.emissive_image,
+                        m.metallic_roughness, m.occlusion_roughness_metallic_image, m.normal_image,
+                        m.normal_scale);
     };
     return members(a) == members(b);
 }
@@ -56,7 +58,9 @@ auto members(const scene::LightData& data) {
 }
 auto members(const scene::SwitchData& data) { return std::tie(data.active_child); }
 auto members(const scene::LodData& data) { return std::tie(data.ranges); }
-auto members(const scene::BackgroundData& data) { return std::tie(data.material, data.cube_map); }
+auto members(const scene::BackgroundData& data) {
+    return std::tie(data.material, data.cube_map, data.only_reflected);
+}
 
 bool same(const scene::Node& a, const scene::Node& b) {
     const auto of_all = [](const scene::Node& n) {
@@ -149,10 +153,22 @@ private:
     }
 
     scene::Material material(scene::Id id) {
-        return {
-            id,      name(),          color(),     color(),     color(),
-            color(), positive(10000), positive(1), coin(),      coin() ? glm::dvec3(0) : glm::dvec3(color()),
-            name(),  scene::kNone,    name(),      scene::kNone};
+        scene::Material result;
+        result.id = id;
+        result.name = name();
+        for (glm::dvec4* to : {&result.ambient, &result.diffuse, &result.specular, &result.emission})
+            *to = color();
+        result.shininess = positive(10000);
+        result.reflectivity = positive(1);
+        result.two_sided = coin();
+        if (coin()) result.emissive = color();
+        result.image = name();
+        result.emissive_image = name();
+        if (coin()) result.metallic_roughness = {positive(1), positive(1), positive(1)};
+        result.occlusion_roughness_metallic_image = name();
+        result.normal_image = name();
+        result.normal_scale = coin() ? 1 : number(1e6);
+        return result;
     }
 
     scene::Geometry geometry(scene::Id id) {
@@ -208,7 +224,7 @@ private:
             node.data = lod;
         }
         if (node.type == scene::NodeType::background) {
-            scene::BackgroundData background{material, {}, {}};
+            scene::BackgroundData background{material, {}, {}, coin()};
             if (coin()) background.cube_map = {name(), name(), name(), name(), name(), name()};
             node.data = background;
         }

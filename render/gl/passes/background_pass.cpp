@@ -18,7 +18,7 @@ void BackgroundPass::draw(const CameraMatrices& camera, const plan::View& view, 
         empty_vertex_array_ = make_vertex_array();
         clamped_ = make_clamping_sampler();
     }
-    const bool has_environment = view.background.cube_map.has_value();
+    const bool has_environment = view.background.shows_cube_map();
     programs_.use(has_environment ? FixedProgram::background_environment : FixedProgram::background_image);
     // The sample's offset in its pixel is part of the projection.
     const glm::dmat4& clip = camera.clip_from_view;

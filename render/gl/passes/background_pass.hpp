@@ -9,7 +9,7 @@ class BackgroundPass {
 public:
     explicit BackgroundPass(Programs& programs) : programs_(programs) {}
     static bool is_needed(const plan::View& view) {
-        return view.scene && (view.background.cube_map || view.background.texture != scene::kNone);
+        return view.scene && (view.background.shows_cube_map() || view.background.texture != scene::kNone);
     }
     /// Fills the bound framebuffer, whatever its depths, and leaves those as they are. An image is stretched
     /// over the view; of an environment map each pixel shows what lies in the direction of its ray.

@@ -20,6 +20,7 @@ namespace {
 // Coordinates beyond this would leave the range of float when squared on the GPU.
 constexpr double kMaxCoordinate = 1e15;
 constexpr double kMaxColor = 1e6;
+constexpr double kMaxScale = 1e6;
 
 struct NodeKind {
     std::string_view keyword;
@@ -150,6 +151,11 @@ private:
 
     // --- blocks
 
+    static scene::MetallicRoughness& metallic_roughness(scene::Material& material) {
+        if (!material.metallic_roughness) material.metallic_roughness.emplace();
+        return *material.metallic_roughness;
+    }
+
     void read_material(std::size_t line) {
         scene::Material material;
         material.id = take_id("the material's id");
@@ -170,6 +176,21 @@ private:
             {"emissive-image",
              [&] { material.emissive_image = tokens_.take_string("the emissive image's file"); }},
             {"image", [&] { material.image = tokens_.take_string("the image's file"); }},
+            {"metallic-roughness",
+             [&] {
+                 metallic_roughness(material).metallic = tokens_.take_number("metallic", 0, 1);
+                 metallic_roughness(material).roughness = tokens_.take_number("roughness", 0, 1);
+             }},
+            {"clear-coat",
+             [&] { metallic_roughness(material).clear_coat = tokens_.take_number("clear-coat", 0, 1); }},
+            {"occlusion-roughness-metallic-image",
+             [&] {
+                 material.occlusion_roughness_metallic_image =
+                     tokens_.take_string("the occlusion, roughness and metallic image's file");
+             }},
+            {"normal-image", [&] { material.normal_image = tokens_.take_string("the normal image's file"); }},
+            {"normal-scale",
+             [&] { material.normal_scale = tokens_.take_number("normal-scale", -kMaxScale, kMaxScale); }},
         };
         read_members("material " + std::to_string(material.id), members);
         remember(material_ids_, material.id, parts_.materials.size(), line, "material");
@@ -369,6 +390,8 @@ private:
                                        for (std::string& face : faces)
                                            face = tokens_.take_string("a cube map's image");
                                    }});
+                members.push_back(
+                    {"only-reflected", [&] { data.only_reflected = tokens_.take_flag("only-reflected"); }});
                 break;
             }
             case scene::NodeType::assembly:

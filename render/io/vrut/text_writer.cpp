@@ -99,6 +99,14 @@ private:
         write_image("image", material.texture, material.image);
         if (material.emissive != glm::dvec3(0)) text("\n  emissive").numbers(material.emissive);
         write_image("emissive-image", material.emissive_texture, material.emissive_image);
+        if (const auto& surface = material.metallic_roughness) {
+            text("\n  metallic-roughness").number(surface->metallic).number(surface->roughness);
+            if (surface->clear_coat > 0) text("  clear-coat").number(surface->clear_coat);
+        }
+        write_image("occlusion-roughness-metallic-image", material.occlusion_roughness_metallic_texture,
+                    material.occlusion_roughness_metallic_image);
+        write_image("normal-image", material.normal_texture, material.normal_image);
+        if (material.normal_scale != 1) text("\n  normal-scale").number(material.normal_scale);
         text("\nend\n");
     }
 
@@ -186,6 +194,7 @@ private:
 
     void write_data(const scene::Scene& scene, const scene::BackgroundData& background) {
         write_material_of(scene, background.material);
+        if (background.only_reflected) text("  only-reflected 1");
         if (!background.cube_map) return;
         text("  cube-map");
         for (std::size_t i = 0; i < 6; ++i)
