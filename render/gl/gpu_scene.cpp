@@ -45,6 +45,18 @@ int limit_of(GLenum name) {
 
 using Kind = ResourceKey::Kind;
 
+std::array<const scene::Image*, 6> images_of(const scene::Scene& scene,
+                                             const std::array<scene::Index, 6>& textures) {
+    std::array<const scene::Image*, 6> images{};
+    for (std::size_t i = 0; i < 6; ++i)
+        images[i] = &scene.textures()[static_cast<std::size_t>(textures[i])].image;
+    return images;
+}
+
+bool is_metallic_roughness(const scene::Material& material) {
+    return material.metallic_roughness.has_value();
+}
+
 ResourceKey key_of(Kind kind, scene::Index index, int level = 0) { return {kind, {index, level}}; }
 
 }  // namespace
@@ -54,6 +66,7 @@ GpuScene::GpuScene(std::shared_ptr<const scene::Scene> scene)
       geometries_(scene_->geometries().size()),
       edges_(geometries_.size()),
       textures_(scene_->textures().size()),
+      lit_by_environment_(std::ranges::any_of(scene_->materials(), is_metallic_roughness)),
       buffer_pool_(*scene_) {}
 
 // --- requests
@@ -71,6 +84,8 @@ bool GpuScene::is_resident(const ResourceKey& key) const {
             return bool(textures_[index]);
         case Kind::cube_map:
             return cube_maps_.contains(key.indices);
+        case Kind::environment_light:
+            return environment_lights_.contains(key.indices);
     }
     return false;
 }
@@ -110,7 +125,8 @@ bool GpuScene::request(scene::Index geometry, const mesh::DetailLevel& level,
 
 bool GpuScene::request(const plan::DrawItem& item, const std::shared_ptr<const mesh::DetailLevels>& levels) {
     bool has_textures = true;
-    for (const scene::Index texture : {item.texture, item.emissive_texture})
+    for (const scene::Index texture : {item.texture, item.emissive_texture,
+                                       item.occlusion_roughness_metallic_texture, item.normal_texture})
         has_textures = (texture == scene::kNone || request_texture(texture)) && has_textures;
     if (item.level) return request(item.geometry, *item.level, levels, Need::now) && has_textures;
     const bool has_level = !item.order && is_resident(key_of(Kind::level, item.geometry, 0));
@@ -133,9 +149,13 @@ bool GpuScene::request_texture(scene::Index index) {
 }
 
 std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
-    return [scene = scene_, index, largest = limit_of(GL_MAX_TEXTURE_SIZE)] {
+    const bool is_color = std::ranges::none_of(scene_->materials(), [&](const scene::Material& material) {
+        return material.normal_texture == index || material.occlusion_roughness_metallic_texture == index;
+    });
+    return [scene = scene_, index, is_color, largest = limit_of(GL_MAX_TEXTURE_SIZE)] {
         PreparedData data;
         data.texture = texture_data(scene->textures()[static_cast<std::size_t>(index)].image, largest);
+        data.texture.is_color = is_color;
         return data;
     };
 }
@@ -147,18 +167,33 @@ bool GpuScene::request_cube_map(const std::array<scene::Index, 6>& textures) {
 
 std::function<PreparedData()> GpuScene::make_cube_map(const std::array<scene::Index, 6>& textures) const {
     return [scene = scene_, textures, largest = limit_of(GL_MAX_CUBE_MAP_TEXTURE_SIZE)] {
-        std::array<const scene::Image*, 6> images{};
-        for (std::size_t i = 0; i < 6; ++i)
-            images[i] = &scene->textures()[static_cast<std::size_t>(textures[i])].image;
         PreparedData data;
-        data.texture = cube_map_data(images, largest);
+        data.texture = cube_map_data(images_of(*scene, textures), largest);
+        return data;
+    };
+}
+
+bool GpuScene::request_environment_light(const std::array<scene::Index, 6>& textures) {
+    const ResourceKey key{Kind::environment_light, textures};
+    return is_resident(key) || request(key, Need::now, make_environment_light(textures));
+}
+
+std::function<PreparedData()> GpuScene::make_environment_light(
+    const std::array<scene::Index, 6>& textures) const {
+    return [scene = scene_, textures] {
+        PreparedData data;
+        const scene::EnvironmentLight light = scene::prefilter(images_of(*scene, textures));
+        data.texture = prefiltered_data(light);
+        data.harmonics = light.harmonics;
         return data;
     };
 }
 
 bool GpuScene::request_background(const plan::View& view) {
     const plan::Background& background = view.background;
-    const bool has_cube_map = !background.cube_map || request_cube_map(*background.cube_map);
+    bool has_cube_map = !background.cube_map || request_cube_map(*background.cube_map);
+    if (background.cube_map && lit_by_environment_)
+        has_cube_map = request_environment_light(*background.cube_map) && has_cube_map;
     const bool shows_texture = background.texture != scene::kNone && !background.shows_cube_map();
     return (!shows_texture || request_texture(background.texture)) && has_cube_map;
 }
@@ -240,6 +275,9 @@ void GpuScene::finish(Arrival& arrival) {
             break;
         case Kind::cube_map:
             cube_maps_[key.indices] = std::move(arrival.texture);
+            break;
+        case Kind::environment_light:
+            environment_lights_[key.indices] = {std::move(arrival.texture), arrival.result.data.harmonics};
             break;
     }
     ++uploads_;
@@ -323,6 +361,12 @@ const GlTexture& GpuScene::cube_map(const std::array<scene::Index, 6>& textures)
     const ResourceKey key{Kind::cube_map, textures};
     if (!is_resident(key)) upload_at_once(key, make_cube_map(textures));
     return cube_maps_.at(textures);
+}
+
+const GpuEnvironmentLight& GpuScene::environment_light(const std::array<scene::Index, 6>& textures) {
+    const ResourceKey key{Kind::environment_light, textures};
+    if (!is_resident(key)) upload_at_once(key, make_environment_light(textures));
+    return environment_lights_.at(textures);
 }
 
 bool GpuScene::ByOrder::operator()(const GpuTriangles* a, const GpuTriangles* b) const {

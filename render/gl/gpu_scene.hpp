@@ -39,6 +39,12 @@ struct GpuTriangles {
     GLsizei index_count = 0;
 };
 
+/// scene::EnvironmentLight.
+struct GpuEnvironmentLight {
+    GlTexture prefiltered;
+    std::array<glm::dvec3, 9> harmonics{};
+};
+
 /// The geometries and textures of a scene on the GPU. Threads prepare their data when it is first requested
 /// (Preparation); upload() copies it in steps.
 class GpuScene {
@@ -82,6 +88,9 @@ public:
     const GlTexture& texture(scene::Index index);
     /// Of the six textures (cube_map_data()).
     const GlTexture& cube_map(const std::array<scene::Index, 6>& textures);
+    /// True if some material needs environment_light().
+    bool is_lit_by_environment() const { return lit_by_environment_; }
+    const GpuEnvironmentLight& environment_light(const std::array<scene::Index, 6>& textures);
     /// Geometries, their levels, orders and edges, textures and cube maps uploaded so far.
     int uploads() const { return uploads_; }
 
@@ -102,8 +111,10 @@ private:
     bool request_geometry(scene::Index index, Need need);
     bool request_texture(scene::Index index);
     bool request_cube_map(const std::array<scene::Index, 6>& textures);
+    bool request_environment_light(const std::array<scene::Index, 6>& textures);
     std::function<PreparedData()> make_texture(scene::Index index) const;
     std::function<PreparedData()> make_cube_map(const std::array<scene::Index, 6>& textures) const;
+    std::function<PreparedData()> make_environment_light(const std::array<scene::Index, 6>& textures) const;
     const scene::Geometry& read_geometry(scene::Index index) const {
         return scene_->geometries()[static_cast<std::size_t>(index)];
     }
@@ -130,6 +141,8 @@ private:
     std::map<scene::Index, std::vector<glm::uvec3>> uploaded_triangles_;  // of those with sorted triangles
     std::vector<GlTexture> textures_;
     std::map<std::array<scene::Index, 6>, GlTexture> cube_maps_;
+    std::map<std::array<scene::Index, 6>, GpuEnvironmentLight> environment_lights_;
+    bool lit_by_environment_ = false;  // some material needs them
     GeometryBufferPool buffer_pool_;
     int uploads_ = 0;
 

@@ -17,6 +17,13 @@ scene::Image upside_down(const scene::Image& image) {
     return result;
 }
 
+/// `number` in the order px nx py ny pz nz.
+void add_face(TextureData& data, const scene::Image& image, GLint level, std::size_t number) {
+    constexpr std::array<GLint, 6> kFaces{0, 1, 2, 3, 5, 4};
+    data.made.push_back(upside_down(image));  // GL has the top row of a face first
+    data.images.push_back({&data.made.back(), level, kFaces[number]});
+}
+
 bool fits(const scene::Image& image, int largest) { return std::max(image.width, image.height) <= largest; }
 
 }  // namespace
@@ -33,23 +40,28 @@ TextureData texture_data(const scene::Image& image, int largest) {
 }
 
 TextureData cube_map_data(const std::array<const scene::Image*, 6>& images, int largest) {
-    constexpr std::array<GLint, 6> kFaces{0, 1, 2, 3, 5, 4};  // of px nx py ny pz nz
     TextureData data;
     for (std::size_t k = 0; k < 6; ++k) {
         const TextureData face = texture_data(*images[k], largest);
-        for (const TextureImage& level : face.images) {
-            data.made.push_back(upside_down(*level.image));  // GL has the top row of a face first
-            data.images.push_back({&data.made.back(), level.level, kFaces[k]});
-        }
+        for (const TextureImage& level : face.images) add_face(data, *level.image, level.level, k);
     }
+    return data;
+}
+
+TextureData prefiltered_data(const scene::EnvironmentLight& light) {
+    TextureData data;
+    for (std::size_t level = 0; level < light.prefiltered.size(); ++level)
+        for (std::size_t k = 0; k < 6; ++k)
+            add_face(data, light.prefiltered[level][k], static_cast<GLint>(level), k);
     return data;
 }
 
 GlTexture make_texture_for(const TextureData& data) {
     const bool is_cube_map = data.images.front().face.has_value();
     const scene::Image& largest = *data.images.front().image;
-    return make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D, largest.width,
-                                  largest.height, data.images.back().level + 1);
+    return make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D,
+                                  data.is_color ? GL_RGBA8 : GL_RGBA16, largest.width, largest.height,
+                                  data.images.back().level + 1);
 }
 
 }  // namespace vrut::gl

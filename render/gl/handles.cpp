@@ -129,11 +129,11 @@ GlTexture make_texture(GLenum format, int width, int height) {
     return texture;
 }
 
-GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels) {
+GlTexture make_mipmapped_texture(GLenum target, GLenum format, int width, int height, int levels) {
     GLuint name = 0;
     glCreateTextures(target, 1, &name);
     GlTexture texture(name);
-    allocate_or_throw([&] { glTextureStorage2D(name, levels, GL_RGBA8, width, height); },
+    allocate_or_throw([&] { glTextureStorage2D(name, levels, format, width, height); },
                       of_size("a texture", width, height) + " texels");
     glTextureParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_NEAREST);
     glTextureParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);

@@ -79,9 +79,9 @@ GlVertexArray make_vertex_array();
 GlRenderbuffer make_renderbuffer(GLenum format, int width, int height);
 /// Two dimensions, one level, read texel by texel: an image's own.
 GlTexture make_texture(GLenum format, int width, int height);
-/// RGBA8 with that many levels, read bilinearly from one of them, repeated in both directions; `target` is
+/// With that many levels, read bilinearly from one of them, repeated in both directions; `target` is
 /// GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP.
-GlTexture make_mipmapped_texture(GLenum target, int width, int height, int levels);
+GlTexture make_mipmapped_texture(GLenum target, GLenum format, int width, int height, int levels);
 /// For mipmapped textures: beyond the edges it finds the texels there.
 GlSampler make_clamping_sampler();
 GlFramebuffer make_framebuffer();

@@ -18,9 +18,10 @@ namespace vrut::gl {
 
 /// Identifies a resource of a scene on the GPU.
 struct ResourceKey {
-    enum class Kind { geometry, level, edges, texture, cube_map };
+    enum class Kind { geometry, level, edges, texture, cube_map, environment_light };
     Kind kind = Kind::geometry;
-    /// The geometry and the number of its level; or the texture; or the six textures of a cube map.
+    /// The geometry and the number of its level; or the texture; or the six textures of a cube map, or of
+    /// one that lights surfaces.
     std::array<scene::Index, 6> indices{};
 
     bool operator<(const ResourceKey& other) const {
@@ -37,6 +38,7 @@ struct PreparedData {
     std::vector<glm::vec3> colors;
     std::vector<glm::uvec2> edges;
     TextureData texture;
+    std::array<glm::dvec3, 9> harmonics{};  ///< scene::EnvironmentLight's
 
     std::size_t bytes() const;
 };

@@ -56,14 +56,19 @@ bool is_double_single(FixedProgram program) {
 
 /// Edges take the colour of their material alone. A planar mirror shows the scene, not the environment, and
 /// no mirror shows another; what it shows may be clipped, and lies beside the eye that carries the headlight.
+/// But for Phong's equation surfaces are lit at pixels.
 bool is_reachable(const SurfaceVariant& variant) {
-    const bool plain = !variant.environment && !variant.clipped;
-    if (variant.kind == Kind::edges && (variant.textured || variant.colored || variant.emissive || !plain))
+    const bool varied = variant.metallic_roughness || variant.mapped;
+    if (variant.kind == Kind::edges && (variant.textured || variant.colored || variant.emissive || varied ||
+                                        variant.environment || variant.clipped))
         return false;
-    if (variant.kind == Kind::mirror && !plain) return false;
-    if (variant.anisotropic && !variant.textured) return false;
-    if (variant.instanced &&
-        (variant.kind != Kind::faces || variant.double_single || variant.colored || variant.emissive))
+    if (variant.kind == Kind::mirror &&
+        (variant.clipped || (variant.environment && !variant.metallic_roughness)))
+        return false;
+    if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
+    if (varied && variant.lit_at != plan::Methods::Lighting::pixel) return false;
+    if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored ||
+                              variant.emissive || variant.mapped))
         return false;
     return !(variant.clipped && variant.light == Light::headlight);
 }
@@ -78,7 +83,7 @@ bool has_double_single(const scene::Scene& scene) {
 struct SceneFeatures {
     bool small_geometries = false, double_single = false;
     bool texcoords = false, colors = false, planes = false, environment_map = false;
-    bool emissive = false;
+    bool emissive = false, phong = false, metallic_roughness = false, mapped = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
     std::array<bool, 4> lights{};  ///< by SurfaceVariant::Light
@@ -89,6 +94,9 @@ void add_material(SceneFeatures& features, const scene::Scene& scene, const scen
     const bool glass = scene.is_transparent(material), textured = material.texture != scene::kNone;
     features.glass |= glass;
     features.emissive |= material.emissive != glm::dvec3(0);
+    (material.metallic_roughness ? features.metallic_roughness : features.phong) = true;
+    features.mapped |= material.normal_texture != scene::kNone ||
+                       material.occlusion_roughness_metallic_texture != scene::kNone;
     (glass ? features.glass_textured : features.opaque_textured) |= textured;
     (glass ? features.reflective_glass : features.reflective) |= material.reflectivity > 0;
 }
@@ -123,11 +131,14 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.double_single && !features.double_single) return false;
     if (variant.colored && !features.colors) return false;
     if (variant.emissive && !features.emissive) return false;
+    if (variant.metallic_roughness && !features.metallic_roughness) return false;
+    if (variant.mapped && !(features.mapped && features.texcoords)) return false;
     if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
     if (variant.kind == Kind::mirror && !features.mirrors()) return false;
     if (variant.textured && !(textured && features.texcoords)) return false;
-    if (variant.environment && !(reflective && features.environment_map)) return false;
+    if (variant.environment && !((reflective || variant.metallic_roughness) && features.environment_map))
+        return false;
     return !variant.clipped || features.mirrors();
 }
 
@@ -153,7 +164,7 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 256; ++bits) {
+                for (int bits = 0; bits < 1024; ++bits) {
                     const SurfaceVariant variant{kind,
                                                  light,
                                                  (bits & 1) != 0,
@@ -164,7 +175,9 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
                                                  (bits & 16) != 0,
                                                  (bits & 32) != 0,
                                                  (bits & 64) != 0,
-                                                 (bits & 128) != 0};
+                                                 (bits & 128) != 0,
+                                                 (bits & 256) != 0,
+                                                 (bits & 512) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -175,7 +188,9 @@ std::vector<SurfaceVariant> surface_variants(const scene::Scene& scene, const pl
     std::vector<SurfaceVariant> variants = reachable_surface_variants();
     const bool anisotropic = methods.texture_filter == plan::Methods::TextureFilter::anisotropic;
     std::erase_if(variants, [&](const SurfaceVariant& variant) {
-        return variant.lit_at != methods.light || variant.anisotropic != (variant.textured && anisotropic) ||
+        const bool at_pixel = variant.metallic_roughness || variant.mapped;
+        return variant.lit_at != (at_pixel ? plan::Methods::Lighting::pixel : methods.light) ||
+               variant.anisotropic != ((variant.textured || variant.mapped) && anisotropic) ||
                !may_need(features, variant);
     });
     return variants;
@@ -200,6 +215,8 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.textured, "TEXTURED");
     define(variant.colored, "COLORED");
     define(variant.emissive, "EMISSIVE");
+    define(variant.metallic_roughness, "METALLIC_ROUGHNESS");
+    define(variant.mapped, "MAPPED");
     define(variant.environment, "ENVIRONMENT");
     define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");

@@ -53,13 +53,16 @@ struct SurfaceVariant {
     bool anisotropic = false;    ///< filter of its texture
     /// Faces whose matrices and material are attributes of instances (GpuInstance) instead of uniforms.
     bool instanced = false;
-    bool colored = false;   ///< by the colours of its vertices
-    bool emissive = false;  ///< sends light by itself
+    bool colored = false;             ///< by the colours of its vertices
+    bool emissive = false;            ///< sends light by itself
+    bool metallic_roughness = false;  ///< lit by it, not by Phong's equation
+    bool mapped = false;              ///< plan::is_mapped()
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic, v.instanced, v.colored, v.emissive);
+                            v.anisotropic, v.instanced, v.colored, v.emissive, v.metallic_roughness,
+                            v.mapped);
         };
         return key(*this) < key(other);
     }

@@ -65,7 +65,7 @@ private:
         FullDetailItems full_detail;
         const auto add_if_full_detail = [&](const DrawItem& item, bool ordered) {
             if ((item.texture != scene::kNone || item.emissive_texture != scene::kNone || item.colored ||
-                 ordered) &&
+                 is_mapped(item) || ordered) &&
                 has_levels(item))
                 full_detail.emplace(item.geometry, item.view_from_node);
         };

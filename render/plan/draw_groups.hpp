@@ -12,8 +12,8 @@ namespace vrut::plan {
 inline constexpr std::size_t kMostTrianglesOfSmall = 256;
 
 /// Returns true if one draw call can draw both as opaque items, should their geometries share buffers: they
-/// have the same textures and sides, both or neither are clipped or have colours at their vertices, and none
-/// is emissive.
+/// have the same textures and sides, both or neither are clipped, have colours at their vertices or are lit
+/// by metal and roughness, and none is emissive or mapped.
 bool share_draw(const DrawItem& a, const DrawItem& b);
 
 /// Moves opaque items together: small ones that share draws, and others of one material, since drivers take

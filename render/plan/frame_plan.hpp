@@ -30,6 +30,8 @@ struct DrawItem {
     bool colored = false;                 ///< by the colours of its vertices
     bool emissive = false;                ///< sends light by itself
     scene::Index emissive_texture = scene::kNone;
+    bool metallic_roughness = false;  ///< lit by it, not by Phong's equation
+    scene::Index occlusion_roughness_metallic_texture = scene::kNone, normal_texture = scene::kNone;
     bool environment = false;  ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.
     bool occluded_by_coincident = false;
@@ -40,6 +42,11 @@ struct DrawItem {
     /// The view's level of detail to draw; null: every triangle.
     const mesh::DetailLevel* level = nullptr;
 };
+
+/// The item's surface changes from pixel to pixel by more than its colour's texture.
+inline bool is_mapped(const DrawItem& item) {
+    return item.occlusion_roughness_metallic_texture != scene::kNone || item.normal_texture != scene::kNone;
+}
 
 /// Returns how many triangles the item draws: those of its level, if it has one.
 std::size_t triangle_count(const DrawItem& item, const scene::Scene& scene);

@@ -23,7 +23,8 @@ struct ColorRange {
 };
 
 ColorRange color_range(const DrawItem& item, const scene::Material& material, const scene::Light& light) {
-    if (material.reflectivity > 0 || item.emissive) return {glm::dvec3(0), glm::dvec3(1), material.diffuse.a};
+    if (material.reflectivity > 0 || item.emissive || item.metallic_roughness)
+        return {glm::dvec3(0), glm::dvec3(1), material.diffuse.a};
     const glm::dvec3 diffuse =
         material.texture == scene::kNone ? glm::dvec3(material.diffuse) : glm::dvec3(1);
     const double brightest = light.attenuation == glm::dvec3(0) ? 1 : 1 / std::max(light.attenuation.x, 1e-6);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.hpp"
 #include "scene/camera.hpp"
 
 namespace vrut::reference {
@@ -87,6 +88,30 @@ IncidentLight incident_light(const scene::Light& light, const glm::dvec3& eye, c
     return result;
 }
 
+/// In the direction of growing u, and on the side of growing v, across the normal.
+std::array<glm::dvec3, 2> tangents_of(const TriangleVertices& corners, const glm::dvec3& normal) {
+    const glm::dvec2 along = corners.texcoords[1] - corners.texcoords[0],
+                     across = corners.texcoords[2] - corners.texcoords[0];
+    const double determinant = along.x * across.y - along.y * across.x;
+    const double sign = determinant < 0 ? -1 : 1;
+    const glm::dvec3 u = sign * (corners.edges[0] * across.y - corners.edges[1] * along.y);
+    const glm::dvec3 v = sign * (corners.edges[1] * along.x - corners.edges[0] * across.x);
+    const glm::dvec3 tangent = unit(u - normal * glm::dot(normal, u));
+    const glm::dvec3 bitangent = glm::cross(normal, tangent);
+    return {tangent, glm::dot(bitangent, v) < 0 ? -bitangent : bitangent};
+}
+
+double fifth_power(double x) { return x * x * x * x * x; }
+
+/// π times GGX's distribution and Smith's masking over 4 (n·l) (n·v).
+double specular_lobe(double n_h, double n_l, double n_v, double roughness) {
+    const double alpha = roughness * roughness, squared = alpha * alpha;
+    const double spread = n_h * n_h * (squared - 1) + 1;
+    const double masking = n_l * std::sqrt(n_v * n_v * (1 - squared) + squared) +
+                           n_v * std::sqrt(n_l * n_l * (1 - squared) + squared);
+    return squared / (spread * spread) * 0.5 / masking;
+}
+
 }  // namespace
 
 SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit& hit,
@@ -101,7 +126,11 @@ SurfaceInteraction interaction_of(const TracedInstance& part, const TriangleHit&
     const bool vanishes = length < 1e-6;  // opposite neighbours
     interaction.normal = vanishes ? corners.face : normal / length;
     const bool turned = (part.two_sided || vanishes) && glm::dot(interaction.normal, ray.direction) > 0;
+    if (part.material->normal_texture != scene::kNone && !part.geometry->texcoords.empty())
+        interaction.tangents = tangents_of(corners, interaction.normal);
     if (turned) interaction.normal = -interaction.normal;
+    interaction.smooth_normal = interaction.normal;
+    interaction.side = turned ? -1 : 1;
     for (std::size_t i = 0; i < 2; ++i) {
         // The neighbouring pixel's ray, met with the triangle's plane.
         const glm::dvec3 move = ray.dorigin_dxy[i] + ray.ddirection_dxy[i] * hit.distance;
@@ -125,6 +154,57 @@ glm::dvec3 phong(const scene::Material& material, const glm::dvec3& diffuse, con
     const glm::dvec3 lit = diffuse * interaction.color + glm::dvec3(material.specular) * highlight;
     const glm::dvec3 base = glm::dvec3(material.emission) + glm::dvec3(material.ambient) * interaction.color;
     return glm::clamp(base + lit * glm::dvec3(light.color) * (lambert * intensity), 0.0, 1.0);
+}
+
+glm::dvec3 mapped_normal(const SurfaceInteraction& interaction, const glm::dvec3& components) {
+    const auto& [tangent, bitangent] = interaction.tangents;
+    if (tangent == glm::dvec3(0)) return interaction.smooth_normal;
+    const glm::dvec3 front = interaction.smooth_normal * interaction.side;
+    return unit(tangent * components.x + bitangent * components.y + front * components.z) * interaction.side;
+}
+
+glm::dvec3 metallic_roughness(const MetallicSurface& surface, const scene::Light& light,
+                              const glm::dvec3& eye, const SurfaceInteraction& interaction,
+                              const glm::dvec3& to_viewer, const SurroundingLight& surroundings) {
+    constexpr double kLeastCosine = 1e-3, kLeastRoughness = 0.05, kCoatRoughness = 0.1, kDielectric = 0.04;
+    const double roughness = std::max(surface.roughness, kLeastRoughness);
+    const glm::dvec3 matte = surface.base * (1 - surface.metallic);
+    const glm::dvec3 facing = glm::mix(glm::dvec3(kDielectric), surface.base, surface.metallic);
+    const auto cosine = [&](const glm::dvec3& normal) {
+        return std::max(glm::dot(normal, to_viewer), kLeastCosine);
+    };
+    const double n_v = cosine(interaction.normal);
+
+    const glm::dvec4 fit =
+        roughness * glm::dvec4(-1, -0.0275, -0.572, 0.022) + glm::dvec4(1, 0.0425, 1.04, -0.04);
+    const double bend = std::min(fit.x * fit.x, std::exp2(-9.28 * n_v)) * fit.x + fit.y;
+    const glm::dvec3 reflectance = facing * (-1.04 * bend + fit.z) + (1.04 * bend + fit.w);
+    glm::dvec3 color = surface.occlusion * (matte * (1.0 - reflectance) * surroundings.irradiance +
+                                            reflectance * surroundings.glossy);
+
+    const auto [to_light, arriving] = incident_light(light, eye, interaction.point);
+    const glm::dvec3 power =
+        glm::dvec3(light.color) * (arriving * (light.headlight ? surroundings.headlight : 1));
+    const glm::dvec3 half = unit(to_light + to_viewer);
+    const double grazing = fifth_power(1 - std::max(glm::dot(to_viewer, half), 0.0));
+    if (const double n_l = glm::dot(interaction.normal, to_light); n_l > 0) {
+        const glm::dvec3 fresnel = facing + (1.0 - facing) * grazing;
+        const double lobe = specular_lobe(glm::dot(interaction.normal, half), n_l, n_v, roughness);
+        color += (matte * (1.0 - fresnel) + fresnel * lobe) * power * n_l;
+    }
+
+    if (surface.clear_coat > 0) {
+        const double coat_n_v = cosine(interaction.smooth_normal);
+        const double n_l = glm::dot(interaction.smooth_normal, to_light);
+        const double through =
+            surface.clear_coat * (kDielectric + (1 - kDielectric) * fifth_power(1 - coat_n_v));
+        color = color * (1 - through) + surroundings.sharp * through;
+        if (n_l > 0)
+            color += power * (n_l * surface.clear_coat * (kDielectric + (1 - kDielectric) * grazing) *
+                              specular_lobe(glm::dot(interaction.smooth_normal, half), n_l, coat_n_v,
+                                            kCoatRoughness));
+    }
+    return base::srgb_from_linear(color);
 }
 
 }  // namespace vrut::reference

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/cube_faces.hpp"
+
 namespace vrut::reference {
 
 namespace {
@@ -60,28 +62,10 @@ double longer_side(const std::array<glm::dvec2, 2>& change, const glm::dvec2& si
     return std::max(glm::length(change[0] * size), glm::length(change[1] * size));
 }
 
-/// A camera of the cube map: where it looks, what is to its right, and up.
-struct CubeFace {
-    glm::dvec3 forward, right, up;
-};
-
-/// right = view × up.
-constexpr std::array<CubeFace, 6> kFaces{
-    CubeFace{{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},  CubeFace{{-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-    CubeFace{{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},  CubeFace{{0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
-    CubeFace{{0, 0, 1}, {-1, 0, 0}, {0, 1, 0}}, CubeFace{{0, 0, -1}, {1, 0, 0}, {0, 1, 0}}};
-
-std::size_t face_of(const glm::dvec3& direction) {
-    const glm::dvec3 size = glm::abs(direction);
-    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return 2 * static_cast<std::size_t>(axis) + (direction[axis] < 0 ? 1 : 0);
-}
-
-/// On the face's image, (0, 0) its bottom left and (1, 1) its top right.
-glm::dvec2 uv_on(const CubeFace& face, const glm::dvec3& direction) {
-    return glm::dvec2(glm::dot(direction, face.right), glm::dot(direction, face.up)) /
-               (2 * glm::dot(direction, face.forward)) +
-           0.5;
+MipMap mip_map_of_face(const std::vector<std::array<scene::Image, 6>>& levels, std::size_t face) {
+    std::vector<const scene::Image*> images;
+    for (const auto& level : levels) images.push_back(&level[face]);
+    return MipMap(images);
 }
 
 std::array<MipMap, 6> mip_maps(const std::array<const scene::Image*, 6>& images) {
@@ -91,12 +75,21 @@ std::array<MipMap, 6> mip_maps(const std::array<const scene::Image*, 6>& images)
 
 }  // namespace
 
-MipMap::MipMap(const scene::Image& image) {
-    MipLevel& first = levels_.emplace_back(MipLevel{image.width, image.height, {}});
-    first.texels.reserve(image.rgba.size() / 4);
+MipMap::MipLevel MipMap::level_of(const scene::Image& image) {
+    MipLevel level{image.width, image.height, {}};
+    level.texels.reserve(image.rgba.size() / 4);
     for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4)
-        first.texels.push_back(
+        level.texels.push_back(
             glm::dvec4(image.rgba[i], image.rgba[i + 1], image.rgba[i + 2], image.rgba[i + 3]) / 255.0);
+    return level;
+}
+
+MipMap::MipMap(const std::vector<const scene::Image*>& levels) {
+    for (const scene::Image* image : levels) levels_.push_back(level_of(*image));
+}
+
+MipMap::MipMap(const scene::Image& image) {
+    levels_.push_back(level_of(image));
     while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half_of(levels_.back()));
 }
 
@@ -134,10 +127,14 @@ glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>&
 
 CubeMap::CubeMap(const std::array<const scene::Image*, 6>& images) : faces_(mip_maps(images)) {}
 
+CubeMap::CubeMap(const std::vector<std::array<scene::Image, 6>>& levels)
+    : faces_{mip_map_of_face(levels, 0), mip_map_of_face(levels, 1), mip_map_of_face(levels, 2),
+             mip_map_of_face(levels, 3), mip_map_of_face(levels, 4), mip_map_of_face(levels, 5)} {}
+
 glm::dvec3 CubeMap::sample(const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) const {
-    const std::size_t number = face_of(direction);
-    const CubeFace& face = kFaces[number];
-    const glm::dvec2 uv = uv_on(face, direction);
+    const std::size_t number = math::cube_face_of(direction);
+    const math::CubeFace& face = math::kCubeFaces[number];
+    const glm::dvec2 uv = math::uv_on(face, direction);
     // The quotient's derivative.
     const auto duv_of = [&](const glm::dvec3& d) {
         const glm::dvec2 across(glm::dot(d, face.right), glm::dot(d, face.up));
@@ -146,6 +143,13 @@ glm::dvec3 CubeMap::sample(const glm::dvec3& direction, const std::array<glm::dv
     const MipMap& map = faces_[number];
     const double texels = longer_side({duv_of(change[0]), duv_of(change[1])}, glm::dvec2(map.width(0)));
     return trilinear(texels, map.levels(), [&](int level) { return bilinear(number, level, uv); });
+}
+
+glm::dvec3 CubeMap::sample(const glm::dvec3& direction, double level) const {
+    const std::size_t number = math::cube_face_of(direction);
+    const glm::dvec2 uv = math::uv_on(math::kCubeFaces[number], direction);
+    return trilinear(std::exp2(level), faces_[number].levels(),
+                     [&](int at) { return bilinear(number, at, uv); });
 }
 
 glm::dvec4 CubeMap::bilinear(std::size_t face, int level, const glm::dvec2& uv) const {
@@ -164,11 +168,11 @@ glm::dvec4 CubeMap::texel(std::size_t face, int level, int x, int y) const {
                 texel(face, level, inside_x, y)) /
                3.0;
     // The cube reaches from -1 to 1. Half a texel around the edge:
-    const CubeFace& from = kFaces[face];
+    const math::CubeFace& from = math::kCubeFaces[face];
     const auto across = [&](int i) { return std::clamp((2 * i + 1.0) / size - 1, -1.0, 1.0); };
     const glm::dvec3 point = from.forward * (1 - 1.0 / size) + from.right * across(x) + from.up * across(y);
-    const std::size_t to = face_of(point);
-    const glm::dvec2 uv = uv_on(kFaces[to], point) * static_cast<double>(size);
+    const std::size_t to = math::cube_face_of(point);
+    const glm::dvec2 uv = math::uv_on(math::kCubeFaces[to], point) * static_cast<double>(size);
     return faces_[to].texel(level, std::clamp(static_cast<int>(uv.x), 0, size - 1),
                             std::clamp(static_cast<int>(uv.y), 0, size - 1));
 }

@@ -16,6 +16,8 @@ enum class Wrap { repeat, clamp };
 class MipMap {
 public:
     explicit MipMap(const scene::Image& image);
+    /// Of given levels, the largest first.
+    explicit MipMap(const std::vector<const scene::Image*>& levels);
 
     int levels() const { return static_cast<int>(levels_.size()); }
     int width(int level) const { return levels_[static_cast<std::size_t>(level)].width; }
@@ -32,6 +34,7 @@ private:
         int width = 0, height = 0;
         std::vector<glm::dvec4> texels;  // rows from the bottom up
     };
+    static MipLevel level_of(const scene::Image& image);
     static MipLevel half_of(const MipLevel& level);
 
     std::vector<MipLevel> levels_;
@@ -42,10 +45,15 @@ private:
 class CubeMap {
 public:
     explicit CubeMap(const std::array<const scene::Image*, 6>& images);
+    /// Of given levels, the largest first.
+    explicit CubeMap(const std::vector<std::array<scene::Image, 6>>& levels);
 
     /// RGB in a direction of the world (of any length) that changes so from a pixel to the next; as
     /// MipMap::sample, on the face that the direction meets, and filtered across its edges.
     glm::dvec3 sample(const glm::dvec3& direction, const std::array<glm::dvec3, 2>& change) const;
+
+    /// RGB at a level, between two of them.
+    glm::dvec3 sample(const glm::dvec3& direction, double level) const;
 
 private:
     glm::dvec4 texel(std::size_t face, int level, int x, int y) const;

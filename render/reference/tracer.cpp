@@ -23,19 +23,29 @@ std::vector<std::optional<MipMap>> textures_in_use(const plan::View& view, const
         if (!map) map.emplace(image_of(view, texture));
     };
     for (const TracedInstance& part : surfaces.parts()) {
-        use(part.material->texture);
-        use(part.material->emissive_texture);
+        for (const scene::Index texture :
+             {part.material->texture, part.material->emissive_texture,
+              part.material->occlusion_roughness_metallic_texture, part.material->normal_texture})
+            use(texture);
     }
     use(view.background.texture);
     return textures;
 }
 
-std::optional<CubeMap> cube_map_of(const plan::View& view) {
-    if (!view.scene || !view.background.cube_map) return {};
+/// Of a view with a scene and a cube map.
+std::array<const scene::Image*, 6> cube_images(const plan::View& view) {
     std::array<const scene::Image*, 6> images{};
     for (std::size_t i = 0; i < 6; ++i) images[i] = &image_of(view, (*view.background.cube_map)[i]);
-    return CubeMap(images);
+    return images;
 }
+
+std::optional<CubeMap> cube_map_of(const plan::View& view) {
+    if (!view.scene || !view.background.cube_map) return {};
+    return CubeMap(cube_images(view));
+}
+
+/// By the level of EnvironmentLight::prefiltered.
+double level_of(double roughness) { return roughness * (scene::EnvironmentLight::kLevels - 1); }
 
 glm::dvec3 reflect(const glm::dvec3& v, const glm::dvec3& normal) {
     return v - normal * (2 * glm::dot(v, normal));
@@ -44,7 +54,18 @@ glm::dvec3 reflect(const glm::dvec3& v, const glm::dvec3& normal) {
 }  // namespace
 
 Tracer::Tracer(const plan::View& view)
-    : view_(view), scene_(view), textures_(textures_in_use(view, scene_)), cube_map_(cube_map_of(view)) {}
+    : view_(view),
+      scene_(view),
+      textures_(textures_in_use(view, scene_)),
+      cube_map_(cube_map_of(view)),
+      environment_light_(scene::plain_surroundings()) {
+    const auto needs_light = [](const TracedInstance& part) {
+        return part.material->metallic_roughness.has_value();
+    };
+    if (!cube_map_ || std::ranges::none_of(scene_.parts(), needs_light)) return;
+    environment_light_ = scene::prefilter(cube_images(view));
+    prefiltered_.emplace(environment_light_.prefiltered);
+}
 
 glm::dvec3 Tracer::color_at(const glm::dvec2& raster) const {
     return radiance({generate_ray(raster), raster});
@@ -101,16 +122,22 @@ glm::dvec3 Tracer::radiance(const PathRay& path) const {
 Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit& hit) const {
     const TracedInstance& part = scene_.parts()[hit.part];
     const scene::Material& material = *part.material;
-    const SurfaceInteraction interaction = interaction_of(part, hit, path.ray);
-    glm::dvec4 diffuse = material.diffuse;
-    if (material.texture != scene::kNone && !part.geometry->texcoords.empty()) {
-        const glm::dvec4 texel = textures_[static_cast<std::size_t>(material.texture)]->sample(
-            interaction.texcoord, interaction.duv_dxy, Wrap::repeat);
-        diffuse = glm::dvec4(glm::dvec3(texel), diffuse.a * texel.a);
+    SurfaceInteraction interaction = interaction_of(part, hit, path.ray);
+    const glm::dvec4 image =
+        texel(material.texture, part, interaction, glm::dvec4(glm::dvec3(material.diffuse), 1));
+    const glm::dvec3 diffuse(image);
+    const double alpha = material.diffuse.a * image.a;
+    if (interaction.tangents[0] != glm::dvec3(0) && material.normal_scale != 0) {
+        const glm::dvec4 map = texel(material.normal_texture, part, interaction, glm::dvec4(0));
+        interaction.normal =
+            mapped_normal(interaction, (2.0 * glm::dvec3(map) - 1.0) *
+                                           glm::dvec3(material.normal_scale, material.normal_scale, 1));
     }
     ShadedSurface surface{
-        phong(material, glm::dvec3(diffuse), view_.light, view_.camera.eye, interaction, -path.ray.direction),
-        part.transparent ? std::clamp(diffuse.a, 0.0, 1.0) : 1};
+        material.metallic_roughness
+            ? metallic_color(path, part, interaction, diffuse * interaction.color)
+            : phong(material, diffuse, view_.light, view_.camera.eye, interaction, -path.ray.direction),
+        part.transparent ? std::clamp(alpha, 0.0, 1.0) : 1};
     if (material.emissive != glm::dvec3(0))
         surface.color =
             base::srgb_from_linear(base::linear_from_srgb(surface.color) + emitted_light(part, interaction));
@@ -119,18 +146,46 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
     if (part.mirror && path.mirror == TracedScene::kNoInstance)
         surface.color = glm::mix(surface.color, radiance(reflected(path, hit)), reflectivity);
     else if (!part.mirror && cube_map_)
-        surface.color = glm::mix(surface.color, environment(path, interaction), reflectivity);
+        surface.color =
+            glm::mix(surface.color, environment(path, interaction, interaction.normal), reflectivity);
     return surface;
+}
+
+glm::dvec4 Tracer::texel(scene::Index texture, const TracedInstance& part,
+                         const SurfaceInteraction& interaction, const glm::dvec4& none) const {
+    if (texture == scene::kNone || part.geometry->texcoords.empty()) return none;
+    return textures_[static_cast<std::size_t>(texture)]->sample(interaction.texcoord, interaction.duv_dxy,
+                                                                Wrap::repeat);
+}
+
+glm::dvec3 Tracer::metallic_color(const PathRay& path, const TracedInstance& part,
+                                  const SurfaceInteraction& interaction,
+                                  const glm::dvec3& displayed_base) const {
+    const scene::Material& material = *part.material;
+    const glm::dvec4 image =
+        texel(material.occlusion_roughness_metallic_texture, part, interaction, glm::dvec4(1));
+    const auto [metallic, roughness, clear_coat] = *material.metallic_roughness;
+    const MetallicSurface surface{base::linear_from_srgb(glm::clamp(displayed_base, 0.0, 1.0)),
+                                  metallic * image.b, roughness * image.g, clear_coat, image.r};
+    SurroundingLight surroundings{scene::irradiance(environment_light_, interaction.normal),
+                                  glm::dvec3(scene::kPlainSurroundings),
+                                  glm::dvec3(scene::kPlainSurroundings)};
+    if (cube_map_) {
+        surroundings.glossy = base::linear_from_srgb(prefiltered_->sample(
+            reflect(path.ray.direction, interaction.normal), level_of(surface.roughness)));
+        if (clear_coat > 0)
+            surroundings.sharp =
+                base::linear_from_srgb(environment(path, interaction, interaction.smooth_normal));
+        surroundings.headlight = scene::kHeadlightInEnvironment;
+    }
+    return metallic_roughness(surface, view_.light, view_.camera.eye, interaction, -path.ray.direction,
+                              surroundings);
 }
 
 /// RGB, linear.
 glm::dvec3 Tracer::emitted_light(const TracedInstance& part, const SurfaceInteraction& interaction) const {
-    const scene::Material& material = *part.material;
-    if (material.emissive_texture == scene::kNone || part.geometry->texcoords.empty())
-        return material.emissive;
-    const glm::dvec4 texel = textures_[static_cast<std::size_t>(material.emissive_texture)]->sample(
-        interaction.texcoord, interaction.duv_dxy, Wrap::repeat);
-    return material.emissive * base::linear_from_srgb(glm::dvec3(texel));
+    const glm::dvec4 image = texel(part.material->emissive_texture, part, interaction, glm::dvec4(1));
+    return part.material->emissive * base::linear_from_srgb(glm::dvec3(image));
 }
 
 /// The new ray starts on the mirror's plane, which the triangle may miss by a rounding error; everything in
@@ -153,14 +208,15 @@ Tracer::PathRay Tracer::reflected(const PathRay& path, const TriangleHit& hit) c
     return result;
 }
 
-glm::dvec3 Tracer::environment(const PathRay& path, const SurfaceInteraction& interaction) const {
-    const glm::dvec3 &d = path.ray.direction, &n = interaction.normal;
+glm::dvec3 Tracer::environment(const PathRay& path, const SurfaceInteraction& interaction,
+                               const glm::dvec3& normal) const {
+    const glm::dvec3 &d = path.ray.direction, &n = interaction.smooth_normal;
     std::array<glm::dvec3, 2> change{};
     for (std::size_t i = 0; i < 2; ++i) {
         const glm::dvec3 &dd_dxy = path.ray.ddirection_dxy[i], &dn_dxy = interaction.dn_dxy[i];
         change[i] = reflect(dd_dxy, n) - 2.0 * (glm::dot(d, dn_dxy) * n + glm::dot(d, n) * dn_dxy);
     }
-    return cube_map_->sample(reflect(d, n), change);
+    return cube_map_->sample(reflect(d, normal), change);
 }
 
 glm::dvec3 Tracer::background(const PathRay& path) const {

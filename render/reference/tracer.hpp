@@ -45,13 +45,22 @@ private:
     ShadedSurface surface_at(const PathRay& path, const TriangleHit& hit) const;
     glm::dvec3 emitted_light(const TracedInstance& part, const SurfaceInteraction& interaction) const;
     PathRay reflected(const PathRay& path, const TriangleHit& hit) const;
-    glm::dvec3 environment(const PathRay& path, const SurfaceInteraction& interaction) const;
+    /// The value of a texture of the part's material; `none` where it shows none.
+    glm::dvec4 texel(scene::Index texture, const TracedInstance& part, const SurfaceInteraction& interaction,
+                     const glm::dvec4& none) const;
+    glm::dvec3 metallic_color(const PathRay& path, const TracedInstance& part,
+                              const SurfaceInteraction& interaction, const glm::dvec3& displayed_base) const;
+    /// What the ray that is reflected at `normal` meets of the cube map.
+    glm::dvec3 environment(const PathRay& path, const SurfaceInteraction& interaction,
+                           const glm::dvec3& normal) const;
     glm::dvec3 background(const PathRay& path) const;
 
     const plan::View& view_;
     TracedScene scene_;
     std::vector<std::optional<MipMap>> textures_;  ///< the scene's; those in use
     std::optional<CubeMap> cube_map_;
+    scene::EnvironmentLight environment_light_;
+    std::optional<CubeMap> prefiltered_;  ///< where a material needs it
 };
 
 }  // namespace vrut::reference

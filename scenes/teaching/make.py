@@ -177,6 +177,22 @@ def hills(x, y):
     return colour
 
 
+def studs(x, y):
+    """The normals of four by four rounded studs on a plane, from 0 to 1."""
+    u, v = (4 * x) % 1 * 2 - 1, (4 * y) % 1 * 2 - 1
+    radius = math.hypot(u, v)
+    slope = 0.9 * math.sin(math.pi * min(radius / 0.8, 1)) / max(radius, 1e-6)
+    return tuple(0.5 + 0.5 * c for c in unit((slope * u, slope * v, 1)))
+
+
+def worn(x, y):
+    """Paint with scratches down to the metal: darker in the joints, rough paint, smooth metal."""
+    joint = min((4 * x) % 1, 1 - (4 * x) % 1, (4 * y) % 1, 1 - (4 * y) % 1)
+    scratch = max(math.sin(31 * x + 9 * y) * math.sin(5 * x - 23 * y + 1), 0) ** 2
+    metal = min(max((scratch - 0.3) * 6, 0), 1)
+    return (mixed((0.35,), (1,), joint / 0.12)[0], 0.9 - 0.6 * metal, metal)
+
+
 FACES = ("px", "nx", "py", "ny", "pz", "nz")
 DOTS = {1: [(1, 1)], 2: [(0, 0), (2, 2)], 3: [(0, 0), (1, 1), (2, 2)], 4: [(0, 0), (0, 2), (2, 0), (2, 2)],
         5: [(0, 0), (0, 2), (1, 1), (2, 0), (2, 2)], 6: [(0, 0), (0, 1), (0, 2), (2, 0), (2, 1), (2, 2)]}
@@ -207,6 +223,8 @@ def main():
     draw("checker.png", 64, 64, checker)
     draw("leaf.png", 64, 64, leaf, channels=4)
     draw("hills.png", 96, 64, hills)
+    draw("studs.png", 64, 64, studs)
+    draw("worn.png", 64, 64, worn)
     for i, name in enumerate(FACES):
         draw(f"studio-{name}.png", 64, 64, studio(i))
     for name in sorted(os.listdir(HERE)):

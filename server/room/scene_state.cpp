@@ -276,7 +276,7 @@ namespace {
 plan::Background background_of(const protocol::BackgroundsState& backgrounds,
                                const scene::PlacedScene& placed, const glm::dvec3& eye) {
     const scene::Index node = find_node(*placed.scene, backgrounds.active);
-    if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color)};
+    if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color), scene::kNone, {}, false};
     const auto& data =
         std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
     return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),

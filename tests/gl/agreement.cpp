@@ -120,10 +120,13 @@ PixelClass kind_of_surface(const plan::View& view, const reference::TracedInstan
                            const SeenSurface& seen) {
     PixelClass kind = part.transparent ? PixelClass::glass : PixelClass::opaque;
     if (part.mirror || seen.layer.reflected) kind = std::max(kind, PixelClass::mirror);
-    if (part.material->texture != scene::kNone)
-        kind = std::max(kind,
-                        filtered(texels(image_of(view, part.material->texture), seen.interaction.duv_dxy)));
-    if (part.material->reflectivity > 0 && !part.mirror && view.background.cube_map) {
+    const scene::Material& material = *part.material;
+    for (const scene::Index texture :
+         {material.texture, material.occlusion_roughness_metallic_texture, material.normal_texture})
+        if (texture != scene::kNone && !part.geometry->texcoords.empty())
+            kind = std::max(kind, filtered(texels(image_of(view, texture), seen.interaction.duv_dxy)));
+    const bool coated = material.metallic_roughness && material.metallic_roughness->clear_coat > 0;
+    if ((coated || (material.reflectivity > 0 && !part.mirror)) && view.background.cube_map) {
         const glm::dvec3 &d = seen.layer.ray.direction, &n = seen.interaction.normal;
         std::array<glm::dvec3, 2> change{};
         for (std::size_t i = 0; i < 2; ++i)

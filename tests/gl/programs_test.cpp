@@ -48,6 +48,20 @@ scene::SceneParts everything() {
     add(shapes + 2, 0.5, 0.5, 6, {0.8, -0.8, 0.2});
     parts.materials.back().emissive = {0, 0.2, 0};
     parts.materials.back().emissive_texture = 6;
+    const auto make_metallic = [&](scene::Index metal_texture, scene::Index normal_texture) {
+        scene::Material& material = parts.materials.back();
+        material.metallic_roughness = {0.5, 0.4, 0.5};
+        material.occlusion_roughness_metallic_texture = metal_texture;
+        material.normal_texture = normal_texture;
+    };
+    add(shapes + 1, 1, 0, scene::kNone, {-0.4, 0.9, 0.6});
+    make_metallic(scene::kNone, scene::kNone);
+    add(shapes, 1, 0.5, scene::kNone, {0.1, 0.2, -1.5});  // a mirror
+    make_metallic(scene::kNone, scene::kNone);
+    add(shapes + 2, 0.5, 0, 6, {0.4, 0.9, 0.6});
+    make_metallic(6, scene::kNone);
+    add(shapes + 2, 1, 0, 6, {0.4, -0.9, 0.6});
+    parts.materials.back().normal_texture = 6;
     scene::Id id = 20;
     using Type = scene::LightData::Type;
     for (const Type type : {Type::point, Type::directional, Type::spot}) {

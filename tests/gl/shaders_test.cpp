@@ -3,7 +3,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,16 +18,35 @@ namespace {
 
 constexpr int kSkipped = 77;  // for CTest
 
-std::string name_of(const gl::SurfaceVariant& variant) {
-    return "surface-" + std::to_string(static_cast<int>(variant.kind)) + "-" +
-           std::to_string(static_cast<int>(variant.light)) + (variant.textured ? "-textured" : "") +
-           (variant.environment ? "-environment" : "") + (variant.clipped ? "-clipped" : "") +
-           (variant.lit_at == plan::Methods::Lighting::vertex ? "-vertex" : "") +
-           (variant.double_single ? "-double-single" : "") + (variant.anisotropic ? "-anisotropic" : "") +
-           (variant.instanced ? "-instanced" : "");
+/// The name that a line defines without a value; else empty.
+std::string defined_by(const std::string& line) {
+    const std::string define = "#define ";
+    const std::string name = line.starts_with(define) ? line.substr(define.size()) : "";
+    return name.find_first_of(" (") == std::string::npos ? name : "";
 }
 
-/// Files of a folder, written as they are named, for glslangValidator.
+/// A stage without the definitions that it does not ask for. Those of many variants are the same.
+std::string without_unused_definitions(const std::string& stage) {
+    std::istringstream lines(stage);
+    std::string result;
+    for (std::string line; std::getline(lines, line);) {
+        const std::string name = defined_by(line);
+        if (name.empty() || stage.find(name) != stage.rfind(name)) result += line + "\n";
+    }
+    return result;
+}
+
+/// The definitions of a stage that another asks for, too: all on which what it hands over can depend.
+std::string shared_definitions(const std::string& stage, const std::string& other) {
+    std::istringstream lines(stage);
+    std::string shared;
+    for (std::string line; std::getline(lines, line);)
+        if (const std::string name = defined_by(line); !name.empty() && other.find(name) != std::string::npos)
+            shared += name + " ";
+    return shared;
+}
+
+/// Files of a folder for glslangValidator: each different stage once, by its number.
 class Validator {
 public:
     explicit Validator(std::filesystem::path folder) : folder_(std::move(folder)) {
@@ -33,19 +54,35 @@ public:
         std::filesystem::create_directories(folder_);
     }
 
-    void add(const std::string& name, const gl::ProgramSource& program) {
-        std::ofstream(folder_ / (name + ".vert")) << program.vertex;
-        std::ofstream(folder_ / (name + ".frag")) << program.fragment;
+    void add(const gl::ProgramSource& program, bool linked = true) {
+        const std::string vertex = add(program.vertex, ".vert"), fragment = add(program.fragment, ".frag");
+        if (linked)
+            linked_.try_emplace(
+                vertex + shared_definitions(program.fragment, without_unused_definitions(program.vertex)),
+                vertex + " " + fragment);
         ++programs_;
     }
     int programs() const { return programs_; }
+    std::size_t stages() const { return files_.size(); }
+    std::size_t links() const { return linked_.size(); }
 
     /// All that was added, each stage by itself.
     bool compile() const { return run("*.vert *.frag"); }
     /// What the fragment shader reads must be what the vertex shader writes.
-    bool link(const std::string& name) const { return run("-l " + name + ".vert " + name + ".frag"); }
+    int failed_links() const {
+        int failed = 0;
+        for (const auto& [key, files] : linked_) failed += !run("-l " + files);
+        return failed;
+    }
 
 private:
+    std::string add(const std::string& stage, const std::string& ending) {
+        const std::string text = without_unused_definitions(stage);
+        const auto [file, is_new] = files_.try_emplace(text, std::to_string(files_.size()) + ending);
+        if (is_new) std::ofstream(folder_ / file->second) << text;
+        return file->second;
+    }
+
     /// What is wrong goes to standard output.
     bool run(const std::string& files) const {
         const std::string command =
@@ -59,6 +96,8 @@ private:
     }
 
     std::filesystem::path folder_;
+    std::map<std::string, std::string> files_;   // by text
+    std::map<std::string, std::string> linked_;  // by what they can hand over
     int programs_ = 0;
 };
 
@@ -76,29 +115,24 @@ int main(int, char** arguments) {
         return kSkipped;
     }
     Validator validator{std::string(arguments[0]) + ".sources"};
-    std::vector<std::string> linked;
     std::set<std::string> used;
     for (std::size_t i = 0; i < gl::kFixedPrograms; ++i) {
         const gl::ProgramSource source = gl::source_of(static_cast<gl::FixedProgram>(i));
         used.insert({source.vertex, source.fragment});
-        validator.add(linked.emplace_back("fixed-" + std::to_string(i)), source);
+        validator.add(source);
     }
-    for (const gl::SurfaceVariant& variant : gl::reachable_surface_variants()) {
-        validator.add(name_of(variant), gl::source_of(variant));
-        // The light changes nothing between the stages, and every combination has a point light.
-        if (variant.light == gl::SurfaceVariant::Light::point) linked.push_back(name_of(variant));
-    }
-    validator.add(linked.emplace_back("check_drawing"),
-                  {gl::shader_source("check_drawing.vert"), gl::shader_source("check_drawing.frag")});
+    // The light changes nothing between the stages, and every combination has a point light.
+    for (const gl::SurfaceVariant& variant : gl::reachable_surface_variants())
+        validator.add(gl::source_of(variant), variant.light == gl::SurfaceVariant::Light::point);
+    validator.add({gl::shader_source("check_drawing.vert"), gl::shader_source("check_drawing.frag")});
     int failed = !validator.compile();
-    if (failed == 0)
-        for (const std::string& name : linked) failed += !validator.link(name);
+    if (failed == 0) failed = validator.failed_links();
     for (const gl::ShaderSource& source : gl::shader_sources())
         if (is_unused(source, used)) {
             std::printf("%s is a stage of no program\n", std::string(source.file).c_str());
             ++failed;
         }
-    std::printf("%d programs compiled, %zu linked, %d failures\n", validator.programs(), linked.size(),
-                failed);
+    std::printf("%d programs of %zu stages compiled, %zu linked, %d failures\n", validator.programs(),
+                validator.stages(), validator.links(), failed);
     return failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

@@ -612,14 +612,14 @@ TEST_CASE("the view has the active background's colour and pictures, or else the
          {}});
     const auto background = [&]() -> const plan::Background& { return stage.room.visible().background; };
 
-    CHECK(background() == plan::Background{{0.1, 0.2, 0.3}, 0, {}});
+    CHECK(background() == plan::Background{{0.1, 0.2, 0.3}, 0, {}, false});
     stage.say("a", patch(R"({"backgrounds":{"active":"3","items":{"3":{"color":[1,0,0,1]}}}})"));
-    CHECK(background() == plan::Background{{1, 0, 0}, 0, sky.cube_textures});
+    CHECK(background() == plan::Background{{1, 0, 0}, 0, sky.cube_textures, false});
     stage.say("a", patch(R"({"backgrounds":{"active":"color"}})"));
     CHECK(background() == plan::Background());
     stage.say("a",
               patch(R"({"backgrounds":{"active":"2","color":[0,0,1,1]},"nodes":{"1":{"active":false}}})"));
-    CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, {}});
+    CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, {}, false});
 }
 
 TEST_CASE("of the backgrounds of a LOD the one is active that the eye's distance chooses") {

@@ -32,17 +32,21 @@ enum SurfaceUniform : GLint {
     origin_at = 14,
     ambient_at = 15,
     emissive_at = 16,
+    normal_scale_at = 17,
 };
 
 constexpr GLuint kViewUniformsBinding = 0;
 constexpr GLuint kTextureUnit = 0, kEnvironmentUnit = 1, kEmissiveUnit = 3;
+constexpr GLuint kPrefilteredUnit = 4, kOcclusionRoughnessMetallicUnit = 5, kNormalUnit = 6;
 
 /// What holds for all surfaces of a view, in view space; laid out as std140 has it.
 struct ViewUniforms {
     glm::mat4 clip_from_view;
     glm::mat3x4 world_from_view;  // of directions
-    glm::vec4 light_color, attenuation, light_position, light_direction;
-    glm::vec4 cone;  // x, y: 1 - cos where the light is full, and where it ends
+    glm::vec4 light_color;        // a: the part of it that is left beside the surroundings
+    glm::vec4 attenuation, light_position, light_direction;
+    glm::vec4 cone;                      // x, y: 1 - cos where the light is full, and where it ends
+    std::array<glm::vec4, 9> harmonics;  // scene::EnvironmentLight's
 };
 
 void set(GLint location, const glm::vec3& value) { glUniform3fv(location, 1, glm::value_ptr(value)); }
@@ -53,12 +57,19 @@ double short_of_one(double degrees) {
     return 2 * sine * sine;
 }
 
-ViewUniforms view_uniforms_of(const CameraMatrices& camera, const plan::View& view) {
+std::array<glm::dvec3, 9> harmonics_of(const plan::View& view, GpuScene* scene) {
+    if (!scene || !scene->is_lit_by_environment() || !view.background.cube_map)
+        return scene::plain_surroundings().harmonics;
+    return scene->environment_light(*view.background.cube_map).harmonics;
+}
+
+ViewUniforms view_uniforms_of(const CameraMatrices& camera, const plan::View& view, GpuScene* scene) {
     const scene::Light& light = view.light;
     ViewUniforms uniforms{};
     uniforms.clip_from_view = glm::mat4(camera.clip_from_view);
     uniforms.world_from_view = glm::mat3x4(glm::mat3(glm::transpose(glm::dmat3(camera.view_from_world))));
-    uniforms.light_color = glm::vec4(light.color);
+    const bool beside = light.headlight && view.background.cube_map;
+    uniforms.light_color = glm::vec4(glm::vec3(light.color), beside ? scene::kHeadlightInEnvironment : 1);
     uniforms.attenuation = light.attenuation == glm::dvec3(0) ? glm::vec4(1, 0, 0, 0)
                                                               : glm::vec4(glm::vec3(light.attenuation), 0);
     glm::dvec3 position(camera.view_from_world *
@@ -70,6 +81,8 @@ ViewUniforms view_uniforms_of(const CameraMatrices& camera, const plan::View& vi
     uniforms.light_direction = glm::vec4(glm::vec3(glm::dmat3(camera.view_from_world) * light.direction), 0);
     uniforms.cone = {static_cast<float>(short_of_one(0.45 * light.angle)),
                      static_cast<float>(short_of_one(0.5 * light.angle)), 0, 0};
+    std::ranges::transform(harmonics_of(view, scene), uniforms.harmonics.begin(),
+                           [](const glm::dvec3& rgb) { return glm::vec4(glm::vec3(rgb), 0); });
     return uniforms;
 }
 
@@ -147,7 +160,7 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
     light_ = kind_of(view.light, camera);
     methods_ = view.methods;
     if (!view_uniforms_) view_uniforms_ = make_dynamic_buffer("uniforms", sizeof(ViewUniforms));
-    const ViewUniforms uniforms = view_uniforms_of(camera, view);
+    const ViewUniforms uniforms = view_uniforms_of(camera, view, scene);
     glNamedBufferSubData(view_uniforms_.get(), 0, sizeof uniforms, &uniforms);
     glBindBufferBase(GL_UNIFORM_BUFFER, kViewUniformsBinding, view_uniforms_.get());
 }
@@ -155,17 +168,24 @@ void SurfacePrograms::begin(const CameraMatrices& camera, const plan::View& view
 SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawItem& item,
                                            const GpuGeometry& geometry) const {
     const bool textured = item.texture != scene::kNone;
-    SurfaceVariant variant{kind, light_, textured, item.environment, item.clip_plane.has_value()};
-    variant.lit_at = methods_.light;
+    SurfaceVariant variant{kind, light_, textured, reflects_environment(item), item.clip_plane.has_value()};
     variant.colored = item.colored;
     variant.emissive = item.emissive;
+    variant.metallic_roughness = item.metallic_roughness;
+    variant.mapped = plan::is_mapped(item);
+    if (!variant.metallic_roughness && !variant.mapped) variant.lit_at = methods_.light;
     variant.double_single = geometry.is_double_single();
-    variant.anisotropic = textured && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic;
+    variant.anisotropic =
+        (textured || variant.mapped) && methods_.texture_filter == plan::Methods::TextureFilter::anisotropic;
     return variant;
 }
 
-const GlTexture& SurfacePrograms::emissive_texture_of(const plan::DrawItem& item) {
-    if (item.emissive_texture != scene::kNone) return scene_->texture(item.emissive_texture);
+bool SurfacePrograms::reflects_environment(const plan::DrawItem& item) const {
+    return item.environment || (item.metallic_roughness && cube_map_);
+}
+
+const GlTexture& SurfacePrograms::texture_or_white(scene::Index texture) {
+    if (texture != scene::kNone) return scene_->texture(texture);
     if (!white_) {
         constexpr std::array<std::uint8_t, 4> kWhite{255, 255, 255, 255};
         white_ = make_texture(GL_RGBA8, 1, 1);
@@ -176,8 +196,26 @@ const GlTexture& SurfacePrograms::emissive_texture_of(const plan::DrawItem& item
 
 void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
     if (item.texture != scene::kNone) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
-    if (item.emissive) glBindTextureUnit(kEmissiveUnit, emissive_texture_of(item).get());
-    if (item.environment) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
+    if (item.emissive) glBindTextureUnit(kEmissiveUnit, texture_or_white(item.emissive_texture).get());
+    if (reflects_environment(item)) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
+    if (item.metallic_roughness && cube_map_)
+        glBindTextureUnit(kPrefilteredUnit, scene_->environment_light(*cube_map_).prefiltered.get());
+    if (!plan::is_mapped(item)) return;
+    glBindTextureUnit(kOcclusionRoughnessMetallicUnit,
+                      texture_or_white(item.occlusion_roughness_metallic_texture).get());
+    glBindTextureUnit(kNormalUnit, texture_or_white(item.normal_texture).get());
+}
+
+/// A mirror that is seen in another, or is none for want of room, reflects as plain surfaces do.
+double reflectivity_of(const plan::DrawItem& item, const scene::Material& material, bool mirror) {
+    return item.environment || mirror ? material.reflectivity : 0;
+}
+
+/// Of the programs' uniform `specular`.
+glm::vec3 highlight_of(const plan::DrawItem& item, const scene::Material& material) {
+    if (!item.metallic_roughness) return glm::vec3(material.specular);
+    const scene::MetallicRoughness& surface = *material.metallic_roughness;
+    return {surface.metallic, surface.roughness, surface.clear_coat};
 }
 
 void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const GpuGeometry& geometry,
@@ -191,13 +229,18 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     if (item.emissive) set(emissive_at, glm::vec3(material.emissive));
     if (item.colored) set(ambient_at, glm::vec3(material.ambient));
     set(diffuse_at, glm::vec3(material.diffuse));
-    set(specular_at, glm::vec3(material.specular));
+    set(specular_at, highlight_of(item, material));
     glUniform1f(shininess_at, static_cast<float>(material.shininess));
     glUniform1f(two_sided_at, is_two_sided(item) || kind == SurfaceKind::edges ? 1.0F : 0.0F);
     if (kind == SurfaceKind::glass || kind == SurfaceKind::per_pixel_glass)
         glUniform1f(alpha_at, static_cast<float>(material.diffuse.a));
-    if (item.environment || kind == SurfaceKind::mirror)
-        glUniform1f(reflectivity_at, static_cast<float>(material.reflectivity));
+    const bool mirror = kind == SurfaceKind::mirror;
+    if (reflects_environment(item) || mirror)
+        glUniform1f(reflectivity_at, static_cast<float>(reflectivity_of(item, material, mirror)));
+    if (plan::is_mapped(item)) {
+        const bool has_normals = item.normal_texture != scene::kNone;
+        glUniform1f(normal_scale_at, has_normals ? static_cast<float>(material.normal_scale) : 0.0F);
+    }
     if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
 }
 
@@ -207,8 +250,8 @@ void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry
     instance.view_from_local = view_from_local(item, geometry, glm::vec3(0));
     instance.normal_matrix = glm::mat3x4(normal_matrix(glm::dmat3(item.view_from_node), item.mirrored));
     instance.base_sides = {base_of(material), is_two_sided(item) ? 1 : 0};
-    instance.diffuse_reflectivity = {glm::vec3(material.diffuse), material.reflectivity};
-    instance.specular_shininess = {glm::vec3(material.specular), material.shininess};
+    instance.diffuse_reflectivity = {glm::vec3(material.diffuse), reflectivity_of(item, material, false)};
+    instance.specular_shininess = {highlight_of(item, material), material.shininess};
     if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
     draws_.push_back({static_cast<GLuint>(geometry.index_count), 1,
                       item.mirrored ? geometry.first_turned_index : geometry.first_index,
@@ -275,7 +318,7 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
         const plan::DrawItem& first = items.front();
         const GpuGeometry& geometry = scene_->geometry(first);
         std::size_t length = 1;
-        if (geometry.buffers->shared && !first.emissive) {
+        if (geometry.buffers->shared && !first.emissive && !plan::is_mapped(first)) {
             length = run_length(items);
             draw_run(items.first(length), state, material, stats);
         } else {

@@ -50,7 +50,8 @@ private:
     SurfaceVariant variant_of(SurfaceKind kind, const plan::DrawItem& item,
                               const GpuGeometry& geometry) const;
     void bind_textures(const plan::DrawItem& item);
-    const GlTexture& emissive_texture_of(const plan::DrawItem& item);
+    bool reflects_environment(const plan::DrawItem& item) const;
+    const GlTexture& texture_or_white(scene::Index texture);
     std::size_t run_length(std::span<const plan::DrawItem> items);
     void add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
                       const scene::Material& material);
@@ -62,7 +63,7 @@ private:
     SurfaceVariant::Light light_ = SurfaceVariant::Light::headlight;
     plan::Methods methods_;
     GlBuffer view_uniforms_;
-    GlTexture white_;  // stands for an emissive image where there is none
+    GlTexture white_;  // stands for an image where there is none
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
     std::vector<GpuInstance> instances_;  // of the draw call to come

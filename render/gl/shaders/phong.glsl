@@ -1,5 +1,5 @@
-// Phong's equation, for the stage that evaluates it. The eye is the origin. After view_uniforms.glsl; the light is a
-// HEADLIGHT, a POINT, DIRECTIONAL or a SPOT.
+// The light at a point, and Phong's equation, for the stage that evaluates it. The eye is the origin. After
+// view_uniforms.glsl; the light is a HEADLIGHT, a POINT, DIRECTIONAL or a SPOT.
 
 float attenuated(float d) { return 1 / max(dot(attenuation.xyz, vec3(1, d, d * d)), 1e-6); }
 
@@ -11,8 +11,8 @@ float in_cone(vec3 from_light) {
     return t * t * (3 - 2 * t);
 }
 
-// How much light the matte and the shiny part of a surface send to the eye, which is at a distance d.
-vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d, float shininess) {
+// The direction to the light, and how much of it arrives where the eye is at a distance d.
+vec4 incident_light(vec3 at, vec3 to_eye, float d) {
 #if defined(HEADLIGHT)
     vec3 to_light = to_eye;
     float intensity = attenuated(d);
@@ -28,6 +28,14 @@ vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d, float shininess) {
     intensity *= in_cone(-to_light);
 #endif
 #endif
+    return vec4(to_light, intensity);
+}
+
+// How much light the matte and the shiny part of a surface send to the eye, which is at a distance d.
+vec2 phong(vec3 at, vec3 n, vec3 to_eye, float d, float shininess) {
+    vec4 light = incident_light(at, to_eye, d);
+    vec3 to_light = light.xyz;
+    float intensity = light.w;
     float lambert = max(dot(to_light, n), 0);
     float highlight = max(dot(reflect(-to_light, n), to_eye), 1e-30);  // pow(0, 0) is undefined
     return lambert * intensity * vec2(1, pow(highlight, shininess));

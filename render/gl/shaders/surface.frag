@@ -3,8 +3,14 @@
 #ifndef LIT_AT_VERTEX
 #include "phong.glsl"
 #endif
-#if defined(TEXTURED) || defined(EMISSIVE) || defined(ENVIRONMENT)
+#if defined(TEXTURED) || defined(EMISSIVE) || defined(ENVIRONMENT) || defined(MAPPED)
 #include "texture_filter.glsl"
+#endif
+#if defined(EMISSIVE) || defined(METALLIC_ROUGHNESS)
+#include "srgb.glsl"
+#endif
+#ifdef METALLIC_ROUGHNESS
+#include "metallic_roughness.glsl"
 #endif
 #ifdef LAYERED
 #include "per_pixel_lists.glsl"
@@ -54,9 +60,13 @@ layout(binding = 0) uniform sampler2D image;
 #ifdef EMISSIVE
 layout(binding = 3) uniform sampler2D emissive_image;
 layout(location = 16) uniform vec3 emissive;
-#include "srgb.glsl"
 #endif
-#if defined(TEXTURED) || defined(EMISSIVE)
+#ifdef MAPPED
+layout(binding = 5) uniform sampler2D occlusion_roughness_metallic_image;
+layout(binding = 6) uniform sampler2D normal_image;
+layout(location = 17) uniform float normal_scale;  // 0 without an image
+#endif
+#if defined(TEXTURED) || defined(EMISSIVE) || defined(MAPPED)
 in vec2 uv;
 #endif
 #ifdef COLORED
@@ -65,6 +75,9 @@ in vec3 vertex_color;
 #endif
 #ifdef ENVIRONMENT
 layout(binding = 1) uniform samplerCube environment_map;
+#ifdef METALLIC_ROUGHNESS
+layout(binding = 4) uniform samplerCube prefiltered_map;
+#endif
 #endif
 
 #ifdef NEEDS_NORMAL
@@ -82,13 +95,83 @@ vec3 normal_to(vec3 to_eye) {
 }
 #endif
 
+#ifdef MAPPED
+// `n` with what the normal map tells. The tangents are those of the pixel's triangle, across the normal.
+vec3 mapped_normal(vec3 n) {
+    vec3 across = dFdx(view_position), upwards = dFdy(view_position);
+    vec2 duv_across = dFdx(uv), duv_upwards = dFdy(uv);
+    float turn = duv_across.x * duv_upwards.y - duv_across.y * duv_upwards.x < 0 ? -1 : 1;
+    vec3 u = turn * (across * duv_upwards.y - upwards * duv_across.y);
+    vec3 v = turn * (upwards * duv_across.x - across * duv_upwards.x);
+    float side = dot(n, view_normal) < 0 ? -1 : 1;  // the map lies on the front
+    vec3 front = n * side, tangent = u - front * dot(front, u);
+    float size = length(tangent);
+    if (!(size > 0)) return n;
+    tangent /= size;
+    vec3 bitangent = cross(front, tangent);
+    if (dot(bitangent, v) < 0) bitangent = -bitangent;
+    vec3 components = 2 * sample_filtered(normal_image, uv).rgb - 1;
+    components = normal_scale == 0 ? vec3(0, 0, 1) : components * vec3(normal_scale, normal_scale, 1);
+    return side * normalize(tangent * components.x + bitangent * components.y + front * components.z);
+}
+#endif
+
+#ifdef ENVIRONMENT
+// What the ray that is reflected at `n` meets.
+vec3 reflected_environment(vec3 to_eye, vec3 n, vec3 smooth_normal) {
+    // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
+    // direction follow by the chain rule, but for the part along it, which does not turn it.
+    vec3 ray = world_from_view * -to_eye;
+    vec3 normal = world_from_view * (dot(view_normal, view_normal) < 1e-12 ? smooth_normal : view_normal);
+    vec3 scaled = 2 / dot(normal, normal) * normal;
+    float along = dot(ray, scaled);
+    vec3 reflected = ray - along * normal;
+    vec3 dray = dFdx(ray), dnormal = dFdx(normal);
+    vec3 ddx = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
+    dray = dFdy(ray), dnormal = dFdy(normal);
+    vec3 ddy = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
+#ifdef MAPPED
+    reflected = reflect(ray, world_from_view * n);
+#endif
+    return sample_environment(environment_map, reflected, ddx, ddy);
+}
+#endif
+
+#ifdef METALLIC_ROUGHNESS
+// As displayed; `displayed_base` is the base colour as displayed.
+vec3 metallic_color(vec3 displayed_base, vec3 to_eye, float d, vec3 n, vec3 smooth_normal) {
+    MetallicSurface surface =
+        MetallicSurface(linear_from_srgb(displayed_base), specular.x, specular.y, specular.z, 1);
+#ifdef MAPPED
+    vec3 texel = sample_filtered(occlusion_roughness_metallic_image, uv).rgb;
+    surface.occlusion = texel.r;
+    surface.roughness *= texel.g;
+    surface.metallic *= texel.b;
+#endif
+#ifdef ENVIRONMENT
+    vec3 direction = world_from_view * reflect(-to_eye, n);
+    vec3 glossy = linear_from_srgb(sample_prefiltered(prefiltered_map, direction, surface.roughness));
+    vec3 sharp = vec3(0);
+    if (surface.clear_coat > 0)
+        sharp = linear_from_srgb(reflected_environment(to_eye, smooth_normal, smooth_normal));
+#else
+    vec3 glossy = harmonics[0].rgb, sharp = glossy;
+#endif
+    vec4 light = incident_light(view_position, to_eye, d);
+    return srgb_from_linear(metallic_roughness(surface, light, n, smooth_normal, to_eye, glossy, sharp));
+}
+#endif
+
 void main() {
 #ifdef NEEDS_NORMAL
     float d = length(view_position);
     vec3 to_eye = -view_position / d;
-    vec3 n = normal_to(to_eye);
+    vec3 smooth_normal = normal_to(to_eye), n = smooth_normal;
+#ifdef MAPPED
+    n = mapped_normal(smooth_normal);
 #endif
-#ifndef LIT_AT_VERTEX
+#endif
+#if !defined(LIT_AT_VERTEX) && !defined(METALLIC_ROUGHNESS)
     vec2 light = phong(view_position, n, to_eye, d, shininess);
 #endif
 #ifdef TEXTURED
@@ -99,28 +182,23 @@ void main() {
 #endif
 #ifdef COLORED
     matte *= vertex_color;
+#endif
+#ifdef METALLIC_ROUGHNESS
+    vec3 own = metallic_color(clamp(matte, 0, 1), to_eye, d, n, smooth_normal);
+#else
+#ifdef COLORED
     vec3 unlit = base + ambient * vertex_color;
 #else
     vec3 unlit = base;
 #endif
     vec3 own = clamp(unlit + (matte * light.x + specular * light.y) * light_color.rgb, 0, 1);
+#endif
 #ifdef EMISSIVE
     own = srgb_from_linear(linear_from_srgb(own) +
                            emissive * linear_from_srgb(sample_filtered(emissive_image, uv).rgb));
 #endif
-#ifdef ENVIRONMENT
-    // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
-    // direction follow by the chain rule, but for the part along it, which does not turn it.
-    vec3 ray = world_from_view * -to_eye;
-    vec3 normal = world_from_view * (dot(view_normal, view_normal) < 1e-12 ? n : view_normal);
-    vec3 scaled = 2 / dot(normal, normal) * normal;
-    float along = dot(ray, scaled);
-    vec3 reflected = ray - along * normal;
-    vec3 dray = dFdx(ray), dnormal = dFdx(normal);
-    vec3 ddx = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
-    dray = dFdy(ray), dnormal = dFdy(normal);
-    vec3 ddy = dray - along * dnormal - (dot(dnormal, reflected) + dot(dray, normal)) * scaled;
-    own = mix(own, sample_environment(environment_map, reflected, ddx, ddy), reflectivity);
+#if defined(ENVIRONMENT) && !defined(MIRROR)
+    if (reflectivity != 0) own = mix(own, reflected_environment(to_eye, n, smooth_normal), reflectivity);
 #endif
 #ifdef MIRROR
     own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);

@@ -34,7 +34,7 @@ out vec3 view_position;
 out vec3 view_normal;
 #endif
 invariant gl_Position;  // one depth in all programs
-#if defined(TEXTURED) || defined(EMISSIVE)
+#if defined(TEXTURED) || defined(EMISSIVE) || defined(MAPPED)
 layout(location = 2) in vec2 texcoord;
 out vec2 uv;
 #endif
@@ -56,7 +56,7 @@ void main() {
 #ifdef CLIPPED
     gl_ClipDistance[0] = dot(clip_plane, vec4(local, 1));
 #endif
-#if defined(TEXTURED) || defined(EMISSIVE)
+#if defined(TEXTURED) || defined(EMISSIVE) || defined(MAPPED)
     uv = texcoord;
 #endif
 #ifdef COLORED
