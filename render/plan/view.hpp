@@ -27,8 +27,8 @@ inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 /
 struct Background {
     glm::dvec3 color = kDefaultBackground;
     scene::Index texture = scene::kNone;
-    std::optional<std::array<scene::Index, 6>> cube_map;  ///< px nx py ny pz nz
-    bool only_reflected = false;                          ///< the cube map is not seen behind the surfaces
+    std::optional<std::array<scene::Index, 6>> cube_map = {};  ///< px nx py ny pz nz
+    bool only_reflected = false;                               ///< not seen behind the surfaces
 
     bool shows_cube_map() const { return cube_map && !only_reflected; }
     bool operator==(const Background&) const = default;
