@@ -19,8 +19,7 @@ class DetailLevels;
 
 namespace vrut::plan {
 
-/// The plain background: 230/255, 235/255, 242/255.
-inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+using scene::kDefaultBackground;
 
 /// The background: a cube map, else a texture stretched over the view, else a colour. Indices refer to the
 /// scene's textures. A cube map is also what surfaces reflect.
