@@ -6,6 +6,7 @@
 #include "io/assimp/scene.hpp"
 #include "io/gltf/reader.hpp"
 #include "io/osb/scene.hpp"
+#include "io/studio/studio.hpp"
 #include "io/vrut/text_reader.hpp"
 
 namespace vrut::io {
@@ -37,6 +38,13 @@ const ReaderEntry* reader_of(const std::filesystem::path& path) {
     for (const ReaderEntry& format : kReaders)
         if (extension == format.extension) return &format;
     return nullptr;
+}
+
+bool wants_studio(const ReaderEntry& format, const scene::SceneParts& parts, Studio studio) {
+    if (studio != Studio::automatic) return studio == Studio::on;
+    return format.read != read_vrut_file && std::ranges::none_of(parts.nodes, [](const auto& part) {
+               return std::holds_alternative<scene::LightData>(part.node.data);
+           });
 }
 
 }  // namespace
@@ -86,7 +94,9 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
     if (format == nullptr)
         return tl::unexpected(file + ": this file extension cannot be read; supported are " +
                               read_extensions());
-    return format->read(path, progress, options);
+    PartsResult parts = format->read(path, progress, options);
+    if (parts && wants_studio(*format, *parts, options.studio)) add_studio(*parts);
+    return parts;
 }
 
 ReadResult read_scene(const std::filesystem::path& path, const ReadProgress& progress,

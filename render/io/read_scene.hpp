@@ -16,10 +16,15 @@ using ReadResult = tl::expected<scene::Scene, std::string>;
 /// Called now and then with the fraction that has been read, 0 to 1.
 using ReadProgress = std::function<void(double)>;
 
+/// Whether a scene is shown in a studio (add_studio()). Automatic: if its format is not scene text, and it
+/// has no light of its own.
+enum class Studio { automatic, on, off };
+
 /// What files do not tell of themselves.
 struct ReadOptions {
     std::vector<std::filesystem::path> texture_folders{};  ///< where else textures lie, see read_textures()
     bool z_up = false;                                     ///< z is up in OBJ, STL and PLY, not y
+    Studio studio = Studio::off;
 };
 
 /// What the reader of a format hands over, or the same kind of sentence.
@@ -39,7 +44,7 @@ std::string read_extensions();
 /// Returns true if a foreign library reads this ending: one that may crash, or take whatever memory there is.
 bool has_foreign_reader(const std::filesystem::path& path);
 
-/// What read_scene() reads, before Scene::build.
+/// What read_scene() reads, before Scene::build, with its studio.
 PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgress& progress = {},
                              const ReadOptions& options = {});
 

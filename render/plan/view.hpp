@@ -19,16 +19,15 @@ class DetailLevels;
 
 namespace vrut::plan {
 
-/// The plain background: 230/255, 235/255, 242/255.
-inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+using scene::kDefaultBackground;
 
 /// The background: a cube map, else a texture stretched over the view, else a colour. Indices refer to the
 /// scene's textures. A cube map is also what surfaces reflect.
 struct Background {
     glm::dvec3 color = kDefaultBackground;
     scene::Index texture = scene::kNone;
-    std::optional<std::array<scene::Index, 6>> cube_map;  ///< px nx py ny pz nz
-    bool only_reflected = false;                          ///< the cube map is not seen behind the surfaces
+    std::optional<std::array<scene::Index, 6>> cube_map = {};  ///< px nx py ny pz nz
+    bool only_reflected = false;                               ///< not seen behind the surfaces
 
     bool shows_cube_map() const { return cube_map && !only_reflected; }
     bool operator==(const Background&) const = default;

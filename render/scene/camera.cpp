@@ -128,18 +128,23 @@ Index lowest_camera_node(const Scene& scene) {
     return kNone;
 }
 
-/// True if nothing can be drawn, too.
+/// Presentation does not count. True if nothing else can be drawn, too.
 bool sees_something(const PlacedScene& placed, const Camera& camera) {
     constexpr double kAspect = 16.0 / 9;  // a tablet's, lying
     const math::Frustum frustum = math::frustum_of(projection_of(camera, kAspect));
     const glm::dmat4 view = view_from_world(camera);
     const Scene& scene = *placed.scene;
-    return placed.drawable.empty() || std::ranges::any_of(placed.drawable, [&](Index node) {
-               const auto at = static_cast<std::size_t>(node);
-               const Index geometry = std::get<GeometryData>(scene.nodes()[at].data).geometry;
-               return !math::is_outside(frustum, view * placed.world[at],
-                                        scene.geometries()[static_cast<std::size_t>(geometry)].bounds);
-           });
+    bool nothing = true;
+    for (const Index node : placed.drawable) {
+        if (scene.is_presentation(node)) continue;
+        nothing = false;
+        const auto at = static_cast<std::size_t>(node);
+        const Index geometry = std::get<GeometryData>(scene.nodes()[at].data).geometry;
+        if (!math::is_outside(frustum, view * placed.world[at],
+                              scene.geometries()[static_cast<std::size_t>(geometry)].bounds))
+            return true;
+    }
+    return nothing;
 }
 
 }  // namespace

@@ -6,6 +6,9 @@
 
 namespace vrut::scene {
 
+/// The plain background: 230/255, 235/255, 242/255.
+inline constexpr glm::dvec3 kDefaultBackground{230.0 / 255, 235.0 / 255, 242.0 / 255};
+
 /// Realistic: in materials. Stylized: dark blue faces and light blue edges, to bring out shapes.
 enum class DrawMode { realistic, stylized };
 

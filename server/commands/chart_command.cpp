@@ -33,9 +33,8 @@ void require_size(const ChartArguments& arguments, const renderer::Renderer& ren
 }
 
 Subject subject_of(const fs::path& path, const ChartArguments& arguments, observe::Progress& progress) {
-    auto scene = scenes::load_scene(path, path.stem().string(), [&](double part) {
-        progress.show(part, path.filename().string() + ", loading");
-    });
+    const auto loading = [&](double part) { progress.show(part, path.filename().string() + ", loading"); };
+    auto scene = scenes::load_scene(path, path.stem().string(), loading, {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
     const double aspect = static_cast<double>(arguments.width) / arguments.height;
     Subject subject{scene->name, scene->sha256,

@@ -155,6 +155,16 @@ void add_reading(Command& command, io::ReadOptions& read) {
         ->group(kScene);
 }
 
+void add_studio(Command& command, io::ReadOptions& read) {
+    add_choice(
+        command, "--studio", {"on", "off"},
+        [&read](const std::string& text) { read.studio = text == "on" ? io::Studio::on : io::Studio::off; },
+        "Show the scene in a studio, which it reflects, with a shadow on the ground, unless it has a "
+        "background of its own.")
+        ->default_str("on for scenes without lights in other formats than scene text")
+        ->group(kScene);
+}
+
 std::vector<Entry> statuses(const std::string& done,
                             const std::string& wrong_usage = "The command line is wrong.") {
     return {{std::to_string(kDone), done},
@@ -198,6 +208,7 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
                "Let clients open the scenes in this folder and below.")
         ->group(kScene);
     add_reading(*command, arguments.read);
+    add_studio(*command, arguments.read);
     add_folder(*command, "--record", arguments.record, "Let clients record sessions into this folder.")
         ->group(kScene);
     add_device(*command, arguments.device);
@@ -331,6 +342,7 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         ->group(kScene);
     add_patches(*command, arguments);
     add_reading(*command, arguments.read);
+    add_studio(*command, arguments.read);
     add_drawing(*command, arguments);
     command->exit_statuses = statuses("The image is written.");
     command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
@@ -352,6 +364,7 @@ std::shared_ptr<Command> describe_replay(ReplayArguments& arguments) {
     add_file(*command, "--scene", arguments.scene, "Replay on this scene file.")
         ->default_str("the one that was recorded, beside the log or among the scenes of the program")
         ->group(kScene);
+    add_studio(*command, arguments.read);
     add_folder(*command, "--out", arguments.frames,
                "Write the frames of the session to this folder, as JPEG.")
         ->group(kOutput);
@@ -432,6 +445,7 @@ std::shared_ptr<Command> describe_chart(ChartArguments& arguments) {
     command->add_option("SCENE", arguments.scenes, "Measure these scene files.")
         ->type_name("FILE")
         ->default_str("the car");
+    add_studio(*command, arguments.read);
     auto* out =
         add_folder(*command, "--out", arguments.out,
                    "Write charts, tables and a page to this folder. What it holds is not measured again.")

@@ -12,9 +12,12 @@
 /// What the program's subcommands do. Each throws std::exception with one sentence; main prints it.
 namespace vrut::server::commands {
 
+/// Of commands that show scenes.
+inline const io::ReadOptions kShown{.studio = io::Studio::automatic};
+
 struct ServeArguments {
     std::filesystem::path scene;  ///< empty: the car
-    io::ReadOptions read;
+    io::ReadOptions read = kShown;
     std::string listen = "127.0.0.1:8080";
     std::vector<std::string> allowed_origins;
     std::optional<int> device;
@@ -27,7 +30,7 @@ void serve_command(const ServeArguments& arguments);
 
 struct RenderArguments {
     std::filesystem::path scene, output;
-    io::ReadOptions read;
+    io::ReadOptions read = kShown;
     int width = 1280, height = 720;
     int samples = 4;
     double detail = 0;
@@ -48,7 +51,8 @@ void render_command(const RenderArguments& arguments);
 
 struct ReplayArguments {
     std::filesystem::path log;
-    std::filesystem::path scene;   ///< empty: the log's own, looked for beside it and among the program's
+    std::filesystem::path scene;  ///< empty: the log's own, looked for beside it and among the program's
+    io::ReadOptions read = kShown;
     std::filesystem::path frames;  ///< folder for the frames; empty: none are drawn
     std::optional<int> device;
 };
@@ -76,6 +80,7 @@ void compare_command(const CompareArguments& arguments);
 
 struct ChartArguments {
     std::vector<std::filesystem::path> scenes;  ///< empty: the car
+    io::ReadOptions read = kShown;
     std::filesystem::path out;
     bool calibrate = false;  ///< the server's table alone
     int width = 1280, height = 720;

@@ -24,7 +24,7 @@ namespace {
 /// folder above it, among the program's scenes or here, with the same content.
 class Scenes {
 public:
-    Scenes(const ReplayArguments& arguments) : given_(arguments.scene) {
+    Scenes(const ReplayArguments& arguments) : given_(arguments.scene), options_{{}, arguments.read} {
         const fs::path beside = arguments.log.parent_path();
         folders_ = {given_.parent_path(), given_.parent_path() / "..", beside, beside / "..", fs::path()};
         for (const fs::path& own : scene_folders()) {
@@ -35,7 +35,7 @@ public:
 
     tl::expected<scenes::LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
         if (fs::path given = std::exchange(given_, {}); !given.empty()) {
-            auto scene = scenes::load_scene(given, name, observe::loading_bar(name));
+            auto scene = scenes::load_scene(given, name, observe::loading_bar(name), options_);
             if (scene && scene->sha256 != sha256)
                 observe::log_warning("another_scene", {{"file", given.string()},
                                                        {"reason", "it is not the scene that was recorded"}});
@@ -47,7 +47,7 @@ public:
             if (!fs::is_regular_file(file)) continue;
             found = true;
             if (scenes::sha256_of(file) == sha256)
-                return scenes::load_scene(file, name, observe::loading_bar(name));
+                return scenes::load_scene(file, name, observe::loading_bar(name), options_);
         }
         return tl::unexpected("the scene '" + name + "' " +
                               (found ? "has changed since it was recorded" : "is not found") +
@@ -57,6 +57,7 @@ public:
 private:
     fs::path given_;  // for the first
     std::vector<fs::path> folders_;
+    const scenes::ImportOptions options_;
 };
 
 /// Writes the session's frames as JPEG files, as clients could have got them.

@@ -59,6 +59,7 @@ void write_all(std::string_view bytes) {
 io::ReadOptions options_of(char** arguments) {
     io::ReadOptions options;
     options.z_up = std::strcmp(*arguments, "z") == 0;
+    options.studio = static_cast<io::Studio>(std::atoi(*++arguments));
     while (*++arguments != nullptr) options.texture_folders.emplace_back(*arguments);
     return options;
 }
@@ -67,7 +68,7 @@ void report(double fraction) { write_all({reinterpret_cast<const char*>(&fractio
 
 }  // namespace
 
-bool is_import_process(int argc, char** argv) { return argc >= 6 && std::strcmp(argv[1], "import") == 0; }
+bool is_import_process(int argc, char** argv) { return argc >= 7 && std::strcmp(argv[1], "import") == 0; }
 
 /// Ends without freeing what it has read: the system does that at once.
 void run_import_process(char** argv) try {

@@ -197,7 +197,8 @@ private:
                                         path.string(),
                                         std::to_string(limits.bytes),
                                         std::to_string(limits.time.count()),
-                                        options.z_up ? "z" : "y"};
+                                        options.z_up ? "z" : "y",
+                                        std::to_string(static_cast<int>(options.studio))};
         for (const std::filesystem::path& folder : options.texture_folders) all.push_back(folder.string());
         return all;
     }

@@ -35,8 +35,9 @@ io::ReadResult import_scene(const std::filesystem::path& path, const io::ReadPro
 /// Says that there is not enough memory for the scene in `path`, and what to do.
 std::string out_of_memory(const std::filesystem::path& path);
 
-/// The child's side: argv of `PROGRAM import FILE BYTES SECONDS y|z [TEXTURE-FOLDER]...`, which
-/// import_scene() starts with this very program; main() comes here first.
+/// The child's side: argv of `PROGRAM import FILE BYTES SECONDS y|z STUDIO [TEXTURE-FOLDER]...`, which
+/// import_scene() starts with this very program; main() comes here first. STUDIO is an io::Studio as a
+/// number.
 bool is_import_process(int argc, char** argv);
 [[noreturn]] void run_import_process(char** argv);
 

@@ -38,9 +38,9 @@ function convert(scene, out) {
   return stderr.split('\n').filter((line) => line.startsWith(out));
 }
 
-// Backgrounds are lost, as is told: none is drawn.
+// Backgrounds are lost, as is told: none is drawn. Nor is the studio, which is not the file's.
 function draw(scene, name) {
-  succeeds('render', scene, '-o', file(name), '--size', '320x240', '--samples', '1', '--background', 'none');
+  succeeds('render', scene, '-o', file(name), '--size', '320x240', '--samples', '1', '--background', 'none', '--studio', 'off');
   return file(name);
 }
 
@@ -101,6 +101,24 @@ test('textures come from other folders, and z may be up', () => {
   assert.doesNotMatch(succeeds('render', ...options, file('other/my.obj'), '-o', file('x.png'), '--size', '16x9').stderr, /without its texture/);
   for (const command of ['convert', 'serve', 'render'])
     fails(2, /--textures: there is no folder 'none'/, command, file('other/my.obj'), '--textures', 'none');
+});
+
+test('what has no light is shown in a studio, unless it is scene text, or as --studio says', () => {
+  fs.writeFileSync(file('cube.obj'), 'v 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 3 2 4\nf 2 1 4\n');
+  assert.equal(succeeds('convert', file('cube.obj'), file('cube.vrut')).stderr, '');
+  for (const name of ['cube.obj', 'cube.vrut']) assert.doesNotMatch(succeeds('info', file(name)).stdout, /Studio|shadow/);
+  const shown = (name, ...options) => {
+    succeeds('render', file(name), '-o', file('x.png'), '--size', '64x36', ...options);
+    return fs.readFileSync(file('x.png'));
+  };
+  const on = shown('cube.obj', '--studio', 'on'), off = shown('cube.obj', '--studio', 'off');
+  assert.notDeepEqual(on, off);
+  assert.deepEqual(shown('cube.obj'), on);
+  assert.deepEqual(shown('cube.vrut'), off);
+  assert.deepEqual(shown('cube.vrut', '--studio', 'on'), on);
+  for (const command of ['serve', 'render', 'replay', 'chart'])
+    fails(2, /--studio: expected on\|off, found 'no'/, command, file('cube.obj'), '--studio', 'no');
+  for (const command of ['info', 'convert']) fails(2, /--studio/, command, file('cube.obj'), '--studio', 'on');
 });
 
 test('what is lost is told, a line each', () => {

@@ -89,7 +89,7 @@ function tryFile(folder, name, { program, f3d, seconds, scratch }) {
   const file = path.join(folder, name);
   const picture = path.join(scratch, 'picture.png');
   rmSync(picture, { force: true });
-  const ran = run(program, ['render', file, '-o', picture, '--size', SIZE.join('x')], seconds);
+  const ran = run(program, ['render', file, '-o', picture, '--studio', 'off', '--size', SIZE.join('x')], seconds);
   const png = existsSync(picture) ? readFileSync(picture) : null;
   const outcome = outcomeOf(ran, png);
   const row = { name, outcome, sentences: sentences(outcome, ran, file), ms: ran.ms, mb: ran.mb, png };

@@ -556,7 +556,7 @@ TEST_CASE("the scene's first camera node by id, in the world, active or not") {
 }
 
 TEST_CASE("a camera that sees nothing of the scene is not its first view") {
-    const auto with_eye = [](const glm::dvec3& eye, const glm::dvec3& focus) {
+    const auto with_eye = [](const glm::dvec3& eye, const glm::dvec3& focus, bool on_stage = false) {
         scene::SceneParts parts;
         scene::Geometry triangle;
         triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -574,16 +574,23 @@ TEST_CASE("a camera that sees nothing of the scene is not its first view") {
                          true,
                          glm::dmat4(1),
                          scene::GeometryData{0, scene::kNone}};
-        parts.nodes = {camera_part(1, 0, data), {std::move(part), 0}};
+        parts.nodes = {camera_part(1, 0, data), {part, 0}};
+        if (on_stage) {  // with presentation where the camera looks
+            part.id = 3;
+            part.matrix[3] = {focus, 1};
+            part.presentation = true;
+            parts.nodes.push_back({part, 0});
+        }
         auto scene = scene::Scene::build(std::move(parts));
         REQUIRE(scene);
         return scene::place(*std::move(scene));
     };
     const scene::PlacedScene seen = with_eye({0, 0, 5}, {0, 0, 0}), behind = with_eye({0, 0, 5}, {0, 0, 9}),
-                             beside = with_eye({0, 0, 5}, {9, 0, 0});
+                             beside = with_eye({0, 0, 5}, {9, 0, 0}),
+                             stage = with_eye({0, 0, 5}, {9, 0, 0}, true);
     CHECK(scene::first_camera_node(seen) != scene::kNone);
     CHECK_FALSE(scene::why_not_first_camera(seen));
-    for (const scene::PlacedScene* placed : {&behind, &beside}) {
+    for (const scene::PlacedScene* placed : {&behind, &beside, &stage}) {
         CHECK(scene::first_camera_node(*placed) == scene::kNone);
         CHECK(scene::why_not_first_camera(*placed) ==
               "the first view shows the whole scene: camera node 1 sees nothing of it");

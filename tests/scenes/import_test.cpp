@@ -317,6 +317,21 @@ TEST_CASE("the process that reads a file looks into other folders, and knows whi
     CHECK(scene::place(*scene).bounds.max == glm::dvec3(1, 2, 0));
 }
 
+TEST_CASE("the process that reads a file adds the studio") {
+    const TemporaryFolder folder;
+    const fs::path path = folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 2\nf 1 2 3\n");
+    for (const io::Studio studio : {io::Studio::automatic, io::Studio::on, io::Studio::off}) {
+        const io::ReadOptions options{.studio = studio};
+        const auto there = import_scene(path, {}, {{}, options}), here = io::read_scene(path, {}, options);
+        REQUIRE_MESSAGE(there, there.error());
+        REQUIRE(here);
+        REQUIRE(there->textures().size() == (studio == io::Studio::off ? 0 : 7));
+        CHECK(there->nodes().size() == here->nodes().size());
+        for (std::size_t i = 0; i < there->textures().size(); ++i)
+            CHECK(there->textures()[i].image.rgba == here->textures()[i].image.rgba);
+    }
+}
+
 TEST_CASE("reading leaves neither processes nor descriptors") {
     const TemporaryFolder folder;
     const fs::path heap = write_heap(folder, 10);
