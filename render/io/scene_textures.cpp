@@ -94,12 +94,17 @@ CubeResult read_cube(TextureReader& reader, const std::vector<scene::Texture>& t
     return faces;
 }
 
-/// A change that has an effect on its texture: opaque, and the factor.
-using ChangeKey = std::tuple<bool, double, double, double>;
-constexpr ChangeKey kUnchanged{false, 1, 1, 1};
+/// A change that has an effect on its texture, by the members of TextureChange.
+using ChangeKey = std::tuple<bool, double, double, double, double, bool>;
+constexpr ChangeKey kUnchanged{false, 1, 1, 1, 1, true};
 
 ChangeKey key_of(const TextureChange& change, const scene::Texture& texture) {
-    return {change.opaque && texture.transparent, change.factor.r, change.factor.g, change.factor.b};
+    return {change.opaque && texture.transparent,
+            change.factor.r,
+            change.factor.g,
+            change.factor.b,
+            change.occlusion,
+            change.roughness_metallic};
 }
 
 std::uint8_t displayed_byte(double light) {
@@ -107,7 +112,7 @@ std::uint8_t displayed_byte(double light) {
 }
 
 void apply(const ChangeKey& change, scene::Texture& texture) {
-    const auto [opaque, red, green, blue] = change;
+    const auto [opaque, red, green, blue, occlusion, roughness_metallic] = change;
     std::array<std::array<std::uint8_t, 256>, 3> multiplied{};
     for (std::size_t i = 0; i < 256; ++i) {
         const double light = base::linear_from_srgb(static_cast<double>(i) / 255);
@@ -119,6 +124,9 @@ void apply(const ChangeKey& change, scene::Texture& texture) {
     for (std::size_t i = 0; i < rgba.size(); i += 4) {
         for (std::size_t k = 0; k < 3; ++k) rgba[i + k] = multiplied[k][rgba[i + k]];
         if (opaque) rgba[i + 3] = 255;
+        if (occlusion != 1)
+            rgba[i] = static_cast<std::uint8_t>(std::lround(255 - occlusion * (255 - rgba[i])));
+        if (!roughness_metallic) rgba[i + 1] = rgba[i + 2] = 255;
     }
     if (opaque) texture.transparent = false;
 }
@@ -197,21 +205,23 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
 }
 
 bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
-                     std::vector<scene::Texture>& textures, std::uint64_t max_pixels) {
+                     std::vector<scene::Texture>& textures, scene::Index scene::Material::*texture,
+                     std::uint64_t max_pixels) {
     std::map<scene::Index, std::map<ChangeKey, scene::Index>> views;  // of each texture
     std::vector<ChangeKey> keys(materials.size());
     for (std::size_t i = 0; i < materials.size(); ++i) {
-        if (const scene::Index from = materials[i].texture; from != scene::kNone) {
+        if (const scene::Index from = materials[i].*texture; from != scene::kNone) {
             keys[i] = key_of(changes[i], textures[static_cast<std::size_t>(from)]);
             views[from].try_emplace(keys[i], from);
         }
-        for (const scene::Index from :
-             {materials[i].emissive_texture, materials[i].occlusion_roughness_metallic_texture,
-              materials[i].normal_texture})
-            if (from != scene::kNone) views[from].try_emplace(kUnchanged, from);
+        for (const auto other :
+             {&scene::Material::texture, &scene::Material::emissive_texture,
+              &scene::Material::occlusion_roughness_metallic_texture, &scene::Material::normal_texture})
+            if (other != texture && materials[i].*other != scene::kNone)
+                views[materials[i].*other].try_emplace(kUnchanged, materials[i].*other);
     }
-    for (const scene::Texture& texture : textures)
-        max_pixels -= std::min<std::uint64_t>(max_pixels, texture.image.rgba.size() / 4);
+    for (const scene::Texture& known : textures)
+        max_pixels -= std::min<std::uint64_t>(max_pixels, known.image.rgba.size() / 4);
     bool all = true;
     for (auto& [from, changed] : views) {
         // The last one that differs is changed in place, unless the texture is also seen as it is.
@@ -235,8 +245,8 @@ bool change_textures(std::vector<scene::Material>& materials, const std::vector<
         }
     }
     for (std::size_t i = 0; i < materials.size(); ++i)
-        if (const scene::Index from = materials[i].texture; from != scene::kNone)
-            materials[i].texture = views[from].at(keys[i]);
+        if (const scene::Index from = materials[i].*texture; from != scene::kNone)
+            materials[i].*texture = views[from].at(keys[i]);
     return all;
 }
 

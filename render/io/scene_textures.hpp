@@ -37,13 +37,18 @@ void decode_embedded_textures(scene::SceneParts& parts, const std::filesystem::p
 struct TextureChange {
     bool opaque = false;   ///< without its alpha
     glm::dvec3 factor{1};  ///< by which its colours are multiplied as light, 0 to 1
+    // Of an image for occlusion, roughness and metal:
+    double occlusion = 1;            ///< how much of its red counts; 0: as if it were 1
+    bool roughness_metallic = true;  ///< false: its green and blue are as if they were 1
 };
 
 /// Changes the texture of each material as told by the element of `changes` at the same index. Materials that
 /// see one texture differently get copies of it. Returns false if all textures would have more than
 /// `max_pixels`: then some materials see theirs unchanged.
 bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
-                     std::vector<scene::Texture>& textures, std::uint64_t max_pixels = kMaxTexturePixels);
+                     std::vector<scene::Texture>& textures,
+                     scene::Index scene::Material::*texture = &scene::Material::texture,
+                     std::uint64_t max_pixels = kMaxTexturePixels);
 inline constexpr const char* kUnchangedTextures =
     "some textures are drawn without the colour or opacity of their materials: there is no room for copies";
 

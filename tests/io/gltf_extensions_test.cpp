@@ -469,6 +469,89 @@ TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)
     CHECK(opaque.materials()[0].diffuse == glm::dvec4(0, 0, 0, 1));
 }
 
+TEST_CASE("a glTF material is lit by metal and roughness, under a clear coat (KHR_materials_clearcoat)") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["materials"] = nlohmann::json::array({nlohmann::json::object()});
+    file.primitive()["material"] = 0;
+    nlohmann::json& material = file.document["materials"][0];
+    const auto surface = [&] { return file.read().materials()[0].metallic_roughness; };
+    CHECK(surface() == scene::MetallicRoughness{1, 1, 0});
+    material["pbrMetallicRoughness"] = {{"metallicFactor", 0.25}, {"roughnessFactor", 7}};
+    CHECK(surface() == scene::MetallicRoughness{0.25, 1, 0});
+    file.document["extensionsUsed"] = {"KHR_materials_clearcoat"};
+    material["extensions"]["KHR_materials_clearcoat"] = {{"clearcoatFactor", 0.5},
+                                                         {"clearcoatRoughnessFactor", 0.05}};
+    CHECK(surface() == scene::MetallicRoughness{0.25, 1, 0.5});
+    CHECK(file.read().notices().empty());
+    material["extensions"]["KHR_materials_clearcoat"]["clearcoatRoughnessFactor"] = 0.5;
+    CHECK(has_notice(file.read(), "a clear coat is drawn smooth"));
+    material["extensions"] = {{"KHR_materials_unlit", nlohmann::json::object()}};
+    CHECK_FALSE(surface());
+}
+
+TEST_CASE("an archived glossiness counts where a glTF material says no more than that") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["materials"] = {{{"extensions",
+                                    {{"KHR_materials_pbrSpecularGlossiness",
+                                      {{"diffuseFactor", {1, 0, 0, 1}}, {"glossinessFactor", 0.75}}}}}}};
+    file.primitive()["material"] = 0;
+    const scene::Material glossy = file.read().materials()[0];
+    CHECK(glossy.metallic_roughness == scene::MetallicRoughness{0, 0.25, 0});
+    CHECK(glm::dvec3(glossy.diffuse) == glm::dvec3(1, 0, 0));
+    file.document["materials"][0]["pbrMetallicRoughness"] = {{"baseColorFactor", {0, 1, 0, 1}}};
+    const scene::Material both = file.read().materials()[0];
+    CHECK(both.metallic_roughness == scene::MetallicRoughness{1, 1, 0});
+    CHECK(glm::dvec3(both.diffuse) == glm::dvec3(0, 1, 0));
+}
+
+TEST_CASE("occlusion, roughness and metal of glTF come from one texture") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["images"] = {{{"bufferView", file.add_view(flat_png(1, 1, {55, 60, 70, 255}))}},
+                               {{"bufferView", file.add_view(flat_png(1, 1, {99, 99, 99, 255}))}}};
+    file.document["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    file.document["materials"] = nlohmann::json::array({nlohmann::json::object()});
+    file.primitive()["material"] = 0;
+    nlohmann::json& material = file.document["materials"][0];
+    const auto pixel = [&] {
+        const scene::Scene scene = file.read();
+        const scene::Index texture = scene.materials()[0].occlusion_roughness_metallic_texture;
+        REQUIRE(texture != scene::kNone);
+        const auto& rgba = scene.textures()[static_cast<std::size_t>(texture)].image.rgba;
+        return glm::ivec3(rgba[0], rgba[1], rgba[2]);
+    };
+    material["pbrMetallicRoughness"]["metallicRoughnessTexture"] = {{"index", 0}};
+    CHECK(pixel() == glm::ivec3(255, 60, 70));  // its red may be anything
+    material["occlusionTexture"] = {{"index", 0}};
+    CHECK(pixel() == glm::ivec3(55, 60, 70));
+    material["occlusionTexture"]["strength"] = 0.5;
+    CHECK(pixel() == glm::ivec3(155, 60, 70));
+    CHECK(file.read().notices().empty());
+    material["occlusionTexture"] = {{"index", 1}};
+    CHECK(pixel() == glm::ivec3(255, 60, 70));
+    CHECK(has_notice(file.read(), "an occlusion texture beside a metallic-roughness texture is ignored"));
+    material.erase("pbrMetallicRoughness");
+    CHECK(pixel() == glm::ivec3(99, 255, 255));
+}
+
+TEST_CASE("a normal map of glTF lies on the surface") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["images"] = {{{"bufferView", file.add_view(flat_png(1, 1, {128, 128, 255, 255}))}}};
+    file.document["textures"] = {{{"source", 0}}};
+    file.document["materials"] = {{{"normalTexture", {{"index", 0}, {"scale", 0.5}}}}};
+    file.primitive()["material"] = 0;
+    const scene::Scene scene = file.read();
+    CHECK(scene.materials()[0].normal_texture == 0);
+    CHECK(scene.materials()[0].normal_scale == 0.5);
+    CHECK(scene.notices().empty());
+    file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    file.document["materials"][0]["emissiveTexture"] = {{"index", 0}, {"texCoord", 1}};
+    CHECK(has_notice(file.read(), "a normal map lies as the material's first texture does"));
+}
+
 TEST_CASE("a glTF material sends light by itself, where its emissive texture says and as strongly as told") {
     GltfBuilder file;
     file.add_triangle();

@@ -251,7 +251,8 @@ TEST_CASE("materials that see a texture in other ways get copies, and the last o
 
     textures = {glass};
     materials = materials_of({0, 0, 0});
-    CHECK_FALSE(io::change_textures(materials, {opaque, tinted, both}, textures, 2));
+    CHECK_FALSE(
+        io::change_textures(materials, {opaque, tinted, both}, textures, &scene::Material::texture, 2));
     CHECK(textures.size() == 2);
     CHECK(textures[0].image.rgba == glass.image.rgba);  // who gets no copy sees it as it is
 }

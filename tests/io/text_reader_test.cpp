@@ -186,7 +186,7 @@ TEST_CASE("nodes of every type") {
     CHECK(node_of(scene, 14).type == scene::NodeType::sound);
     CHECK(node_of(scene, node_of(scene, 14).id).parent == scene.find_node(9));
     CHECK(scene.notices() ==
-          std::vector<std::string>{"folder/car.vrut:29: node 14 is a sound and was kept as a group"});
+          std::vector<std::string>{"folder/car.vrut:31: node 14 is a sound and was kept as a group"});
 }
 
 TEST_CASE("what a node leaves out") {

@@ -45,7 +45,7 @@ public:
         material.two_sided = boolean_in(json_, "doubleSided", false);
         const std::string& alpha_mode = string_in(json_, "alphaMode");
         result_.change.opaque = alpha_mode.empty() || alpha_mode == "OPAQUE";
-        const bool glossy = has_extension(kGlossiness);
+        const bool glossy = is_glossy();
         const glm::dvec4 color = glossy ? vector_in<4>(glossiness_, "diffuseFactor", glm::dvec4(1))
                                         : vector_in<4>(metallic_roughness_, "baseColorFactor", glm::dvec4(1));
         material.diffuse = glm::dvec4(base::srgb_from_linear(color),
@@ -56,13 +56,21 @@ public:
         set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
                            : object_in(metallic_roughness_, "baseColorTexture"));
         set_emissive();
-        report_textures();
+        set_metallic_roughness(glossy);
+        set_normal_map();
         if (has_extension("KHR_materials_unlit")) make_unlit();
         return std::move(result_);
     }
 
 private:
     static constexpr const char* kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+
+    /// The extension is archived: what else the material says goes before it, unless it lacks the texture.
+    bool is_glossy() const {
+        const bool has_texture = metallic_roughness_.contains("baseColorTexture");
+        return has_extension(kGlossiness) && (!json_.contains("pbrMetallicRoughness") ||
+                                              (glossiness_.contains("diffuseTexture") && !has_texture));
+    }
 
     bool has_extension(const char* name) const { return object_in(json_, "extensions").contains(name); }
 
@@ -72,6 +80,9 @@ private:
         const glm::dvec4 black(0, 0, 0, 1);
         material.specular = black;
         material.emissive = glm::dvec3(0);
+        material.metallic_roughness.reset();
+        result_.occlusion_roughness_metallic_image.reset();
+        result_.normal_image.reset();
         result_.emissive_image.reset();
         if (result_.image && !result_.change.opaque)
             return warnings_.add("the texture of an unlit material that is not opaque is lit");
@@ -81,10 +92,57 @@ private:
         material.ambient = black;
     }
 
+    /// A factor from 0 to 1.
+    static double part(const GltfJson& parent, const char* name, double otherwise = 1) {
+        return std::clamp(number_in(parent, name, otherwise), 0.0, 1.0);
+    }
+
+    void set_metallic_roughness(bool glossy) {
+        const GltfJson& coat = extension_in(json_, "KHR_materials_clearcoat");
+        scene::MetallicRoughness& surface = result_.material.metallic_roughness.emplace();
+        surface.metallic = glossy ? 0 : part(metallic_roughness_, "metallicFactor");
+        surface.roughness =
+            glossy ? 1 - part(glossiness_, "glossinessFactor") : part(metallic_roughness_, "roughnessFactor");
+        surface.clear_coat = part(coat, "clearcoatFactor", 0);
+        if (surface.clear_coat > 0) report_clear_coat(coat);
+        if (glossy) report(glossiness_, "specularGlossinessTexture", "a specular texture is ignored");
+        set_surface_image(glossy ? empty_object()
+                                 : object_in(metallic_roughness_, "metallicRoughnessTexture"));
+    }
+
+    /// Of the metallic-roughness texture, and the occlusion texture if it is the same or alone.
+    void set_surface_image(const GltfJson& surface) {
+        const GltfJson& occlusion = object_in(json_, "occlusionTexture");
+        const auto image = image_of(surface), occlusion_image = image_of(occlusion);
+        result_.occlusion_roughness_metallic_image = image ? image : occlusion_image;
+        result_.surface_change.roughness_metallic = image.has_value();
+        const bool occludes = occlusion_image && (!image || image == occlusion_image);
+        result_.surface_change.occlusion = occludes ? part(occlusion, "strength") : 0;
+        if (occlusion_image && !occludes)
+            warnings_.add("an occlusion texture beside a metallic-roughness texture is ignored");
+        if (image) add_mapping(surface, "a metallic-roughness texture");
+        if (occludes) add_mapping(occlusion, "an occlusion texture");
+    }
+
+    void report_clear_coat(const GltfJson& coat) {
+        constexpr double kSmooth = 0.1;
+        report(coat, "clearcoatTexture", "a clear coat's texture is ignored");
+        report(coat, "clearcoatNormalTexture", "a clear coat's normal map is ignored");
+        if (image_of(object_in(coat, "clearcoatRoughnessTexture")) ||
+            part(coat, "clearcoatRoughnessFactor", 0) > kSmooth)
+            warnings_.add("a clear coat is drawn smooth");
+    }
+
+    void set_normal_map() {
+        const GltfJson& info = object_in(json_, "normalTexture");
+        result_.normal_image = image_of(info);
+        if (!result_.normal_image) return;
+        constexpr double kMostScale = 1e6;
+        result_.material.normal_scale = std::clamp(number_in(info, "scale", 1), -kMostScale, kMostScale);
+        add_mapping(info, "a normal map");
+    }
+
     void set_highlight(bool glossy) {
-        const auto part = [](const GltfJson& parent, const char* name) {
-            return std::clamp(number_in(parent, name, 1), 0.0, 1.0);
-        };
         scene::Material& material = result_.material;
         const double roughness =
             glossy ? 1 - part(glossiness_, "glossinessFactor") : part(metallic_roughness_, "roughnessFactor");
@@ -114,9 +172,7 @@ private:
 
     void set_texture(const GltfJson& info) {
         result_.image = image_of(info);
-        if (!result_.image) return;
-        result_.mapping = mapping_of(info);
-        read_wrapping(info);
+        if (result_.image) add_mapping(info, "a base colour texture");
     }
 
     /// Light of more than a thousand times white shows as no more.
@@ -130,11 +186,16 @@ private:
             material.emissive[i] = material.emissive[i] > 0 ? std::min(material.emissive[i], kMost) : 0;
         const GltfJson& info = object_in(json_, "emissiveTexture");
         if (material.emissive != glm::dvec3(0)) result_.emissive_image = image_of(info);
-        if (!result_.emissive_image) return;
+        if (result_.emissive_image) add_mapping(info, "an emissive texture");
+    }
+
+    /// Of a further texture: all lie as the first one does.
+    void add_mapping(const GltfJson& info, const std::string& what) {
         const GltfTextureMapping mapping = mapping_of(info);
-        if (!result_.image) result_.mapping = mapping;
+        if (!has_mapping_) result_.mapping = mapping;
+        has_mapping_ = true;
         if (mapping.key() != result_.mapping.key())
-            warnings_.add("an emissive texture lies as the base colour texture does, not as the file says");
+            warnings_.add(what + " lies as the material's first texture does, not as the file says");
         read_wrapping(info);
     }
 
@@ -156,19 +217,14 @@ private:
                 result_.repeats[i] = false;
     }
 
-    void report_textures() {
-        const auto report = [&](const GltfJson& parent, const char* name, const char* what) {
-            if (image_of(object_in(parent, name))) warnings_.add(what);
-        };
-        report(json_, "normalTexture", "a normal map is ignored");
-        report(json_, "occlusionTexture", "an occlusion texture is ignored");
-        report(metallic_roughness_, "metallicRoughnessTexture", "a metallic-roughness texture is ignored");
-        report(glossiness_, "specularGlossinessTexture", "a specular texture is ignored");
+    void report(const GltfJson& parent, const char* name, const char* what) {
+        if (image_of(object_in(parent, name))) warnings_.add(what);
     }
 
     const GltfJson &document_, &json_, &metallic_roughness_, &glossiness_;
     ConversionWarnings& warnings_;
     ReadGltfMaterial result_;
+    bool has_mapping_ = false;
 };
 
 }  // namespace

@@ -84,6 +84,9 @@ private:
         };
         read.material.image = name_of_image(read.image);
         read.material.emissive_image = name_of_image(read.emissive_image);
+        read.material.occlusion_roughness_metallic_image =
+            name_of_image(read.occlusion_roughness_metallic_image);
+        read.material.normal_image = name_of_image(read.normal_image);
         parts_.materials.push_back(read.material);
         materials_.push_back(std::move(read));
     }
@@ -238,9 +241,15 @@ private:
         });
         warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
-        std::vector<TextureChange> changes;
-        for (const ReadGltfMaterial& material : materials_) changes.push_back(material.change);
-        if (!change_textures(parts_.materials, changes, parts_.textures))
+        std::vector<TextureChange> changes, surface_changes;
+        for (const ReadGltfMaterial& material : materials_) {
+            changes.push_back(material.change);
+            surface_changes.push_back(material.surface_change);
+        }
+        const bool all = change_textures(parts_.materials, changes, parts_.textures);
+        if (!change_textures(parts_.materials, surface_changes, parts_.textures,
+                             &scene::Material::occlusion_roughness_metallic_texture) ||
+            !all)
             parts_.notices.push_back(path_.string() + ": " + kUnchangedTextures);
     }
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/srgb.hpp"
 #include "io/studio/contact_shadow.hpp"
 #include "io/studio/environment.hpp"
 #include "scene/style.hpp"
@@ -150,6 +152,19 @@ void add_shadow(SceneParts& parts, ContactShadow shadow, const FreeIds& ids) {
     parts.nodes.push_back(std::move(part));
 }
 
+/// By what surrounds it: its colours as base colours, its highlight as roughness, its emission as light.
+void light_by_environment(scene::Material& material) {
+    const glm::dvec3 black(0);
+    const bool shines = glm::dvec3(material.specular) != black;
+    const bool is_matte = glm::dvec3(material.diffuse) != black || material.texture != scene::kNone;
+    if (material.metallic_roughness || (!shines && !is_matte)) return;  // as unlit ones
+    // The inverse of Phong's exponent by the glTF reader's rule.
+    const double roughness = shines ? std::pow(2 * std::max(material.shininess, 0.0) + 1, -0.25) : 1;
+    material.metallic_roughness = {0, roughness, 0};
+    if (material.emissive_texture == scene::kNone)
+        material.emissive += base::linear_from_srgb(glm::clamp(glm::dvec3(material.emission), 0.0, 1.0));
+}
+
 }  // namespace
 
 void add_studio(SceneParts& parts) {
@@ -167,6 +182,7 @@ void add_studio(SceneParts& parts) {
     auto studio = studio_node(ids.node, "Studio", scene::NodeType::assembly, 0);
     studio.node.presentation = true;
     parts.nodes.push_back(std::move(studio));
+    for (scene::Material& material : parts.materials) light_by_environment(material);
     add_environment(parts, ids);
     if (shadow) add_shadow(parts, *std::move(shadow), ids);
 }
