@@ -46,18 +46,24 @@ public:
         flush();
     }
 
-    /// `texture_file` is empty for none; with holes, it is that of the opacity as well.
+    /// The files are empty for none; with holes, that of the texture is that of the opacity as well.
     void write_material(const scene::Material& material, const std::string& name,
-                        const std::string& texture_file, bool holes) {
+                        const std::string& texture_file, bool holes, const std::string& normal_file) {
         text("newmtl ").text(name).text("\nillum 2\n");
         vector("Ka", glm::dvec3(material.ambient));
         vector("Kd", glm::dvec3(material.diffuse));
         vector("Ks", glm::dvec3(material.specular));
-        vector("Ke", glm::dvec3(material.emission));
+        vector("Ke", material.metallic_roughness ? glm::dvec3(0) : glm::dvec3(material.emission));
         vector("Ns", glm::dvec1(material.shininess));
         vector("d", glm::dvec1(material.diffuse.a));
         if (!texture_file.empty()) text("map_Kd ").text(texture_file).text("\n");
         if (holes) text("map_d ").text(texture_file).text("\n");
+        if (const auto& surface = material.metallic_roughness) {
+            vector("Pr", glm::dvec1(surface->roughness));
+            vector("Pm", glm::dvec1(surface->metallic));
+            vector("Pc", glm::dvec1(surface->clear_coat));
+        }
+        if (!normal_file.empty()) vector("norm -bm", glm::dvec1(material.normal_scale), " " + normal_file);
         flush();
     }
 
@@ -73,8 +79,9 @@ private:
         buffer_.clear();
     }
 
+    /// A line; `rest` stands at its end.
     template <int N>
-    void vector(std::string_view keyword, const glm::vec<N, double>& value) {
+    void vector(std::string_view keyword, const glm::vec<N, double>& value, std::string_view rest = {}) {
         text(keyword);
         for (int i = 0; i < N; ++i) {
             char digits[32];
@@ -83,7 +90,7 @@ private:
                     .ptr;
             text(" ").text({digits, static_cast<std::size_t>(end - digits)});
         }
-        text("\n");
+        text(rest).text("\n");
     }
 
     /// By the matrix's cofactors times the sign of its determinant, as they are drawn.
@@ -131,16 +138,24 @@ std::vector<std::string> name_materials(const scene::Scene& scene, const std::ve
     return names;
 }
 
+bool has_holes(const scene::Scene& scene, const scene::Material& material) {
+    return material.texture != scene::kNone &&
+           scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
+}
+
 /// What the file does not hold, and what of it the rule of our reader does not take (assimp/scene.hpp).
 void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
                          ConversionWarnings& warnings) {
     warnings.add("a material's two-sided flag is lost");
     if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     if (material.emissive != glm::dvec3(0)) warnings.add("a material's emissive light is lost");
-    const bool has_holes = material.texture != scene::kNone &&
-                           scene.textures()[static_cast<std::size_t>(material.texture)].transparent;
-    if (has_holes && material.diffuse.a < 1)
+    if (has_holes(scene, material) && material.diffuse.a < 1)
         warnings.add("a textured material's own opacity is written, but not read back");
+    if (material.metallic_roughness) {
+        if (material.occlusion_roughness_metallic_texture != scene::kNone)
+            warnings.add("a material's metallic-roughness texture is lost");
+        return;
+    }
     if (glm::distance(glm::dvec3(material.ambient), 0.1 * glm::dvec3(material.diffuse)) > 1e-6)
         warnings.add(
             "a material's ambient colour is written, but read back as a tenth of its diffuse colour");
@@ -195,10 +210,11 @@ void write_obj(const scene::Scene& scene, const std::filesystem::path& path, bas
             if (materials[i].empty()) continue;
             const scene::Material& material =
                 scene.material(i + 1 < materials.size() ? static_cast<scene::Index>(i) : scene::kNone);
-            const auto texture = static_cast<std::size_t>(material.texture);
-            const bool pictured = material.texture != scene::kNone;
-            ObjWriter(out).write_material(material, materials[i], pictured ? texture_files[texture] : "",
-                                          pictured && scene.textures()[texture].transparent);
+            const auto file_of = [&](scene::Index texture) {
+                return texture == scene::kNone ? "" : texture_files[static_cast<std::size_t>(texture)];
+            };
+            ObjWriter(out).write_material(material, materials[i], file_of(material.texture),
+                                          has_holes(scene, material), file_of(material.normal_texture));
         }
     });
     files.write(path, [&](std::ostream& out) {

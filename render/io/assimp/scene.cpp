@@ -58,8 +58,9 @@ public:
         warnings_.add("an animation is ignored", scene_.mNumAnimations);
         if (lacks_up_axis(format_) && !options_.z_up && seems_z_up(parts_, path_))
             warnings_.add("it seems to lie on its side: --up-axis z turns it upright");
-        warnings_.append_to(parts_.notices, path_.string());
         read_textures(parts_, path_, progress_, options_.texture_folders);
+        omit_bump_maps();
+        warnings_.append_to(parts_.notices, path_.string());
         if (!change_textures(parts_.materials, texture_changes_, parts_.textures))
             parts_.notices.push_back(path_.string() + ": " + kUnchangedTextures);
         find_single_sided();
@@ -89,6 +90,18 @@ private:
         decode_embedded_textures(parts_, path_, [&](const std::string& name, std::uint64_t max_pixels) {
             return decode_embedded_texture(scene_, name, max_pixels);
         });
+    }
+
+    /// Where the file or assimp calls them normal maps, as it does in Collada.
+    void omit_bump_maps() {
+        for (scene::Material& material : parts_.materials) {
+            if (material.normal_texture == scene::kNone ||
+                !is_grey(parts_.textures[static_cast<std::size_t>(material.normal_texture)].image))
+                continue;
+            material.normal_image.clear();
+            material.normal_texture = scene::kNone;
+            warnings_.add(kIgnoredBumpMap);
+        }
     }
 
     void convert_meshes() {

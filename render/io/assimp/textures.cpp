@@ -1,6 +1,8 @@
 #include "io/assimp/textures.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 
 #include "base/srgb.hpp"
 #include "io/assimp/text.hpp"
@@ -19,6 +21,10 @@ std::string texture_name(const aiMaterial& material, aiTextureType type) {
 /// The texture of the colour; of some materials it is called another thing than of most.
 aiTextureType color_texture_type(const aiMaterial& material) {
     return has_texture(material, aiTextureType_DIFFUSE) ? aiTextureType_DIFFUSE : aiTextureType_BASE_COLOR;
+}
+
+aiTextureType normal_texture_type(const aiMaterial& material) {
+    return has_texture(material, aiTextureType_NORMALS) ? aiTextureType_NORMALS : aiTextureType_NORMAL_CAMERA;
 }
 
 /// As assimp looks for it: a texture inside the file may be meant by its number or by its name.
@@ -48,7 +54,8 @@ bool has_texture(const aiMaterial& material, aiTextureType type) {
 
 unsigned texcoord_set_of(const aiMaterial& material) {
     int set = 0;
-    const aiTextureType type = color_texture_type(material);
+    const aiTextureType color = color_texture_type(material);
+    const aiTextureType type = has_texture(material, color) ? color : normal_texture_type(material);
     const bool told = material.Get(AI_MATKEY_UVWSRC(type, 0), set) == aiReturn_SUCCESS;
     return told && set > 0 && set < AI_MAX_NUMBER_OF_TEXTURECOORDS ? static_cast<unsigned>(set) : 0;
 }
@@ -64,28 +71,49 @@ void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::f
 void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
                           scene::Material& material, ConversionWarnings& warnings) {
     if (!has_texture(from, aiTextureType_EMISSIVE)) return;
-    const glm::dvec3 color(material.emission);
-    material.emissive = color == glm::dvec3(0) ? glm::dvec3(1) : base::linear_from_srgb(color);
+    material.emissive += base::linear_from_srgb(glm::dvec3(material.emission));
+    if (material.emissive == glm::dvec3(0)) material.emissive = glm::dvec3(1);
     material.emission = {0, 0, 0, 1};
     material.emissive_image = name_of(texture_name(from, aiTextureType_EMISSIVE), scene, folder);
     report_unsupported_sampling(from, aiTextureType_EMISSIVE, warnings);
 }
 
+void set_normal_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
+                        scene::Material& material, ConversionWarnings& warnings) {
+    const aiTextureType type = normal_texture_type(from);
+    if (!has_texture(from, type)) return;
+    material.normal_image = name_of(texture_name(from, type), scene, folder);
+    float scale = 1;
+    const bool told = from.Get(AI_MATKEY_BUMPSCALING, scale) == aiReturn_SUCCESS ||
+                      from.Get("$tex.bumpmult", type, 0, scale) == aiReturn_SUCCESS;
+    if (told && std::isfinite(scale)) material.normal_scale = std::clamp<double>(scale, -1000, 1000);
+    report_unsupported_sampling(from, type, warnings);
+}
+
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings) {
     constexpr std::pair<aiTextureType, const char*> kLost[] = {
-        {aiTextureType_NORMALS, "a normal map is ignored"},
-        {aiTextureType_HEIGHT, "a bump map is ignored"},
+        {aiTextureType_HEIGHT, kIgnoredBumpMap},
         {aiTextureType_DISPLACEMENT, "a displacement map is ignored"},
-        {aiTextureType_METALNESS, "a metallic-roughness texture is ignored"},
+        {aiTextureType_METALNESS, "a metallic texture is ignored"},
+        {aiTextureType_DIFFUSE_ROUGHNESS, "a roughness texture is ignored"},
         {aiTextureType_SPECULAR, "a specular texture is ignored"},
         {aiTextureType_SHININESS, "a shininess texture is ignored"},
         {aiTextureType_REFLECTION, "a reflection map is ignored"},
         {aiTextureType_LIGHTMAP, "an occlusion texture is ignored"},
+        {aiTextureType_AMBIENT_OCCLUSION, "an occlusion texture is ignored"},
     };
     for (const auto& [type, what] : kLost)
         if (has_texture(from, type)) warnings.add(what);
     if (has_texture(from, aiTextureType_OPACITY) && ignores_alpha(from))
         warnings.add("an opacity map that is not the diffuse texture is ignored");
+}
+
+bool is_grey(const scene::Image& image) {
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
+        const auto [least, most] = std::minmax({image.rgba[i], image.rgba[i + 1], image.rgba[i + 2]});
+        if (most - least > 8) return false;
+    }
+    return true;
 }
 
 bool ignores_alpha(const aiMaterial& material) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kVisible = 0.5 / 255;  // what rounds to the same byte is the same
 constexpr double kSharpest = 10'000;    // Phong's exponent, which is what the reader gives smoother ones
+constexpr const char* kClamped = "a colour above 1 is clamped to 1";
 
 glm::dvec3 linear(const glm::dvec3& displayed) {
     return base::linear_from_srgb(glm::clamp(displayed, 0.0, 1.0));
@@ -66,6 +67,16 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
             "a wide specular highlight becomes weaker: the metallic-roughness model cannot express it");
 }
 
+void report_lost_phong(const scene::Material& from, const glm::dvec3& c, ConversionWarnings& warnings) {
+    const glm::dvec3 emission(from.emission);
+    if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
+        warnings.add("a material's ambient colour becomes a tenth of its diffuse colour");
+    if (largest(emission) > kVisible &&
+        (largest(glm::dvec3(from.diffuse)) > kVisible || from.emissive_texture != scene::kNone))
+        warnings.add("a material's emission becomes light, which brightens less what is lit");
+    if (largest(emission) > 1) warnings.add(kClamped);
+}
+
 }  // namespace
 
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& from,
@@ -76,18 +87,21 @@ GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& fro
     material.base = linear(c);
     material.alpha = std::clamp(from.diffuse.a, 0.0, 1.0);
     material.blend = scene.is_transparent(from);
-    const glm::dvec3 emission(from.emission), emissive = linear(emission) + from.emissive;
-    material.emissive = glm::min(emissive, 1.0);
-    convert_highlight(from, c, material, warnings);
+    glm::dvec3 emissive = from.emissive;
+    if (const auto& surface = from.metallic_roughness) {
+        material.metallic = surface->metallic;
+        material.roughness = surface->roughness;
+        material.clear_coat = surface->clear_coat;
+    } else {
+        emissive += linear(from.emission);
+        convert_highlight(from, c, material, warnings);
+        report_lost_phong(from, c, warnings);
+    }
+    material.emissive_strength = std::max(largest(emissive), 1.0);
+    material.emissive = emissive / material.emissive_strength;
     if (has_texture && largest(diffuse - c) > kVisible)
         warnings.add("the diffuse colour of a textured material becomes white");
-    if (largest(glm::dvec3(from.ambient) - c * 0.1) > kVisible)
-        warnings.add("a material's ambient colour becomes a tenth of its diffuse colour");
-    if (largest(emission) > kVisible &&
-        (largest(diffuse) > kVisible || from.emissive_texture != scene::kNone))
-        warnings.add("a material's emission becomes light, which brightens less what is lit");
-    if (largest(diffuse) > 1 || largest(emission) > 1 || largest(emissive) > 1)
-        warnings.add("a colour above 1 is clamped to 1");
+    if (largest(diffuse) > 1) warnings.add(kClamped);
     if (from.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     return material;
 }

@@ -13,16 +13,19 @@ inline constexpr double kGltfDielectric = 0.22;
 /// The factors of a glTF material; colours are linear, 0 to 1.
 struct GltfMaterial {
     glm::dvec3 base{1}, emissive{0};
+    double emissive_strength = 1;  ///< multiplies `emissive`; at least 1
     double alpha = 1;
     bool blend = false;  ///< alphaMode BLEND, else OPAQUE
     double metallic = 0, roughness = 1;
+    double clear_coat = 0;  ///< the clearcoatFactor of KHR_materials_clearcoat
     /// The specularFactor of KHR_materials_pbrSpecularGlossiness, whose glossinessFactor is 1 - roughness.
     /// Set if no metallic-roughness material has that highlight.
     std::optional<glm::dvec3> specular;
 };
 
-/// Returns the glTF material that the reader's rule (reader.hpp) turns into `material`, or the nearest
-/// one; what differs is added to `warnings`. With a texture the base colour factor is white.
+/// Returns a material by metal and roughness as it is. Of Phong's, returns the glTF material that the
+/// reader's rule (reader.hpp) turns into `material`, or the nearest one; what differs is added to `warnings`.
+/// With a texture the base colour factor is white.
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,
                            ConversionWarnings& warnings);
 

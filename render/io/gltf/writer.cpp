@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <ostream>
+#include <set>
 
 #include "base/srgb.hpp"
 #include "io/gltf/binary_chunk.hpp"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr std::string_view kLights = "KHR_lights_punctual";
 constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
+constexpr std::string_view kClearCoat = "KHR_materials_clearcoat";
+constexpr std::string_view kEmissiveStrength = "KHR_materials_emissive_strength";
 
 /// The frame in which a camera looks along -z, with y upwards.
 glm::dmat4 frame_of(const scene::CameraData& camera) {
@@ -32,15 +35,23 @@ bool keeps_right_angles(const glm::dmat4& matrix) {
     return std::abs(std::abs(scene::relative_determinant(glm::dmat3(matrix))) - 1) < 1e-9;
 }
 
+/// The texture as far as it is drawn: kNone for a material without metal and roughness.
+scene::Index occlusion_roughness_metallic(const scene::Material& material) {
+    return material.metallic_roughness ? material.occlusion_roughness_metallic_texture : scene::kNone;
+}
+
 class GlbWriter {
 public:
     GlbWriter(const scene::Scene& scene, ConversionWarnings& warnings) : scene_(scene), warnings_(warnings) {
         shapes_ = shown_shapes(scene, warnings);
         for (const ShownShape& shape : shapes_) add_shape(shape);
-        for (const scene::Index material : material_list_)
+        for (const scene::Index index : material_list_) {
+            const scene::Material& material = scene_.material(index);
             for (const scene::Index texture :
-                 {scene_.material(material).texture, scene_.material(material).emissive_texture})
+                 {material.texture, material.emissive_texture, occlusion_roughness_metallic(material),
+                  material.normal_texture})
                 if (texture != scene::kNone) images_.emplace(texture, 0);
+        }
         int place = 0;
         for (auto& [texture, own] : images_) {
             own = place++;
@@ -99,16 +110,19 @@ private:
     void write_head() {
         json_.open_object("asset").string("2.0", "version").string("vrut-preview", "generator").close();
         json_.number(0, "scene");
-        bool lights = false, glossiness = false;
-        for (const scene::Node& node : scene_.nodes()) lights = lights || node.type == scene::NodeType::light;
-        for (const scene::Index material : material_list_) {
-            converted_.push_back(gltf_material(scene_, scene_.material(material), warnings_));
-            glossiness = glossiness || converted_.back().specular;
+        std::set<std::string_view> extensions;
+        for (const scene::Node& node : scene_.nodes())
+            if (node.type == scene::NodeType::light) extensions.insert(kLights);
+        for (const scene::Index index : material_list_) {
+            const GltfMaterial material = gltf_material(scene_, scene_.material(index), warnings_);
+            if (material.specular) extensions.insert(kGlossiness);
+            if (material.clear_coat > 0) extensions.insert(kClearCoat);
+            if (material.emissive_strength > 1) extensions.insert(kEmissiveStrength);
+            converted_.push_back(material);
         }
-        if (!lights && !glossiness) return;
+        if (extensions.empty()) return;
         json_.open_array("extensionsUsed");
-        if (lights) json_.string(kLights);
-        if (glossiness) json_.string(kGlossiness);
+        for (const std::string_view extension : extensions) json_.string(extension);
         json_.close();
     }
 
@@ -237,27 +251,52 @@ private:
 
     void write_material(const scene::Material& from, const GltfMaterial& material) {
         const glm::dvec4 base(material.base, material.alpha);
+        const scene::Index surface = occlusion_roughness_metallic(from);
         json_.open_object().string(from.name, "name").open_object("pbrMetallicRoughness");
         json_.numbers(&base[0], 4, "baseColorFactor");
         json_.number(material.metallic, "metallicFactor").number(material.roughness, "roughnessFactor");
         write_texture(from.texture, "baseColorTexture");
+        write_texture(surface, "metallicRoughnessTexture");
         json_.close();
+        write_texture(surface, "occlusionTexture");
+        write_normal_texture(from);
         if (material.emissive != glm::dvec3(0)) json_.numbers(&material.emissive[0], 3, "emissiveFactor");
         write_texture(from.emissive_texture, "emissiveTexture");
         if (material.blend) json_.string("BLEND", "alphaMode");
         if (from.two_sided) json_.boolean(true, "doubleSided");
+        write_material_extensions(from, material);
+        json_.close();
+    }
+
+    void write_material_extensions(const scene::Material& from, const GltfMaterial& material) {
+        if (!material.specular && material.clear_coat == 0 && material.emissive_strength == 1) return;
+        json_.open_object("extensions");
         if (material.specular) {
-            json_.open_object("extensions").open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
+            const glm::dvec4 base(material.base, material.alpha);
+            json_.open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
             json_.numbers(&(*material.specular)[0], 3, "specularFactor");
             json_.number(1 - material.roughness, "glossinessFactor");
             write_texture(from.texture, "diffuseTexture");
-            json_.close().close();
+            json_.close();
         }
+        if (material.clear_coat > 0)
+            json_.open_object(kClearCoat).number(material.clear_coat, "clearcoatFactor").close();
+        if (material.emissive_strength > 1)
+            json_.open_object(kEmissiveStrength)
+                .number(material.emissive_strength, "emissiveStrength")
+                .close();
         json_.close();
     }
 
     void write_texture(scene::Index texture, std::string_view name) {
         if (texture != scene::kNone) json_.open_object(name).number(images_.at(texture), "index").close();
+    }
+
+    void write_normal_texture(const scene::Material& from) {
+        if (from.normal_texture == scene::kNone) return;
+        json_.open_object("normalTexture").number(images_.at(from.normal_texture), "index");
+        if (from.normal_scale != 1) json_.number(from.normal_scale, "scale");
+        json_.close();
     }
 
     void write_textures() {
