@@ -56,7 +56,7 @@ bool is_double_single(FixedProgram program) {
 
 /// Edges take the colour of their material alone. A planar mirror shows the scene, not the environment, and
 /// no mirror shows another; what it shows may be clipped, and lies beside the eye that carries the headlight.
-/// But for Phong's equation surfaces are lit at pixels.
+/// Metal and roughness need an environment, and are lit at pixels, as what a normal map bends.
 bool is_reachable(const SurfaceVariant& variant) {
     const bool varied = variant.metallic_roughness || variant.mapped;
     if (variant.kind == Kind::edges && (variant.textured || variant.colored || variant.emissive || varied ||
@@ -66,6 +66,7 @@ bool is_reachable(const SurfaceVariant& variant) {
         (variant.clipped || (variant.environment && !variant.metallic_roughness)))
         return false;
     if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
+    if (variant.metallic_roughness && !variant.environment) return false;
     if (varied && variant.lit_at != plan::Methods::Lighting::pixel) return false;
     if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored ||
                               variant.emissive || variant.mapped))

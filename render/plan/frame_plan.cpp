@@ -54,14 +54,14 @@ void assign_surfaces(std::vector<DrawItem>& items, const View& view) {
         const scene::Material& material = scene.material(item.material);
         const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
         item.emissive = material.emissive != glm::dvec3(0);
+        item.metallic_roughness = material.metallic_roughness && view.background.cube_map;
         if (!geometry.texcoords.empty()) {
             item.texture = material.texture;
             if (item.emissive) item.emissive_texture = material.emissive_texture;
-            if (material.metallic_roughness)
+            if (item.metallic_roughness)
                 item.occlusion_roughness_metallic_texture = material.occlusion_roughness_metallic_texture;
             item.normal_texture = material.normal_texture;
         }
-        item.metallic_roughness = material.metallic_roughness.has_value();
         item.colored = !geometry.colors.empty();
         item.environment = view.background.cube_map && material.reflectivity > 0 &&
                            !scene.is_mirror(material, item.geometry);

@@ -184,7 +184,7 @@ glm::dvec3 metallic_roughness(const MetallicSurface& surface, const scene::Light
 
     const auto [to_light, arriving] = incident_light(light, eye, interaction.point);
     const glm::dvec3 power =
-        glm::dvec3(light.color) * (arriving * (light.headlight ? surroundings.headlight : 1));
+        glm::dvec3(light.color) * (arriving * (light.headlight ? scene::kHeadlightInEnvironment : 1));
     const glm::dvec3 half = unit(to_light + to_viewer);
     const double grazing = fifth_power(1 - std::max(glm::dot(to_viewer, half), 0.0));
     if (const double n_l = glm::dot(interaction.normal, to_light); n_l > 0) {

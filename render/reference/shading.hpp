@@ -47,7 +47,6 @@ struct MetallicSurface {
 /// normal, in the lobe around the reflected ray, and along the ray reflected at the smooth normal.
 struct SurroundingLight {
     glm::dvec3 irradiance{0}, glossy{0}, sharp{0};
-    double headlight = 1;  ///< the part of the headlight that is left beside them
 };
 
 /// glTF 2.0, appendix B: Fresnel's reflectance by Schlick, GGX with Smith's height-correlated masking (Heitz

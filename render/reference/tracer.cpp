@@ -57,8 +57,7 @@ Tracer::Tracer(const plan::View& view)
     : view_(view),
       scene_(view),
       textures_(textures_in_use(view, scene_)),
-      cube_map_(cube_map_of(view)),
-      environment_light_(scene::plain_surroundings()) {
+      cube_map_(cube_map_of(view)) {
     const auto needs_light = [](const TracedInstance& part) {
         return part.material->metallic_roughness.has_value();
     };
@@ -134,7 +133,7 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
                                            glm::dvec3(material.normal_scale, material.normal_scale, 1));
     }
     ShadedSurface surface{
-        material.metallic_roughness
+        material.metallic_roughness && cube_map_
             ? metallic_color(path, part, interaction, diffuse * interaction.color)
             : phong(material, diffuse, view_.light, view_.camera.eye, interaction, -path.ray.direction),
         part.transparent ? std::clamp(alpha, 0.0, 1.0) : 1};
@@ -167,17 +166,13 @@ glm::dvec3 Tracer::metallic_color(const PathRay& path, const TracedInstance& par
     const auto [metallic, roughness, clear_coat] = *material.metallic_roughness;
     const MetallicSurface surface{base::linear_from_srgb(glm::clamp(displayed_base, 0.0, 1.0)),
                                   metallic * image.b, roughness * image.g, clear_coat, image.r};
-    SurroundingLight surroundings{scene::irradiance(environment_light_, interaction.normal),
-                                  glm::dvec3(scene::kPlainSurroundings),
-                                  glm::dvec3(scene::kPlainSurroundings)};
-    if (cube_map_) {
-        surroundings.glossy = base::linear_from_srgb(prefiltered_->sample(
-            reflect(path.ray.direction, interaction.normal), level_of(surface.roughness)));
-        if (clear_coat > 0)
-            surroundings.sharp =
-                base::linear_from_srgb(environment(path, interaction, interaction.smooth_normal));
-        surroundings.headlight = scene::kHeadlightInEnvironment;
-    }
+    SurroundingLight surroundings;
+    surroundings.irradiance = scene::irradiance(environment_light_, interaction.normal);
+    surroundings.glossy = base::linear_from_srgb(prefiltered_->sample(
+        reflect(path.ray.direction, interaction.normal), level_of(surface.roughness)));
+    if (clear_coat > 0)
+        surroundings.sharp =
+            base::linear_from_srgb(environment(path, interaction, interaction.smooth_normal));
     return metallic_roughness(surface, view_.light, view_.camera.eye, interaction, -path.ray.direction,
                               surroundings);
 }

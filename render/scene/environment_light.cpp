@@ -223,10 +223,4 @@ glm::dvec3 irradiance(const EnvironmentLight& light, const glm::dvec3& normal) {
     return glm::max(sum, 0.0);
 }
 
-EnvironmentLight plain_surroundings() {
-    EnvironmentLight light;
-    light.harmonics[0] = glm::dvec3(kPlainSurroundings);
-    return light;
-}
-
 }  // namespace vrut::scene

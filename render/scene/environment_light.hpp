@@ -28,10 +28,6 @@ EnvironmentLight prefilter(const std::array<const Image*, 6>& cube_map);
 /// Returns what a white, matte surface reflects whose unit normal this is; 0 to 1 where the surroundings are.
 glm::dvec3 irradiance(const EnvironmentLight& light, const glm::dvec3& normal);
 
-/// What surrounds surfaces where there is no cube map: a grey of this linear light.
-inline constexpr double kPlainSurroundings = 0.2;
-EnvironmentLight plain_surroundings();
-
 /// The part of the headlight that is left where a cube map lights surfaces.
 inline constexpr double kHeadlightInEnvironment = 0.3;
 

@@ -150,6 +150,15 @@ std::vector<Index> looking_cameras_of(const std::vector<Node>& nodes) {
     return looking;
 }
 
+std::vector<Index> reflected_backgrounds_of(const Scene& scene) {
+    std::vector<Index> reflected;
+    for (const auto& [id, index] : scene.index_by_id()) {
+        const auto* data = std::get_if<BackgroundData>(&scene.nodes()[static_cast<std::size_t>(index)].data);
+        if (data && data->only_reflected && data->cube_textures) reflected.push_back(index);
+    }
+    return reflected;
+}
+
 /// For each node whether it or one above it is marked; parents come before their children.
 std::vector<bool> presentation_of(const std::vector<Node>& nodes) {
     std::vector<bool> marked;
@@ -216,6 +225,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     link_parents(scene.nodes_);
     scene.is_presentation_ = presentation_of(scene.nodes_);
     scene.looking_cameras_ = looking_cameras_of(scene.nodes_);
+    scene.reflected_backgrounds_ = reflected_backgrounds_of(scene);
     scene.has_lods_ = std::ranges::any_of(
         scene.nodes_, [](const Node& node) { return std::holds_alternative<LodData>(node.data); });
     scene.extents_ = extents_of(scene);

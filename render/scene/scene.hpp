@@ -59,9 +59,9 @@ struct Material {
     Index texture = kNone;       ///< what was read from there; kNone where nothing could be
     std::string emissive_image;  ///< its linear colours multiply `emissive`
     Index emissive_texture = kNone;
-    /// Light is computed by it (Cook and Torrance 1982), with the diffuse colour as the base colour; the
-    /// other colours, the shininess and the reflectivity are for programs that do not know it. None: by
-    /// Phong's equation.
+    /// Where a view has a cube map, light is computed by it (Cook and Torrance 1982), with the diffuse colour
+    /// as the base colour, and the other colours and the shininess do not count. Else, and where there is none,
+    /// by Phong's equation.
     std::optional<MetallicRoughness> metallic_roughness;
     /// Red multiplies the light of the surroundings, green the roughness, blue the metal.
     std::string occlusion_roughness_metallic_image;
@@ -220,6 +220,8 @@ public:
     bool is_presentation(Index node) const { return is_presentation_[static_cast<std::size_t>(node)]; }
     /// Camera nodes with a CameraData::look_radius.
     const std::vector<Index>& looking_cameras() const { return looking_cameras_; }
+    /// Backgrounds with a cube map that is BackgroundData::only_reflected, by rising id.
+    const std::vector<Index>& reflected_backgrounds() const { return reflected_backgrounds_; }
     /// Returns true if what is shown depends on the eye.
     bool has_lods() const { return has_lods_; }
     const IdToIndex& index_by_id() const { return index_by_id_; }
@@ -240,7 +242,7 @@ private:
     std::vector<double> extents_;  // of geometries, in metres
     std::vector<Node> nodes_;
     std::vector<bool> is_presentation_;  // one for each node
-    std::vector<Index> looking_cameras_;
+    std::vector<Index> looking_cameras_, reflected_backgrounds_;
     bool has_lods_ = false;
     std::vector<std::string> notices_;
     IdToIndex index_by_id_;

@@ -273,7 +273,7 @@ tl::expected<std::vector<scene::NodeState>, Error> node_states(
 namespace {
 
 /// The active one, if it is shown; its colour is the state's.
-plan::Background background_of(const protocol::BackgroundsState& backgrounds,
+plan::Background seen_background(const protocol::BackgroundsState& backgrounds,
                                const scene::PlacedScene& placed, const glm::dvec3& eye) {
     const scene::Index node = find_node(*placed.scene, backgrounds.active);
     if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color), scene::kNone, {}, false};
@@ -281,6 +281,20 @@ plan::Background background_of(const protocol::BackgroundsState& backgrounds,
         std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data);
     return {glm::dvec3(backgrounds.items->at(backgrounds.active).color),
             placed.scene->material(data.material).texture, data.cube_textures, data.only_reflected};
+}
+
+/// Before one without a cube map surfaces reflect the first that is only reflected, if it is shown.
+plan::Background background_of(const protocol::BackgroundsState& backgrounds,
+                               const scene::PlacedScene& placed, const glm::dvec3& eye) {
+    plan::Background background = seen_background(backgrounds, placed, eye);
+    for (const scene::Index node : placed.scene->reflected_backgrounds()) {
+        if (background.cube_map || !scene::is_shown(placed, node, eye)) continue;
+        background.cube_map =
+            std::get<scene::BackgroundData>(placed.scene->nodes()[static_cast<std::size_t>(node)].data)
+                .cube_textures;
+        background.only_reflected = true;
+    }
+    return background;
 }
 
 }  // namespace

@@ -58,8 +58,7 @@ double short_of_one(double degrees) {
 }
 
 std::array<glm::dvec3, 9> harmonics_of(const plan::View& view, GpuScene* scene) {
-    if (!scene || !scene->is_lit_by_environment() || !view.background.cube_map)
-        return scene::plain_surroundings().harmonics;
+    if (!scene || !scene->is_lit_by_environment() || !view.background.cube_map) return {};
     return scene->environment_light(*view.background.cube_map).harmonics;
 }
 
@@ -181,7 +180,7 @@ SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawIte
 }
 
 bool SurfacePrograms::reflects_environment(const plan::DrawItem& item) const {
-    return item.environment || (item.metallic_roughness && cube_map_);
+    return item.environment || item.metallic_roughness;
 }
 
 const GlTexture& SurfacePrograms::texture_or_white(scene::Index texture) {
@@ -198,7 +197,7 @@ void SurfacePrograms::bind_textures(const plan::DrawItem& item) {
     if (item.texture != scene::kNone) glBindTextureUnit(kTextureUnit, scene_->texture(item.texture).get());
     if (item.emissive) glBindTextureUnit(kEmissiveUnit, texture_or_white(item.emissive_texture).get());
     if (reflects_environment(item)) glBindTextureUnit(kEnvironmentUnit, scene_->cube_map(*cube_map_).get());
-    if (item.metallic_roughness && cube_map_)
+    if (item.metallic_roughness)
         glBindTextureUnit(kPrefilteredUnit, scene_->environment_light(*cube_map_).prefiltered.get());
     if (!plan::is_mapped(item)) return;
     glBindTextureUnit(kOcclusionRoughnessMetallicUnit,

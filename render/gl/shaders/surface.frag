@@ -148,15 +148,11 @@ vec3 metallic_color(vec3 displayed_base, vec3 to_eye, float d, vec3 n, vec3 smoo
     surface.roughness *= texel.g;
     surface.metallic *= texel.b;
 #endif
-#ifdef ENVIRONMENT
     vec3 direction = world_from_view * reflect(-to_eye, n);
     vec3 glossy = linear_from_srgb(sample_prefiltered(prefiltered_map, direction, surface.roughness));
     vec3 sharp = vec3(0);
     if (surface.clear_coat > 0)
         sharp = linear_from_srgb(reflected_environment(to_eye, smooth_normal, smooth_normal));
-#else
-    vec3 glossy = harmonics[0].rgb, sharp = glossy;
-#endif
     vec4 light = incident_light(view_position, to_eye, d);
     return srgb_from_linear(metallic_roughness(surface, light, n, smooth_normal, to_eye, glossy, sharp));
 }

@@ -23,7 +23,8 @@ struct GltfMaterial {
     std::optional<glm::dvec3> specular;
 };
 
-/// Returns a material by metal and roughness as it is. Of Phong's, returns the glTF material that the
+/// Returns a material by metal and roughness as it is, but for what it has for Phong's equation: the reader
+/// makes that anew. Of Phong's, returns the glTF material that the
 /// reader's rule (reader.hpp) turns into `material`, or the nearest one; what differs is added to `warnings`.
 /// With a texture the base colour factor is white.
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,

@@ -52,7 +52,7 @@ public:
                                       alpha_mode == "BLEND" ? std::clamp(color.a, 0.0, 1.0) : 1.0);
         material.ambient = glm::dvec4(glm::dvec3(material.diffuse) * 0.1, 1);
         result_.change.factor = glm::clamp(glm::dvec3(color), 0.0, 1.0);
-        set_highlight(glossy);
+        set_highlight(has_extension(kGlossiness));
         set_texture(glossy ? object_in(glossiness_, "diffuseTexture")
                            : object_in(metallic_roughness_, "baseColorTexture"));
         set_emissive();

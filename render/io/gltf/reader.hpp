@@ -15,8 +15,8 @@ namespace vrut::io {
 ///
 /// One unit is a metre. Colours of glTF are linear, ours are as displayed: c below is a colour factor through
 /// the transfer curve of sRGB (IEC 61966-2-1). A material with base colour c, metallic m and roughness r
-/// becomes metallic-roughness m r, with a clear coat (KHR_materials_clearcoat), and for programs that know no
-/// such materials
+/// becomes metallic-roughness m r, with a clear coat (KHR_materials_clearcoat), and for views without a
+/// cube map
 ///     diffuse   c, with the base colour's alpha where alphaMode is BLEND, else 1
 ///     ambient   c / 10
 ///     specular  (1 - r) (0.22 + (c - 0.22) m): 0.22 is how 4 %, what most surfaces reflect, displays
