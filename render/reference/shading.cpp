@@ -178,9 +178,13 @@ glm::dvec3 metallic_roughness(const MetallicSurface& surface, const scene::Light
     const glm::dvec4 fit =
         roughness * glm::dvec4(-1, -0.0275, -0.572, 0.022) + glm::dvec4(1, 0.0425, 1.04, -0.04);
     const double bend = std::min(fit.x * fit.x, std::exp2(-9.28 * n_v)) * fit.x + fit.y;
-    const glm::dvec3 reflectance = facing * (-1.04 * bend + fit.z) + (1.04 * bend + fit.w);
-    glm::dvec3 color = surface.occlusion * (matte * (1.0 - reflectance) * surroundings.irradiance +
-                                            reflectance * surroundings.glossy);
+    const double scale = -1.04 * bend + fit.z, offset = 1.04 * bend + fit.w, left = 1 - (scale + offset);
+    const glm::dvec3 reflectance = facing * scale + offset;
+    const glm::dvec3 mean = facing + (1.0 - facing) / 21.0;  // over all directions
+    const glm::dvec3 scattered = reflectance * mean * left / (1.0 - left * mean);
+    glm::dvec3 color =
+        surface.occlusion * ((scattered + matte * (1.0 - reflectance - scattered)) * surroundings.irradiance +
+                             reflectance * surroundings.glossy);
 
     const auto [to_light, arriving] = incident_light(light, eye, interaction.point);
     const glm::dvec3 power =

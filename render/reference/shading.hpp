@@ -50,9 +50,10 @@ struct SurroundingLight {
 };
 
 /// glTF 2.0, appendix B: Fresnel's reflectance by Schlick, GGX with Smith's height-correlated masking (Heitz
-/// 2014) for the light, and for the surroundings Karis's fit of its integral (2014, "Physically Based Shading
-/// on Mobile"). Above it a clear coat of 4 % and roughness 0.1, which mirrors the surroundings. As displayed,
-/// each component clamped to 0…1.
+/// 2014) for the light. For the surroundings Karis's fit of its integral (2014, "Physically Based Shading on
+/// Mobile"), and what is reflected more than once (Fdez-Agüera 2019, "A Multiple-Scattering Microfacet Model
+/// for Real-Time Image-Based Lighting"). Above it a clear coat of 4 % and roughness 0.1, which mirrors the
+/// surroundings. As displayed, each component clamped to 0…1.
 glm::dvec3 metallic_roughness(const MetallicSurface& surface, const scene::Light& light,
                               const glm::dvec3& eye, const SurfaceInteraction& interaction,
                               const glm::dvec3& to_viewer, const SurroundingLight& surroundings);

@@ -93,6 +93,9 @@ TEST_CASE("what one draw call can draw") {
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.colored = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.emissive = true; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.metallic_roughness = true; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.normal_texture = 0; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.occlusion_roughness_metallic_texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.environment = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.clip_plane = {0, 0, 1, 0}; }));
 }

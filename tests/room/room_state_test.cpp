@@ -622,6 +622,38 @@ TEST_CASE("the view has the active background's colour and pictures, or else the
     CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, {}, false});
 }
 
+TEST_CASE("surfaces reflect a background that is only reflected before any other without a cube map") {
+    constexpr std::array<scene::Index, 6> kStudio{}, kSky{1, 1, 1, 1, 1, 1};
+    scene::SceneParts parts;
+    parts.textures.resize(2);
+    parts.materials.resize(1);
+    parts.materials[0].diffuse = {1, 0, 0, 1};
+    const auto add = [&](scene::Id id, const scene::BackgroundData& data) {
+        scene::Node node;
+        node.id = id;
+        node.type = scene::NodeType::background;
+        node.data = data;
+        parts.nodes.push_back({node, 0});
+    };
+    add(1, {0, {}, kStudio, true});
+    add(2, {scene::kNone, {}, kSky, false});
+    Stage stage(
+        "a",
+        {"b",
+         "",
+         std::make_shared<const scene::PlacedScene>(scene::place(*scene::Scene::build(std::move(parts)))),
+         {}});
+    const auto background = [&]() -> const plan::Background& { return stage.room.visible().background; };
+    CHECK(background() == plan::Background{{1, 0, 0}, scene::kNone, kStudio, true});
+    stage.say("a", patch(R"({"backgrounds":{"active":"color","color":[0,0,1,1]}})"));
+    CHECK(background() == plan::Background{{0, 0, 1}, scene::kNone, kStudio, true});
+    stage.say("a", patch(R"({"backgrounds":{"active":"2"}})"));
+    CHECK(background().cube_map == kSky);
+    CHECK(background().shows_cube_map());
+    stage.say("a", patch(R"({"backgrounds":{"active":"color"},"nodes":{"1":{"active":false}}})"));
+    CHECK_FALSE(background().cube_map);
+}
+
 TEST_CASE("of the backgrounds of a LOD the one is active that the eye's distance chooses") {
     Stage stage("a", scene_of(R"(vrut-text 1
 material 1 "Near" diffuse 1 0 0 1 end

@@ -41,9 +41,14 @@ vec3 metallic_roughness(MetallicSurface surface, vec4 light, vec3 n, vec3 smooth
 
     vec4 fit = roughness * vec4(-1, -0.0275, -0.572, 0.022) + vec4(1, 0.0425, 1.04, -0.04);  // Karis 2014
     float bend = min(fit.x * fit.x, exp2(-9.28 * n_v)) * fit.x + fit.y;
-    vec3 reflectance = facing * (-1.04 * bend + fit.z) + (1.04 * bend + fit.w);
-    vec3 color =
-        surface.occlusion * (matte * (1 - reflectance) * irradiance(world_from_view * n) + reflectance * glossy);
+    vec2 once = vec2(-1.04 * bend + fit.z, 1.04 * bend + fit.w);
+    vec3 reflectance = facing * once.x + once.y;
+    // What is reflected more than once (Fdez-Agüera 2019).
+    float left = 1 - (once.x + once.y);
+    vec3 mean = facing + (1 - facing) / 21, scattered = reflectance * mean * left / (1 - left * mean);
+    vec3 color = surface.occlusion * ((scattered + matte * (1 - reflectance - scattered)) *
+                                          irradiance(world_from_view * n) +
+                                      reflectance * glossy);
 
     vec3 power = light_color.rgb * (light.w * light_color.a);
     vec3 h = light.xyz + to_eye;
