@@ -16,9 +16,10 @@ scene::Material car_paint() {
     scene::Material paint;
     paint.name = "Paint";
     paint.diffuse = {1, 0.5, 0, 1};
-    paint.ambient = {1, 1, 1, 1};  // which is not drawn, as the next three
-    paint.specular = {1, 0, 1, 1};
-    paint.shininess = 0.5;
+    paint.ambient = {1, 1, 1, 1};  // which is not drawn under a cube map, as the next three
+    // The highlight that the reader gives to the metal and roughness below.
+    paint.specular = glm::dvec4(0.75 * (0.22 + (glm::dvec3(paint.diffuse) - 0.22) * 0.75), 1);
+    paint.shininess = 127.5;
     paint.emission = {1, 1, 1, 1};
     paint.metallic_roughness = {0.75, 0.25, 0.5};
     return paint;
@@ -113,6 +114,21 @@ TEST_CASE("the maps of a material are textures of a GLB file") {
         CHECK(file.material()["normalTexture"] == R"({"index": 0})"_json);
         CHECK(file.json["textures"].size() == 1);
     }
+}
+
+TEST_CASE("a GLB file keeps the highlight by Phong's equation beside metal and roughness") {
+    scene::Material paint = car_paint();
+    paint.specular = {0.5, 0.4, 0.3, 1};
+    paint.shininess = 40;
+    const TemporaryFolder folder;
+    const auto lost = io::write_scene(part_of(paint), folder.path() / "x.glb");
+    REQUIRE_MESSAGE(lost, lost.error());
+    const auto scene = io::read_scene(folder.path() / "x.glb");
+    REQUIRE_MESSAGE(scene, scene.error());
+    const scene::Material& read = scene->materials()[0];
+    CHECK(read.metallic_roughness == paint.metallic_roughness);
+    CHECK(glm::distance(read.specular, paint.specular) < 1e-6);
+    CHECK(read.shininess == doctest::Approx(40));
 }
 
 TEST_CASE("a GLB file keeps emissive light above 1") {

@@ -288,6 +288,8 @@ TEST_CASE("a second GLB file of what was read from the first loses nothing more"
         CAPTURE(first.materials()[i].name);
         CHECK(near(second.materials()[i].diffuse, first.materials()[i].diffuse));
         CHECK(second.materials()[i].metallic_roughness == first.materials()[i].metallic_roughness);
+        CHECK(near(second.materials()[i].specular, first.materials()[i].specular));
+        CHECK(second.materials()[i].shininess == doctest::Approx(first.materials()[i].shininess));
     }
 }
 
@@ -304,7 +306,7 @@ TEST_CASE("what the reader's rule made of glTF's materials becomes them again") 
                 io::ConversionWarnings warnings;
                 const scene::Material phong = phong_of(c, metallic, roughness);
                 const io::GltfMaterial made = io::gltf_material(none, phong, warnings);
-                CHECK_FALSE(made.specular);
+                CHECK_FALSE(made.glossiness);
                 CHECK(transfer(made.base.r) == doctest::Approx(c.r).epsilon(1e-6));
                 const scene::Material again = phong_of(c, made.metallic, made.roughness);
                 CHECK(glm::distance(again.specular, phong.specular) < 0.5 / 255);

@@ -61,10 +61,21 @@ void convert_highlight(const scene::Material& from, const glm::dvec3& c, GltfMat
     }
     if (largest(wanted) == 0) return;  // roughness 1 has none
     material.roughness = 1 - most_k;
-    material.specular = linear(wanted / most_k);
+    material.glossiness = {linear(wanted / most_k), most_k};
     if (largest(wanted) > most_k + kVisible)
         warnings.add(
             "a wide specular highlight becomes weaker: the metallic-roughness model cannot express it");
+}
+
+/// What the reader would not find for Phong's equation.
+void keep_highlight(const scene::Material& from, const glm::dvec3& c, GltfMaterial& material) {
+    const glm::dvec3 wanted(from.specular);
+    const glm::dvec3 found =
+        (1 - material.roughness) * (kGltfDielectric + (c - kGltfDielectric) * material.metallic);
+    const double k = range_of_k(from.shininess).second;
+    const bool is_found = std::abs(1 - material.roughness - k) < 1e-6 || largest(wanted) == 0;
+    if ((is_found && largest(found - wanted) <= kVisible) || !(k > 0)) return;
+    material.glossiness = {linear(wanted / k), k};
 }
 
 void report_lost_phong(const scene::Material& from, const glm::dvec3& c, ConversionWarnings& warnings) {
@@ -92,6 +103,7 @@ GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& fro
         material.metallic = surface->metallic;
         material.roughness = surface->roughness;
         material.clear_coat = surface->clear_coat;
+        keep_highlight(from, c, material);
     } else {
         emissive += linear(from.emission);
         convert_highlight(from, c, material, warnings);

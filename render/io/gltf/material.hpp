@@ -18,13 +18,16 @@ struct GltfMaterial {
     bool blend = false;  ///< alphaMode BLEND, else OPAQUE
     double metallic = 0, roughness = 1;
     double clear_coat = 0;  ///< the clearcoatFactor of KHR_materials_clearcoat
-    /// The specularFactor of KHR_materials_pbrSpecularGlossiness, whose glossinessFactor is 1 - roughness.
-    /// Set if no metallic-roughness material has that highlight.
-    std::optional<glm::dvec3> specular;
+    /// KHR_materials_pbrSpecularGlossiness. Set if the highlight by Phong's equation is not the one that the
+    /// reader gives to that metal and roughness.
+    struct Glossiness {
+        glm::dvec3 specular{0};
+        double glossiness = 0;
+    };
+    std::optional<Glossiness> glossiness;
 };
 
-/// Returns a material by metal and roughness as it is, but for what it has for Phong's equation: the reader
-/// makes that anew. Of Phong's, returns the glTF material that the
+/// Returns a material by metal and roughness as it is. Of Phong's, returns the glTF material that the
 /// reader's rule (reader.hpp) turns into `material`, or the nearest one; what differs is added to `warnings`.
 /// With a texture the base colour factor is white.
 GltfMaterial gltf_material(const scene::Scene& scene, const scene::Material& material,

@@ -115,7 +115,7 @@ private:
             if (node.type == scene::NodeType::light) extensions.insert(kLights);
         for (const scene::Index index : material_list_) {
             const GltfMaterial material = gltf_material(scene_, scene_.material(index), warnings_);
-            if (material.specular) extensions.insert(kGlossiness);
+            if (material.glossiness) extensions.insert(kGlossiness);
             if (material.clear_coat > 0) extensions.insert(kClearCoat);
             if (material.emissive_strength > 1) extensions.insert(kEmissiveStrength);
             converted_.push_back(material);
@@ -269,13 +269,13 @@ private:
     }
 
     void write_material_extensions(const scene::Material& from, const GltfMaterial& material) {
-        if (!material.specular && material.clear_coat == 0 && material.emissive_strength == 1) return;
+        if (!material.glossiness && material.clear_coat == 0 && material.emissive_strength == 1) return;
         json_.open_object("extensions");
-        if (material.specular) {
+        if (material.glossiness) {
             const glm::dvec4 base(material.base, material.alpha);
             json_.open_object(kGlossiness).numbers(&base[0], 4, "diffuseFactor");
-            json_.numbers(&(*material.specular)[0], 3, "specularFactor");
-            json_.number(1 - material.roughness, "glossinessFactor");
+            json_.numbers(&material.glossiness->specular[0], 3, "specularFactor");
+            json_.number(material.glossiness->glossiness, "glossinessFactor");
             write_texture(from.texture, "diffuseTexture");
             json_.close();
         }

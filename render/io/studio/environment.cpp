@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "math/cube_faces.hpp"
+
 namespace vrut::io {
 
 namespace {
@@ -50,16 +52,6 @@ double side_strips(const glm::dvec3& direction) {
            soft_step(kEnd + kEndEdge / 2, kEnd - kEndEdge / 2, along);
 }
 
-struct StudioCamera {
-    glm::dvec3 forward, up;
-};
-
-/// What the images of a cube map show is what these see.
-constexpr std::array<StudioCamera, 6> kStudioCameras{
-    StudioCamera{{1, 0, 0}, {0, 1, 0}}, StudioCamera{{-1, 0, 0}, {0, 1, 0}},
-    StudioCamera{{0, 1, 0}, {0, 0, 1}}, StudioCamera{{0, -1, 0}, {0, 0, -1}},
-    StudioCamera{{0, 0, 1}, {0, 1, 0}}, StudioCamera{{0, 0, -1}, {0, 1, 0}}};
-
 }  // namespace
 
 double studio_brightness(const glm::dvec3& direction) {
@@ -74,15 +66,13 @@ double studio_brightness(const glm::dvec3& direction) {
 std::array<scene::Image, 6> studio_cube_map() {
     std::array<scene::Image, 6> images;
     for (std::size_t i = 0; i < images.size(); ++i) {
-        const auto& [forward, up] = kStudioCameras[i];
-        const glm::dvec3 right = glm::cross(forward, up);
         images[i].resize(kStudioSide, kStudioSide);
         std::uint8_t* texel = images[i].rgba.data();
         for (int y = 0; y < kStudioSide; ++y)
             for (int x = 0; x < kStudioSide; ++x, texel += 4) {
-                const glm::dvec2 at = 2.0 * (glm::dvec2(x, y) + 0.5) / double{kStudioSide} - 1.0;
+                const glm::dvec2 uv = (glm::dvec2(x, y) + 0.5) / double{kStudioSide};
                 const double brightness =
-                    studio_brightness(glm::normalize(forward + at.x * right + at.y * up));
+                    studio_brightness(glm::normalize(math::direction_at(math::kCubeFaces[i], uv)));
                 std::fill_n(texel, 3, static_cast<std::uint8_t>(std::lround(255 * brightness)));
                 texel[3] = 255;
             }
