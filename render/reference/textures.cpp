@@ -64,6 +64,7 @@ double longer_side(const std::array<glm::dvec2, 2>& change, const glm::dvec2& si
 
 MipMap mip_map_of_face(const std::vector<std::array<scene::Image, 6>>& levels, std::size_t face) {
     std::vector<const scene::Image*> images;
+    images.reserve(levels.size());
     for (const auto& level : levels) images.push_back(&level[face]);
     return MipMap(images);
 }

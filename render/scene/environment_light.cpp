@@ -18,8 +18,13 @@ struct LightSquare {
     int side = 0;
     std::vector<glm::dvec3> texels;
 
-    glm::dvec3& at(int x, int y) { return texels[static_cast<std::size_t>(y * side + x)]; }
-    const glm::dvec3& at(int x, int y) const { return texels[static_cast<std::size_t>(y * side + x)]; }
+    glm::dvec3& at(int x, int y) { return texels[index(x, y)]; }
+    const glm::dvec3& at(int x, int y) const { return texels[index(x, y)]; }
+
+private:
+    std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(side) + static_cast<std::size_t>(x);
+    }
 };
 using LightCube = std::array<LightSquare, 6>;
 
@@ -56,7 +61,10 @@ LightSquare resampled(const Image& image, int side) {
         resample(
             image.width, side, [&](int x) { return texel(x, y); },
             [&](int x, const glm::dvec3& mean) { row_at(x, y) = mean; });
-    LightSquare square{side, std::vector<glm::dvec3>(static_cast<std::size_t>(side * side))};
+    const auto length = static_cast<std::size_t>(side);
+    LightSquare square;
+    square.side = side;
+    square.texels.resize(length * length);
     for (int x = 0; x < side; ++x)
         resample(
             image.height, side, [&](int y) { return row_at(x, y); },
@@ -65,7 +73,8 @@ LightSquare resampled(const Image& image, int side) {
 }
 
 LightSquare half_of(const LightSquare& square) {
-    LightSquare half{square.side / 2, {}};
+    LightSquare half;
+    half.side = square.side / 2;
     for (int y = 0; y < half.side; ++y)
         for (int x = 0; x < half.side; ++x)
             half.texels.push_back((square.at(2 * x, 2 * y) + square.at(2 * x + 1, 2 * y) +

@@ -78,19 +78,23 @@ TEST_CASE("an OBJ material is by metal and roughness where the file tells one of
 }
 
 TEST_CASE("an FBX material of 3ds Max or Maya is by metal and roughness") {
-    for (const auto& [metallic, roughness, clear_coat] :
-         {std::tuple("3dsMax|Parameters|metalness", "3dsMax|Parameters|roughness",
-                     "3dsMax|Parameters|coating"),
+    struct Names {
+        const char *metallic, *roughness, *clear_coat;
+    };
+    for (const Names& names :
+         {Names{"3dsMax|Parameters|metalness", "3dsMax|Parameters|roughness", "3dsMax|Parameters|coating"},
           {"Maya|metalness", "Maya|specularRoughness", "Maya|coat"}})
-        CHECK_MESSAGE(is_surface(fbx_material(fbx_number(metallic, "0.7") + fbx_number(roughness, "0.3") +
-                                              fbx_number(clear_coat, "0.5")),
-                                 0.7, 0.3, 0.5),
-                      metallic);
-    for (const auto& [metallic, roughness] :
-         {std::pair("3dsMax|main|metalness", "3dsMax|main|roughness"), {"Maya|metallic", "Maya|roughness"}})
         CHECK_MESSAGE(
-            is_surface(fbx_material(fbx_number(metallic, "0.7") + fbx_number(roughness, "0.3")), 0.7, 0.3, 0),
-            metallic);
+            is_surface(fbx_material(fbx_number(names.metallic, "0.7") + fbx_number(names.roughness, "0.3") +
+                                    fbx_number(names.clear_coat, "0.5")),
+                       0.7, 0.3, 0.5),
+            names.metallic);
+    for (const Names& names : {Names{"3dsMax|main|metalness", "3dsMax|main|roughness", ""},
+                               {"Maya|metallic", "Maya|roughness", ""}})
+        CHECK_MESSAGE(
+            is_surface(fbx_material(fbx_number(names.metallic, "0.7") + fbx_number(names.roughness, "0.3")),
+                       0.7, 0.3, 0),
+            names.metallic);
     CHECK(is_surface(fbx_material(fbx_number("3dsMax|Parameters|metalness", "0") +
                                   fbx_number("3dsMax|Parameters|roughness", "0.75") +
                                   "P: \"3dsMax|Parameters|roughness_inv\", \"Bool\", \"\", \"A\",1\n"),
@@ -99,14 +103,16 @@ TEST_CASE("an FBX material of 3ds Max or Maya is by metal and roughness") {
 }
 
 TEST_CASE("the base colour of such an FBX material is its own") {
-    for (const auto& [metallic, base] :
-         {std::pair("3dsMax|Parameters|metalness", "3dsMax|Parameters|base_color"),
-          {"3dsMax|main|metalness", "3dsMax|main|basecolor"},
-          {"Maya|metalness", "Maya|baseColor"},
-          {"Maya|metallic", "Maya|base_color"}}) {
-        const scene::Material paint = fbx_material(fbx_number(metallic, "1") + "P: \"" + base +
+    struct Names {
+        const char *metallic, *base;
+    };
+    for (const Names& names : {Names{"3dsMax|Parameters|metalness", "3dsMax|Parameters|base_color"},
+                               {"3dsMax|main|metalness", "3dsMax|main|basecolor"},
+                               {"Maya|metalness", "Maya|baseColor"},
+                               {"Maya|metallic", "Maya|base_color"}}) {
+        const scene::Material paint = fbx_material(fbx_number(names.metallic, "1") + "P: \"" + names.base +
                                                    "\", \"Color\", \"\", \"A\",0.1,0.2,0.3\n");
-        CHECK_MESSAGE(is_near(paint.diffuse, {0.1, 0.2, 0.3, 0.4}), base);
+        CHECK_MESSAGE(is_near(paint.diffuse, {0.1, 0.2, 0.3, 0.4}), names.base);
         CHECK(is_near(paint.ambient, {0.01, 0.02, 0.03, 1}));
     }
 }
