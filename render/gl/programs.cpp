@@ -67,6 +67,7 @@ bool is_reachable(const SurfaceVariant& variant) {
         return false;
     if (variant.anisotropic && !(variant.textured || variant.mapped)) return false;
     if (variant.metallic_roughness && !variant.environment) return false;
+    if (variant.coated && !variant.metallic_roughness) return false;
     if (varied && variant.lit_at != plan::Methods::Lighting::pixel) return false;
     if (variant.instanced && (variant.kind != Kind::faces || variant.double_single || variant.colored ||
                               variant.emissive || variant.mapped))
@@ -84,7 +85,7 @@ bool has_double_single(const scene::Scene& scene) {
 struct SceneFeatures {
     bool small_geometries = false, double_single = false;
     bool texcoords = false, colors = false, planes = false, environment_map = false;
-    bool emissive = false, phong = false, metallic_roughness = false, mapped = false;
+    bool emissive = false, metallic_roughness = false, mapped = false, coated = false;
     bool opaque_textured = false, glass = false, glass_textured = false;
     bool reflective = false, reflective_glass = false;
     std::array<bool, 4> lights{};  ///< by SurfaceVariant::Light
@@ -95,7 +96,10 @@ void add_material(SceneFeatures& features, const scene::Scene& scene, const scen
     const bool glass = scene.is_transparent(material), textured = material.texture != scene::kNone;
     features.glass |= glass;
     features.emissive |= material.emissive != glm::dvec3(0);
-    (material.metallic_roughness ? features.metallic_roughness : features.phong) = true;
+    if (const auto& surface = material.metallic_roughness) {
+        features.metallic_roughness = true;
+        features.coated |= surface->clear_coat > 0 || material.reflectivity > 0;
+    }
     features.mapped |= material.normal_texture != scene::kNone ||
                        material.occlusion_roughness_metallic_texture != scene::kNone;
     (glass ? features.glass_textured : features.opaque_textured) |= textured;
@@ -133,6 +137,7 @@ bool may_need(const SceneFeatures& features, const SurfaceVariant& variant) {
     if (variant.colored && !features.colors) return false;
     if (variant.emissive && !features.emissive) return false;
     if (variant.metallic_roughness && !features.metallic_roughness) return false;
+    if (variant.coated && !features.coated) return false;
     if (variant.mapped && !(features.mapped && features.texcoords)) return false;
     if (variant.instanced && !features.small_geometries) return false;
     if (is_glass && !features.glass) return false;
@@ -165,7 +170,7 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
     for (const Kind kind : {Kind::faces, Kind::edges, Kind::glass, Kind::per_pixel_glass, Kind::mirror})
         for (const Light light : {Light::headlight, Light::point, Light::directional, Light::spot})
             for (const Lighting lit_at : {Lighting::pixel, Lighting::vertex})
-                for (int bits = 0; bits < 1024; ++bits) {
+                for (int bits = 0; bits < 2048; ++bits) {
                     const SurfaceVariant variant{kind,
                                                  light,
                                                  (bits & 1) != 0,
@@ -178,7 +183,8 @@ std::vector<SurfaceVariant> reachable_surface_variants() {
                                                  (bits & 64) != 0,
                                                  (bits & 128) != 0,
                                                  (bits & 256) != 0,
-                                                 (bits & 512) != 0};
+                                                 (bits & 512) != 0,
+                                                 (bits & 1024) != 0};
                     if (is_reachable(variant)) variants.push_back(variant);
                 }
     return variants;
@@ -218,6 +224,7 @@ ProgramSource source_of(const SurfaceVariant& variant) {
     define(variant.emissive, "EMISSIVE");
     define(variant.metallic_roughness, "METALLIC_ROUGHNESS");
     define(variant.mapped, "MAPPED");
+    define(variant.coated, "COATED");
     define(variant.environment, "ENVIRONMENT");
     define(variant.kind == Kind::glass || variant.kind == Kind::per_pixel_glass, "GLASS");
     define(variant.kind == Kind::per_pixel_glass, "LAYERED");

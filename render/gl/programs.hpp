@@ -57,12 +57,13 @@ struct SurfaceVariant {
     bool emissive = false;            ///< sends light by itself
     bool metallic_roughness = false;  ///< lit by it, not by Phong's equation
     bool mapped = false;              ///< plan::is_mapped()
+    bool coated = false;              ///< mirrors the environment above metal and roughness
 
     bool operator<(const SurfaceVariant& other) const {
         const auto key = [](const SurfaceVariant& v) {
             return std::tie(v.kind, v.light, v.textured, v.environment, v.clipped, v.lit_at, v.double_single,
-                            v.anisotropic, v.instanced, v.colored, v.emissive, v.metallic_roughness,
-                            v.mapped);
+                            v.anisotropic, v.instanced, v.colored, v.emissive, v.metallic_roughness, v.mapped,
+                            v.coated);
         };
         return key(*this) < key(other);
     }

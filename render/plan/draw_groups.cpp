@@ -124,8 +124,8 @@ private:
 
 bool share_draw(const DrawItem& a, const DrawItem& b) {
     return a.texture == b.texture && a.colored == b.colored && !a.emissive && !b.emissive &&
-           a.metallic_roughness == b.metallic_roughness && !is_mapped(a) && !is_mapped(b) &&
-           a.environment == b.environment &&
+           a.metallic_roughness == b.metallic_roughness && a.coated == b.coated && !is_mapped(a) &&
+           !is_mapped(b) && a.environment == b.environment &&
            (a.cull_mode == CullMode::none) == (b.cull_mode == CullMode::none) &&
            a.clip_plane.has_value() == b.clip_plane.has_value();
 }

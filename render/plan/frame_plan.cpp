@@ -55,6 +55,8 @@ void assign_surfaces(std::vector<DrawItem>& items, const View& view) {
         const scene::Geometry& geometry = scene.geometries()[static_cast<std::size_t>(item.geometry)];
         item.emissive = material.emissive != glm::dvec3(0);
         item.metallic_roughness = material.metallic_roughness && view.background.cube_map;
+        item.coated = item.metallic_roughness &&
+                      (material.metallic_roughness->clear_coat > 0 || material.reflectivity > 0);
         if (!geometry.texcoords.empty()) {
             item.texture = material.texture;
             if (item.emissive) item.emissive_texture = material.emissive_texture;

@@ -31,6 +31,7 @@ struct DrawItem {
     bool emissive = false;                ///< sends light by itself
     scene::Index emissive_texture = scene::kNone;
     bool metallic_roughness = false;  ///< lit by it, not by Phong's equation
+    bool coated = false;              ///< mirrors the environment above that
     scene::Index occlusion_roughness_metallic_texture = scene::kNone, normal_texture = scene::kNone;
     bool environment = false;  ///< mixed with the environment map that it reflects
     /// An opaque item has the same geometry, the same matrix and a higher id: it hides this one.

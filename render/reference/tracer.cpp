@@ -54,10 +54,7 @@ glm::dvec3 reflect(const glm::dvec3& v, const glm::dvec3& normal) {
 }  // namespace
 
 Tracer::Tracer(const plan::View& view)
-    : view_(view),
-      scene_(view),
-      textures_(textures_in_use(view, scene_)),
-      cube_map_(cube_map_of(view)) {
+    : view_(view), scene_(view), textures_(textures_in_use(view, scene_)), cube_map_(cube_map_of(view)) {
     const auto needs_light = [](const TracedInstance& part) {
         return part.material->metallic_roughness.has_value();
     };
@@ -168,8 +165,9 @@ glm::dvec3 Tracer::metallic_color(const PathRay& path, const TracedInstance& par
                                   metallic * image.b, roughness * image.g, clear_coat, image.r};
     SurroundingLight surroundings;
     surroundings.irradiance = scene::irradiance(environment_light_, interaction.normal);
-    surroundings.glossy = base::linear_from_srgb(prefiltered_->sample(
-        reflect(path.ray.direction, interaction.normal), level_of(surface.roughness)));
+    const glm::dvec3 root =
+        prefiltered_->sample(reflect(path.ray.direction, interaction.normal), level_of(surface.roughness));
+    surroundings.glossy = root * root;
     if (clear_coat > 0)
         surroundings.sharp =
             base::linear_from_srgb(environment(path, interaction, interaction.smooth_normal));

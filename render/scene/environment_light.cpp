@@ -150,11 +150,11 @@ glm::dmat3 frame_of(const glm::dvec3& direction) {
     return {x, glm::cross(n, x), n};
 }
 
-std::uint8_t displayed_byte(double light) {
-    return static_cast<std::uint8_t>(std::lround(255 * base::srgb_from_linear(light)));
+std::uint8_t root_byte(double light) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::sqrt(std::clamp(light, 0.0, 1.0))));
 }
 
-/// The images of `side` pixels whose pixels are what `light` returns for their directions.
+/// The images of `side` pixels whose pixels are the roots of what `light` returns for their directions.
 template <class Light>
 std::array<Image, 6> images_of(int side, const Light& light) {
     std::array<Image, 6> images;
@@ -165,7 +165,7 @@ std::array<Image, 6> images_of(int side, const Light& light) {
             for (int x = 0; x < side; ++x) {
                 const glm::dvec2 uv = (glm::dvec2(x, y) + 0.5) / static_cast<double>(side);
                 const glm::dvec3 color = light(math::direction_at(math::kCubeFaces[face], uv));
-                for (int i = 0; i < 3; ++i) *to++ = displayed_byte(color[i]);
+                for (int i = 0; i < 3; ++i) *to++ = root_byte(color[i]);
                 *to++ = 255;
             }
     }

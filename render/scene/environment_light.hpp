@@ -14,9 +14,10 @@ struct EnvironmentLight {
     /// what a matte surface receives (Ramamoorthi and Hanrahan 2001, "An Efficient Representation for
     /// Irradiance Environment Maps").
     std::array<glm::dvec3, 9> harmonics{};
-    /// The light that a rough surface reflects, as displayed: level k is that of roughness k / (kLevels - 1),
-    /// in six squares of kSide / 2^k pixels, in the order and from the sides of the cube map. Mean of GGX
-    /// around a direction seen from there (Karis 2013, "Real Shading in Unreal Engine 4").
+    /// The light that a rough surface reflects, as its square roots, which are quickly undone: level k is
+    /// that of roughness k / (kLevels - 1), in six squares of kSide / 2^k pixels, in the order and from the
+    /// sides of the cube map. Mean of GGX around a direction seen from there (Karis 2013, "Real Shading in
+    /// Unreal Engine 4").
     std::vector<std::array<Image, 6>> prefiltered;
 
     static constexpr int kSide = 128, kLevels = 6;

@@ -94,6 +94,7 @@ TEST_CASE("what one draw call can draw") {
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.colored = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.emissive = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.metallic_roughness = true; }));
+    CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.coated = true; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.normal_texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.occlusion_roughness_metallic_texture = 0; }));
     CHECK_FALSE(shares([](plan::DrawItem& changed) { changed.environment = true; }));

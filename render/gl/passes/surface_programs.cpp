@@ -172,6 +172,7 @@ SurfaceVariant SurfacePrograms::variant_of(SurfaceKind kind, const plan::DrawIte
     variant.emissive = item.emissive;
     variant.metallic_roughness = item.metallic_roughness;
     variant.mapped = plan::is_mapped(item);
+    variant.coated = item.coated;
     if (!variant.metallic_roughness && !variant.mapped) variant.lit_at = methods_.light;
     variant.double_single = geometry.is_double_single();
     variant.anisotropic =

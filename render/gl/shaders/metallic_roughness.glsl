@@ -1,5 +1,5 @@
 // Surfaces by metal and roughness (glTF 2.0, appendix B), in view space and linear light. After view_uniforms.glsl,
-// phong.glsl and srgb.glsl.
+// phong.glsl and srgb.glsl; COATED ones mirror the surroundings above that.
 
 const float kLeastCosine = 1e-3, kLeastRoughness = 0.05, kCoatRoughness = 0.1, kDielectric = 0.04;
 
@@ -60,7 +60,8 @@ vec3 metallic_roughness(MetallicSurface surface, vec4 light, vec3 n, vec3 smooth
         color += (matte * (1 - fresnel) + fresnel * specular_lobe(n, h, n_l, n_v, roughness)) * power * n_l;
     }
 
-    if (surface.clear_coat > 0) {
+#ifdef COATED
+    {
         n_v = max(dot(smooth_normal, to_eye), kLeastCosine);
         float through = surface.clear_coat * (kDielectric + (1 - kDielectric) * fifth_power(1 - n_v));
         color = mix(color, sharp, through);
@@ -69,5 +70,6 @@ vec3 metallic_roughness(MetallicSurface surface, vec4 light, vec3 n, vec3 smooth
             color += power * (n_l * surface.clear_coat * (kDielectric + (1 - kDielectric) * grazing) *
                               specular_lobe(smooth_normal, h, n_l, n_v, kCoatRoughness));
     }
+#endif
     return color;
 }

@@ -116,7 +116,8 @@ vec3 mapped_normal(vec3 n) {
 }
 #endif
 
-#ifdef ENVIRONMENT
+#if defined(COATED) || (defined(ENVIRONMENT) && !defined(METALLIC_ROUGHNESS))
+#define MIRRORS_ENVIRONMENT
 // What the ray that is reflected at `n` meets.
 vec3 reflected_environment(vec3 to_eye, vec3 n, vec3 smooth_normal) {
     // The interpolated normal is linear over a triangle, a unit normal is not: the derivatives of the reflected
@@ -149,10 +150,12 @@ vec3 metallic_color(vec3 displayed_base, vec3 to_eye, float d, vec3 n, vec3 smoo
     surface.metallic *= texel.b;
 #endif
     vec3 direction = world_from_view * reflect(-to_eye, n);
-    vec3 glossy = linear_from_srgb(sample_prefiltered(prefiltered_map, direction, surface.roughness));
+    vec3 glossy = sample_prefiltered(prefiltered_map, direction, surface.roughness);
+#ifdef COATED
+    vec3 sharp = linear_from_srgb(reflected_environment(to_eye, smooth_normal, smooth_normal));
+#else
     vec3 sharp = vec3(0);
-    if (surface.clear_coat > 0)
-        sharp = linear_from_srgb(reflected_environment(to_eye, smooth_normal, smooth_normal));
+#endif
     vec4 light = incident_light(view_position, to_eye, d);
     return srgb_from_linear(metallic_roughness(surface, light, n, smooth_normal, to_eye, glossy, sharp));
 }
@@ -193,8 +196,8 @@ void main() {
     own = srgb_from_linear(linear_from_srgb(own) +
                            emissive * linear_from_srgb(sample_filtered(emissive_image, uv).rgb));
 #endif
-#if defined(ENVIRONMENT) && !defined(MIRROR)
-    if (reflectivity != 0) own = mix(own, reflected_environment(to_eye, n, smooth_normal), reflectivity);
+#if defined(MIRRORS_ENVIRONMENT) && !defined(MIRROR)
+    own = mix(own, reflected_environment(to_eye, n, smooth_normal), reflectivity);
 #endif
 #ifdef MIRROR
     own = mix(own, texelFetch(reflection, ivec2(gl_FragCoord.xy), 0).rgb, reflectivity);

@@ -48,10 +48,12 @@ vec3 sample_environment(samplerCube environment_map, vec3 direction, vec3 across
     return mix(at_finer, textureLod(environment_map, direction, finer + 1).rgb, level - finer);
 }
 
-// What rough surfaces reflect of the environment around a direction of the world, of scene::EnvironmentLight.
+// The linear light that rough surfaces reflect of the environment around a direction of the world, of
+// scene::EnvironmentLight.
 vec3 sample_prefiltered(samplerCube prefiltered_map, vec3 direction, float roughness) {
     float level = roughness * float(textureQueryLevels(prefiltered_map) - 1), finer = floor(level);
     direction.z = -direction.z;
     vec3 at_finer = textureLod(prefiltered_map, direction, finer).rgb;
-    return mix(at_finer, textureLod(prefiltered_map, direction, finer + 1).rgb, level - finer);
+    vec3 root = mix(at_finer, textureLod(prefiltered_map, direction, finer + 1).rgb, level - finer);
+    return root * root;
 }
