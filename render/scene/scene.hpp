@@ -60,8 +60,8 @@ struct Material {
     std::string emissive_image;  ///< its linear colours multiply `emissive`
     Index emissive_texture = kNone;
     /// Where a view has a cube map, light is computed by it (Cook and Torrance 1982), with the diffuse colour
-    /// as the base colour, and the other colours and the shininess do not count. Else, and where there is none,
-    /// by Phong's equation.
+    /// as the base colour, and the other colours and the shininess do not count. Else, and where there is
+    /// none, by Phong's equation.
     std::optional<MetallicRoughness> metallic_roughness;
     /// Red multiplies the light of the surroundings, green the roughness, blue the metal.
     std::string occlusion_roughness_metallic_image;

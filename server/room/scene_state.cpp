@@ -274,7 +274,7 @@ namespace {
 
 /// The active one, if it is shown; its colour is the state's.
 plan::Background seen_background(const protocol::BackgroundsState& backgrounds,
-                               const scene::PlacedScene& placed, const glm::dvec3& eye) {
+                                 const scene::PlacedScene& placed, const glm::dvec3& eye) {
     const scene::Index node = find_node(*placed.scene, backgrounds.active);
     if (!scene::is_shown(placed, node, eye)) return {glm::dvec3(backgrounds.color), scene::kNone, {}, false};
     const auto& data =

@@ -38,7 +38,7 @@ function convert(scene, out) {
   return stderr.split('\n').filter((line) => line.startsWith(out));
 }
 
-// Backgrounds are lost, as is told: none is drawn. Nor is the studio, which is not the file's.
+// Written files have no backgrounds, so none is drawn, nor the studio, which is not in them.
 function draw(scene, name) {
   succeeds('render', scene, '-o', file(name), '--size', '320x240', '--samples', '1', '--background', 'none', '--studio', 'off');
   return file(name);

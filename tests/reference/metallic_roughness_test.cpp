@@ -161,7 +161,7 @@ TEST_CASE("occlusion takes the light of the surroundings away, and no other") {
     CHECK(alone.g > 0.1);
 }
 
-TEST_CASE("a light on a rough surface is the integral of GGX, of which the headlight has a part") {
+TEST_CASE("a rough surface reflects a light by GGX, and the headlight in part") {
     scene::Light light;
     light.color = glm::dvec4(0.5);
     // Head on: n·h = n·l = n·v = 1. π D V F = 1/(4 α²) 0.04, and the matte part 0.96 c.
