@@ -87,8 +87,13 @@ std::string gl_string(GLenum name) {
     return text ? reinterpret_cast<const char*>(text) : "";
 }
 
-void APIENTRY collect_message(GLenum, GLenum, GLuint, GLenum severity, GLsizei length, const GLchar* text,
-                              const void* user) {
+/// NVIDIA's name for the message that a program is compiled again at its first draw in another state of GL,
+/// which no one can tell beforehand.
+constexpr GLuint kRecompiledByNvidia = 131218;
+
+void APIENTRY collect_message(GLenum, GLenum type, GLuint id, GLenum severity, GLsizei length,
+                              const GLchar* text, const void* user) {
+    if (type == GL_DEBUG_TYPE_PERFORMANCE && id == kRecompiledByNvidia) return;
     if (severity != GL_DEBUG_SEVERITY_HIGH && severity != GL_DEBUG_SEVERITY_MEDIUM) return;
     auto* messages = static_cast<std::vector<std::string>*>(const_cast<void*>(user));
     messages->emplace_back(text, static_cast<std::size_t>(length));

@@ -15,6 +15,20 @@ using Kind = plan::DrawCommand::Kind;
 
 constexpr int kKeepListsFor = 100;  // images
 
+plan::FrameStats drawn_since(const plan::FrameStats& before, const plan::FrameStats& now) {
+    plan::FrameStats drawn;
+    drawn.passes = now.passes - before.passes;
+    drawn.draws = now.draws - before.draws;
+    drawn.triangles = now.triangles - before.triangles;
+    return drawn;
+}
+
+void subtract(plan::FrameStats& stats, const plan::FrameStats& drawn) {
+    stats.passes -= drawn.passes;
+    stats.draws -= drawn.draws;
+    stats.triangles -= drawn.triangles;
+}
+
 /// In units of DrawBudget; a full-screen pass takes these for each pixel, a layer is looked at a few times.
 constexpr std::int64_t kScreenPixelCost = 1, kFragmentCost = 8;
 
@@ -121,7 +135,16 @@ bool SampleDrawing::execute_if_seen(const plan::DrawCommand& command, StepContex
     if (seen_[index]) return execute(command, step);
     // The GPU is behind. It gets on meanwhile, and discards this if the mirror is not seen.
     const ConditionalRendering condition = targets_->mirrors.while_seen(index);
-    return execute(command, step);
+    const bool done = execute(command, step);
+    if (done && command.kind == Kind::close_mirror)
+        discardable_.emplace_back(index, drawn_since(stats_before_mirror_, step.stats));
+    return done;
+}
+
+void SampleDrawing::subtract_discarded(plan::FrameStats& stats) {
+    for (const auto& [mirror, drawn] : discardable_)
+        if (!targets_->mirrors.seen(mirror).value_or(true)) subtract(stats, drawn);
+    discardable_.clear();
 }
 
 std::size_t SampleDrawing::index_of(const plan::MirrorItem& mirror) const {
@@ -132,9 +155,7 @@ bool SampleDrawing::is_hidden(const plan::MirrorItem& mirror, StepContext& step)
     std::optional<bool>& seen = seen_[index_of(mirror)];
     if (!seen) seen = targets_->mirrors.seen(index_of(mirror));
     if (seen.value_or(true)) return false;
-    step.stats.passes = stats_before_mirror_.passes;
-    step.stats.draws = stats_before_mirror_.draws;
-    step.stats.triangles = stats_before_mirror_.triangles;
+    subtract(step.stats, drawn_since(stats_before_mirror_, step.stats));
     targets_->per_pixel_lists.abandon();
     return true;
 }

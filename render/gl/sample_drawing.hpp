@@ -64,6 +64,9 @@ public:
     bool draw(plan::RenderJob& job, Passes& passes, plan::DrawBudget& budget);
 
     Framebuffer& image_target() { return *targets_->image_target; }
+    /// Of a complete sample that the GPU has drawn: subtracts what the GPU has discarded of mirrors that are
+    /// hidden.
+    void subtract_discarded(plan::FrameStats& stats);
     /// Returns the targets for another sample, whether this one is complete or not.
     std::unique_ptr<SampleTargets> release() {
         targets_->per_pixel_lists.abandon();
@@ -91,8 +94,8 @@ private:
     void find_mirrors(const plan::DrawCommand& command, StepContext& step);
     void open(const plan::MirrorItem& mirror, StepContext& step);
     std::size_t index_of(const plan::MirrorItem& mirror) const;
-    /// Returns true if the mirror is known to be hidden. Draws of it that the GPU has discarded by then are
-    /// subtracted from the statistics.
+    /// Returns true if the mirror is known to be hidden. What is drawn of it before is subtracted from the
+    /// statistics: the GPU discards it.
     bool is_hidden(const plan::MirrorItem& mirror, StepContext& step);
     std::span<const plan::DrawItem> next_batch(const plan::DrawCommand& command, const math::PixelBox& box,
                                                StepContext& step) const;
@@ -111,6 +114,8 @@ private:
     std::span<const plan::MirrorItem> queried_;  // the mirrors of the last find_mirrors
     std::vector<std::optional<bool>> seen_;      // of each; none while the GPU has not answered
     plan::FrameStats stats_before_mirror_;       // the last that was opened
+    /// What is drawn of mirrors that may be hidden, each with its index.
+    std::vector<std::pair<std::size_t, plan::FrameStats>> discardable_;
 };
 
 }  // namespace vrut::gl

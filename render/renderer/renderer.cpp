@@ -154,6 +154,7 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     gl::SampleDrawing& sample = sample_of(job);
     const bool drawn = sample.draw(job, passes, budget);
     drawn ? gl::wait_for_gl() : submitted.submit();
+    if (drawn) sample.subtract_discarded(stats);
     stats.render_ms += milliseconds_since(start);
     stats.programs += programs.compiled() - programs_before;
     stats.uploads += (scene ? scene->uploads() : 0) - uploads_before;

@@ -153,13 +153,13 @@ TEST_CASE("a wireframe has its edges, those behind too, and nothing else") {
 
 TEST_CASE("realistic edges have their material's colour under the light, from both sides") {
     RendererFixture studio;
-    const auto scene = scene_of({{1, quad(1.5), material_of({0.8, 0.4, 0.2}), glm::dmat4(1)}});
+    const auto scene = scene_of({{1, quad(1.5), material_of({0.8, 0.4, 0.24}), glm::dmat4(1)}});
     plan::View view = wire_from({1, 0.5, 4});
     view.light = slanted();
     const auto is_drawn = [](const glm::ivec3& pixel) { return pixel != bytes_of(plan::kDefaultBackground); };
     scene::Image image = studio.draw(scene, view);
-    CHECK(pixels_of(image, {102, 51, 26}).size() > 200);
-    CHECK(pixels_of(image, {102, 51, 26}) == pixels_that(image, is_drawn));
+    CHECK(pixels_of(image, {102, 51, 31}).size() > 200);
+    CHECK(pixels_of(image, {102, 51, 31}) == pixels_that(image, is_drawn));
     // Behind it the light is on the other side; with the light there too, it is as bright.
     view = wire_from({1, 0.5, -4});
     view.light = slanted();
@@ -167,14 +167,14 @@ TEST_CASE("realistic edges have their material's colour under the light, from bo
     CHECK(pixels_of(image, {0, 0, 0}) == pixels_that(image, is_drawn));
     view.light.direction.z = -view.light.direction.z;
     image = studio.draw(scene, view);
-    CHECK(pixels_of(image, {102, 51, 26}).size() > 200);
-    CHECK(pixels_of(image, {102, 51, 26}) == pixels_that(image, is_drawn));
+    CHECK(pixels_of(image, {102, 51, 31}).size() > 200);
+    CHECK(pixels_of(image, {102, 51, 31}) == pixels_that(image, is_drawn));
     // A normal that is not there is the viewer's direction.
     scene::Geometry flat = quad(1.5);
     flat.normals.assign(4, glm::vec3(1, 0, 0));
     view = wire_from({0, 0, 4});
-    image = studio.draw(scene_of({{1, flat, material_of({0.8, 0.4, 0.2}), scaled_by({1, 1, 0})}}), view);
-    CHECK(pixels_of(image, {204, 102, 51}) == pixels_that(image, is_drawn));
+    image = studio.draw(scene_of({{1, flat, material_of({0.8, 0.4, 0.24}), scaled_by({1, 1, 0})}}), view);
+    CHECK(pixels_of(image, {204, 102, 61}) == pixels_that(image, is_drawn));
 }
 
 TEST_CASE("of edges at equal depth those of the higher id are in front") {

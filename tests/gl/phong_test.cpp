@@ -143,8 +143,8 @@ TEST_CASE("the background's bytes") {
         return same;
     };
     CHECK(all({230, 235, 242}));
-    view.background.color = {0, 1, 0.5};
-    CHECK(all({0, 255, 128}));
+    view.background.color = {0, 1, 0.6};
+    CHECK(all({0, 255, 153}));
     view.background.color = {100.4 / 255, 100.6 / 255, 1e-9};
     CHECK(all({100, 101, 0}));
 }

@@ -82,7 +82,7 @@ TEST_CASE("of two-sided parts the normal faces the viewer, whatever the triangle
               .surfaces > 300);
     // Normals that turn away from the viewer within a triangle.
     scene::Geometry wide = quad(1.5);
-    wide.normals = {{-1, 0, 0.1f}, {1, 0, 0.1f}, {1, 0, -0.5f}, {-1, 0, 0.1f}};
+    wide.normals = {{-1, 0, 0.2f}, {1, 0, 0.2f}, {1, 0, -0.5f}, {-1, 0, 0.2f}};
     CHECK(
         studio.check(scene_of({{1, wide, two_sided(kPlain), glm::dmat4(1)}}), view_from({2, 0, 4})).surfaces >
         300);

@@ -68,8 +68,13 @@ void reverse_fragments() {
     }
     const std::size_t pixels = static_cast<std::size_t>(first[2]) * first[3];
     for (std::size_t i = 0; i < pixels; ++i) first[kHead + i] = renamed(first[kHead + i]);
-    glNamedBufferSubData(fragments, 0, static_cast<GLsizeiptr>(words.size() * sizeof(GLuint)), words.data());
-    glNamedBufferSubData(heads, 0, static_cast<GLsizeiptr>(first.size() * sizeof(GLuint)), first.data());
+    const auto write = [](GLuint buffer, const std::vector<GLuint>& values) {
+        const std::size_t bytes = values.size() * sizeof(GLuint);
+        const gl::GlBuffer source = gl::make_buffer("lists", values.data(), bytes);
+        glCopyNamedBufferSubData(source.get(), buffer, 0, 0, static_cast<GLsizeiptr>(bytes));
+    };
+    write(fragments, words);
+    write(heads, first);
 }
 
 std::vector<std::uint8_t> composited_lists(const plan::View& view, bool reversed) {

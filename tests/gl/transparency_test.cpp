@@ -388,7 +388,7 @@ TEST_CASE("room for layers stays while panes cross in some pictures and not in o
     studio.draw(crossing, towards);
     CHECK(gl::live_gl_objects() == objects);
     for (int i = 0; i <= 100; ++i) studio.draw(crossing, away);
-    CHECK(gl::live_gl_objects() == objects - 2);
+    CHECK(gl::live_gl_objects() == objects - 3);
 }
 
 TEST_CASE("the reference sees the same in rings and bodies of glass") {

@@ -28,14 +28,16 @@ void PerPixelListsPass::prepare(std::size_t pixels) {
     if (pixels == pixels_) return;
     release();
     fragments_ =
-        make_dynamic_buffer("transparent layers", kHeadBytes + max_fragments(pixels) * kFragmentBytes);
-    heads_ = make_dynamic_buffer("lists of layers", kHeadBytes + pixels * sizeof(GLuint));
+        make_buffer("transparent layers", nullptr, kHeadBytes + max_fragments(pixels) * kFragmentBytes);
+    heads_ = make_buffer("lists of layers", nullptr, kHeadBytes + pixels * sizeof(GLuint));
+    count_ = make_readback_buffer("counts of layers", sizeof(GLuint));
     pixels_ = pixels;
 }
 
 void PerPixelListsPass::release() {
     fragments_ = {};
     heads_ = {};
+    count_ = {};
     pixels_ = 0;
 }
 
@@ -63,9 +65,11 @@ void PerPixelListsPass::bind() const {
 
 void PerPixelListsPass::clear_lists() const {
     const std::array<GLuint, 2> none{0, static_cast<GLuint>(max_fragments(pixels_))};
-    glNamedBufferSubData(fragments_.get(), 0, sizeof none, none.data());
+    glClearNamedBufferSubData(fragments_.get(), GL_RG32UI, 0, sizeof none, GL_RG_INTEGER, GL_UNSIGNED_INT,
+                              none.data());
     const std::array<GLint, 4> place{box().low.x, box().low.y, box().size().x, box().size().y};
-    glNamedBufferSubData(heads_.get(), 0, sizeof place, place.data());
+    glClearNamedBufferSubData(heads_.get(), GL_RGBA32I, 0, sizeof place, GL_RGBA_INTEGER, GL_INT,
+                              place.data());
     glClearNamedBufferSubData(heads_.get(), GL_R32UI, kHeadBytes,
                               static_cast<GLsizeiptr>(sizeof(GLuint)) * box().size().x * box().size().y,
                               GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
@@ -96,7 +100,9 @@ void PerPixelListsPass::collect(std::span<const plan::DrawItem> items, std::size
 
 std::uint64_t PerPixelListsPass::composite(plan::FrameStats& stats) {
     GLuint fragment_count = 0;
-    glGetNamedBufferSubData(fragments_.get(), 0, sizeof fragment_count, &fragment_count);
+    // Reading from the large buffer would make the driver move all of it into the CPU's memory.
+    glCopyNamedBufferSubData(fragments_.get(), count_.get(), 0, 0, sizeof fragment_count);
+    glGetNamedBufferSubData(count_.get(), 0, sizeof fragment_count, &fragment_count);
     const math::PixelBox box = pending_boxes_.back();
     pending_boxes_.pop_back();
     if (const std::size_t most = max_fragments(pixels_);

@@ -60,6 +60,7 @@ private:
     std::size_t pixels_ = 0;
     GLuint collected_triangles_ = 0;  ///< since the lists were cleared; modulo 2^32
     GlBuffer fragments_, heads_;
+    GlBuffer count_;  ///< of the fragments, copied to be read
     Programs& programs_;
     GlVertexArray empty_vertex_array_;  ///< the corners of a full-screen triangle need no attributes
 };
