@@ -205,6 +205,7 @@ void print(const protocol::LevelTable& table) {
 
 void calibrate_scene(const ChartArguments& arguments) {
     renderer::Renderer renderer(arguments.device);
+    renderer.choose_resolver();  // as a server does
     require_size(arguments, renderer);
     Subject subject;
     protocol::LevelTable table;
@@ -234,6 +235,7 @@ void chart_command(ChartArguments arguments) {
     for (const fs::path& scene : arguments.scenes)
         if (!fs::is_regular_file(scene)) throw std::runtime_error(scene.string() + ": there is no such file");
     renderer::Renderer renderer(arguments.device);
+    renderer.choose_resolver();  // as a server does
     require_size(arguments, renderer);
     make_folder(arguments.out);
     Rows rows(arguments.out / "measurements.csv");

@@ -365,6 +365,7 @@ int main(int count, char** arguments) {
         });
         if (given > 0 && files.empty()) return kSkipped;
         renderer::Renderer renderer;
+        renderer.choose_resolver();  // as a server does
         const bench::SecondContext contexts;
         std::printf("%s, %dx%d, medians of %d rounds in turns\n", renderer.description().c_str(), kWidth,
                     kHeight, kRounds);

