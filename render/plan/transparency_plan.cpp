@@ -141,7 +141,7 @@ public:
     void sort_by_distance(std::vector<unsigned>& group) const;
     /// Sets the order in which the item's triangles are drawn. Returns true if they overlap in an unknown
     /// order and a wrong one would be visible.
-    bool needs_per_pixel_order(unsigned index, DrawItem& item) const;
+    bool needs_per_pixel_order(unsigned index, DrawItem& item);
 
 private:
     bool are_comparable(std::span<const unsigned> from_left) const;
@@ -150,6 +150,8 @@ private:
     /// Returns true if an item lies in one plane, so that no ray hits it twice.
     bool is_flat(unsigned index) const;
     const std::vector<FrontFacingTriangle>& facing(unsigned index);
+    /// Returns those with the given numbers.
+    std::vector<FrontFacingTriangle> facing(unsigned index, const std::vector<unsigned>& numbers);
     /// Returns the item's front-facing triangles whose projections overlap the bounds of the other's.
     std::vector<FrontFacingTriangle> covering(unsigned index, const TransparentItem& other);
     const scene::Geometry& geometry(unsigned index) const {
@@ -182,6 +184,17 @@ DepthOrderGraph::DepthOrderGraph(std::span<const DrawItem> items, const View& vi
 const std::vector<FrontFacingTriangle>& DepthOrderGraph::facing(unsigned index) {
     if (!facing_[index]) facing_[index] = front_facing_triangles(items_[index], geometry(index));
     return *facing_[index];
+}
+
+std::vector<FrontFacingTriangle> DepthOrderGraph::facing(unsigned index,
+                                                         const std::vector<unsigned>& numbers) {
+    const std::vector<FrontFacingTriangle>& all = facing(index);
+    std::vector<bool> wanted(2 * geometry(index).triangles.size());
+    for (const unsigned number : numbers) wanted[number] = true;
+    std::vector<FrontFacingTriangle> result;
+    std::ranges::copy_if(all, std::back_inserter(result),
+                         [&](const FrontFacingTriangle& triangle) { return wanted[triangle.number]; });
+    return result;
 }
 
 /// Returns the order of two items; `a` has the lower id.
@@ -308,7 +321,7 @@ void put_last(const std::vector<unsigned>& last, std::span<unsigned> all) {
     std::copy(last.begin(), last.end(), rest);
 }
 
-bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) const {
+bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) {
     if (is_flattened(item.view_from_node)) return false;  // it lies in one plane
     const TriangleOrder& known = shapes_.order(item.geometry, item.cull_mode);
     item.order = known.back_to_front;
@@ -322,10 +335,10 @@ bool DepthOrderGraph::needs_per_pixel_order(unsigned index, DrawItem& item) cons
         std::iota(order.begin(), order.end(), 0U);
     }
     for (const std::vector<unsigned>& cycle : known.cycles) {
-        const auto facing = back_to_front(front_facing_triangles(item, geometry(index), cycle),
-                                          kNegligible * transparent_items_[index].radius);
-        if (!facing) return true;
-        put_last(*facing, std::span(std::find(order.begin(), order.end(), cycle.front()), cycle.size()));
+        const auto sorted =
+            back_to_front(facing(index, cycle), kNegligible * transparent_items_[index].radius);
+        if (!sorted) return true;
+        put_last(*sorted, std::span(std::find(order.begin(), order.end(), cycle.front()), cycle.size()));
     }
     item.order = std::make_shared<const std::vector<unsigned>>(std::move(order));
     return false;

@@ -21,17 +21,22 @@ struct TriangleFace {
     double distance(const glm::dvec3& point) const { return glm::dot(normal, point - corners[0]); }
 };
 
+/// Twice the area, along the normal.
+glm::dvec3 area_of(const std::array<glm::dvec3, 3>& corners) {
+    return glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+}
+
 TriangleFace face_of(const std::array<glm::dvec3, 3>& corners) {
-    const glm::dvec3 area = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const glm::dvec3 area = area_of(corners);
     const double length = glm::length(area);
     return {corners, length > 0 ? area / length : glm::dvec3(0)};
 }
 
-std::array<glm::dvec3, 3> corners_of(const scene::Geometry& geometry, std::size_t number) {
-    const std::size_t count = geometry.triangles.size();
-    glm::uvec3 triangle = geometry.triangles[number % count];
-    if (number >= count) std::swap(triangle.y, triangle.z);
-    return {geometry.positions[triangle.x], geometry.positions[triangle.y], geometry.positions[triangle.z]};
+/// Of the positions.
+std::array<unsigned, 3> indices_of(std::span<const glm::uvec3> triangles, std::size_t number) {
+    const bool back = number >= triangles.size();
+    const glm::uvec3& triangle = triangles[back ? number - triangles.size() : number];
+    return {triangle.x, back ? triangle.z : triangle.y, back ? triangle.y : triangle.z};
 }
 
 /// Returns true if a ray can meet `a` from its front and then `b` from its front.
@@ -58,10 +63,8 @@ bool separated_by_edge(const FrontFacingTriangle& a, const FrontFacingTriangle& 
     return false;
 }
 
-bool overlap(const FrontFacingTriangle& a, const FrontFacingTriangle& b, double tolerance) {
-    if (a.low.x >= b.high.x || b.low.x >= a.high.x || a.low.y >= b.high.y || b.low.y >= a.high.y)
-        return false;
-    return !separated_by_edge(a, b, tolerance) && !separated_by_edge(b, a, tolerance);
+bool boxes_overlap(const FrontFacingTriangle& a, const FrontFacingTriangle& b) {
+    return a.low.x < b.high.x && b.low.x < a.high.x && a.low.y < b.high.y && b.low.y < a.high.y;
 }
 
 /// Returns true if the plane of `a` has `b` behind it.
@@ -121,15 +124,25 @@ DepthRelation relation_where_both_cover(const FrontFacingTriangle& a, const Fron
                         : DepthRelation::apart;
 }
 
-DepthRelation depth_relation(const FrontFacingTriangle& a, const FrontFacingTriangle& b, double tolerance) {
-    if (!overlap(a, b, tolerance)) return DepthRelation::apart;
+/// By the planes of both; unknown if each has corners of the other on both sides.
+DepthRelation relation_by_planes(const FrontFacingTriangle& a, const FrontFacingTriangle& b,
+                                 double tolerance) {
     const bool a_in_front = all_behind(a, b, tolerance) || all_before(b, a, tolerance);
     const bool b_in_front = all_behind(b, a, tolerance) || all_before(a, b, tolerance);
     if (a_in_front && b_in_front) return DepthRelation::apart;  // in one plane
-    if (a_in_front) return DepthRelation::first_in_front;
-    if (b_in_front) return DepthRelation::second_in_front;
+    return a_in_front   ? DepthRelation::first_in_front
+           : b_in_front ? DepthRelation::second_in_front
+                        : DepthRelation::unknown;
+}
+
+/// Of two whose boxes overlap. `known`: the caller need not be told whether they are apart or so.
+DepthRelation depth_relation(const FrontFacingTriangle& a, const FrontFacingTriangle& b, double tolerance,
+                             DepthRelation known) {
+    const DepthRelation order = relation_by_planes(a, b, tolerance);
+    if (order == known || order == DepthRelation::apart) return order;
+    if (separated_by_edge(a, b, tolerance) || separated_by_edge(b, a, tolerance)) return DepthRelation::apart;
     const bool before_eye = std::isfinite(a.low.x) && std::isfinite(b.low.x);
-    return before_eye ? relation_where_both_cover(a, b, tolerance) : DepthRelation::unknown;
+    return order == DepthRelation::unknown && before_eye ? relation_where_both_cover(a, b, tolerance) : order;
 }
 
 }  // namespace
@@ -144,7 +157,10 @@ TriangleOrder order_triangles(const scene::Geometry& geometry, CullMode cull_mod
     }
     const double tolerance = kNegligible * geometry.bounds.radius();
     std::vector<TriangleFace> faces;
-    for (std::size_t k = 0; k < count; ++k) faces.push_back(face_of(corners_of(geometry, k)));
+    for (std::size_t k = 0; k < count; ++k) {
+        const auto [a, b, c] = indices_of(geometry.triangles, k);
+        faces.push_back(face_of({geometry.positions[a], geometry.positions[b], geometry.positions[c]}));
+    }
     std::vector<std::vector<unsigned>> behind(count);
     for (unsigned a = 0; a < count; ++a)
         for (unsigned b = 0; b < count; ++b)
@@ -161,26 +177,33 @@ TriangleOrder order_triangles(const scene::Geometry& geometry, CullMode cull_mod
 
 std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item,
                                                         const scene::Geometry& geometry) {
-    std::vector<unsigned> all(geometry.triangles.size() * (item.cull_mode == CullMode::none ? 2 : 1));
-    std::iota(all.begin(), all.end(), 0U);
-    return front_facing_triangles(item, geometry, all);
-}
-
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const scene::Geometry& geometry,
-                                                        std::span<const unsigned> numbers) {
+    std::vector<glm::dvec3> positions;  // in view space
+    std::vector<glm::dvec2> projections;
+    positions.reserve(geometry.positions.size());
+    projections.reserve(geometry.positions.size());
+    for (const glm::dvec3& position : geometry.positions) {
+        positions.emplace_back(item.view_from_node * glm::dvec4(position, 1));
+        projections.push_back(on_screen(positions.back()));
+    }
+    const auto count = static_cast<unsigned>(geometry.triangles.size());
     std::vector<FrontFacingTriangle> result;
-    for (const unsigned number : numbers) {
-        std::array<glm::dvec3, 3> corners = corners_of(geometry, number);
-        for (glm::dvec3& corner : corners) corner = glm::dvec3(item.view_from_node * glm::dvec4(corner, 1));
-        glm::dvec3 normal = face_of(corners).normal;
-        if (item.mirrored) normal = -normal;
-        if (!(glm::dot(normal, corners[0]) < 0)) continue;
-        FrontFacingTriangle triangle{corners, normal, number, glm::dvec2(kEverywhere),
-                                     glm::dvec2(-kEverywhere)};
-        for (const glm::dvec3& corner : corners) {
-            triangle.low = glm::min(triangle.low, glm::dvec2(corner) / -corner.z);
-            triangle.high = glm::max(triangle.high, glm::dvec2(corner) / -corner.z);
+    result.reserve(count);
+    for (unsigned number = 0; number < count; ++number) {
+        glm::uvec3 indices = geometry.triangles[number];
+        glm::dvec3 area = area_of({positions[indices.x], positions[indices.y], positions[indices.z]});
+        if (item.mirrored) area = -area;
+        const double away = glm::dot(area, positions[indices.x]), length = glm::length(area);
+        const bool back = away > 0;
+        if (!(length > 0) || !(back || away < 0) || (back && item.cull_mode != CullMode::none)) continue;
+        if (back) {
+            std::swap(indices.y, indices.z);
+            area = -area;
         }
+        const auto [i, j, k] = std::array{indices.x, indices.y, indices.z};
+        const std::array<glm::dvec3, 3> corners{positions[i], positions[j], positions[k]};
+        FrontFacingTriangle triangle{corners, area / length, back ? count + number : number,
+                                     glm::min(glm::min(projections[i], projections[j]), projections[k]),
+                                     glm::max(glm::max(projections[i], projections[j]), projections[k])};
         const auto behind_eye = [](const glm::dvec3& corner) { return !(corner.z < 0); };
         if (std::all_of(corners.begin(), corners.end(), behind_eye)) continue;
         if (std::any_of(corners.begin(), corners.end(), behind_eye)) {
@@ -189,6 +212,9 @@ std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, co
         }
         result.push_back(triangle);
     }
+    std::sort(result.begin(), result.end(), [](const FrontFacingTriangle& a, const FrontFacingTriangle& b) {
+        return std::tie(a.low.x, a.number) < std::tie(b.low.x, b.number);
+    });
     return result;
 }
 
@@ -198,26 +224,26 @@ DepthRelation depth_relation(std::span<const FrontFacingTriangle> first,
     DepthRelation result = DepthRelation::apart;
     for (const FrontFacingTriangle& a : first)
         for (const FrontFacingTriangle& b : second) {
-            const DepthRelation order = depth_relation(a, b, tolerance);
+            if (b.low.x >= a.high.x) break;
+            if (!boxes_overlap(a, b)) continue;
+            const DepthRelation order = depth_relation(a, b, tolerance, result);
             if (order == DepthRelation::apart || order == result) continue;
-            if (result != DepthRelation::apart) return DepthRelation::unknown;
+            if (result != DepthRelation::apart || order == DepthRelation::unknown)
+                return DepthRelation::unknown;
             result = order;
         }
     return result;
 }
 
-std::optional<std::vector<unsigned>> back_to_front(std::vector<FrontFacingTriangle> triangles,
+std::optional<std::vector<unsigned>> back_to_front(std::span<const FrontFacingTriangle> triangles,
                                                    double tolerance) {
-    std::sort(triangles.begin(), triangles.end(),
-              [](const FrontFacingTriangle& a, const FrontFacingTriangle& b) {
-                  return std::tie(a.low.x, a.number) < std::tie(b.low.x, b.number);
-              });
     std::vector<std::vector<unsigned>> behind(triangles.size());
     std::size_t looked_at = 0;
     for (unsigned i = 0; i < triangles.size(); ++i)
         for (unsigned k = i + 1; k < triangles.size() && triangles[k].low.x < triangles[i].high.x; ++k) {
             if (++looked_at > 4 * kMaxComparedPairs) return std::nullopt;
-            switch (depth_relation(triangles[i], triangles[k], tolerance)) {
+            if (!boxes_overlap(triangles[i], triangles[k])) continue;
+            switch (depth_relation(triangles[i], triangles[k], tolerance, DepthRelation::apart)) {
                 case DepthRelation::first_in_front:
                     behind[i].push_back(k);
                     break;

@@ -35,25 +35,24 @@ struct FrontFacingTriangle {
     glm::dvec2 low{0}, high{0};  ///< around it on the plane z = -1; everywhere if it reaches behind the eye
 };
 
-/// Returns the front-facing, non-degenerate triangles of an item: of all, or of the given numbers of a
-/// TriangleOrder.
+/// Returns the front-facing, non-degenerate triangles of an item, from left to right (low.x).
 std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item,
                                                         const scene::Geometry& geometry);
-std::vector<FrontFacingTriangle> front_facing_triangles(const DrawItem& item, const scene::Geometry& geometry,
-                                                        std::span<const unsigned> numbers);
 
 /// Which of two is in front, seen from the origin.
 enum class DepthRelation { apart, first_in_front, second_in_front, unknown };
 
-/// Returns which of two triangle sets is in front, seen from the origin. `unknown` if the sets interpenetrate
-/// or are interleaved, or above kMaxComparedPairs pairs. `tolerance` is a distance.
+/// Returns which of two triangle sets is in front, seen from the origin. Both are sorted from left to right.
+/// `unknown` if the sets interpenetrate or are interleaved, or above kMaxComparedPairs pairs. `tolerance` is
+/// a distance.
 DepthRelation depth_relation(std::span<const FrontFacingTriangle> first,
                              std::span<const FrontFacingTriangle> second, double tolerance);
 inline constexpr std::size_t kMaxComparedPairs = std::size_t{1} << 18;
 
-/// Returns the numbers of the triangles back to front, seen from the origin; none if some intersect or form a
-/// cycle, or if more than 4 kMaxComparedPairs pairs would have to be compared.
-std::optional<std::vector<unsigned>> back_to_front(std::vector<FrontFacingTriangle> triangles,
+/// Returns the numbers of the triangles back to front, seen from the origin. They are sorted from left to
+/// right. None if some intersect or form a cycle, or if more than 4 kMaxComparedPairs pairs would have to be
+/// compared.
+std::optional<std::vector<unsigned>> back_to_front(std::span<const FrontFacingTriangle> triangles,
                                                    double tolerance);
 
 }  // namespace vrut::plan
