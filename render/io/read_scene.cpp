@@ -4,6 +4,7 @@
 
 #include "base/file_bytes.hpp"
 #include "io/assimp/scene.hpp"
+#include "io/camera_focus.hpp"
 #include "io/gltf/reader.hpp"
 #include "io/osb/scene.hpp"
 #include "io/studio/studio.hpp"
@@ -95,6 +96,7 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
         return tl::unexpected(file + ": this file extension cannot be read; supported are " +
                               read_extensions());
     PartsResult parts = format->read(path, progress, options);
+    if (parts && format->read != read_vrut_file) focus_on_what_is_seen(*parts);
     if (parts && wants_studio(*format, *parts, options.studio)) add_studio(*parts);
     return parts;
 }

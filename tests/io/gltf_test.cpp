@@ -167,6 +167,22 @@ TEST_CASE("a glTF camera's field of view is the file's vertical one, whatever it
     }
 }
 
+TEST_CASE("a glTF camera's extras may tell its focus distance, and may be anything else") {
+    const TemporaryFolder folder;
+    const auto focus_with = [&](const std::string& extras) {
+        const std::string text = car_with("\"cameras\": [{", "\"cameras\": [{\"extras\": " + extras + ", ");
+        return std::get<scene::CameraData>(
+                   node_of(read_well(folder.write("car.gltf", text)), "Presenter").data)
+            .focus;
+    };
+    const glm::dvec3 seen = focus_with("{}");
+    CHECK(focus_with(R"({"focusDistance": 2.5})") == glm::dvec3(0, 0, -2.5));
+    for (const char* other :
+         {"7", "[1]", R"("far")", R"({"focusDistance": "far"})", R"({"focusDistance": 0})",
+          R"({"focusDistance": -3})", R"({"focusDistance": 1e200})"})
+        CHECK(focus_with(other) == seen);
+}
+
 TEST_CASE("what a glTF scene loses is told, once for each kind") {
     const scene::Scene scene = read_well(kCar);
     for (const char* part : {"a skin is ignored", "an animation is ignored", "points or lines",

@@ -28,6 +28,16 @@ std::optional<scene::LightData::Type> light_type(const std::string& name) {
     return std::nullopt;
 }
 
+/// As the writer of GLB stores it; else 1. Extras may be anything.
+double focus_distance_in(const GltfJson& camera) {
+    const auto extras = camera.find("extras");
+    if (extras == camera.end() || !extras->is_object()) return 1;
+    const auto distance = extras->find("focusDistance");
+    if (distance == extras->end() || !distance->is_number()) return 1;
+    const double number = distance->get<double>();
+    return number > 0 && number < 1e30 ? number : 1;
+}
+
 }  // namespace
 
 std::optional<scene::Node> read_gltf_camera(const GltfJson& document, const GltfJson& node,
@@ -49,7 +59,9 @@ std::optional<scene::Node> read_gltf_camera(const GltfJson& document, const Gltf
     scene::Node camera;
     camera.name = "camera";
     camera.type = scene::NodeType::camera;
-    camera.data.emplace<scene::CameraData>().fov = std::clamp(glm::degrees(yfov), 1.0, 170.0);
+    auto& data = camera.data.emplace<scene::CameraData>();
+    data.fov = std::clamp(glm::degrees(yfov), 1.0, 170.0);
+    data.focus.z = -focus_distance_in(json);
     return camera;
 }
 

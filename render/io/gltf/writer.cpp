@@ -197,9 +197,10 @@ private:
         if (!cameras_.empty()) json_.open_array("cameras");
         for (const scene::CameraData* const camera : cameras_) {
             json_.open_object().string("perspective", "type").open_object("perspective");
-            json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close().close();
-            if (std::abs(glm::distance(camera->eye, camera->focus) - 1) > 1e-9)
-                warnings_.add("a camera's focus distance is lost");
+            json_.number(glm::radians(camera->fov), "yfov").number(0.01, "znear").close();
+            // What glTF has no member for; our reader reads it.
+            json_.open_object("extras").number(glm::distance(camera->eye, camera->focus), "focusDistance");
+            json_.close().close();
         }
         if (!cameras_.empty()) json_.close();
         if (lights_.empty()) return;

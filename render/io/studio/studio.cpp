@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/srgb.hpp"
+#include "io/placed_parts.hpp"
 #include "io/studio/contact_shadow.hpp"
 #include "io/studio/environment.hpp"
 #include "scene/style.hpp"
@@ -18,30 +19,6 @@ namespace vrut::io {
 namespace {
 
 using scene::SceneParts;
-
-/// The nodes alone: what is shown where follows from them. None where they are no tree, which build_scene()
-/// says.
-std::optional<scene::PlacedScene> placed_nodes(const SceneParts& parts) {
-    SceneParts nodes;
-    nodes.nodes = parts.nodes;
-    nodes.geometries.resize(parts.geometries.size());
-    auto built = scene::Scene::build(std::move(nodes));
-    if (!built) return std::nullopt;
-    return scene::place(*std::move(built));
-}
-
-/// For each node whether it is shown at first, from near: a LOD shows its first child.
-std::vector<bool> nodes_shown_near(const scene::PlacedScene& placed) {
-    std::vector<bool> shown = scene::shown_nodes(placed, std::nullopt);
-    const auto& nodes = placed.scene->nodes();
-    for (std::size_t i = 1; i < nodes.size(); ++i) {
-        const scene::Node& parent = nodes[static_cast<std::size_t>(nodes[i].parent)];
-        const bool chosen = !std::holds_alternative<scene::LodData>(parent.data) ||
-                            static_cast<std::size_t>(parent.children.front()) == i;
-        shown[i] = shown[i] && shown[static_cast<std::size_t>(nodes[i].parent)] && chosen;
-    }
-    return shown;
-}
 
 bool is_see_through(const SceneParts& parts, scene::Index index) {
     if (index == scene::kNone) return false;
