@@ -12,8 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto path =
         std::filesystem::temp_directory_path() / ("vrut-fuzz-" + std::to_string(getpid()) + ".ply");
     std::ofstream(path, std::ios::binary) << std::string_view(reinterpret_cast<const char*>(data), size);
-    const auto fault = vrut::io::ply_error(path);
-    if (fault && (fault->empty() || fault->find('\n') != std::string::npos))
+    const auto checked = vrut::io::check_ply(path);
+    if (!checked && (checked.error().empty() || checked.error().find('\n') != std::string::npos))
         throw std::logic_error("not one sentence");
     std::filesystem::remove(path);
     return 0;

@@ -16,7 +16,8 @@ namespace {
 /// A file, read only.
 class FileStream : public Assimp::IOStream {
 public:
-    explicit FileStream(const std::filesystem::path& path) : stream_(path, std::ios::binary) {
+    FileStream(const std::filesystem::path& path, FileReplacement replacement)
+        : stream_(path, std::ios::binary), replacement_(std::move(replacement)) {
         std::error_code error;
         const std::uintmax_t size = std::filesystem::file_size(path, error);
         if (!error) size_ = static_cast<std::size_t>(size);
@@ -30,6 +31,10 @@ public:
         stream_.read(static_cast<char*>(out), static_cast<std::streamsize>(items * size));
         const auto read = static_cast<std::size_t>(stream_.gcount());
         stream_.clear();
+        const auto& [place, bytes] = replacement_;
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+            if (place + i >= position_ && place + i < position_ + read)
+                static_cast<char*>(out)[place + i - position_] = bytes[i];
         position_ += read;
         return read / size;
     }
@@ -46,6 +51,7 @@ public:
 
 private:
     std::ifstream stream_;
+    FileReplacement replacement_;
     std::size_t size_ = 0, position_ = 0;
 };
 
@@ -53,6 +59,8 @@ private:
 
 SceneFiles::SceneFiles(std::filesystem::path scene_file)
     : scene_file_(std::move(scene_file)), main_name_(scene_file_.filename().string()) {}
+
+void SceneFiles::replace(std::uint64_t place, std::string bytes) { replacement_ = {place, std::move(bytes)}; }
 
 tl::expected<std::filesystem::path, std::string> SceneFiles::find(const std::string& name) const {
     if (name == main_name_) return scene_file_;
@@ -64,7 +72,9 @@ bool SceneFiles::Exists(const char* name) const { return find(name).has_value();
 
 Assimp::IOStream* SceneFiles::Open(const char* name, const char* /*mode*/) {
     const auto file = find(name);
-    auto stream = file && !base::file_error(*file) ? std::make_unique<FileStream>(*file) : nullptr;
+    const FileReplacement replacement = name == main_name_ ? replacement_ : FileReplacement();
+    auto stream =
+        file && !base::file_error(*file) ? std::make_unique<FileStream>(*file, replacement) : nullptr;
     if (stream && stream->good()) return stream.release();
     // assimp looks again under names that it makes up from the first.
     if (rejection_.empty())

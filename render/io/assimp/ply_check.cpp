@@ -50,7 +50,7 @@ public:
         std::istringstream stream(std::move(head));
         std::string line;
         while (std::getline(stream, line, line_end)) {
-            size_ += line.size() + 1;
+            const std::uint64_t start = std::exchange(size_, size_ + line.size() + 1);
             ++lines_;
             std::istringstream words(line);
             std::string keyword;
@@ -58,6 +58,11 @@ public:
             if (keyword == "end_header") return;
             if (keyword == "format") is_text_ = line.find("ascii") != std::string::npos;
             if (keyword == "element") add_element(words);
+            if (keyword == "element" && elements_.back().name == kPlyStrips && elements_.back().count > 0)
+                strips_ = start + line.find(kPlyStrips);
+            if (strips_ && names_.count("face") > 0)
+                throw PlyError{"line " + std::to_string(lines_) +
+                               ": 'tristrips' beside 'face' cannot be read: export it with one of them"};
             if (keyword == "property" && !elements_.empty()) add_property(words);
         }
         throw PlyError{"its header has no 'end_header'"};
@@ -76,6 +81,8 @@ public:
         }
     }
 
+    const PlyStripsPlace& strips() const { return strips_; }
+
 private:
     void add_element(std::istream& words) {
         PlyElement& element = elements_.emplace_back();
@@ -87,9 +94,6 @@ private:
             count.empty() || error != std::errc() || at != end)
             throw PlyError{"line " + element.line + ": expected a count of '" + excerpt(element.name) +
                            "', found '" + excerpt(count) + "'"};
-        if (element.name == "tristrips" && element.count > 0)  // of which assimp 5.2 reads one triangle
-            throw PlyError{"line " + element.line +
-                           ": 'tristrips', strips of triangles, cannot be read: export it with faces"};
         if (!names_.insert(element.name).second)
             throw PlyError{"line " + element.line + ": expected element '" + excerpt(element.name) +
                            "' once, found it twice"};
@@ -107,21 +111,23 @@ private:
     std::set<std::string> names_;
     std::uint64_t size_ = 0, lines_ = 0;
     bool is_text_ = false;
+    PlyStripsPlace strips_;
 };
 
 }  // namespace
 
-std::optional<std::string> ply_error(const std::filesystem::path& path) try {
+tl::expected<PlyStripsPlace, std::string> check_ply(const std::filesystem::path& path) try {
     auto file = base::FileReader::open(path);
-    if (!file) return file.error();
+    if (!file) return tl::unexpected(file.error());
     std::string head(std::min<std::uintmax_t>(file->size(), kMostHeader), '\0');
-    if (!file->read(head.data(), head.size())) return std::string(base::kCutShort);
+    if (!file->read(head.data(), head.size())) return tl::unexpected(std::string(base::kCutShort));
     if (head.size() < 3 || (head[0] | 32) != 'p' || (head[1] | 32) != 'l' || (head[2] | 32) != 'y')
-        return std::nullopt;
-    PlyHeader(std::move(head)).check(file->size());
-    return std::nullopt;
+        return PlyStripsPlace();
+    const PlyHeader header(std::move(head));
+    header.check(file->size());
+    return header.strips();
 } catch (const PlyError& fault) {
-    return fault.what;
+    return tl::unexpected(fault.what);
 }
 
 }  // namespace vrut::io

@@ -298,10 +298,11 @@ void leave_only(Assimp::Importer& importer, const char* reader) {
     }
 }
 
-/// Polygons become triangles, once they are known to be some.
-void check_and_triangulate(Assimp::Importer& importer) {
+/// Polygons, or strips instead of them, become triangles, once they are known to be some.
+void check_and_triangulate(Assimp::Importer& importer, bool strips) {
     const aiScene& scene = *importer.GetScene();
     for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+        if (strips) triangulate_strips(*scene.mMeshes[i]);
         check_faces(*scene.mMeshes[i]);
         triangulate_large_polygons(*scene.mMeshes[i]);
     }
@@ -331,23 +332,29 @@ std::string fault_of(const Assimp::Importer& importer, const SceneFiles& files) 
 }
 
 std::unique_ptr<aiScene> import(const std::filesystem::path& path, AssimpFormat format,
-                                ConversionWarnings& warnings) {
+                                const PlyStripsPlace& strips, ConversionWarnings& warnings) {
     Assimp::Importer importer;
     leave_only(importer, importer_name(format));
     importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
     auto* files = new SceneFiles(path);
+    // assimp keeps all indices of faces.
+    if (strips) files->replace(*strips, "face     ");
     importer.SetIOHandler(files);  // which it deletes
     if (importer.ReadFile(files->main_name(), 0) == nullptr) throw ImportError(fault_of(importer, *files));
     if (!files->rejection().empty()) warnings.add(files->rejection());
-    check_and_triangulate(importer);
+    check_and_triangulate(importer, strips.has_value());
     return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
 }
 
 std::unique_ptr<aiScene> import_checked(const std::filesystem::path& path, AssimpFormat format,
                                         ConversionWarnings& warnings) {
-    if (format == AssimpFormat::ply)
-        if (const auto fault = ply_error(path)) throw ImportError(*fault);
-    return import(path, format, warnings);
+    PlyStripsPlace strips;
+    if (format == AssimpFormat::ply) {
+        const auto checked = check_ply(path);
+        if (!checked) throw ImportError(checked.error());
+        strips = *checked;
+    }
+    return import(path, format, strips, warnings);
 }
 
 }  // namespace
