@@ -154,8 +154,10 @@ std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
     });
     return [scene = scene_, index, is_color, largest = limit_of(GL_MAX_TEXTURE_SIZE)] {
         PreparedData data;
-        data.texture = texture_data(scene->textures()[static_cast<std::size_t>(index)].image, largest);
+        const scene::Texture& texture = scene->textures()[static_cast<std::size_t>(index)];
+        data.texture = texture_data(texture.image, largest);
         data.texture.is_color = is_color;
+        data.texture.wraps = texture.wraps;
         return data;
     };
 }

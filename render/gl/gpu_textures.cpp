@@ -26,6 +26,12 @@ void add_face(TextureData& data, const scene::Image& image, GLint level, std::si
 
 bool fits(const scene::Image& image, int largest) { return std::max(image.width, image.height) <= largest; }
 
+GLint gl_wrap(scene::Wrap wrap) {
+    return wrap == scene::Wrap::clamp    ? GL_CLAMP_TO_EDGE
+           : wrap == scene::Wrap::mirror ? GL_MIRRORED_REPEAT
+                                         : GL_REPEAT;
+}
+
 }  // namespace
 
 TextureData texture_data(const scene::Image& image, int largest) {
@@ -59,9 +65,12 @@ TextureData prefiltered_data(const scene::EnvironmentLight& light) {
 GlTexture make_texture_for(const TextureData& data) {
     const bool is_cube_map = data.images.front().face.has_value();
     const scene::Image& largest = *data.images.front().image;
-    return make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D,
-                                  data.is_color ? GL_RGBA8 : GL_RGBA16, largest.width, largest.height,
-                                  data.images.back().level + 1);
+    GlTexture texture = make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D,
+                                               data.is_color ? GL_RGBA8 : GL_RGBA16, largest.width,
+                                               largest.height, data.images.back().level + 1);
+    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, gl_wrap(data.wraps[0]));
+    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, gl_wrap(data.wraps[1]));
+    return texture;
 }
 
 }  // namespace vrut::gl

@@ -13,6 +13,8 @@ namespace vrut::io {
 
 namespace {
 
+constexpr scene::Wraps kClamped{scene::Wrap::clamp, scene::Wrap::clamp};
+
 /// Gives each thing a name of its own.
 class UniqueNames {
 public:
@@ -56,14 +58,16 @@ public:
         vector("Ke", material.metallic_roughness ? glm::dvec3(0) : glm::dvec3(material.emission));
         vector("Ns", glm::dvec1(material.shininess));
         vector("d", glm::dvec1(material.diffuse.a));
-        if (!texture_file.empty()) text("map_Kd ").text(texture_file).text("\n");
-        if (holes) text("map_d ").text(texture_file).text("\n");
+        const std::string_view clamp = material.wraps == kClamped ? "-clamp on " : "";
+        if (!texture_file.empty()) text("map_Kd ").text(clamp).text(texture_file).text("\n");
+        if (holes) text("map_d ").text(clamp).text(texture_file).text("\n");
         if (const auto& surface = material.metallic_roughness) {
             vector("Pr", glm::dvec1(surface->roughness));
             vector("Pm", glm::dvec1(surface->metallic));
             vector("Pc", glm::dvec1(surface->clear_coat));
         }
-        if (!normal_file.empty()) vector("norm -bm", glm::dvec1(material.normal_scale), " " + normal_file);
+        if (!normal_file.empty())
+            vector("norm -bm", glm::dvec1(material.normal_scale), " " + std::string(clamp) + normal_file);
         flush();
     }
 
@@ -147,6 +151,8 @@ bool has_holes(const scene::Scene& scene, const scene::Material& material) {
 void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
                          ConversionWarnings& warnings) {
     warnings.add("a material's two-sided flag is lost");
+    if (material.texture != scene::kNone && material.wraps != scene::kRepeat && material.wraps != kClamped)
+        warnings.add("a texture repeats where it was mirrored, or clamped in one direction");
     if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     if (material.emissive != glm::dvec3(0)) warnings.add("a material's emissive light is lost");
     if (has_holes(scene, material) && material.diffuse.a < 1)

@@ -8,6 +8,7 @@ std::optional<scene::PlacedScene> placed_nodes(const scene::SceneParts& parts) {
     scene::SceneParts nodes;
     nodes.nodes = parts.nodes;
     nodes.geometries.resize(parts.geometries.size());
+    nodes.materials.resize(parts.materials.size());
     auto built = scene::Scene::build(std::move(nodes));
     if (!built) return std::nullopt;
     return scene::place(*std::move(built));

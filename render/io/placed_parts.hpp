@@ -7,7 +7,7 @@
 
 namespace vrut::io {
 
-/// Returns where the nodes of a scene that is not built yet lie, without their geometries. None where they
+/// Returns where the nodes of a scene that is not built yet lie, without what they show. None where they
 /// are no tree, which build_scene() says.
 std::optional<scene::PlacedScene> placed_nodes(const scene::SceneParts& parts);
 

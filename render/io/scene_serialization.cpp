@@ -199,6 +199,15 @@ void serialize_optional(Stream& stream, std::optional<Item>& item, Pass serializ
 }
 
 template <class Stream>
+void serialize(Stream& stream, scene::Wraps& wraps) {
+    for (scene::Wrap& wrap : wraps) {
+        int number = static_cast<int>(wrap);
+        stream.integer(number, 0, 2);
+        wrap = static_cast<scene::Wrap>(number);
+    }
+}
+
+template <class Stream>
 void serialize(Stream& stream, scene::Texture& texture) {
     scene::Image& image = texture.image;
     stream.text(texture.file);
@@ -209,6 +218,7 @@ void serialize(Stream& stream, scene::Texture& texture) {
                        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4,
                    "4 bytes for each pixel");
     serialize_flag(stream, texture.transparent);
+    serialize(stream, texture.wraps);
 }
 
 template <class Stream>
@@ -234,6 +244,7 @@ void serialize(Stream& stream, scene::Material& material, const scene::ScenePart
     stream.text(material.normal_image);
     serialize_index(stream, material.normal_texture, parts.textures.size());
     stream.number(material.normal_scale, -kMostNumber, kMostNumber);
+    serialize(stream, material.wraps);
 }
 
 template <class Vector>

@@ -204,6 +204,39 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
     notices.append_to(parts.notices);
 }
 
+bool wrap_textures(scene::SceneParts& parts, std::uint64_t max_pixels) {
+    std::map<std::pair<scene::Index, scene::Wraps>, scene::Index> known;
+    std::map<scene::Index, std::uint64_t> seen;  // by how many wraps
+    for (const scene::Texture& texture : parts.textures)
+        max_pixels -= std::min<std::uint64_t>(max_pixels, texture.image.rgba.size() / 4);
+    bool all = true;
+    const auto wrap = [&](scene::Index& index, const scene::Wraps& wraps) {
+        if (index == scene::kNone) return;
+        const auto [place, is_new] = known.try_emplace({index, wraps}, index);
+        scene::Texture& texture = parts.textures[static_cast<std::size_t>(index)];
+        if (const std::uint64_t pixels = texture.image.rgba.size() / 4; !is_new) {
+            // It is there already.
+        } else if (seen[index]++ == 0) {
+            texture.wraps = wraps;
+        } else if (pixels <= max_pixels) {
+            max_pixels -= pixels;
+            place->second = static_cast<scene::Index>(parts.textures.size());
+            scene::Texture copy = texture;
+            copy.wraps = wraps;
+            parts.textures.push_back(std::move(copy));
+        } else {
+            all = false;
+        }
+        index = place->second;
+    };
+    for (scene::Material& material : parts.materials)
+        for (const auto texture :
+             {&scene::Material::texture, &scene::Material::emissive_texture,
+              &scene::Material::occlusion_roughness_metallic_texture, &scene::Material::normal_texture})
+            wrap(material.*texture, material.wraps);
+    return all;
+}
+
 bool change_textures(std::vector<scene::Material>& materials, const std::vector<TextureChange>& changes,
                      std::vector<scene::Texture>& textures, scene::Index scene::Material::*texture,
                      std::uint64_t max_pixels) {

@@ -33,6 +33,10 @@ using EmbeddedDecoder =
 void decode_embedded_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
                               const EmbeddedDecoder& decode);
 
+/// Gives each texture the wraps of the materials that see it. Where they differ, each has a copy. Returns
+/// false if all textures would have more than `max_pixels`: then some have other wraps than their materials.
+bool wrap_textures(scene::SceneParts& parts, std::uint64_t max_pixels = kMaxTexturePixels);
+
 /// How a material sees the image of its texture.
 struct TextureChange {
     bool opaque = false;   ///< without its alpha
@@ -50,6 +54,8 @@ bool change_textures(std::vector<scene::Material>& materials, const std::vector<
                      scene::Index scene::Material::*texture = &scene::Material::texture,
                      std::uint64_t max_pixels = kMaxTexturePixels);
 inline constexpr const char* kUnchangedTextures =
-    "some textures are drawn without the colour or opacity of their materials: there is no room for copies";
+    "some textures are drawn without the colour, opacity or wrapping of their materials: there is no room "
+    "for "
+    "copies";
 
 }  // namespace vrut::io

@@ -24,8 +24,17 @@ void shrink(const glm::dvec4* from, int from_count, glm::dvec4* to, int to_count
     }
 }
 
-int wrapped(int i, int count, Wrap wrap) {
-    if (wrap == Wrap::clamp) return std::clamp(i, 0, count - 1);
+/// Where in the image from 0 to 1 a coordinate lies.
+double wrapped(double coordinate, scene::Wrap wrap) {
+    if (wrap == scene::Wrap::clamp) return std::clamp(coordinate, 0.0, 1.0);
+    if (wrap == scene::Wrap::repeat) return coordinate - std::floor(coordinate);
+    const double twice = coordinate - 2 * std::floor(coordinate / 2);
+    return twice <= 1 ? twice : 2 - twice;
+}
+
+/// Of a texel beside those of the image.
+int wrapped(int i, int count, scene::Wrap wrap) {
+    if (wrap != scene::Wrap::repeat) return std::clamp(i, 0, count - 1);
     const int rest = i % count;
     return rest < 0 ? rest + count : rest;
 }
@@ -114,14 +123,15 @@ const glm::dvec4& MipMap::texel(int level, int x, int y) const {
                        static_cast<std::size_t>(x)];
 }
 
-glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change, Wrap wrap) const {
-    glm::dvec2 inside = wrap == Wrap::repeat ? uv - glm::floor(uv) : glm::clamp(uv, 0.0, 1.0);
+glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change,
+                          const scene::Wraps& wraps) const {
+    glm::dvec2 inside(wrapped(uv.x, wraps[0]), wrapped(uv.y, wraps[1]));
     if (!(std::isfinite(inside.x) && std::isfinite(inside.y))) inside = glm::dvec2(0);
     const double texels = longer_side(change, glm::dvec2(width(0), height(0)));
     return trilinear(texels, levels(), [&](int level) {
         const int w = width(level), h = height(level);
         return BilinearFootprint(inside, w, h).mix([&](int x, int y) {
-            return texel(level, wrapped(x, w, wrap), wrapped(y, h, wrap));
+            return texel(level, wrapped(x, w, wraps[0]), wrapped(y, h, wraps[1]));
         });
     });
 }

@@ -4,12 +4,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "scene/image.hpp"
+#include "scene/scene.hpp"
 
 namespace vrut::reference {
-
-/// What is beside an image.
-enum class Wrap { repeat, clamp };
 
 /// An image and its halves, each made from the one before by a box filter weighted by area: floor(n / 2)
 /// texels a side, 1 at least.
@@ -27,7 +24,8 @@ public:
     /// Returns RGBA, 0 to 1, at `uv` ((0, 0) is the bottom left). `change` holds the derivatives of uv
     /// with respect to the pixel's x (right) and y (up). If the longer side of the pixel's footprint exceeds
     /// one texel, filtering is trilinear between the two nearest levels, else bilinear in level 0.
-    glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change, Wrap wrap) const;
+    glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change,
+                      const scene::Wraps& wraps) const;
 
 private:
     struct MipLevel {

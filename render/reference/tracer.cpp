@@ -9,6 +9,8 @@ namespace vrut::reference {
 
 namespace {
 
+constexpr scene::Wraps kClamp{scene::Wrap::clamp, scene::Wrap::clamp};
+
 const scene::Image& image_of(const plan::View& view, scene::Index texture) {
     return view.scene->scene->textures()[static_cast<std::size_t>(texture)].image;
 }
@@ -150,8 +152,9 @@ Tracer::ShadedSurface Tracer::surface_at(const PathRay& path, const TriangleHit&
 glm::dvec4 Tracer::texel(scene::Index texture, const TracedInstance& part,
                          const SurfaceInteraction& interaction, const glm::dvec4& none) const {
     if (texture == scene::kNone || part.geometry->texcoords.empty()) return none;
-    return textures_[static_cast<std::size_t>(texture)]->sample(interaction.texcoord, interaction.duv_dxy,
-                                                                Wrap::repeat);
+    const auto index = static_cast<std::size_t>(texture);
+    return textures_[index]->sample(interaction.texcoord, interaction.duv_dxy,
+                                    view_.scene->scene->textures()[index].wraps);
 }
 
 glm::dvec3 Tracer::metallic_color(const PathRay& path, const TracedInstance& part,
@@ -219,7 +222,7 @@ glm::dvec3 Tracer::background(const PathRay& path) const {
         const glm::dvec2 pixel = 1.0 / glm::dvec2(view_.width, view_.height);
         const glm::dvec2 uv(path.raster.x * pixel.x, 1 - path.raster.y * pixel.y);
         const auto& map = textures_[static_cast<std::size_t>(view_.background.texture)];
-        return glm::dvec3(map->sample(uv, {glm::dvec2(pixel.x, 0), glm::dvec2(0, pixel.y)}, Wrap::clamp));
+        return glm::dvec3(map->sample(uv, {glm::dvec2(pixel.x, 0), glm::dvec2(0, pixel.y)}, kClamp));
     }
     return glm::clamp(view_.background.color, 0.0, 1.0);
 }

@@ -9,6 +9,10 @@
 
 namespace vrut::scene {
 
+std::string_view name_of(Wrap wrap) {
+    return wrap == Wrap::repeat ? "repeat" : wrap == Wrap::mirror ? "mirror" : "clamp";
+}
+
 std::string_view name_of(NodeType type) {
     switch (type) {
         case NodeType::assembly:
@@ -141,6 +145,20 @@ void link_parents(std::vector<Node>& nodes) {
             nodes[static_cast<std::size_t>(child)].parent = static_cast<Index>(i);
 }
 
+/// Where whole numbers make no difference: where textures repeat.
+void move_texcoords_near_zero(std::vector<Geometry>& geometries, const std::vector<Material>& materials,
+                              const std::vector<SceneParts::PartNode>& nodes) {
+    std::vector<bool> repeats(geometries.size(), true);
+    for (const SceneParts::PartNode& part : nodes) {
+        const auto* data = std::get_if<GeometryData>(&part.node.data);
+        if (data && data->geometry != kNone && data->material != kNone &&
+            materials[static_cast<std::size_t>(data->material)].wraps != kRepeat)
+            repeats[static_cast<std::size_t>(data->geometry)] = false;
+    }
+    for (std::size_t i = 0; i < geometries.size(); ++i)
+        if (repeats[i]) move_near_zero(geometries[i].texcoords);
+}
+
 std::vector<Index> looking_cameras_of(const std::vector<Node>& nodes) {
     std::vector<Index> looking;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -209,7 +227,7 @@ tl::expected<Scene, Scene::BuildError> Scene::build(SceneParts parts) {
     scene.materials_ = std::move(parts.materials);
     scene.geometries_ = std::move(parts.geometries);
     scene.notices_ = std::move(parts.notices);
-    for (Geometry& geometry : scene.geometries_) move_near_zero(geometry.texcoords);
+    move_texcoords_near_zero(scene.geometries_, scene.materials_, in);
     scene.planes_ = fitted_planes(scene.geometries_);
     std::vector<Index> new_index(in.size());
     for (std::size_t i = 0; i < order.size(); ++i)

@@ -27,10 +27,21 @@ using Index = std::int32_t;
 inline constexpr Index kNone = -1;
 
 /// An image file that materials and backgrounds show.
+/// What lies beyond an image's edge: the image again, its mirror image, or the edge's pixels.
+enum class Wrap { repeat, mirror, clamp };
+
+/// The keyword of the scene text format.
+std::string_view name_of(Wrap wrap);
+
+/// Along u, and along v.
+using Wraps = std::array<Wrap, 2>;
+inline constexpr Wraps kRepeat{Wrap::repeat, Wrap::repeat};
+
 struct Texture {
     std::string file;  ///< relative to the scene's, or absolute
     Image image;
     bool transparent = false;  ///< some alpha is below 255
+    Wraps wraps = kRepeat;
 };
 
 /// A surface as glTF describes it: how much of it is metal, and how rough it is, 0 to 1. `clear_coat` is how
@@ -70,6 +81,7 @@ struct Material {
     std::string normal_image;
     Index normal_texture = kNone;
     double normal_scale = 1;  ///< multiplies what they have along u and v
+    Wraps wraps = kRepeat;    ///< of all its images; its textures have the same
 };
 
 struct Geometry {

@@ -25,11 +25,10 @@ glm::dvec2 whole_numbers_of(const Texcoords& texcoords) {
 
 }  // namespace
 
-std::vector<glm::vec2> texcoords_near_zero(std::span<const glm::dvec2> texcoords) {
-    const glm::dvec2 whole = whole_numbers_of(texcoords);
-    std::vector<glm::vec2> result;
-    result.reserve(texcoords.size());
-    for (const glm::dvec2& texcoord : texcoords) result.emplace_back(texcoord - whole);
+TexcoordsNearZero texcoords_near_zero(std::span<const glm::dvec2> texcoords) {
+    TexcoordsNearZero result{{}, whole_numbers_of(texcoords)};
+    result.texcoords.reserve(texcoords.size());
+    for (const glm::dvec2& texcoord : texcoords) result.texcoords.emplace_back(texcoord - result.taken_off);
     return result;
 }
 

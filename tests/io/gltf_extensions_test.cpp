@@ -412,26 +412,41 @@ TEST_CASE("a glTF texture is multiplied by its material's colour, as light is") 
     CHECK(scene.notices().empty());
 }
 
-TEST_CASE("a glTF texture that is clamped or mirrored has a notice where it is seen to repeat") {
+TEST_CASE("a glTF texture is clamped and mirrored as its sampler says") {
     GltfBuilder file;
     file.add_triangle();
     file.document["images"] = {{{"bufferView", file.add_view(flat_png(2, 2, {1, 2, 3, 255}))}}};
-    file.document["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.document["textures"] = {{{"source", 0}, {"sampler", 0}}, {{"source", 0}}};
     file.document["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
-    nlohmann::json info = {{"index", 0}};
-    const auto notices_with_scale = [&](double x, double y) {
-        info["extensions"]["KHR_texture_transform"]["scale"] = {x, y};
-        file.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}}};
-        file.primitive()["material"] = 0;
-        return file.read().notices();
+    file.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
+                                  {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 1}}}}}}};
+    nlohmann::json second = file.primitive();
+    file.primitive()["material"] = 0;
+    second["material"] = 1;
+    file.document["meshes"][0]["primitives"].push_back(second);
+    const scene::Scene scene = file.read();
+    REQUIRE(scene.materials().size() == 2);
+    constexpr scene::Wraps kClampMirror{scene::Wrap::clamp, scene::Wrap::mirror};
+    const auto wraps_of = [](const scene::Scene& read, std::size_t material) {
+        const scene::Index texture = read.materials()[material].texture;
+        REQUIRE(texture != scene::kNone);
+        CHECK(read.textures()[static_cast<std::size_t>(texture)].wraps == read.materials()[material].wraps);
+        return read.materials()[material].wraps;
     };
-    CHECK(notices_with_scale(1, 1).empty());
-    REQUIRE(notices_with_scale(2, 1).size() == 1);
-    CHECK(contains(notices_with_scale(1, 2)[0], "a texture repeats where the file clamps or mirrors it"));
-    file.document["samplers"][0].erase("wrapT");
-    CHECK(notices_with_scale(1, 2).empty());
+    CHECK(wraps_of(scene, 0) == kClampMirror);
+    CHECK(wraps_of(scene, 1) == scene::kRepeat);
+    CHECK(scene.textures().size() == 2);  // one image, seen in two ways
+    CHECK(scene.notices().empty());
+    // In one material it is seen as its first texture.
+    file.document["materials"][0]["emissiveTexture"] = {{"index", 1}};
+    file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
+    const scene::Scene mixed = file.read();
+    CHECK(wraps_of(mixed, 0) == kClampMirror);
+    CHECK(mixed.materials()[0].emissive_texture == mixed.materials()[0].texture);
+    REQUIRE(mixed.notices().size() == 1);
+    CHECK(contains(mixed.notices()[0], "an emissive texture lies as the material's first texture does"));
     file.document["samplers"][0] = nlohmann::json::object();
-    CHECK(notices_with_scale(2, 2).empty());
+    CHECK(wraps_of(file.read(), 0) == scene::kRepeat);
 }
 
 TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)") {

@@ -21,7 +21,7 @@ material 3 "Paint \"red\" \\ #1"
   emissive 0.5 0 2   emissive-image "textures/glow.png"
   metallic-roughness 0.25 0.5   clear-coat 0.75   occlusion-roughness-metallic-image "textures/worn.png"
   normal-image "textures/leather.png"   normal-scale 0.5
-  image "textures/plate.png"
+  image "textures/plate.png"   image-wrap mirror clamp
 end
 geometry 7
   triangles 2  0 1 2  2 1 3
@@ -97,7 +97,9 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.occlusion_roughness_metallic_image == "textures/worn.png");
     CHECK(paint.normal_image == "textures/leather.png");
     CHECK(paint.normal_scale == 0.5);
+    CHECK(paint.wraps == scene::Wraps{scene::Wrap::mirror, scene::Wrap::clamp});
     const scene::Material& grey = scene.materials()[1];
+    CHECK(grey.wraps == scene::kRepeat);
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
     CHECK(grey.diffuse == glm::dvec4(0.8, 0.8, 0.8, 1));
     CHECK(grey.shininess == 0);
@@ -341,6 +343,8 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "material 1.5 \"x\" end", 2, "the material's id"},
         {h + "material -1 \"x\" end", 2, "the material's id"},
         {h + "material 9007199254740992 \"x\" end", 2, "the material's id"},
+        {h + "material 1 \"x\" image-wrap clamp tile end", 2,
+         "expected repeat, mirror or clamp, found 'tile'"},
         {h + "material 1 x end", 2, "the material's name in quotes, found 'x'"},
         {h + "material 1 \"x\" shininess 1\nshininess 2 end", 3, "'shininess' once in material 1"},
         {h + "material 1 \"x\" end\nmaterial 1 \"y\" end", 3, "each material once, found 1 twice"},

@@ -9,6 +9,8 @@ using namespace vrut;
 
 namespace {
 
+constexpr scene::Wraps kClamp{scene::Wrap::clamp, scene::Wrap::clamp};
+
 scene::Image image_of_grays(int width, int height, const std::vector<int>& grays) {
     scene::Image image;
     image.resize(width, height);
@@ -100,9 +102,14 @@ TEST_CASE("magnified it is bilinear, and repeats") {
     }
     // One number by hand: at u = 1/16 of two texels, 3/8 of the last one and 5/8 of the first.
     const reference::MipMap map(image_of_grays(2, 1, {0, 200}));
-    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, reference::Wrap::repeat).r == doctest::Approx(75 / 255.0));
-    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, reference::Wrap::clamp).r == 0);
-    CHECK(map.sample({std::nan(""), 1e300}, kMagnified, reference::Wrap::repeat).a == 1);
+    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, scene::kRepeat).r == doctest::Approx(75 / 255.0));
+    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, kClamp).r == 0);
+    // Mirrored, u = 1.25 is 0.75, and -1.75 is 0.25.
+    constexpr scene::Wraps kMirror{scene::Wrap::mirror, scene::Wrap::repeat};
+    CHECK(map.sample({1.25, 0.3}, kMagnified, kMirror).r == doctest::Approx(200 / 255.0));
+    CHECK(map.sample({-1.75, 0.3}, kMagnified, kMirror).r == 0);
+    CHECK(map.sample({17.0 / 16, 0.3}, kMagnified, kMirror).r == doctest::Approx(200 / 255.0));
+    CHECK(map.sample({std::nan(""), 1e300}, kMagnified, scene::kRepeat).a == 1);
 }
 
 TEST_CASE("each level is a box filter of the one before, weighted by area") {
@@ -127,7 +134,7 @@ TEST_CASE("each level is a box filter of the one before, weighted by area") {
 TEST_CASE("shrunk it is trilinear, by the longer side of the pixel in texels") {
     const reference::MipMap map(image_of_grays(4, 1, {0, 40, 80, 240}));  // 20 160; 90
     const auto at = [&](double u, const glm::dvec2& across, const glm::dvec2& up) {
-        return map.sample({u, 0.5}, {across, up}, reference::Wrap::clamp).r * 255;
+        return map.sample({u, 0.5}, {across, up}, kClamp).r * 255;
     };
     CHECK(at(0.25, {0.5, 0}, {0, 0}) == doctest::Approx(20));  // two texels
     CHECK(at(0.25, {0, 0}, {0, 2}) == doctest::Approx(20));

@@ -539,3 +539,18 @@ TEST_CASE("what shows, and where, follows from the states and not from the file"
     CHECK(shown_ids(scene::place(scene, states)) == Ids{0, 1});
     CHECK(scene::place(scene, states).bounds.empty());
 }
+
+TEST_CASE("whole numbers are taken off texture coordinates, but where a texture does not repeat") {
+    for (const bool repeats : {true, false}) {
+        scene::SceneParts parts;
+        parts.geometries = {geometry_of({{0, 0, 0}, {1, 0, 0}})};
+        parts.geometries[0].texcoords = {{5, 0.5F}, {6, 0.5F}};
+        parts.materials.resize(1);
+        if (!repeats) parts.materials[0].wraps[0] = scene::Wrap::clamp;
+        parts.nodes = {geometry_part(1, 0, 0)};
+        std::get<scene::GeometryData>(parts.nodes[0].node.data).material = 0;
+        const auto scene = scene::Scene::build(std::move(parts));
+        REQUIRE(scene);
+        CHECK(scene->geometries()[0].texcoords[0] == glm::vec2(repeats ? 0 : 5, 0.5F));
+    }
+}

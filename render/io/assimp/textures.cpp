@@ -33,11 +33,23 @@ std::string name_of(const std::string& address, const aiScene& scene, const std:
     return number >= 0 ? "*" + std::to_string(number) : file_name_of_foreign_path(folder, address);
 }
 
-void report_unsupported_sampling(const aiMaterial& from, aiTextureType type, ConversionWarnings& warnings) {
-    int wrap = aiTextureMapMode_Wrap;
-    for (const char* key : {"$tex.mapmodeu", "$tex.mapmodev"})
-        if (from.Get(key, type, 0, wrap) == aiReturn_SUCCESS && wrap != aiTextureMapMode_Wrap)
-            warnings.add("a texture repeats where the file clamps or mirrors it");
+/// A decal is meant to end at its edge; where its edge is clear, clamping shows the same.
+scene::Wrap wrap_of(const aiMaterial& from, aiTextureType type, const char* key) {
+    int mode = aiTextureMapMode_Wrap;
+    if (from.Get(key, type, 0, mode) != aiReturn_SUCCESS) return scene::Wrap::repeat;
+    return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? scene::Wrap::clamp
+           : mode == aiTextureMapMode_Mirror                                ? scene::Wrap::mirror
+                                                                            : scene::Wrap::repeat;
+}
+
+/// All images of a material lie as its first one does.
+void set_sampling(const aiMaterial& from, aiTextureType type, bool first, scene::Material& material,
+                  ConversionWarnings& warnings) {
+    const scene::Wraps wraps{wrap_of(from, type, "$tex.mapmodeu"), wrap_of(from, type, "$tex.mapmodev")};
+    if (first) material.wraps = wraps;
+    if (material.wraps != wraps)
+        warnings.add(
+            "a texture goes on beyond its edges as the material's first texture does, not as the file says");
     aiUVTransform shift;
     if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), shift) == aiReturn_SUCCESS &&
         (shift.mTranslation != aiVector2D(0, 0) || shift.mScaling != aiVector2D(1, 1) ||
@@ -65,7 +77,7 @@ void set_texture_name(const aiMaterial& from, const aiScene& scene, const std::f
     const aiTextureType type = color_texture_type(from);
     if (!has_texture(from, type)) return;
     material.image = name_of(texture_name(from, type), scene, folder);
-    report_unsupported_sampling(from, type, warnings);
+    set_sampling(from, type, true, material, warnings);
 }
 
 void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
@@ -75,7 +87,7 @@ void set_emissive_texture(const aiMaterial& from, const aiScene& scene, const st
     if (material.emissive == glm::dvec3(0)) material.emissive = glm::dvec3(1);
     material.emission = {0, 0, 0, 1};
     material.emissive_image = name_of(texture_name(from, aiTextureType_EMISSIVE), scene, folder);
-    report_unsupported_sampling(from, aiTextureType_EMISSIVE, warnings);
+    set_sampling(from, aiTextureType_EMISSIVE, material.image.empty(), material, warnings);
 }
 
 void set_normal_texture(const aiMaterial& from, const aiScene& scene, const std::filesystem::path& folder,
@@ -87,7 +99,8 @@ void set_normal_texture(const aiMaterial& from, const aiScene& scene, const std:
     const bool told = from.Get(AI_MATKEY_BUMPSCALING, scale) == aiReturn_SUCCESS ||
                       from.Get("$tex.bumpmult", type, 0, scale) == aiReturn_SUCCESS;
     if (told && std::isfinite(scale)) material.normal_scale = std::clamp<double>(scale, -1000, 1000);
-    report_unsupported_sampling(from, type, warnings);
+    const bool first = material.image.empty() && material.emissive_image.empty();
+    set_sampling(from, type, first, material, warnings);
 }
 
 void report_unsupported_textures(const aiMaterial& from, ConversionWarnings& warnings) {

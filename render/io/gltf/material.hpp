@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "io/conversion_warnings.hpp"
@@ -9,6 +10,9 @@ namespace vrut::io {
 
 /// How a reflectance of 4 %, what most surfaces reflect, displays.
 inline constexpr double kGltfDielectric = 0.22;
+
+/// A sampler's modes beyond the edges of an image, those of OpenGL.
+inline constexpr std::uint64_t kGltfRepeat = 10497, kGltfMirror = 33648, kGltfClamp = 33071;
 
 /// The factors of a glTF material; colours are linear, 0 to 1.
 struct GltfMaterial {

@@ -192,11 +192,14 @@ private:
     /// Of a further texture: all lie as the first one does.
     void add_mapping(const GltfJson& info, const std::string& what) {
         const GltfTextureMapping mapping = mapping_of(info);
-        if (!has_mapping_) result_.mapping = mapping;
+        const scene::Wraps wraps = wraps_of(info);
+        if (!has_mapping_) {
+            result_.mapping = mapping;
+            result_.material.wraps = wraps;
+        }
         has_mapping_ = true;
-        if (mapping.key() != result_.mapping.key())
+        if (mapping.key() != result_.mapping.key() || wraps != result_.material.wraps)
             warnings_.add(what + " lies as the material's first texture does, not as the file says");
-        read_wrapping(info);
     }
 
     GltfTextureMapping mapping_of(const GltfJson& info) const {
@@ -206,15 +209,18 @@ private:
                 vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
     }
 
-    void read_wrapping(const GltfJson& info) {
+    scene::Wraps wraps_of(const GltfJson& info) const {
         const auto sampler = index_in(texture_of(info), "sampler");
-        if (!sampler) return;
-        constexpr std::uint64_t kRepeat = 10497;
+        if (!sampler) return scene::kRepeat;
         const GltfJson& json = element(document_, "samplers", *sampler, "sampler");
-        const std::array<const char*, 2> wraps{"wrapS", "wrapT"};
-        for (int i = 0; i < 2; ++i)
-            if (size_in(json, wraps[static_cast<std::size_t>(i)], kRepeat) != kRepeat)
-                result_.repeats[i] = false;
+        return {wrap_in(json, "wrapS"), wrap_in(json, "wrapT")};
+    }
+
+    static scene::Wrap wrap_in(const GltfJson& sampler, const char* name) {
+        const std::uint64_t wrap = size_in(sampler, name, kGltfRepeat);
+        return wrap == kGltfClamp    ? scene::Wrap::clamp
+               : wrap == kGltfMirror ? scene::Wrap::mirror
+                                     : scene::Wrap::repeat;
     }
 
     void report(const GltfJson& parent, const char* name, const char* what) {

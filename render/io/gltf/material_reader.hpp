@@ -16,7 +16,6 @@ struct ReadGltfMaterial {
     std::optional<std::uint32_t> image;  ///< of its base colour
     std::optional<std::uint32_t> emissive_image, occlusion_roughness_metallic_image, normal_image;
     GltfTextureMapping mapping;    ///< how these lie on the surface
-    glm::bvec2 repeats{true};      ///< beyond 0 to 1 of its images, in the directions of u and v
     TextureChange change;          ///< of the image of its base colour
     TextureChange surface_change;  ///< of its image for occlusion, roughness and metal
 };

@@ -166,18 +166,7 @@ private:
                 read_gltf_geometry(document_, primitive, read.mapping, name, buffers_, warnings_));
             parts_.geometries.back().id = found->second;
         }
-        report_wrapping(parts_.geometries[static_cast<std::size_t>(found->second)], read.repeats);
         return found->second;
-    }
-
-    /// All textures repeat, which is seen beyond 0 to 1.
-    void report_wrapping(const scene::Geometry& geometry, const glm::bvec2& repeats) {
-        if (glm::all(repeats)) return;
-        const auto is_seen = [&](const glm::vec2& at) {
-            return (!repeats.x && (at.x < 0 || at.x > 1)) || (!repeats.y && (at.y < 0 || at.y > 1));
-        };
-        if (std::ranges::any_of(geometry.texcoords, is_seen))
-            warnings_.add("a texture repeats where the file clamps or mirrors it");
     }
 
     // --- nodes

@@ -21,6 +21,10 @@ constexpr std::string_view kGlossiness = "KHR_materials_pbrSpecularGlossiness";
 constexpr std::string_view kClearCoat = "KHR_materials_clearcoat";
 constexpr std::string_view kEmissiveStrength = "KHR_materials_emissive_strength";
 
+std::uint64_t gltf_wrap(scene::Wrap wrap) {
+    return wrap == scene::Wrap::clamp ? kGltfClamp : wrap == scene::Wrap::mirror ? kGltfMirror : kGltfRepeat;
+}
+
 /// The frame in which a camera looks along -z, with y upwards.
 glm::dmat4 frame_of(const scene::CameraData& camera) {
     const glm::dvec3 z = glm::normalize(camera.eye - camera.focus);
@@ -302,10 +306,23 @@ private:
 
     void write_textures() {
         if (buffer_.image_count() == 0) return;
+        std::vector<scene::Wraps> samplers;
         json_.open_array("textures");
-        for (std::size_t i = 0; i < buffer_.image_count(); ++i)
-            json_.open_object().number(i, "source").close();
-        json_.close().open_array("images");
+        for (const auto& [texture, own] : images_) {
+            json_.open_object().number(own, "source");
+            const scene::Wraps& wraps = scene_.textures()[static_cast<std::size_t>(texture)].wraps;
+            if (wraps != scene::kRepeat) {
+                json_.number(samplers.size(), "sampler");
+                samplers.push_back(wraps);
+            }
+            json_.close();
+        }
+        json_.close();
+        if (!samplers.empty()) json_.open_array("samplers");
+        for (const auto& [u, v] : samplers)
+            json_.open_object().number(gltf_wrap(u), "wrapS").number(gltf_wrap(v), "wrapT").close();
+        if (!samplers.empty()) json_.close();
+        json_.open_array("images");
         for (std::size_t i = 0; i < buffer_.image_count(); ++i)
             json_.open_object()
                 .number(buffer_.view_of_image(i), "bufferView")

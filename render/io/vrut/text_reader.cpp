@@ -5,6 +5,7 @@
 #include <span>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 
 #include "base/file_bytes.hpp"
 #include "base/salted_hash.hpp"
@@ -156,6 +157,14 @@ private:
         return *material.metallic_roughness;
     }
 
+    scene::Wrap take_wrap() {
+        const std::size_t line = tokens_.line();
+        const std::string_view word = tokens_.take_word("repeat, mirror or clamp");
+        for (const scene::Wrap wrap : {scene::Wrap::repeat, scene::Wrap::mirror, scene::Wrap::clamp})
+            if (word == name_of(wrap)) return wrap;
+        throw ParseError(line, "expected repeat, mirror or clamp, found '" + excerpt(word) + "'");
+    }
+
     void read_material(std::size_t line) {
         scene::Material material;
         material.id = take_id("the material's id");
@@ -176,6 +185,10 @@ private:
             {"emissive-image",
              [&] { material.emissive_image = tokens_.take_string("the emissive image's file"); }},
             {"image", [&] { material.image = tokens_.take_string("the image's file"); }},
+            {"image-wrap",
+             [&] {
+                 for (scene::Wrap& wrap : material.wraps) wrap = take_wrap();
+             }},
             {"metallic-roughness",
              [&] {
                  metallic_roughness(material).metallic = tokens_.take_number("metallic", 0, 1);
@@ -197,7 +210,7 @@ private:
         parts_.materials.push_back(std::move(material));
     }
 
-    std::vector<glm::vec2> take_texcoords() {
+    scene::TexcoordsNearZero take_texcoords() {
         std::vector<glm::dvec2> texcoords(tokens_.take_count("a count of texture coordinates", 4));
         for (glm::dvec2& texcoord : texcoords)
             for (int i = 0; i < 2; ++i)
@@ -215,6 +228,7 @@ private:
     void read_geometry(std::size_t line) {
         scene::Geometry geometry;
         geometry.id = take_id("the geometry's id");
+        scene::TexcoordsNearZero texcoords;
         std::size_t normals_line = 0, texcoords_line = 0, colors_line = 0, triangles_line = 0;
         const BlockMember members[] = {
             {"vertices",
@@ -232,7 +246,7 @@ private:
             {"texcoords",
              [&] {
                  texcoords_line = tokens_.line();
-                 geometry.texcoords = take_texcoords();
+                 texcoords = take_texcoords();
              }},
             {"colors",
              [&] {
@@ -250,6 +264,7 @@ private:
              }},
         };
         read_members("geometry " + std::to_string(geometry.id), members);
+        geometry.texcoords = std::move(texcoords.texcoords);
 
         const std::size_t count = geometry.positions.size();
         const auto check_count = [&](std::size_t found, std::size_t at, const char* what) {
@@ -268,6 +283,7 @@ private:
         for (const glm::dvec3& position : geometry.positions) geometry.bounds.add(position);
         remember(geometry_ids_, geometry.id, parts_.geometries.size(), line, "geometry");
         parts_.geometries.push_back(std::move(geometry));
+        taken_off_.push_back(texcoords.taken_off);
     }
 
     scene::NodeType take_node_type() {
@@ -431,16 +447,31 @@ private:
             if (auto* data = std::get_if<scene::GeometryData>(&node.data)) {
                 data->geometry = look_up(geometry_ids_, ids.geometry, line, node.id, "geometry");
                 data->material = material;
+                put_back_where_needed(*data);
             } else if (auto* background = std::get_if<scene::BackgroundData>(&node.data)) {
                 background->material = material;
             }
         }
     }
 
+    /// Of textures that do not repeat, whole numbers make a difference.
+    void put_back_where_needed(const scene::GeometryData& data) {
+        if (data.geometry == scene::kNone || data.material == scene::kNone ||
+            parts_.materials[static_cast<std::size_t>(data.material)].wraps == scene::kRepeat)
+            return;
+        const auto geometry = static_cast<std::size_t>(data.geometry);
+        const glm::dvec2 taken_off = std::exchange(taken_off_[geometry], glm::dvec2(0));
+        for (int axis = 0; axis < 2; ++axis)
+            if (taken_off[axis] != 0)
+                for (glm::vec2& texcoord : parts_.geometries[geometry].texcoords)
+                    texcoord[axis] = static_cast<float>(double{texcoord[axis]} + taken_off[axis]);
+    }
+
     Tokenizer tokens_;
     const std::string& file_;
     scene::SceneParts parts_;
     std::vector<References> references_;  // one for each of parts_.nodes
+    std::vector<glm::dvec2> taken_off_;   // of the texture coordinates of each of parts_.geometries
     std::unordered_map<scene::Id, scene::Index, base::SaltedHash> material_ids_, geometry_ids_;
     Notices notices_;
 };
