@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
 constexpr double kClose = 1e-3;  ///< of the scene's radius: nobody turns about a speck on the lens
-constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
+constexpr std::size_t kMostLooks = std::size_t{1} << 24;
 
 struct Ray {
     glm::dvec3 origin, direction;
@@ -28,8 +28,8 @@ struct ShownGeometry {
 
 struct Shown {
     std::vector<ShownGeometry> geometries;
-    math::Bounds bounds;  ///< in world space
-    std::size_t left = kMostTriangles;
+    math::Bounds bounds;            ///< in world space
+    std::size_t left = kMostLooks;  ///< at boxes and triangles
 };
 
 Shown shown_in(const scene::SceneParts& parts, const scene::PlacedScene& placed) {
@@ -66,6 +66,8 @@ double first_surface(const Ray& ray, double nearest, Shown& shown) {
         const ShownGeometry* shown;
         Ray ray;  ///< in the node's space
     };
+    if (shown.geometries.size() > shown.left) return kNothing;
+    shown.left -= shown.geometries.size();
     std::vector<Entry> entries;
     for (const ShownGeometry& candidate : shown.geometries) {
         const Ray local{glm::dvec3(candidate.node_from_world * glm::dvec4(ray.origin, 1)),

@@ -103,6 +103,18 @@ TEST_CASE("a camera is not focused on what is hidden, nor on what touches its le
     CHECK(near(stage.focus(), {0, 0, -8}));
 }
 
+TEST_CASE("of very many cameras among very many parts the last ones are focused on the scene's centre") {
+    constexpr int kMany = 5000;
+    Stage stage;
+    stage.add_square(moved_by({0, 0, -5}));
+    for (int i = 0; i < kMany; ++i) {
+        stage.add_square(moved_by({100, 0, -9}));
+        stage.add(scene::NodeType::camera, glm::dmat4(1)).data = scene::CameraData();
+    }
+    CHECK(near(stage.focus(), {0, 0, -5}));
+    CHECK(near(std::get<scene::CameraData>(stage.parts.nodes.back().node.data).focus, {0, 0, -7}));
+}
+
 TEST_CASE("what cannot be met changes no focus") {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const glm::dmat4& matrix : {moved_by({0, 0, -5}, 0), moved_by({0, 0, -kInfinity})}) {
