@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "scene_queries.hpp"
@@ -32,7 +33,8 @@ std::vector<std::array<glm::dvec3, 3>> triangles_of(const scene::Scene& scene) {
         for (const glm::uvec3& t : geometry.triangles) {
             auto& corners = triangles.emplace_back(
                 std::array{geometry.positions[t.x], geometry.positions[t.y], geometry.positions[t.z]});
-            std::ranges::rotate(corners, std::ranges::min_element(corners, before));
+            std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end(), before),
+                        corners.end());
         }
     std::ranges::sort(triangles, [&](const auto& a, const auto& b) {
         return std::ranges::lexicographical_compare(a, b, before);

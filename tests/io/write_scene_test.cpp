@@ -268,9 +268,8 @@ TEST_CASE("a scene survives a GLB file but for what is told") {
         CHECK(std::get<scene::LightData>(node_of(read, "Spot").data).angle == doctest::Approx(60));
     }
     CHECK(lost == std::vector<std::string>{
-                      "a LOD node is replaced by its first child", "a background is lost",
-                      "a hinge is lost", "a light's attenuation is lost",
-                      "a mark of presentation is lost",
+                      "a LOD node is replaced by its first child", "a background is lost", "a hinge is lost",
+                      "a light's attenuation is lost", "a mark of presentation is lost",
                       "a material's ambient colour becomes a tenth of its diffuse colour (2 times)",
                       "a material's emission becomes light, which brightens less what is lit",
                       "a material's reflectivity is lost", "a switch is replaced by its active child",
