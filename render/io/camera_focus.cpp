@@ -14,7 +14,7 @@ namespace vrut::io {
 namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::infinity();
-constexpr double kClose = 1e-3;  ///< of the scene's radius: nobody turns about a speck on the lens
+constexpr double kClose = 1e-3;  ///< of the scene's radius: what is nearer does not count
 constexpr std::size_t kMostLooks = std::size_t{1} << 24;
 
 struct Ray {
