@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/placed_parts.hpp"
+#include "math/ray_space.hpp"
 #include "mesh/bvh.hpp"
 
 namespace vrut::io {
@@ -48,15 +49,13 @@ Shown shown_in(const scene::SceneParts& parts, const scene::PlacedScene& placed)
     return shown;
 }
 
-/// In lengths of the direction; infinite where the ray misses the triangle. Source: Möller, Trumbore, "Fast,
-/// Minimum Storage Ray/Triangle Intersection", 1997.
-double meets_at(const Ray& ray, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-    const glm::dvec3 u = b - a, v = c - a, p = glm::cross(ray.direction, v), from_a = ray.origin - a;
-    const double determinant = glm::dot(u, p);
-    if (determinant == 0) return kNothing;
-    const glm::dvec3 q = glm::cross(from_a, u);
-    const double s = glm::dot(from_a, p) / determinant, t = glm::dot(ray.direction, q) / determinant;
-    return s >= 0 && t >= 0 && s + t <= 1 ? glm::dot(v, q) / determinant : kNothing;
+/// How far along the ray it meets the triangle, whose corners are in the ray's space; infinite where it
+/// misses it.
+double meets_at(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    const double u = math::edge_function(c, b), v = math::edge_function(a, c), w = math::edge_function(b, a);
+    const double area = u + v + w;
+    const bool inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    return inside && area != 0 ? a.z + (v * (b.z - a.z) + w * (c.z - a.z)) / area : kNothing;
 }
 
 /// The first surface beyond `nearest`, both in lengths of the direction.
@@ -84,9 +83,13 @@ double first_surface(const Ray& ray, double nearest, Shown& shown) {
         const scene::Geometry& geometry = *entry.shown->geometry;
         if (entry.at >= first || geometry.triangles.size() > shown.left) break;
         shown.left -= geometry.triangles.size();
+        const double length = glm::length(entry.ray.direction);
+        const math::RaySpace space(entry.ray.direction / length);
+        const auto corner = [&](unsigned vertex) {
+            return space.to_ray_space(geometry.positions[vertex] - entry.ray.origin);
+        };
         for (const glm::uvec3& corners : geometry.triangles) {
-            const double at = meets_at(entry.ray, geometry.positions[corners.x],
-                                       geometry.positions[corners.y], geometry.positions[corners.z]);
+            const double at = meets_at(corner(corners.x), corner(corners.y), corner(corners.z)) / length;
             if (at > nearest) first = std::min(first, at);
         }
     }
