@@ -156,8 +156,8 @@ TEST_CASE("clients that read nothing or single bytes, whatever they send, delay 
     const double cut_s = std::chrono::duration<double>(Clock::now() - start).count();
     const Metrics& metrics = server.metrics();
     CHECK(metrics.clients_left == stalled.size() + 1);
-    for (const RawSocket& socket : stalled) CHECK(socket.ended());
-    CHECK(dribbling.ended());
+    for (const RawSocket& socket : stalled) CHECK(eventually([&] { return socket.ended(); }));
+    CHECK(eventually([&] { return dribbling.ended(); }));
     // Each stalled client's in its socket, the newest, one on its way to those who read, one fresh from the
     // encoder.
     CHECK(metrics.pictures_held_most <= 4 + stalled.size());
