@@ -44,6 +44,7 @@ inline constexpr auto kMode = word("realistic", "stylized");
 inline constexpr auto kFormat = word("jpeg", "png");
 inline constexpr auto kStyle = word("vrut", "maya", "catia", "cinema4d");
 inline constexpr auto kTurnAbout = word("center", "touched");
+inline constexpr auto kUpAxis = word("y", "z");
 
 // Definitions of the schema's own.
 inline constexpr Defined<Object<CameraOverlay>> kCameraOverlay{{}, "cameraOverlay"};
@@ -237,6 +238,8 @@ void describe(V& v, const Tree*) {
 template <class V>
 void describe(V& v, const Open*) {
     v.required("scene", &Open::scene, Text{kMaxSceneName}, "A name as in the answer to `scenes`.");
+    v.optional("upAxis", &Open::up_axis, kUpAxis,
+               "The axis that is up, where the file does not tell; without it as chosen last.");
 }
 
 template <class V>
@@ -479,6 +482,8 @@ template <class V>
 void describe(V& v, const SceneState*) {
     v.fixed("name", &SceneState::name, kName, "The scene's title.");
     v.fixed("file", &SceneState::file, Text{kMaxSceneName}, "The name by which `open` takes it.");
+    v.fixed("upAxis", &SceneState::up_axis, kUpAxis,
+            "The axis that was taken for up, in formats that do not tell: OBJ, STL and PLY.");
     v.fixed("nodes", &SceneState::nodes, kId, "Number of nodes.");
     v.fixed("materials", &SceneState::materials, kId, "Number of materials.");
     v.fixed("geometries", &SceneState::geometries, kId, "Number of geometries.");

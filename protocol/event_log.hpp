@@ -27,6 +27,7 @@ struct LoggedFrame {
 
 struct LogHeader {
     std::string scene, scene_sha256;
+    std::optional<UpAxis> up_axis = {};           ///< none: the file tells it, or the log does not
     std::string started;                          ///< ISO 8601
     std::shared_ptr<const nlohmann::json> state;  ///< the document
     struct Client {
@@ -64,7 +65,8 @@ struct LogLine {
     /// A scene that was being loaded is shown from here on.
     struct Opened {
         std::string scene, sha256;
-        std::string changes = {};  ///< what was kept of it: a patch of the state; empty: nothing
+        std::string changes = {};            ///< what was kept of it: a patch of the state; empty: nothing
+        std::optional<UpAxis> up_axis = {};  ///< as in the header
     };
     /// The frame of this number was drawn of what is shown now.
     struct Drawn {

@@ -31,6 +31,7 @@ inline constexpr std::int64_t kMaxInteger = (std::int64_t{1} << 53) - 1;
 
 enum class Role { control, view, host };
 enum class DrawMode { realistic, stylized };
+enum class UpAxis { y, z };
 enum class ImageFormat { jpeg, png };
 
 // --- client to server
@@ -177,6 +178,7 @@ struct Tree {
 
 struct Open {
     std::string scene;
+    std::optional<UpAxis> up_axis = {};  ///< none: as it was chosen last
 };
 
 /// What can be opened.

@@ -48,8 +48,9 @@ private:
 
 // --- the state document's members, as values. Those marked r are read-only to clients.
 
-struct SceneState {          // r
-    std::string name, file;  ///< its title, and the name by which it is opened
+struct SceneState {                      // r
+    std::string name, file;              ///< its title, and the name by which it is opened
+    std::optional<UpAxis> up_axis = {};  ///< that was taken; none: the file tells it
     std::uint64_t nodes = 0, materials = 0, geometries = 0, triangles = 0;
     struct Bounds {
         glm::dvec3 min{0}, max{0};

@@ -20,6 +20,7 @@ struct ReaderEntry {
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress,
                         const ReadOptions& options);
     bool foreign;  ///< a foreign library reads what matters of it
+    bool tells_up_axis = true;
 };
 
 constexpr ReaderEntry kReaders[] = {
@@ -27,9 +28,9 @@ constexpr ReaderEntry kReaders[] = {
     {".osb", read_osb_scene, false},
     {".glb", read_gltf_scene, true},
     {".gltf", read_gltf_scene, true},
-    {".obj", read_assimp_scene<AssimpFormat::obj>, true},
-    {".stl", read_assimp_scene<AssimpFormat::stl>, true},
-    {".ply", read_assimp_scene<AssimpFormat::ply>, true},
+    {".obj", read_assimp_scene<AssimpFormat::obj>, true, false},
+    {".stl", read_assimp_scene<AssimpFormat::stl>, true, false},
+    {".ply", read_assimp_scene<AssimpFormat::ply>, true, false},
     {".dae", read_assimp_scene<AssimpFormat::collada>, true},
     {".fbx", read_assimp_scene<AssimpFormat::fbx>, true},
 };
@@ -77,6 +78,11 @@ std::string read_extensions() {
     for (const ReaderEntry& format : kReaders)
         list += (list.empty() ? "" : ", ") + std::string(format.extension);
     return list;
+}
+
+bool lacks_up_axis(const std::filesystem::path& path) {
+    const ReaderEntry* const format = reader_of(path);
+    return format != nullptr && !format->tells_up_axis;
 }
 
 bool has_foreign_reader(const std::filesystem::path& path) {

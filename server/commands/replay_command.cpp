@@ -33,9 +33,12 @@ public:
         }
     }
 
-    tl::expected<scenes::LoadedScene, std::string> find(const std::string& name, const std::string& sha256) {
+    tl::expected<scenes::LoadedScene, std::string> find(const std::string& name, const std::string& sha256,
+                                                        std::optional<protocol::UpAxis> up_axis) {
+        scenes::ImportOptions options = options_;
+        if (up_axis) options.read.z_up = *up_axis == protocol::UpAxis::z;
         if (fs::path given = std::exchange(given_, {}); !given.empty()) {
-            auto scene = scenes::load_scene(given, name, observe::loading_bar(name), options_);
+            auto scene = scenes::load_scene(given, name, observe::loading_bar(name), options);
             if (scene && scene->sha256 != sha256)
                 observe::log_warning("another_scene", {{"file", given.string()},
                                                        {"reason", "it is not the scene that was recorded"}});
@@ -47,7 +50,7 @@ public:
             if (!fs::is_regular_file(file)) continue;
             found = true;
             if (scenes::sha256_of(file) == sha256)
-                return scenes::load_scene(file, name, observe::loading_bar(name), options_);
+                return scenes::load_scene(file, name, observe::loading_bar(name), options);
         }
         return tl::unexpected("the scene '" + name + "' " +
                               (found ? "has changed since it was recorded" : "is not found") +
@@ -112,8 +115,9 @@ void replay_command(const ReplayArguments& arguments) {
     room::ReplayWatcher watcher;
     if (frames)
         watcher.on_drawn = [&](std::int64_t frame, const room::Room& room) { frames->write(frame, room); };
-    const auto finder = [&](const std::string& name, const std::string& sha256) {
-        return scenes.find(name, sha256);
+    const auto finder = [&](const std::string& name, const std::string& sha256,
+                            std::optional<protocol::UpAxis> up_axis) {
+        return scenes.find(name, sha256, up_axis);
     };
     const auto room = room::replay(*log, finder, watcher);
     if (!room) throw std::runtime_error(arguments.log.string() + ": " + room.error());

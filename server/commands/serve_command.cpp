@@ -87,9 +87,8 @@ void serve_command(const ServeArguments& arguments) {
     options.library =
         scenes::SceneLibrary(existing_folder("--scenes", arguments.scenes), {{}, arguments.read}, path);
     const std::string& name = options.library.start_name();
-    auto scene = scenes::load_scene(path, name, observe::loading_bar(name), options.library.options());
+    auto scene = scenes::load_kept_scene(path, name, observe::loading_bar(name), options.library.options());
     if (!scene) throw std::runtime_error(scene.error());
-    scene->changes = scenes::stored_changes(scene->sha256);
     options.keep_changes = scenes::store_changes;
     const scene::Scene& read = *scene->placed->scene;
     for (const protocol::Notice& notice : scene->notices)

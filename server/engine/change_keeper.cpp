@@ -63,20 +63,20 @@ void ChangeKeeper::changed(base::Clock::time_point now) {
     if (writer_ && !due_) due_ = now + kDelay;
 }
 
-void ChangeKeeper::keep(const std::string& scene_sha256, std::string patch) {
+void ChangeKeeper::keep(const std::string& scene, std::string patch) {
     due_.reset();
     if (!writer_) return;
     kept_at_ = base::Clock::now();
-    std::erase_if(newest_, [&](const auto& each) { return each.first == scene_sha256; });
-    newest_.emplace_front(scene_sha256, patch);
+    std::erase_if(newest_, [&](const auto& each) { return each.first == scene; });
+    newest_.emplace_front(scene, patch);
     if (newest_.size() > kRemembered) newest_.pop_back();
-    waiting_[scene_sha256] = std::move(patch);
+    waiting_[scene] = std::move(patch);
     if (!writes_) write_next();
 }
 
-std::optional<std::string> ChangeKeeper::newest(const std::string& scene_sha256) const {
-    for (const auto& [scene, patch] : newest_)
-        if (scene == scene_sha256) return patch;
+std::optional<std::string> ChangeKeeper::newest(const std::string& scene) const {
+    for (const auto& [name, patch] : newest_)
+        if (name == scene) return patch;
     return std::nullopt;
 }
 

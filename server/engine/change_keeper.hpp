@@ -17,8 +17,9 @@ namespace vrut::server::engine {
 /// time, the newest of each scene. To be used on one thread, which also gets the results.
 class ChangeKeeper {
 public:
-    /// Of a scene's hash and a patch of the state. Throws std::exception with a sentence. On any thread.
-    using Store = std::function<void(const std::string& scene_sha256, const std::string& patch)>;
+    /// Of a scene, named by LoadedScene::changes_key(), and a patch of the state. Throws std::exception with
+    /// a sentence. On any thread.
+    using Store = std::function<void(const std::string& scene, const std::string& patch)>;
     /// A write has failed, and why; not again before one has succeeded.
     using OnFailed = std::function<void(const std::string& why)>;
 
@@ -32,9 +33,9 @@ public:
     /// Something has changed: keep() is due a second after the first change that is not kept.
     void changed(base::Clock::time_point now);
     std::optional<base::Clock::time_point> due() const { return due_; }
-    void keep(const std::string& scene_sha256, std::string patch);
+    void keep(const std::string& scene, std::string patch);
     /// What was given to keep() last, of the last few scenes: a disk may not have it yet.
-    std::optional<std::string> newest(const std::string& scene_sha256) const;
+    std::optional<std::string> newest(const std::string& scene) const;
 
 private:
     struct Writer;
@@ -46,8 +47,8 @@ private:
     OnFailed on_failed_;
     std::optional<base::Clock::time_point> due_;
     base::Clock::time_point kept_at_{};
-    std::map<std::string, std::string> waiting_;              ///< patches by hash
-    std::deque<std::pair<std::string, std::string>> newest_;  ///< hashes and patches, the latest first
+    std::map<std::string, std::string> waiting_;              ///< patches by scene
+    std::deque<std::pair<std::string, std::string>> newest_;  ///< scenes and patches, the latest first
     bool writes_ = false, failed_ = false;
 };
 

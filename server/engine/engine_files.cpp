@@ -7,8 +7,8 @@ namespace vrut::server::engine {
 namespace code = protocol::error_code;
 
 void Engine::connect_files(room::RoomOptions& options) {
-    options.load = [this](std::int64_t request, const std::string& name) {
-        lookup_.find(request, name, base::Clock::now());
+    options.load = [this](std::int64_t request, const protocol::Open& asked) {
+        lookup_.find(request, asked, base::Clock::now());
     };
     options.scenes = [this](std::int64_t request) { lookup_.list(request, base::Clock::now()); };
     if (record_folder_.empty()) return;
@@ -53,7 +53,7 @@ void Engine::check_changes() {
 /// Those of the scene that is shown.
 void Engine::keep_changes() {
     if (!has_changes_to_keep()) return;
-    change_keeper_.keep(room_->scene_sha256(), room_->changes());
+    change_keeper_.keep(room_->changes_key(), room_->changes());
     note_kept();
 }
 
@@ -81,13 +81,17 @@ void Engine::handle(const FileWorkDone& done) {
 /// Begins to load a scene that was looked for, or says why not.
 std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
     if (!found.path) return found.path.error();
+    const protocol::Open& asked = found.asked;
+    if (asked.up_axis && !io::lacks_up_axis(*found.path))
+        return protocol::Error{
+            {}, code::refused_scene, asked.scene + ": its format tells which axis is up: leave out 'upAxis'"};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     try {
-        loader_.start(*found.path, found.name, description_, library_.options());
+        loader_.start(*found.path, asked, description_, library_.options());
     } catch (const std::system_error& error) {
         return protocol::Error{{}, code::failed, "a scene cannot be loaded now: " + error.code().message()};
     }
-    broadcast({found.name, 0, {}, {}});
+    broadcast({asked.scene, 0, {}, {}});
     return std::nullopt;
 }
 

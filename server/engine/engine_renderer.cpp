@@ -95,7 +95,7 @@ void Engine::show(const scenes::SceneLoaded& loaded, std::optional<std::string> 
         keep_changes();
         scenes::LoadedScene scene = prepared(*loaded.scene);
         // What was read may be older.
-        if (const auto newer = change_keeper_.newest(scene.sha256)) scene.changes = *newer;
+        if (const auto newer = change_keeper_.newest(scene.changes_key())) scene.changes = *newer;
         room_->show(std::move(scene), time_of(base::Clock::now()));
         note_kept();
         use(loaded.levels);

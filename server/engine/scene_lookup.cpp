@@ -36,17 +36,17 @@ void SceneLookup::send_list() {
         post_->send([=, this] { on_listed_(request, names_); });
 }
 
-void SceneLookup::find(std::int64_t request, const std::string& name, base::Clock::time_point now) {
+void SceneLookup::find(std::int64_t request, const protocol::Open& asked, base::Clock::time_point now) {
     if (findings_.size() == kMostFindings)
-        return cannot_find({request, name, now}, code::busy, "too many scenes are being looked for");
-    findings_.push_back({request, name, now + kWaitsForFile});
+        return cannot_find({request, asked, now}, code::busy, "too many scenes are being looked for");
+    findings_.push_back({request, asked, now + kWaitsForFile});
     if (!finds_) find_next();
 }
 
 void SceneLookup::find_next() {
     if (findings_.empty()) return;
     finding_ = findings_.front().request;
-    finds_ = run_file_work([this, name = findings_.front().name, find = folder_.find, post = post_] {
+    finds_ = run_file_work([this, name = findings_.front().asked.scene, find = folder_.find, post = post_] {
         post->send([this, path = find(name)] { found(path); });
     });
     if (finds_) return;
@@ -59,7 +59,7 @@ void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& 
     if (!findings_.empty() && findings_.front().request == finding_) {
         const Finding found = findings_.front();
         findings_.pop_front();
-        on_found_(found.request, {found.name, path.map_error([](const std::string& why) {
+        on_found_(found.request, {found.asked, path.map_error([](const std::string& why) {
                                       return protocol::Error{{}, code::refused_scene, why};
                                   })});
     }
@@ -68,7 +68,7 @@ void SceneLookup::found(const tl::expected<std::filesystem::path, std::string>& 
 
 void SceneLookup::cannot_find(const Finding& finding, const char* code, const std::string& why) {
     post_->send([=, this] {
-        on_found_(finding.request, {finding.name, tl::unexpected(protocol::Error{{}, code, why})});
+        on_found_(finding.request, {finding.asked, tl::unexpected(protocol::Error{{}, code, why})});
     });
 }
 

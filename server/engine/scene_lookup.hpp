@@ -28,7 +28,7 @@ public:
     /// The file, or why there is none: `refused-scene`; `busy` where the folder does not answer; `failed`
     /// where nobody can look.
     struct Found {
-        std::string name;
+        protocol::Open asked;
         tl::expected<std::filesystem::path, protocol::Error> path;
     };
     using OnFound = std::function<void(std::int64_t request, const Found& found)>;
@@ -42,9 +42,9 @@ public:
     /// Lists the folder, at most once a second. After 100 ms without an answer of the disk it sends the
     /// previous list.
     void list(std::int64_t request, base::Clock::time_point now);
-    /// Finds one name after the other. Answers `busy` after 5 s or if too many wait, `failed` if no thread
+    /// Finds one scene after the other. Answers `busy` after 5 s or if too many wait, `failed` if no thread
     /// can be started.
-    void find(std::int64_t request, const std::string& name, base::Clock::time_point now);
+    void find(std::int64_t request, const protocol::Open& asked, base::Clock::time_point now);
     /// When check() is to be called next, if at all.
     std::optional<base::Clock::time_point> due() const;
     /// Answers those that have waited long enough.
@@ -53,7 +53,7 @@ public:
 private:
     struct Finding {
         std::int64_t request = 0;
-        std::string name;
+        protocol::Open asked;
         base::Clock::time_point until;
     };
     void cannot_find(const Finding& finding, const char* code, const std::string& why);

@@ -59,7 +59,7 @@ struct Player {
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Opened& opened) const {
-        auto scene = find_scene(opened.scene, opened.sha256);
+        auto scene = find_scene(opened.scene, opened.sha256, opened.up_axis);
         if (!scene) return scene.error();
         scene->changes = opened.changes;
         room.show(*std::move(scene), line.at);
@@ -77,7 +77,7 @@ struct Player {
 
 tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
                                        const ReplayWatcher& watcher) {
-    auto scene = find_scene(log.header.scene, log.header.scene_sha256);
+    auto scene = find_scene(log.header.scene, log.header.scene_sha256, log.header.up_axis);
     if (!scene) return tl::unexpected(scene.error());
     RoomOptions options;
     options.replaying = true;

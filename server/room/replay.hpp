@@ -23,9 +23,9 @@ struct EventLog {
 /// whole is left out: the session was cut off.
 tl::expected<EventLog, std::string> read_event_log(std::istream&& stream, const std::string& name);
 
-/// Finds a scene of a log by its name and SHA-256, or why it cannot be had.
-using SceneFinder = std::function<tl::expected<scenes::LoadedScene, std::string>(const std::string& name,
-                                                                                 const std::string& sha256)>;
+/// Finds a scene of a log by its name and SHA-256, read with this axis up, or why it cannot be had.
+using SceneFinder = std::function<tl::expected<scenes::LoadedScene, std::string>(
+    const std::string& name, const std::string& sha256, std::optional<protocol::UpAxis> up_axis)>;
 
 /// What a replay reports.
 struct ReplayWatcher {

@@ -232,7 +232,7 @@ void Room::show(scenes::LoadedScene scene, SessionTime at) {
     end_flight(false);
     swings_.clear();
     tap_.reset();
-    record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes});
+    record({}, protocol::LogLine::Opened{scene.name, scene.sha256, scene.changes, scene.up_axis});
     loaded_ = std::move(scene);
     scene_ = loaded_.placed;
     starting_ = starting_state(loaded_, aspect(), cover());

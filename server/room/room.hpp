@@ -50,8 +50,8 @@ using ShareAddress =
 
 struct RoomOptions {
     std::optional<RecordingSink> recordings = {};  ///< none: nothing is recorded
-    /// Begins to load a scene of this name; Room::load_answered() reports whether it has begun.
-    std::function<void(std::int64_t request, const std::string& name)> load = {};
+    /// Begins to load a scene; Room::load_answered() reports whether it has begun.
+    std::function<void(std::int64_t request, const protocol::Open& asked)> load = {};
     /// Looks up the scenes that can be loaded; Room::scenes_listed() takes them.
     std::function<void(std::int64_t request)> scenes = {};
     ShareAddress share = {};  ///< none: nowhere
@@ -113,9 +113,10 @@ public:
     /// As others see it: with a number where another client has the same name. Empty where it has none.
     const std::string& client_name(const std::string& client) const;
     const std::string& scene_name() const { return loaded_.name; }
-    const std::string& scene_sha256() const { return loaded_.sha256; }
-    /// What clients have changed of the scene, to be kept: LoadedScene::changes of its next opening.
+    /// What clients have changed of the scene, to be kept: LoadedScene::changes of its next opening; and by
+    /// what name.
     std::string changes() const;
+    std::string changes_key() const { return loaded_.changes_key(); }
 
     /// The document of the present state. Changes since the last call become one revision, made by
     /// `changed_by`.

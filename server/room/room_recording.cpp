@@ -132,6 +132,7 @@ RecordingSink::Header Room::log_header() const {
     protocol::LogHeader header;
     header.scene = loaded_.name;
     header.scene_sha256 = loaded_.sha256;
+    header.up_axis = loaded_.up_axis;
     for (const auto& [name, client] : clients_)
         header.clients.push_back({name, client.role, client.wanted, client.name});
     header.view = view_size_;

@@ -127,7 +127,7 @@ void Room::apply(const Received& received, const protocol::Tree& tree) {
 // --- scenes
 
 void Room::apply(const Received& received, const protocol::Open& open) {
-    if (options_.load) return options_.load(answer_later(received), open.scene);
+    if (options_.load) return options_.load(answer_later(received), open);
     steer(received);
     answer(received);
 }

@@ -141,6 +141,7 @@ protocol::State starting_state(const scenes::LoadedScene& loaded, double aspect,
     state.scene.value = std::make_shared<const protocol::SceneState>(
         protocol::SceneState{.name = scene.name(),
                              .file = loaded.name,
+                             .up_axis = loaded.up_axis,
                              .nodes = scene.nodes().size(),
                              .materials = scene.materials().size(),
                              .geometries = scene.geometries().size(),

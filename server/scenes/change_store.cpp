@@ -17,6 +17,7 @@ namespace {
 constexpr std::chrono::hours kKept{24 * 30};
 constexpr std::uintmax_t kLargestPatch = std::uintmax_t{64} << 20;
 constexpr int kMostFiles = 10'000;  // that are looked at
+constexpr const char *kY = "y\n", *kZ = "z\n";
 
 void remove_old(const fs::path& folder) {
     std::error_code error;
@@ -30,16 +31,20 @@ void remove_old(const fs::path& folder) {
     }
 }
 
-}  // namespace
-
-fs::path changes_file(const std::string& scene_sha256) {
+/// Of a name of a known length, whatever the scene's is.
+fs::path file_of(const std::string& scene, const char* ending) {
     const fs::path folder = state_folder();
-    // A name of a known length, whatever the hash is.
-    return folder.empty() ? folder : folder / "scenes" / (sha256_of_text(scene_sha256) + ".json");
+    return folder.empty() ? folder : folder / "scenes" / (sha256_of_text(scene) + ending);
 }
 
-void store_changes(const std::string& scene_sha256, const std::string& patch) {
-    const fs::path path = changes_file(scene_sha256);
+fs::path up_axis_file(const std::string& sha256) { return file_of(sha256, ".up-axis"); }
+
+}  // namespace
+
+fs::path changes_file(const std::string& scene) { return file_of(scene, ".json"); }
+
+void store_changes(const std::string& scene, const std::string& patch) {
+    const fs::path path = changes_file(scene);
     if (path.empty())
         throw std::runtime_error(
             "there is no folder to keep them in: neither XDG_STATE_HOME nor HOME is set");
@@ -49,8 +54,8 @@ void store_changes(const std::string& scene_sha256, const std::string& patch) {
     if (error) throw std::runtime_error(path.string() + " cannot be removed: " + error.message());
 }
 
-std::string stored_changes(const std::string& scene_sha256) {
-    const fs::path path = changes_file(scene_sha256);
+std::string stored_changes(const std::string& scene) {
+    const fs::path path = changes_file(scene);
     if (path.empty()) return {};
     remove_old(path.parent_path());
     std::error_code error;
@@ -65,6 +70,28 @@ std::string stored_changes(const std::string& scene_sha256) {
     }
     fs::last_write_time(path, fs::file_time_type::clock::now(), error);
     return *std::move(text);
+}
+
+void store_up_axis(const std::string& sha256, protocol::UpAxis axis) try {
+    if (const fs::path path = up_axis_file(sha256); !path.empty())
+        write_state_file(path, axis == protocol::UpAxis::z ? kZ : kY);
+} catch (const std::exception& error) {
+    observe::log_warning("up_axis_not_kept", {{"reason", error.what()}});
+}
+
+std::optional<protocol::UpAxis> stored_up_axis(const std::string& sha256) {
+    const fs::path path = up_axis_file(sha256);
+    std::error_code error;
+    if (path.empty() || !fs::exists(path, error)) return std::nullopt;
+    const auto text = read_state_file(path, std::string_view(kZ).size());
+    if (!text || (*text != kY && *text != kZ)) {
+        observe::log_warning(
+            "up_axis_not_used",
+            {{"file", path.string()}, {"reason", text ? "it says neither y nor z" : text.error()}});
+        return std::nullopt;
+    }
+    fs::last_write_time(path, fs::file_time_type::clock::now(), error);
+    return *text == kZ ? protocol::UpAxis::z : protocol::UpAxis::y;
 }
 
 }  // namespace vrut::server::scenes

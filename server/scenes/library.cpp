@@ -31,6 +31,8 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
     LoadedScene loaded;
     loaded.name = name;
     loaded.sha256 = sum.get();
+    if (io::lacks_up_axis(path))
+        loaded.up_axis = options.read.z_up ? protocol::UpAxis::z : protocol::UpAxis::y;
     if (progress) progress(1);
     loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
     loaded.notices = all_notices(*loaded.placed);

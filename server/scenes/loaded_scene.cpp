@@ -7,6 +7,10 @@
 
 namespace vrut::server::scenes {
 
+std::string LoadedScene::changes_key() const {
+    return up_axis == protocol::UpAxis::z ? sha256 + " z" : sha256;
+}
+
 std::vector<protocol::Notice> all_notices(const scene::PlacedScene& placed) {
     const scene::Scene& scene = *placed.scene;
     std::vector<protocol::Notice> notices;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct LoadedScene {
     /// A patch of the state that is laid over what the file says (stored_changes()); empty: none.
     std::string changes = {};
     std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
+    std::optional<protocol::UpAxis> up_axis = {};  ///< that was taken, where the file does not tell
+
+    /// By which its changes are kept: its hash, and the axis that was taken for up unless that is y, since
+    /// other points and matrices belong to it.
+    std::string changes_key() const;
 };
 
 /// What the reader reported about a scene, and which of its features are not drawn.

@@ -50,20 +50,46 @@ io::ReadProgress progress_of(const std::string& name, std::function<void(SceneLo
     };
 }
 
+/// The axis that is kept for a file that does not tell which one is up.
+std::optional<protocol::UpAxis> kept_up_axis(const std::filesystem::path& path,
+                                             const io::ReadProgress& progress) {
+    constexpr std::chrono::milliseconds kBetweenPolls{50};
+    std::error_code error;
+    if (!io::lacks_up_axis(path) || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
+    base::AbandonableTask<std::string> sum(
+        [path](const std::stop_token& stop) { return sha256_of(path, stop); });
+    while (!sum.is_done_within(kBetweenPolls))
+        if (progress) progress(0);
+    return stored_up_axis(sum.get());
+}
+
 /// Throws what `progress` throws, unless it is a std::exception.
-SceneLoaded load(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
+SceneLoaded load(const std::filesystem::path& path, const protocol::Open& asked, const std::string& renderer,
                  const io::ReadProgress& progress, const ImportOptions& options) try {
-    SceneLoaded loaded{name, load_scene(path, name, progress, options)};
+    SceneLoaded loaded{asked.scene, load_kept_scene(path, asked.scene, progress, options, asked.up_axis)};
     progress(1);
     if (!loaded.scene) return loaded;
     loaded.levels = levels_of(loaded.scene->sha256, renderer);
-    loaded.scene->changes = stored_changes(loaded.scene->sha256);
     return loaded;
 } catch (const std::exception& error) {
-    return {name, tl::unexpected(std::string(error.what()))};
+    return {asked.scene, tl::unexpected(std::string(error.what()))};
 }
 
 }  // namespace
+
+tl::expected<LoadedScene, std::string> load_kept_scene(const std::filesystem::path& path,
+                                                       const std::string& name,
+                                                       const io::ReadProgress& progress,
+                                                       ImportOptions options,
+                                                       std::optional<protocol::UpAxis> chosen) {
+    if (const auto axis = chosen ? chosen : kept_up_axis(path, progress))
+        options.read.z_up = *axis == protocol::UpAxis::z;
+    auto scene = load_scene(path, name, progress, options);
+    if (!scene) return scene;
+    if (chosen) store_up_axis(scene->sha256, *chosen);
+    scene->changes = stored_changes(scene->changes_key());
+    return scene;
+}
 
 SceneLoader::SceneLoader(std::function<void(SceneLoading)> on_progress,
                          std::function<void(SceneLoaded)> on_loaded)
@@ -74,11 +100,11 @@ SceneLoader::SceneLoader(std::function<void(SceneLoading)> on_progress,
 
 SceneLoader::~SceneLoader() { listener_->close(); }
 
-void SceneLoader::start(const std::filesystem::path& path, const std::string& name,
+void SceneLoader::start(const std::filesystem::path& path, const protocol::Open& asked,
                         const std::string& renderer, const ImportOptions& options) {
-    task_.emplace([path, name, renderer, options, listener = listener_](const std::stop_token& stop) {
+    task_.emplace([path, asked, renderer, options, listener = listener_](const std::stop_token& stop) {
         const auto report = [listener](SceneLoading loading) { listener->report(std::move(loading)); };
-        listener->report(load(path, name, renderer, progress_of(name, report, stop), options));
+        listener->report(load(path, asked, renderer, progress_of(asked.scene, report, stop), options));
     });
 }
 

@@ -13,6 +13,14 @@
 
 namespace vrut::server::scenes {
 
+/// As load_scene(), with what is kept of the scene: its changes, and the axis that was chosen for up, which
+/// counts before that of `options`. `chosen` counts before both, and is kept.
+tl::expected<LoadedScene, std::string> load_kept_scene(const std::filesystem::path& path,
+                                                       const std::string& name,
+                                                       const io::ReadProgress& progress,
+                                                       ImportOptions options,
+                                                       std::optional<protocol::UpAxis> chosen = {});
+
 struct SceneLoading {
     std::string name;
     double fraction = 0;
@@ -36,9 +44,9 @@ public:
 
     /// From start() until finish().
     bool busy() const { return task_.has_value(); }
-    /// Reads a scene, what is kept of it, and the levels that are kept for `renderer`; not while busy().
-    /// Throws std::system_error where no thread can be had.
-    void start(const std::filesystem::path& path, const std::string& name, const std::string& renderer,
+    /// Reads a scene as load_kept_scene() does, and the levels that are kept for `renderer`; not while
+    /// busy(). Throws std::system_error where no thread can be had.
+    void start(const std::filesystem::path& path, const protocol::Open& asked, const std::string& renderer,
                const ImportOptions& options);
     /// To be called after `on_loaded`.
     void finish() { task_.reset(); }

@@ -337,8 +337,8 @@ TEST_CASE("a folder that never answers tells an empty list, and finds nothing") 
     asked.lookup.check(asked.now + 100ms);
     asked.results.use_next();
     CHECK(asked.listed == std::pair<std::int64_t, std::size_t>{1, 0});
-    asked.lookup.find(2, "car.vrut", asked.now);
-    asked.lookup.find(3, "bus.vrut", asked.now + 1s);
+    asked.lookup.find(2, {"car.vrut"}, asked.now);
+    asked.lookup.find(3, {"bus.vrut"}, asked.now + 1s);
     CHECK(asked.lookup.due() == asked.now + 5s);
     for (const int request : {2, 3}) {
         asked.lookup.check(asked.now + 3s + request * 1s);
@@ -347,7 +347,7 @@ TEST_CASE("a folder that never answers tells an empty list, and finds nothing") 
         CHECK(asked.path == "the folder of scenes does not answer");
         CHECK(asked.code == "busy");
     }
-    asked.lookup.find(4, "van.vrut", asked.now + 10s);  // behind the first, which still hangs
+    asked.lookup.find(4, {"van.vrut"}, asked.now + 10s);  // behind the first, which still hangs
     asked.disk->block(false);
     while (asked.found != 4) asked.results.use_next();
     CHECK(asked.path == "/scenes/van.vrut");
@@ -355,8 +355,8 @@ TEST_CASE("a folder that never answers tells an empty list, and finds nothing") 
 
 TEST_CASE("scenes are found one after the other, each for its request") {
     Asked asked;
-    asked.lookup.find(1, "car.vrut", asked.now);
-    asked.lookup.find(2, "none", asked.now);
+    asked.lookup.find(1, {"car.vrut"}, asked.now);
+    asked.lookup.find(2, {"none"}, asked.now);
     asked.results.use_next();
     CHECK(asked.found == 1);
     CHECK(asked.path == "/scenes/car.vrut");
@@ -365,8 +365,8 @@ TEST_CASE("scenes are found one after the other, each for its request") {
     CHECK(asked.path == "there is no such scene");
     CHECK(asked.code == "refused-scene");
     asked.disk->block(true);
-    for (int request = 3; request < 3 + 64; ++request) asked.lookup.find(request, "car.vrut", asked.now);
-    asked.lookup.find(99, "car.vrut", asked.now);
+    for (int request = 3; request < 3 + 64; ++request) asked.lookup.find(request, {"car.vrut"}, asked.now);
+    asked.lookup.find(99, {"car.vrut"}, asked.now);
     asked.results.use_next();
     CHECK(asked.found == 99);
     CHECK(asked.code == "busy");

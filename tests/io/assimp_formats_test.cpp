@@ -452,8 +452,9 @@ TEST_CASE("z is up where the user says so, in formats that do not tell") {
 TEST_CASE("a notice says that a scene seems to lie on its side") {
     const TemporaryFolder folder;
     const auto seems_z_up = [&](const std::string& name, const std::string& text) {
-        return has_notice(read_well(folder.write(name, text)),
-                          "it seems to lie on its side: --up-axis z turns it upright");
+        return has_notice(
+            read_well(folder.write(name, text)),
+            "it seems to lie on its side: choose z as its up axis, in the page's menu or by --up-axis z");
     };
     const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", ply = text_of("panel.ply");
     CHECK_FALSE(seems_z_up("a.obj", triangle));

@@ -51,7 +51,7 @@ const std::string kFlight =
 
 std::string full_header() {
     return kHeader.substr(0, kHeader.size() - 1) +
-           R"(,"atHome":true,"home":{"eye":[1,2,3],"focus":[4,5,6],"up":[0,1,0],"center":[7,8,9],"fov":33},"frames":[{"frame":17,"camera":)" +
+           R"(,"upAxis":"z","atHome":true,"home":{"eye":[1,2,3],"focus":[4,5,6],"up":[0,1,0],"center":[7,8,9],"fov":33},"frames":[{"frame":17,"camera":)" +
            kCamera + R"(,"view":{"width":640,"height":480,"pixelRatio":0.5}}],"flight":)" + kFlight + "}";
 }
 
@@ -74,6 +74,7 @@ TEST_CASE("every member of a log's header is read") {
     const LogHeader read = header(full_header());
     CHECK(read.scene == "car");
     CHECK(read.scene_sha256 == "ab12");
+    CHECK(read.up_axis == UpAxis::z);
     CHECK(read.started == "2026-01-02T03:04:05Z");
     CHECK((*read.state)["camera"]["fov"] == 40);
     REQUIRE(read.clients.size() == 2);
@@ -136,6 +137,8 @@ TEST_CASE("each kind of line, as it stands in the file") {
     CHECK(
         text({LogTime(1), "", LogLine::Opened{"car", "ab12", R"({"markers":{"m":null}})"}}) ==
         R"({"at":0.001,"changes":{"markers":{"m":null}},"event":"opened","scene":"car","sceneSha256":"ab12"})");
+    CHECK(text({LogTime(1), "", LogLine::Opened{"car", "ab12", "", UpAxis::z}}) ==
+          R"({"at":0.001,"event":"opened","scene":"car","sceneSha256":"ab12","upAxis":"z"})");
     CHECK(text({LogTime(-3), "", LogLine::Drawn{7}}) == R"({"at":-0.003,"event":"drawn","frame":7})");
     CHECK(text({LogTime(100), "c2", ClientMessage{5, Fit{4}}}) ==
           R"({"at":0.1,"client":"c2","message":{"id":5,"node":4,"type":"fit"}})");
@@ -160,6 +163,9 @@ TEST_CASE("each kind of line is read back") {
     const LogLine changed =
         line(R"({"at":1,"event":"opened","scene":"car","sceneSha256":"ab12","changes":{"views":{}}})");
     CHECK(std::get<LogLine::Opened>(changed.what).changes == R"({"views":{}})");
+    const LogLine upright =
+        line(R"({"at":1,"event":"opened","scene":"car","sceneSha256":"ab12","upAxis":"y"})");
+    CHECK(std::get<LogLine::Opened>(upright.what).up_axis == UpAxis::y);
     CHECK(std::get<LogLine::Drawn>(line(R"({"at":1,"event":"drawn","frame":7})").what).frame == 7);
     const LogLine message = line(R"({"at":1,"client":"c1","message":{"type":"fit","id":5,"node":4}})");
     CHECK(std::get<ClientMessage>(message.what).id == 5);

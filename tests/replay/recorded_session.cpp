@@ -28,7 +28,8 @@ server::room::EventLog read_session() {
 }
 
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
-                                                                  const std::string& sha256) {
+                                                                  const std::string& sha256,
+                                                                  std::optional<protocol::UpAxis>) {
     const fs::path file = fs::path(VRUT_DATA) / "scenes" / name;
     if (server::scenes::sha256_of(file) != sha256)
         return tl::unexpected(name + " has changed since it was recorded");

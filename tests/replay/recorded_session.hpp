@@ -14,6 +14,7 @@ std::filesystem::path session_file(const std::string& ending);
 server::room::EventLog read_session();
 /// The scenes that the logs were recorded with, of tests/data/scenes.
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
-                                                                  const std::string& sha256);
+                                                                  const std::string& sha256,
+                                                                  std::optional<protocol::UpAxis> = {});
 
 }  // namespace vrut::test

@@ -280,7 +280,7 @@ TEST_CASE("open is answered when its file was looked for, and steers and is reco
     LateSink sink;
     std::int64_t request = 0;
     RoomOptions options = sink.options();
-    options.load = [&](std::int64_t number, const std::string&) { request = number; };
+    options.load = [&](std::int64_t number, const protocol::Open&) { request = number; };
     Stage stage("ab", first_scene(), std::move(options));
     const std::string open = R"({"type":"open","id":9,"scene":"x.vrut"})";
     stage.say("a", kStart);

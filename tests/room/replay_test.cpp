@@ -17,7 +17,8 @@ using namespace stage;
 namespace {
 
 tl::expected<server::scenes::LoadedScene, std::string> find_scene(const std::string& name,
-                                                                  const std::string& sha256) {
+                                                                  const std::string& sha256,
+                                                                  std::optional<protocol::UpAxis> = {}) {
     server::scenes::LoadedScene found = name == "other.vrut"  ? other_scene()
                                         : name == "door.vrut" ? scene_with_a_door()
                                                               : first_scene();
@@ -430,9 +431,7 @@ node 2 "Key" light type point color 1.08 1.06 1.02 1 end
     recorded.stage.say("a", R"({"type":"navigate","rotate":[5,0]})");
     const auto replayed = server::room::replay(
         recorded.log(),
-        [&](const auto&, const auto&) -> tl::expected<server::scenes::LoadedScene, std::string> {
-            return shown;
-        });
+        [&](const auto&...) -> tl::expected<server::scenes::LoadedScene, std::string> { return shown; });
     REQUIRE_MESSAGE(replayed, replayed.error());
     CHECK(replayed->state().camera.eye == recorded.stage.camera().eye);
 }

@@ -77,3 +77,42 @@ TEST_CASE("changes that cannot be read or written") {
     CHECK(stored_changes("ab").empty());
     CHECK_THROWS_WITH(store_changes("ab", kPatch), doctest::Contains("there is no folder"));
 }
+
+TEST_CASE("the axis that was chosen for up is kept for a file, as long as its changes") {
+    using protocol::UpAxis;
+    const StateFolder state;
+    CHECK_FALSE(stored_up_axis("ab"));
+    store_up_axis("ab", UpAxis::z);
+    CHECK(stored_up_axis("ab") == UpAxis::z);
+    CHECK_FALSE(stored_up_axis("ac"));
+    CHECK(stored_changes("ab").empty());
+    store_up_axis("ab", UpAxis::y);
+    CHECK(stored_up_axis("ab") == UpAxis::y);
+    const fs::path folder = changes_file("ab").parent_path();
+    const fs::path file = fs::directory_iterator(folder)->path();
+    age(file, 29);
+    CHECK(stored_changes("other").empty());
+    CHECK(stored_up_axis("ab") == UpAxis::y);
+    CHECK(fs::last_write_time(file) > fs::file_time_type::clock::now() - std::chrono::hours(1));
+    age(file, 31);
+    CHECK(stored_changes("other").empty());
+    CHECK(fs::is_empty(folder));
+}
+
+TEST_CASE("an axis that cannot be read or written counts as none") {
+    using protocol::UpAxis;
+    const StateFolder state;
+    store_up_axis("ab", UpAxis::z);
+    const fs::path file = fs::directory_iterator(changes_file("ab").parent_path())->path();
+    for (const char* text : {"", "x\n", "z\nz\n"}) {
+        state.folder.write(fs::relative(file, state.folder.path()), text);
+        CHECK_FALSE(stored_up_axis("ab"));
+    }
+    fs::remove(file);
+    fs::create_directories(file / "in its place");
+    store_up_axis("ab", UpAxis::z);
+    CHECK_FALSE(stored_up_axis("ab"));
+    const EnvironmentVariable none("XDG_STATE_HOME", "relative/is/none"), home("HOME", nullptr);
+    store_up_axis("ab", UpAxis::z);
+    CHECK_FALSE(stored_up_axis("ab"));
+}

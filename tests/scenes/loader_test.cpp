@@ -23,7 +23,7 @@ TEST_CASE("a loader that ends leaves a thread behind whose file does not open, a
     const std::weak_ptr<int> heard = listener;
     {
         SceneLoader loader([](const SceneLoading&) {}, [listener](const SceneLoaded&) { ++*listener; });
-        loader.start(scene, "room.vrut", "renderer", {});
+        loader.start(scene, {"room.vrut"}, "renderer", {});
         CHECK(loader.busy());
         listener.reset();
     }

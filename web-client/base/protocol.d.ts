@@ -151,6 +151,8 @@ export type ClientOpen = {
   /** A name as in the answer to `scenes`. */
   scene: string;
   type: 'open';
+  /** The axis that is up, where the file does not tell; without it as chosen last. */
+  upAxis?: 'y' | 'z';
 };
 
 export type ClientPatch = {
@@ -555,6 +557,8 @@ export type EventLogHeader = {
   started: string;
   /** The state document. */
   state: StateDocument;
+  /** The axis that was taken for up, where the file does not tell. */
+  upAxis?: 'y' | 'z';
   /** Of the protocol. */
   version: 1;
   /** The size in force. */
@@ -582,6 +586,8 @@ export type EventLogOpened = {
   scene: string;
   /** SHA-256 of the scene's file. */
   sceneSha256: string;
+  /** The axis that was taken for up, where the file does not tell. */
+  upAxis?: 'y' | 'z';
 };
 
 export type FrameHeader = {
@@ -1080,6 +1086,8 @@ export type StateDocument = {
     notices: Array<Notice>;
     /** Number of triangles. */
     triangles: number;
+    /** The axis that was taken for up, in formats that do not tell: OBJ, STL and PLY. */
+    upAxis?: 'y' | 'z';
   };
   /** What is selected. */
   selection: {

@@ -2,7 +2,7 @@ import { mergePatch } from '../base/merge-patch.js';
 
 /**
  * @import {
- *   ClientControl, ClientMessage, ClientPick, ClientTree, ServerShared, ServerTree, StatePatch,
+ *   ClientControl, ClientMessage, ClientOpen, ClientPick, ClientTree, ServerShared, ServerTree, StatePatch,
  * } from '../base/protocol.js'
  */
 
@@ -47,8 +47,8 @@ export function commandsBy({ ask, refused }) {
     scenes: () => tell({ type: 'scenes' }),
     /** @param {string} page its address @returns {Promise<ServerShared|undefined>} */
     share: (page) => tell({ type: 'share', page }),
-    /** @param {string} scene */
-    open: (scene) => tell({ type: 'open', scene }),
+    /** @param {string} scene @param {ClientOpen['upAxis']} [upAxis] as chosen last if left out */
+    open: (scene, upAxis) => tell({ type: 'open', scene, upAxis }),
   };
 }
 

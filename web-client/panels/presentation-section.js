@@ -1,7 +1,7 @@
 import { button, element } from '../base/element.js';
 import { onChange } from '../base/store.js';
 import { holderName, say } from '../base/texts.js';
-import { facts } from './controls.js';
+import { choice, facts } from './controls.js';
 import { each, joined, stateOf } from './section.js';
 
 /**
@@ -80,6 +80,7 @@ function scenes({ commands, store, offer }) {
   const open = button(say('scenes.open'), () => show(select.value), { icon: 'open' });
   const row = element('div', { className: 'entry', hidden: true }, label, open);
   const none = element('p', { className: 'note', hidden: true }, say('scenes.none'));
+  const upAxis = choice(say('scenes.upAxis'), [['y', 'Y'], ['z', 'Z']], (axis) => turn(axis));
   const asInFile = button(say('scenes.asInFile'), () => giveBack(), { icon: 'back' });
 
   const show = async (scene) => {
@@ -89,6 +90,15 @@ function scenes({ commands, store, offer }) {
     if (await store.next(({ state }) => state?.scene.file, file) === scene) {
       offer(say('scenes.opened', { name: scene }), say('bar.back'), () => show(file));
     }
+  };
+  // Not waited for until it is shown: it may be refused.
+  const turn = async (axis) => {
+    const { file, upAxis: before } = stateOf(store).scene;
+    if (!await commands.open(file, axis)) return;
+    store.next(({ state }) => state?.scene.upAxis, before).then(() => {
+      if (stateOf(store).scene.file !== file) return;
+      offer(say('scenes.turned', { axis: axis.toUpperCase() }), say('views.undo'), () => turn(before));
+    });
   };
   const giveBack = async () => {
     const before = stateOf(store);
@@ -110,11 +120,15 @@ function scenes({ commands, store, offer }) {
     list();
   };
   return {
-    content: [row, none, asInFile],
+    content: [row, none, upAxis.element, asInFile],
     unfolded: () => names && ask(),
     show: each(
       onChange(({ client }) => [client], (client) => client && ask()),
       onChange(({ state }) => [state.scene.file], list),
+      onChange(({ state }) => [state.scene], ({ upAxis: axis }) => {
+        upAxis.element.hidden = !axis;
+        upAxis.show(axis);
+      }),
       onChange(({ state }) => [isAsInFile(state)], (hidden) => Object.assign(asInFile, { hidden }))),
   };
 }

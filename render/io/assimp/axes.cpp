@@ -20,7 +20,7 @@ glm::dvec3 axis_of(const aiMetadata& settings, const char* name, const char* sig
 
 glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, bool z_up,
                              ConversionWarnings& warnings) {
-    if (lacks_up_axis(format) && z_up) return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
+    if (z_up) return {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
     if (format != AssimpFormat::fbx || scene.mMetaData == nullptr) return glm::dmat4(1);
     const glm::dvec3 right = axis_of(*scene.mMetaData, "CoordAxis", "CoordAxisSign");
     const glm::dvec3 up = axis_of(*scene.mMetaData, "UpAxis", "UpAxisSign");

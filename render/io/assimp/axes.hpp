@@ -9,13 +9,8 @@
 
 namespace vrut::io {
 
-/// Returns true for the formats that do not tell which axis is up.
-constexpr bool lacks_up_axis(AssimpFormat format) {
-    return format == AssimpFormat::obj || format == AssimpFormat::stl || format == AssimpFormat::ply;
-}
-
 /// Returns the rotation that makes y the up axis, if the file declares another one and assimp 5.2 does not
-/// convert it, or if it declares none and `z_up`; else identity.
+/// convert it, or if `z_up`; else identity.
 glm::dmat4 upright_from_file(const aiScene& scene, AssimpFormat format, bool z_up,
                              ConversionWarnings& warnings);
 

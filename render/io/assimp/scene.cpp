@@ -56,8 +56,9 @@ public:
         warnings_.add("a camera or light that no node references is ignored",
                       cameras_.size() + lights_.size());
         warnings_.add("an animation is ignored", scene_.mNumAnimations);
-        if (lacks_up_axis(format_) && !options_.z_up && seems_z_up(parts_, path_))
-            warnings_.add("it seems to lie on its side: --up-axis z turns it upright");
+        if (lacks_up_axis(path_) && !options_.z_up && seems_z_up(parts_, path_))
+            warnings_.add(
+                "it seems to lie on its side: choose z as its up axis, in the page's menu or by --up-axis z");
         read_textures(parts_, path_, progress_, options_.texture_folders);
         omit_bump_maps();
         warnings_.append_to(parts_.notices, path_.string());
@@ -178,7 +179,8 @@ private:
         };
         const aiNode& root = *scene_.mRootNode;
         const glm::dmat4 matrix =
-            upright_from_file(scene_, format_, options_.z_up, warnings_) * matrix_of(root);
+            upright_from_file(scene_, format_, options_.z_up && lacks_up_axis(path_), warnings_) *
+            matrix_of(root);
         if (is_made_up(root, matrix))
             open_children(root, 0, glm::dmat4(1));
         else

@@ -1,9 +1,10 @@
 // What clients change of a scene survives a restart of the server, and another scene.
 import assert from 'node:assert/strict';
-import { readdirSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { readFileSync, readdirSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { describe, test } from 'node:test';
-import { SCENES, Server, temporaryFolder } from './server.js';
+import { PROGRAM, SCENES, Server, temporaryFolder } from './server.js';
 import { holder } from './stage.js';
 
 const CHANGES = {
@@ -65,6 +66,51 @@ describe('what is kept of a scene', () => {
     assert.deepEqual(Object.keys(client.state.markers).sort(), ['bump', 'late']);
     await show(client, 'second.vrut');
     assert.deepEqual(Object.keys(client.state.markers), ['other']);
+  });
+
+  test('the up axis is chosen for a file that does not tell it, and is kept with what belongs to it', async (t) => {
+    const [state, folder, logs] = [temporaryFolder(), temporaryFolder(), temporaryFolder()];
+    writeFileSync(path.join(folder, 'tower.obj'), 'v 0 0 0\nv 1 0 0\nv 0 0 9\nf 1 2 3\n');
+    const options = ['--scenes', folder, '--record', logs];
+    const begin = async () => {
+      const server = await Server.start({ options, env: { XDG_STATE_HOME: state } });
+      t.after(() => server.stop());
+      return { server, client: await holder(t, server) };
+    };
+    const open = async (client, message) => {
+      const before = client.texts.length;
+      await client.ask({ type: 'open', scene: 'tower.obj', ...message });
+      await client.until('the tower', () => client.texts.slice(before).some(({ type }) => type === 'state'), 30000);
+    };
+    const height = ({ state: { scene } }) => scene.bounds.max[1];
+
+    const first = await begin();
+    assert.equal(first.client.state.scene.upAxis, undefined);
+    await assert.rejects(first.client.ask({ type: 'open', scene: 'stage.vrut', upAxis: 'z' }),
+      /refused-scene.*stage\.vrut: its format tells which axis is up: leave out 'upAxis'/);
+    await open(first.client);
+    assert.deepEqual([first.client.state.scene.upAxis, height(first.client)], ['y', 0]);
+    await first.client.patch({ markers: { lying: { point: [0, 0, 9] } } });
+    await first.client.ask({ type: 'record', action: 'start', name: 'turned' });
+    await open(first.client, { upAxis: 'z' });
+    assert.deepEqual([first.client.state.scene.upAxis, height(first.client), first.client.state.markers], ['z', 9, {}]);
+    await first.client.patch({ markers: { standing: { point: [0, 9, 0] } } });
+    await first.client.ask({ type: 'record', action: 'stop' });
+    const { camera } = structuredClone(first.client.state);
+    await first.server.stop();
+    const replay = spawnSync(PROGRAM, ['replay', path.join(logs, 'turned.jsonl'), '--scene', path.join(folder, 'tower.obj')], { encoding: 'utf8' });
+    const { eye, focus } = JSON.parse(replay.stdout);
+    assert.deepEqual({ eye, focus }, { eye: camera.eye, focus: camera.focus });
+    const log = readFileSync(path.join(logs, 'turned.jsonl'), 'utf8').trim().split('\n').map((line) => JSON.parse(line));
+    assert.equal(log[0].upAxis, 'y');
+    assert.equal(log.find(({ event }) => event === 'opened').upAxis, 'z');
+
+    const second = await begin();
+    await open(second.client);
+    assert.deepEqual([second.client.state.scene.upAxis, height(second.client)], ['z', 9]);
+    assert.deepEqual(Object.keys(second.client.state.markers), ['standing']);
+    await open(second.client, { upAxis: 'y' });
+    assert.deepEqual(Object.keys(second.client.state.markers), ['lying']);
   });
 
   test('a folder that takes nothing is told in a notice, and all else goes on', async (t) => {

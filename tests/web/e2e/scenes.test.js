@@ -1,4 +1,7 @@
 import assert from 'node:assert/strict';
+import { copyFile, mkdtemp, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import path from 'node:path';
 import { after, before, describe, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
 import { Server } from './program.js';
@@ -9,10 +12,13 @@ const SIZES = {
   phone: { width: 390, height: 844, pixelRatio: 3 },
   desktop: { width: 1440, height: 900, pixelRatio: 1 },
 };
-const SCENES = fileURLToPath(new URL('../../../scenes/teaching', import.meta.url));
+const GLASS = fileURLToPath(new URL('../../../scenes/teaching/glass.vrut', import.meta.url));
+/** Files do not tell which axis is up in this format; it stands on z = 0. */
+const TOWER = ['v -1 -0.5 0', 'v 1 -0.5 0', 'v 1 0.5 0', 'v -1 0.5 0', 'v 0 0 9', 'f 4 3 2 1', 'f 1 2 5', 'f 2 3 5', 'f 3 4 5', 'f 4 1 5'];
 
 for (const [name, size] of Object.entries(SIZES)) {
   describe(`scenes in the menu of a ${name}`, { skip: browserIsMissing }, () => {
+    let folder;
     let server;
     let browser;
     let tablet;
@@ -20,7 +26,10 @@ for (const [name, size] of Object.entries(SIZES)) {
     let section;
 
     before(async () => {
-      server = await Server.start(0, ['--scenes', SCENES]);
+      folder = await mkdtemp(path.join(tmpdir(), 'vrut-preview-'));
+      await copyFile(GLASS, path.join(folder, 'glass.vrut'));
+      await writeFile(path.join(folder, 'tower.obj'), TOWER.join('\n'));
+      server = await Server.start(0, ['--scenes', folder]);
       browser = await launchBrowser();
       tablet = await Tablet.open(browser, server.address, size, { reducedMotion: 'reduce' });
       ({ page } = tablet);
@@ -33,6 +42,7 @@ for (const [name, size] of Object.entries(SIZES)) {
     after(async () => {
       await browser?.close();
       await server?.stop();
+      await rm(folder, { recursive: true });
     });
 
     const state = () => tablet.wire.state;
@@ -79,6 +89,22 @@ for (const [name, size] of Object.entries(SIZES)) {
       await until('all as before', () => state().views.Left);
       assert.deepEqual({ views: state().views, markers: state().markers, nodes: state().nodes }, { views, markers, nodes });
       await asInFile().waitFor();
+    });
+
+    test('what lies on its side is turned upright, and that is undone', async () => {
+      const axis = (name) => section.getByRole('group', { name: 'Up axis' }).getByText(name, { exact: true });
+      await axis('Z').waitFor({ state: 'hidden' });
+      await tablet.say({ type: 'open', scene: 'tower.obj' });
+      await page.locator('#lines').getByText('it seems to lie on its side').waitFor();
+      assert.equal(state().scene.bounds.max[1], 0.5);
+      await axis('Z').tap();
+      await until('the tower upright', () => state().scene.bounds.max[1] === 9);
+      await page.locator('#lines').getByText('The up axis is Z now.').waitFor();
+      assert.ok(await axis('Z').getByRole('radio').isChecked());
+      await tablet.shows((await tablet.wire.still()).frame);
+      await tablet.screenshot(`scenes-${name}-upright`);
+      await line('Undo').tap();
+      await until('the tower on its side', () => state().scene.bounds.max[1] === 0.5);
     });
 
     test('in all this the browser had nothing to complain of', () => {

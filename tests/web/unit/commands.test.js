@@ -24,7 +24,7 @@ test('each command is a message of the protocol', async () => {
   await commands.record('start');
   await commands.scenes();
   await commands.share('https://preview.example/');
-  await commands.open('car');
+  await commands.open('car', 'z');
   assert.deepEqual(asked.map(({ type }) => type),
     ['patch', 'patch', 'control', 'fit', 'swing', 'fly', 'pick', 'tree', 'snapshot', 'record', 'scenes', 'share', 'open']);
   for (const message of asked) {

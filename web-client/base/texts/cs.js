@@ -112,6 +112,8 @@ export const cs = {
   'scenes.opened': 'Otevřena scéna {name}',
   'scenes.asInFile': 'Vrátit scénu do stavu ze souboru',
   'scenes.isAsInFile': 'Scéna je ve stavu ze souboru.',
+  'scenes.upAxis': 'Svislá osa',
+  'scenes.turned': 'Svislá je teď osa {axis}.',
   'scenes.none': 'Server nenabízí žádné další scény.',
 
   'views.undo': 'Vrátit zpět',

@@ -110,6 +110,8 @@ export const en = {
   'scenes.opened': 'Opened {name}',
   'scenes.asInFile': 'Give back what the file says',
   'scenes.isAsInFile': 'The scene is as its file says.',
+  'scenes.upAxis': 'Up axis',
+  'scenes.turned': 'The up axis is {axis} now.',
   'scenes.none': 'The server has no other scenes to offer.',
 
   'views.undo': 'Undo',
