@@ -20,19 +20,19 @@ struct ReaderEntry {
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress,
                         const ReadOptions& options);
     bool foreign;  ///< a foreign library reads what matters of it
-    bool tells_up_axis = true;
+    bool tells_up_axis;
 };
 
 constexpr ReaderEntry kReaders[] = {
-    {".vrut", read_vrut_file, false},
-    {".osb", read_osb_scene, false},
-    {".glb", read_gltf_scene, true},
-    {".gltf", read_gltf_scene, true},
+    {".vrut", read_vrut_file, false, true},
+    {".osb", read_osb_scene, false, true},
+    {".glb", read_gltf_scene, true, true},
+    {".gltf", read_gltf_scene, true, true},
     {".obj", read_assimp_scene<AssimpFormat::obj>, true, false},
     {".stl", read_assimp_scene<AssimpFormat::stl>, true, false},
     {".ply", read_assimp_scene<AssimpFormat::ply>, true, false},
-    {".dae", read_assimp_scene<AssimpFormat::collada>, true},
-    {".fbx", read_assimp_scene<AssimpFormat::fbx>, true},
+    {".dae", read_assimp_scene<AssimpFormat::collada>, true, true},
+    {".fbx", read_assimp_scene<AssimpFormat::fbx>, true, true},
 };
 
 /// null: none reads this ending, in whatever case.
