@@ -29,6 +29,7 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
 
 set(CPACK_DEBIAN_CLIENT_PACKAGE_NAME libvrut-client-dev)
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_CLIENT_PACKAGE_DEPENDS "libssl-dev")
 set(CPACK_DEBIAN_CLIENT_DESCRIPTION "C++ client of VRUT Preview for hosts
 With this library a program that shows the same scene as a VRUT Preview
 server, as on the walls of a CAVE, follows the shared camera, tells what it

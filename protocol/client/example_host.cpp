@@ -21,11 +21,17 @@ constexpr std::chrono::milliseconds kFrame{16};
 volatile std::sig_atomic_t interrupted = 0;
 
 constexpr const char* kUsage =
-    "Usage: example_host [--host ADDRESS] [--port N] [--token TEXT] [--name TEXT] [--lead]\n\n"
+    "Usage: example_host [--host ADDRESS] [--port N] [--tls] [--ca-file FILE] [--server-name NAME]\n"
+    "                    [--token TEXT] [--name TEXT] [--lead]\n\n"
     "Follows the camera of VRUT Preview: one line a change, until interrupted.\n\n"
-    "  --host   default 127.0.0.1\n  --port   default 8080\n  --token  default: VRUT_PREVIEW_TOKEN\n"
-    "  --name   that others see, default example_host\n  --lead   also leads the camera once around its "
-    "center\n";
+    "  --host         default 127.0.0.1\n"
+    "  --port         default 8080\n"
+    "  --tls          speak TLS\n"
+    "  --ca-file      of authorities that are trusted (PEM), default: the system's; implies --tls\n"
+    "  --server-name  that the certificate must have, default: the host; implies --tls\n"
+    "  --token        default: VRUT_PREVIEW_TOKEN\n"
+    "  --name         that others see, default example_host\n"
+    "  --lead         also leads the camera once around its center\n";
 
 struct Arguments {
     Options options;
@@ -43,6 +49,10 @@ Arguments read_arguments(int argc, char** argv) {
     Arguments arguments;
     arguments.options.name = "example_host";
     if (const char* token = std::getenv("VRUT_PREVIEW_TOKEN")) arguments.options.token = token;
+    const auto tls = [&]() -> Tls& {
+        if (!arguments.options.tls) arguments.options.tls.emplace();
+        return *arguments.options.tls;
+    };
     for (int i = 1; i < argc; ++i) {
         const std::string option = argv[i];
         const auto value = [&] {
@@ -53,6 +63,12 @@ Arguments read_arguments(int argc, char** argv) {
             arguments.options.host = value();
         else if (option == "--port")
             arguments.options.port = read_port(value());
+        else if (option == "--tls")
+            tls();
+        else if (option == "--ca-file")
+            tls().ca_file = value();
+        else if (option == "--server-name")
+            tls().server_name = value();
         else if (option == "--token")
             arguments.options.token = value();
         else if (option == "--name")

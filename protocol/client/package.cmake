@@ -18,12 +18,13 @@ add_custom_target(client_package ALL DEPENDS ${library})
 include(CMakePackageConfigHelpers)
 file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/vrut_client-config.cmake
 "include(CMakeFindDependencyMacro)
+find_dependency(OpenSSL)
 find_dependency(Threads)
 if(NOT TARGET vrut_client::vrut_client)
     get_filename_component(prefix \${CMAKE_CURRENT_LIST_DIR}/../../.. ABSOLUTE)
     add_library(vrut_client::vrut_client STATIC IMPORTED)
     set_target_properties(vrut_client::vrut_client PROPERTIES IMPORTED_LOCATION \${prefix}/lib/libvrut_client.a
-        INTERFACE_INCLUDE_DIRECTORIES \${prefix}/include/vrut_client INTERFACE_LINK_LIBRARIES Threads::Threads)
+        INTERFACE_INCLUDE_DIRECTORIES \${prefix}/include/vrut_client INTERFACE_LINK_LIBRARIES \"OpenSSL::SSL;Threads::Threads\")
 endif()
 ")
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/vrut_client-config-version.cmake
@@ -34,7 +35,7 @@ Name: vrut_client
 Description: C++ client of VRUT Preview for hosts
 Version: ${CMAKE_PROJECT_VERSION}
 Cflags: -I\${prefix}/include/vrut_client
-Libs: -L\${prefix}/lib -lvrut_client -pthread
+Libs: -L\${prefix}/lib -lvrut_client -lssl -lcrypto -pthread
 ")
 
 set(client COMPONENT client EXCLUDE_FROM_ALL)

@@ -1,17 +1,24 @@
 #include "preview_client.hpp"
 
+#include <openssl/ssl.h>
+#include <openssl/x509v3.h>
+
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 #include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/ssl.hpp>
 #include <cmath>
 #include <deque>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 #include <vector>
 
 namespace vrut::client {
@@ -21,7 +28,10 @@ namespace beast = boost::beast;
 namespace websocket = beast::websocket;
 using asio::ip::tcp;
 using beast::error_code;
+namespace ssl = asio::ssl;
 using TcpStream = beast::basic_stream<tcp, asio::io_context::executor_type>;
+using PlainStream = websocket::stream<TcpStream>;
+using TlsStream = websocket::stream<beast::ssl_stream<TcpStream>>;
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::json;
 using namespace std::chrono_literals;
@@ -68,11 +78,60 @@ const char* name_of(Role role) {
     return role == Role::control ? "control" : role == Role::view ? "view" : "host";
 }
 
+/// Throws boost::system::system_error where the authorities cannot be read.
+ssl::context context_of(const Tls& options) {
+    ssl::context context(ssl::context::tls_client);
+    SSL_CTX_set_min_proto_version(context.native_handle(), TLS1_2_VERSION);
+    context.set_verify_mode(ssl::verify_peer);
+    if (options.ca_file.empty())
+        context.set_default_verify_paths();
+    else
+        context.load_verify_file(options.ca_file);
+    return context;
+}
+
+/// Why a certificate is refused, and what to do; `name` is the one that it must have.
+std::string certificate_sentence(long verified, const std::string& name) {
+    switch (verified) {
+        case X509_V_ERR_HOSTNAME_MISMATCH:
+        case X509_V_ERR_IP_ADDRESS_MISMATCH:
+            return "its certificate is not for '" + name +
+                   "': connect by a name that it has, or set the server name to one";
+        case X509_V_ERR_CERT_HAS_EXPIRED:
+            return "its certificate has expired: renew it, or set the clock of this machine";
+        case X509_V_ERR_CERT_NOT_YET_VALID:
+            return "its certificate is not valid yet: set the clock of this machine";
+        case X509_V_ERR_DEPTH_ZERO_SELF_SIGNED_CERT:
+        case X509_V_ERR_SELF_SIGNED_CERT_IN_CHAIN:
+        case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT:
+        case X509_V_ERR_UNABLE_TO_GET_ISSUER_CERT_LOCALLY:
+        case X509_V_ERR_UNABLE_TO_VERIFY_LEAF_SIGNATURE:
+            return "its certificate is not signed by an authority that is trusted here: name the file of its "
+                   "authority";
+        default:
+            return std::string("its certificate is refused: ") + X509_verify_cert_error_string(verified);
+    }
+}
+
 /// One connection, and all that its pending operations use: they keep it alive.
 struct Connection {
-    explicit Connection(asio::io_context& context) : resolver(context), stream(context) {}
+    explicit Connection(asio::io_context& context)
+        : resolver(context), stream(std::in_place_type<PlainStream>, context) {}
+    Connection(asio::io_context& context, const Tls& options)
+        : resolver(context), tls(context_of(options)), stream(std::in_place_type<TlsStream>, context, *tls) {}
+
+    /// Calls `use` with the WebSocket.
+    template <class Use>
+    decltype(auto) with(Use use) {
+        return std::visit(use, stream);
+    }
+    TcpStream& tcp_stream() {
+        return with([](auto& socket) -> TcpStream& { return beast::get_lowest_layer(socket); });
+    }
+
     tcp::resolver resolver;
-    websocket::stream<TcpStream> stream;
+    std::optional<ssl::context> tls;
+    std::variant<PlainStream, TlsStream> stream;
     std::vector<tcp::endpoint> endpoints;
     websocket::response_type response;
     beast::flat_buffer incoming;
@@ -116,6 +175,7 @@ struct PreviewClient::Impl {
 
     void connect();
     void connect_to_endpoints();
+    void handshake_tls();
     void handshake();
     void on_handshake(error_code error);
     void read();
@@ -208,7 +268,14 @@ void PreviewClient::Impl::run(Clock::time_point end) {
 // --- the connection
 
 void PreviewClient::Impl::connect() {
-    connection = std::make_shared<Connection>(context);
+    try {
+        connection = options.tls ? std::make_shared<Connection>(context, *options.tls)
+                                 : std::make_shared<Connection>(context);
+    } catch (const boost::system::system_error& error) {
+        return lose(connection_problem("the authorities in '" + options.tls->ca_file +
+                                       "' cannot be read: " + error.code().message()),
+                    true);
+    }
     error_code not_an_address;
     const auto numeric = asio::ip::make_address(options.host, not_an_address);
     if (!not_an_address) {
@@ -225,30 +292,55 @@ void PreviewClient::Impl::connect() {
 }
 
 void PreviewClient::Impl::connect_to_endpoints() {
-    TcpStream& stream = beast::get_lowest_layer(connection->stream);
+    TcpStream& stream = connection->tcp_stream();
     stream.expires_after(options.connect_timeout);
     stream.async_connect(connection->endpoints, on_present([this](error_code error, const tcp::endpoint&) {
                              if (error) return lose(connection_problem(error.message()), false);
-                             handshake();
+                             handshake_tls();
                          }));
 }
 
+/// TLS's own handshake, where there is TLS.
+void PreviewClient::Impl::handshake_tls() {
+    auto* const websocket = std::get_if<TlsStream>(&connection->stream);
+    if (websocket == nullptr) return handshake();
+    SSL* const tls = websocket->next_layer().native_handle();
+    std::string name = options.tls->server_name.empty() ? options.host : options.tls->server_name;
+    X509_VERIFY_PARAM* const verified = SSL_get0_param(tls);
+    if (X509_VERIFY_PARAM_set1_ip_asc(verified, name.c_str()) != 1) {  // it is no address
+        X509_VERIFY_PARAM_set_hostflags(verified, X509_CHECK_FLAG_NO_PARTIAL_WILDCARDS);
+        if (X509_VERIFY_PARAM_set1_host(verified, name.data(), name.size()) != 1 ||
+            SSL_ctrl(tls, SSL_CTRL_SET_TLSEXT_HOSTNAME, TLSEXT_NAMETYPE_host_name, name.data()) != 1)
+            return lose(connection_problem("'" + name + "' is no name that a certificate can have"), true);
+    }
+    websocket->next_layer().async_handshake(
+        ssl::stream_base::client, [this, tls, name, mine = connection](error_code error) {
+            if (mine != connection) return;
+            if (!error) return handshake();
+            const long refused = SSL_get_verify_result(tls);
+            if (refused == X509_V_OK) return lose(connection_problem("TLS fails: " + error.message()), false);
+            lose(connection_problem(certificate_sentence(refused, name)), true);
+        });
+}
+
 void PreviewClient::Impl::handshake() {
-    auto& stream = connection->stream;
     error_code ignored;
-    beast::get_lowest_layer(stream).socket().set_option(tcp::no_delay(true), ignored);
-    beast::get_lowest_layer(stream).expires_never();  // from here on the WebSocket's own deadlines hold
+    TcpStream& tcp_stream = connection->tcp_stream();
+    tcp_stream.socket().set_option(tcp::no_delay(true), ignored);
+    tcp_stream.expires_never();  // from here on the WebSocket's own deadlines hold
     websocket::stream_base::timeout deadlines{};
     deadlines.handshake_timeout = options.connect_timeout;
     deadlines.idle_timeout = kIdle;
     deadlines.keep_alive_pings = true;
-    stream.set_option(deadlines);
-    stream.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
-        request.set(beast::http::field::sec_websocket_protocol, "vrut-preview.v1");
-    }));
-    stream.read_message_max(options.max_message);
-    stream.async_handshake(connection->response, address(), "/ws",
-                           on_present([this](error_code error) { on_handshake(error); }));
+    connection->with([&](auto& stream) {
+        stream.set_option(deadlines);
+        stream.set_option(websocket::stream_base::decorator([](websocket::request_type& request) {
+            request.set(beast::http::field::sec_websocket_protocol, "vrut-preview.v1");
+        }));
+        stream.read_message_max(options.max_message);
+        stream.async_handshake(connection->response, address(), "/ws",
+                               on_present([this](error_code error) { on_handshake(error); }));
+    });
 }
 
 void PreviewClient::Impl::on_handshake(error_code error) {
@@ -271,13 +363,15 @@ void PreviewClient::Impl::on_handshake(error_code error) {
 void PreviewClient::Impl::read() {
     if (!connection || !connection->open || connection->reading) return;
     connection->reading = true;
-    connection->stream.async_read(connection->incoming,
-                                  on_present([this](error_code error, std::size_t) { on_read(error); }));
+    connection->with([this](auto& stream) {
+        stream.async_read(connection->incoming,
+                          on_present([this](error_code error, std::size_t) { on_read(error); }));
+    });
 }
 
 void PreviewClient::Impl::on_read(error_code error) {
     if (error == websocket::error::closed) {
-        const auto& reason = connection->stream.reason();
+        const auto reason = connection->with([](auto& stream) { return stream.reason(); });
         const std::string why(reason.reason.data(), reason.reason.size());
         const Problem problem = connection_problem("it closes: " + std::to_string(reason.code) + " " + why);
         return lose(connection->refusal.value_or(problem),
@@ -289,13 +383,13 @@ void PreviewClient::Impl::on_read(error_code error) {
     connection->incoming.shrink_to_fit();
     events.emplace_back([this, mine = connection, text = std::move(text)] {
         mine->reading = false;
-        if (mine == connection && mine->stream.got_text()) take(text);
+        if (mine == connection && mine->with([](auto& stream) { return stream.got_text(); })) take(text);
     });
 }
 
 /// Ends the connection and sets the time of the next attempt.
 void PreviewClient::Impl::lose(Problem problem, bool refused) {
-    beast::get_lowest_layer(connection->stream).close();
+    if (connection) connection->tcp_stream().close();
     connection.reset();
     queue.clear();
     const bool was_connected = std::exchange(connected, false);
@@ -349,7 +443,9 @@ std::function<void()> PreviewClient::Impl::read_welcome(const Json& message) {
     if (message.at("version") != 1) throw std::runtime_error("it does not speak version 1");
     message.at("client").get_to(client);
     const auto limit = message.at("limits").value("maxServerMessage", options.max_message);
-    if (limit > 0) connection->stream.read_message_max((std::min)(options.max_message, limit));
+    if (limit > 0)
+        connection->with(
+            [&](auto& stream) { stream.read_message_max((std::min)(options.max_message, limit)); });
     connection->welcomed = true;
     last_id = last_shown = 0;
     return nullptr;
@@ -415,12 +511,14 @@ void PreviewClient::Impl::write() {
     connection->writing = true;
     connection->outgoing = std::move(queue.front().text);
     queue.pop_front();
-    connection->stream.text(true);
-    connection->stream.async_write(asio::buffer(connection->outgoing),
-                                   on_present([this](error_code error, std::size_t) {
-                                       connection->writing = false;
-                                       if (!error) write();  // what is wrong is told by the read
-                                   }));
+    connection->with([this](auto& stream) {
+        stream.text(true);
+        stream.async_write(asio::buffer(connection->outgoing),
+                           on_present([this](error_code error, std::size_t) {
+                               connection->writing = false;
+                               if (!error) write();  // what is wrong is told by the read
+                           }));
+    });
 }
 
 std::int64_t PreviewClient::Impl::steer(Kind kind, const Json& patch) {

@@ -35,12 +35,19 @@ Matrix4 projection_matrix(const Camera& camera, double aspect);
 
 enum class Role { control, view, host };
 
+/// How the server is spoken to by TLS, 1.2 or later. Its certificate is always verified.
+struct Tls {
+    std::string ca_file;      ///< PEM, of the authorities that are trusted; empty: those of the system
+    std::string server_name;  ///< that the certificate must have; empty: Options::host
+};
+
 struct Options {
     /// A name, or better an address: a name is looked up by Asio's own thread.
     std::string host = "127.0.0.1";
     std::uint16_t port = 8080;
-    std::string name;   ///< that others see
-    std::string token;  ///< empty: none
+    std::optional<Tls> tls;  ///< none: without encryption
+    std::string name;        ///< that others see
+    std::string token;       ///< empty: none
     Role role = Role::host;
     std::chrono::milliseconds connect_timeout{5000};
     std::size_t max_message = std::size_t{64} << 20;  ///< bytes; who sends more is disconnected

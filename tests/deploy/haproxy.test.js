@@ -12,7 +12,7 @@ const { once } = require('node:events');
 const { after, before, describe, test } = require('node:test');
 const { Client, DEPLOY, Running, TOKENS, eventually, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
 
-const { VRUT_PREVIEW, VRUT_CAR } = process.env;
+const { VRUT_PREVIEW, VRUT_CAR, VRUT_EXAMPLE_HOST } = process.env;
 const folder = temporaryFolder();
 const file = (name) => path.join(folder, name);
 
@@ -143,6 +143,17 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     await new Promise((resolve) => setTimeout(resolve, longest + 500));
     await client.ask({ type: 'scenes' });
     client.socket.close();
+  });
+
+  test('a host follows the camera by TLS; one that does not trust the certificate says so', async () => {
+    const host = (...options) => new Running(VRUT_EXAMPLE_HOST,
+      ['--host', 'localhost', '--port', port, '--token', TOKENS.control, ...options]);
+    const trusting = host('--ca-file', file('certificate.pem'));
+    await trusting.printed(/^revision \d+ eye /m);
+    assert.equal(await trusting.stop('SIGINT'), 0);
+    const wary = host('--tls');
+    await wary.printed(/its certificate is not signed by an authority that is trusted here/);
+    await wary.stop('SIGINT');
   });
 
   test('pages of other origins may not connect', async () => {
