@@ -83,8 +83,9 @@ std::optional<protocol::Error> Engine::load(const SceneLookup::Found& found) {
     if (!found.path) return found.path.error();
     const protocol::Open& asked = found.asked;
     if (asked.up_axis && !io::lacks_up_axis(*found.path))
-        return protocol::Error{
-            {}, code::refused_scene, asked.scene + ": its format tells which axis is up: leave out 'upAxis'"};
+        return protocol::Error{{},
+                               code::refused_scene,
+                               asked.scene + ": its format defines which axis is up: leave out 'upAxis'"};
     if (loader_.busy()) return protocol::Error{{}, code::busy, "a scene is being loaded already"};
     try {
         loader_.start(*found.path, asked, description_, library_.options());

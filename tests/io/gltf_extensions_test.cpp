@@ -449,6 +449,24 @@ TEST_CASE("a glTF texture is clamped and mirrored as its sampler says") {
     CHECK(wraps_of(file.read(), 0) == scene::kRepeat);
 }
 
+TEST_CASE("a glTF texture whose sampler asks for the nearest texel is filtered, with a notice") {
+    GltfBuilder file;
+    file.add_triangle();
+    file.document["images"] = {{{"bufferView", file.add_view(flat_png(2, 2, {1, 2, 3, 255}))}}};
+    file.document["textures"] = {{{"source", 0}, {"sampler", 0}}};
+    file.document["samplers"] = {{{"minFilter", 9728}}};
+    file.document["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    file.primitive()["material"] = 0;
+    CHECK(file.read().notices().empty());  // what is far away is filtered by any viewer that is good
+    file.document["samplers"] = {{{"magFilter", 9729}}};
+    CHECK(file.read().notices().empty());
+    file.document["samplers"] = {{{"magFilter", 9728}}};
+    const scene::Scene scene = file.read();
+    REQUIRE(scene.notices().size() == 1);
+    CHECK(contains(scene.notices()[0],
+                   "a texture is filtered, although its sampler asks for the nearest texel"));
+}
+
 TEST_CASE("an unlit glTF material shines in its own colour (KHR_materials_unlit)") {
     GltfBuilder file;
     file.add_triangle();

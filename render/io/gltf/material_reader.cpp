@@ -192,7 +192,10 @@ private:
     /// Of a further texture: all lie as the first one does.
     void add_mapping(const GltfJson& info, const std::string& what) {
         const GltfTextureMapping mapping = mapping_of(info);
-        const scene::Wraps wraps = wraps_of(info);
+        const GltfJson& sampler = sampler_of(info);
+        const scene::Wraps wraps{wrap_in(sampler, "wrapS"), wrap_in(sampler, "wrapT")};
+        if (size_in(sampler, "magFilter", kGltfLinear) == kGltfNearest)
+            warnings_.add("a texture is filtered, although its sampler asks for the nearest texel");
         if (!has_mapping_) {
             result_.mapping = mapping;
             result_.material.wraps = wraps;
@@ -209,11 +212,9 @@ private:
                 vector_in<2>(transform, "scale", glm::dvec2(1)), number_in(transform, "rotation", 0)};
     }
 
-    scene::Wraps wraps_of(const GltfJson& info) const {
+    const GltfJson& sampler_of(const GltfJson& info) const {
         const auto sampler = index_in(texture_of(info), "sampler");
-        if (!sampler) return scene::kRepeat;
-        const GltfJson& json = element(document_, "samplers", *sampler, "sampler");
-        return {wrap_in(json, "wrapS"), wrap_in(json, "wrapT")};
+        return sampler ? element(document_, "samplers", *sampler, "sampler") : empty_object();
     }
 
     static scene::Wrap wrap_in(const GltfJson& sampler, const char* name) {

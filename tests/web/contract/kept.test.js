@@ -87,7 +87,7 @@ describe('what is kept of a scene', () => {
     const first = await begin();
     assert.equal(first.client.state.scene.upAxis, undefined);
     await assert.rejects(first.client.ask({ type: 'open', scene: 'stage.vrut', upAxis: 'z' }),
-      /refused-scene.*stage\.vrut: its format tells which axis is up: leave out 'upAxis'/);
+      /refused-scene.*stage\.vrut: its format defines which axis is up: leave out 'upAxis'/);
     await open(first.client);
     assert.deepEqual([first.client.state.scene.upAxis, height(first.client)], ['y', 0]);
     await first.client.patch({ markers: { lying: { point: [0, 0, 9] } } });

@@ -90,7 +90,7 @@ const MESSAGES = {
     right: {},
     optional: { node: { type: NUMBER, range: [1.5] }, depth: { type: NUMBER, range: [-1, 1.5] }, search: { type: WORD } },
   },
-  open: { right: { scene: 'second.vrut' }, required: { scene: { type: WORD } } },
+  open: { right: { scene: 'second.vrut' }, required: { scene: { type: WORD } }, optional: { upAxis: { type: WORD, range: ['x', 'Z', ''] } } },
   record: { right: { action: 'stop' }, required: { action: { type: WORD, range: ['pause', 'Start'] } }, optional: { name: { type: WORD } } },
   control: { right: { action: 'take' }, required: { action: { type: WORD, range: ['steal', ''] } }, optional: { client: { type: WORD } } },
 };
