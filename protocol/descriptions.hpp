@@ -239,7 +239,7 @@ template <class V>
 void describe(V& v, const Open*) {
     v.required("scene", &Open::scene, Text{kMaxSceneName}, "A name as in the answer to `scenes`.");
     v.optional("upAxis", &Open::up_axis, kUpAxis,
-               "The axis that is up, where the file does not tell; without it as chosen last.");
+               "The up axis, for formats that do not define it; without it the last choice.");
 }
 
 template <class V>
@@ -483,7 +483,7 @@ void describe(V& v, const SceneState*) {
     v.fixed("name", &SceneState::name, kName, "The scene's title.");
     v.fixed("file", &SceneState::file, Text{kMaxSceneName}, "The name by which `open` takes it.");
     v.fixed("upAxis", &SceneState::up_axis, kUpAxis,
-            "The axis that was taken for up, in formats that do not tell: OBJ, STL and PLY.");
+            "The up axis in use; only for formats that do not define it: OBJ, STL and PLY.");
     v.fixed("nodes", &SceneState::nodes, kId, "Number of nodes.");
     v.fixed("materials", &SceneState::materials, kId, "Number of materials.");
     v.fixed("geometries", &SceneState::geometries, kId, "Number of geometries.");

@@ -27,7 +27,7 @@ struct LoggedFrame {
 
 struct LogHeader {
     std::string scene, scene_sha256;
-    std::optional<UpAxis> up_axis = {};           ///< none: the file tells it, or the log does not
+    std::optional<UpAxis> up_axis = {};           ///< none: the format defines it, or an old log
     std::string started;                          ///< ISO 8601
     std::shared_ptr<const nlohmann::json> state;  ///< the document
     struct Client {

@@ -58,7 +58,7 @@ void describe(V& v, const LogHeader*) {
     v.required("scene", &LogHeader::scene, kName, "Name of the scene that is shown.");
     v.required("sceneSha256", &LogHeader::scene_sha256, kName, "SHA-256 of the scene's file.");
     v.optional("upAxis", &LogHeader::up_axis, kUpAxis,
-               "The axis that was taken for up, where the file does not tell.");
+               "The up axis in use; only for formats that do not define it.");
     v.required("started", &LogHeader::started, kName, "When the log began, by ISO 8601.");
     v.required("state", &LogHeader::state, AnyObject{{{"$ref", "#/$defs/stateDocument"}}},
                "The state document.");
@@ -96,7 +96,7 @@ void describe(V& v, const LogLine::Opened*) {
     v.required("scene", &LogLine::Opened::scene, Text{kMaxSceneName}, "Name of the scene.");
     v.required("sceneSha256", &LogLine::Opened::sha256, Text{100}, "SHA-256 of the scene's file.");
     v.optional("upAxis", &LogLine::Opened::up_axis, kUpAxis,
-               "The axis that was taken for up, where the file does not tell.");
+               "The up axis in use; only for formats that do not define it.");
     v.optional("changes", &LogLine::Opened::changes, ObjectText{},
                "What was kept of the scene: a patch with `views`, `markers` and `nodes`.");
 }

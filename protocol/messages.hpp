@@ -178,7 +178,7 @@ struct Tree {
 
 struct Open {
     std::string scene;
-    std::optional<UpAxis> up_axis = {};  ///< none: as it was chosen last
+    std::optional<UpAxis> up_axis = {};  ///< none: the last choice
 };
 
 /// What can be opened.

@@ -50,7 +50,7 @@ private:
 
 struct SceneState {                      // r
     std::string name, file;              ///< its title, and the name by which it is opened
-    std::optional<UpAxis> up_axis = {};  ///< that was taken; none: the file tells it
+    std::optional<UpAxis> up_axis = {};  ///< none: the format defines it
     std::uint64_t nodes = 0, materials = 0, geometries = 0, triangles = 0;
     struct Bounds {
         glm::dvec3 min{0}, max{0};

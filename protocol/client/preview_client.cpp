@@ -516,7 +516,7 @@ void PreviewClient::Impl::write() {
         stream.async_write(asio::buffer(connection->outgoing),
                            on_present([this](error_code error, std::size_t) {
                                connection->writing = false;
-                               if (!error) write();  // what is wrong is told by the read
+                               if (!error) write();  // async_read reports the error
                            }));
     });
 }

@@ -20,7 +20,7 @@ struct ReaderEntry {
     PartsResult (*read)(const std::filesystem::path& path, const ReadProgress& progress,
                         const ReadOptions& options);
     bool foreign;  ///< a foreign library reads what matters of it
-    bool tells_up_axis;
+    bool defines_up_axis;
 };
 
 constexpr ReaderEntry kReaders[] = {
@@ -82,7 +82,7 @@ std::string read_extensions() {
 
 bool lacks_up_axis(const std::filesystem::path& path) {
     const ReaderEntry* const format = reader_of(path);
-    return format != nullptr && !format->tells_up_axis;
+    return format != nullptr && !format->defines_up_axis;
 }
 
 bool has_foreign_reader(const std::filesystem::path& path) {

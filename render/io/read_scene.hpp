@@ -41,7 +41,7 @@ bool has_reader(const std::filesystem::path& path);
 /// The endings of the known formats: ".vrut, …".
 std::string read_extensions();
 
-/// Returns true if files of this ending do not tell which axis is up.
+/// Returns true if the format of this ending does not define which axis is up.
 bool lacks_up_axis(const std::filesystem::path& path);
 
 /// Returns true if a foreign library reads this ending: one that may crash, or take whatever memory there is.

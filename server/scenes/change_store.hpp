@@ -20,11 +20,10 @@ void store_changes(const std::string& scene, const std::string& patch);
 /// removed first. A file that cannot be used is logged. From any thread.
 std::string stored_changes(const std::string& scene);
 
-/// Keeps which axis was chosen for up in a file of this hash, which does not tell. A fault is logged. From
-/// any thread.
+/// Keeps the up axis that was chosen for a file of this hash. A fault is logged. From any thread.
 void store_up_axis(const std::string& sha256, protocol::UpAxis axis);
 
-/// Returns the axis that is kept; none: nobody has chosen one, or the file cannot be used, which is logged.
+/// Returns the axis that is kept, or none. A kept file that cannot be used is logged. From any thread.
 std::optional<protocol::UpAxis> stored_up_axis(const std::string& sha256);
 
 }  // namespace vrut::server::scenes

@@ -21,10 +21,10 @@ struct LoadedScene {
     /// A patch of the state that is laid over what the file says (stored_changes()); empty: none.
     std::string changes = {};
     std::shared_ptr<const mesh::PickingTrees> picking_trees = {};  ///< null: picks take longer
-    std::optional<protocol::UpAxis> up_axis = {};  ///< that was taken, where the file does not tell
+    std::optional<protocol::UpAxis> up_axis = {};  ///< in use, if the format does not define it
 
-    /// By which its changes are kept: its hash, and the axis that was taken for up unless that is y, since
-    /// other points and matrices belong to it.
+    /// The key of its kept changes: its hash, and the up axis if that is z, since points and matrices of the
+    /// two do not fit each other.
     std::string changes_key() const;
 };
 

@@ -50,7 +50,7 @@ io::ReadProgress progress_of(const std::string& name, std::function<void(SceneLo
     };
 }
 
-/// The axis that is kept for a file that does not tell which one is up.
+/// The kept up axis of a file whose format does not define it.
 std::optional<protocol::UpAxis> kept_up_axis(const std::filesystem::path& path,
                                              const io::ReadProgress& progress) {
     constexpr std::chrono::milliseconds kBetweenPolls{50};

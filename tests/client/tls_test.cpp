@@ -71,7 +71,7 @@ Certificate certificate_of(const CertificateOptions& options, const Certificate*
     return made;
 }
 
-/// Talks to one client by TLS, and says that its handshake has failed, or what `welcome` and `state` need.
+/// Serves one client by TLS: sends `welcome` and `state`, and counts `shown`.
 class TlsServer {
 public:
     explicit TlsServer(const Certificate& certificate, int newest_version = TLS1_3_VERSION) {
@@ -143,7 +143,7 @@ client::Options options_for(std::uint16_t port, const client::Tls& tls) {
     return options;
 }
 
-/// Until the client is connected, or is told a problem.
+/// Polls until the client is connected or reports a problem.
 Outcome outcome_of(const client::Options& options) {
     client::PreviewClient client(options);
     Outcome outcome;
@@ -221,7 +221,7 @@ TEST_CASE("a wrong certificate is refused in a sentence that tells what to do") 
     check(certificate_of({}, issuer), {"", kName}, untrusted);
 }
 
-TEST_CASE("authorities that cannot be read are told before anybody is spoken to") {
+TEST_CASE("a CA file that cannot be read is reported before a connection is made") {
     const TemporaryFolder folder;
     const std::string none = (folder.path() / "none.pem").string();
     check_refused(outcome_of(options_for(1, {none, ""})), 1,
@@ -233,7 +233,7 @@ TEST_CASE("authorities that cannot be read are told before anybody is spoken to"
           std::string::npos);
 }
 
-TEST_CASE("who speaks no TLS, or an old one, or says nothing is told, and in time") {
+TEST_CASE("a server without TLS, with an old version or without an answer is reported in time") {
     const Authority authority;
     const client::Tls tls{authority.file, kName};
     TlsServer old(certificate_of({}, &authority.certificate), TLS1_1_VERSION);

@@ -151,7 +151,7 @@ export type ClientOpen = {
   /** A name as in the answer to `scenes`. */
   scene: string;
   type: 'open';
-  /** The axis that is up, where the file does not tell; without it as chosen last. */
+  /** The up axis, for formats that do not define it; without it the last choice. */
   upAxis?: 'y' | 'z';
 };
 
@@ -557,7 +557,7 @@ export type EventLogHeader = {
   started: string;
   /** The state document. */
   state: StateDocument;
-  /** The axis that was taken for up, where the file does not tell. */
+  /** The up axis in use; only for formats that do not define it. */
   upAxis?: 'y' | 'z';
   /** Of the protocol. */
   version: 1;
@@ -586,7 +586,7 @@ export type EventLogOpened = {
   scene: string;
   /** SHA-256 of the scene's file. */
   sceneSha256: string;
-  /** The axis that was taken for up, where the file does not tell. */
+  /** The up axis in use; only for formats that do not define it. */
   upAxis?: 'y' | 'z';
 };
 
@@ -1086,7 +1086,7 @@ export type StateDocument = {
     notices: Array<Notice>;
     /** Number of triangles. */
     triangles: number;
-    /** The axis that was taken for up, in formats that do not tell: OBJ, STL and PLY. */
+    /** The up axis in use; only for formats that do not define it: OBJ, STL and PLY. */
     upAxis?: 'y' | 'z';
   };
   /** What is selected. */

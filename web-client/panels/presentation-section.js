@@ -91,13 +91,17 @@ function scenes({ commands, store, offer }) {
       offer(say('scenes.opened', { name: scene }), say('bar.back'), () => show(file));
     }
   };
-  // Not waited for until it is shown: it may be refused.
-  const turn = async (axis) => {
-    const { file, upAxis: before } = stateOf(store).scene;
+  /**
+   * Does not wait until the scene is shown: it may still be refused.
+   *
+   * @param {*} axis
+   * @param {Pick<StateDocument['scene'], 'file'|'upAxis'>} [scene]
+   */
+  const turn = async (axis, { file, upAxis: before } = stateOf(store).scene) => {
     if (!await commands.open(file, axis)) return;
     store.next(({ state }) => state?.scene.upAxis, before).then(() => {
       if (stateOf(store).scene.file !== file) return;
-      offer(say('scenes.turned', { axis: axis.toUpperCase() }), say('views.undo'), () => turn(before));
+      offer(say('scenes.turned', { axis: axis.toUpperCase() }), say('views.undo'), () => turn(before, { file, upAxis: axis }));
     });
   };
   const giveBack = async () => {
