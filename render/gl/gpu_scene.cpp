@@ -157,7 +157,7 @@ std::function<PreparedData()> GpuScene::make_texture(scene::Index index) const {
         const scene::Texture& texture = scene->textures()[static_cast<std::size_t>(index)];
         data.texture = texture_data(texture.image, largest);
         data.texture.is_color = is_color;
-        data.texture.wraps = texture.wraps;
+        data.texture.sampler = texture.sampler;
         return data;
     };
 }

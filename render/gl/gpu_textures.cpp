@@ -68,8 +68,8 @@ GlTexture make_texture_for(const TextureData& data) {
     GlTexture texture = make_mipmapped_texture(is_cube_map ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D,
                                                data.is_color ? GL_RGBA8 : GL_RGBA16, largest.width,
                                                largest.height, data.images.back().level + 1);
-    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, gl_wrap(data.wraps[0]));
-    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, gl_wrap(data.wraps[1]));
+    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, gl_wrap(data.sampler.wraps[0]));
+    glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, gl_wrap(data.sampler.wraps[1]));
     return texture;
 }
 

@@ -24,7 +24,7 @@ struct TextureData {
     std::deque<scene::Image> made;  ///< owns the images that the scene does not own
     /// Drivers may round colours that lie between texels to 8 bits, which would bend normals.
     bool is_color = true;
-    scene::Wraps wraps = scene::kRepeat;
+    scene::Sampler sampler = {};
 };
 
 /// Returns an image and its mip levels, from the first one whose sides are at most `largest`. The image must

@@ -13,7 +13,7 @@ namespace vrut::io {
 
 namespace {
 
-constexpr scene::Wraps kClamped{scene::Wrap::clamp, scene::Wrap::clamp};
+constexpr std::array kClamped{scene::Wrap::clamp, scene::Wrap::clamp};
 
 /// Gives each thing a name of its own.
 class UniqueNames {
@@ -58,7 +58,7 @@ public:
         vector("Ke", material.metallic_roughness ? glm::dvec3(0) : glm::dvec3(material.emission));
         vector("Ns", glm::dvec1(material.shininess));
         vector("d", glm::dvec1(material.diffuse.a));
-        const std::string_view clamp = material.wraps == kClamped ? "-clamp on " : "";
+        const std::string_view clamp = material.sampler.wraps == kClamped ? "-clamp on " : "";
         if (!texture_file.empty()) text("map_Kd ").text(clamp).text(texture_file).text("\n");
         if (holes) text("map_d ").text(clamp).text(texture_file).text("\n");
         if (const auto& surface = material.metallic_roughness) {
@@ -151,7 +151,7 @@ bool has_holes(const scene::Scene& scene, const scene::Material& material) {
 void report_lost_shading(const scene::Scene& scene, const scene::Material& material,
                          ConversionWarnings& warnings) {
     warnings.add("a material's two-sided flag is lost");
-    if (material.texture != scene::kNone && material.wraps != scene::kRepeat && material.wraps != kClamped)
+    if (material.texture != scene::kNone && !material.sampler.repeats() && material.sampler.wraps != kClamped)
         warnings.add("a texture repeats where it was mirrored, or clamped in one direction");
     if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     if (material.emissive != glm::dvec3(0)) warnings.add("a material's emissive light is lost");

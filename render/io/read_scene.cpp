@@ -103,7 +103,7 @@ PartsResult read_scene_parts(const std::filesystem::path& path, const ReadProgre
         return tl::unexpected(file + ": this file extension cannot be read; supported are " +
                               read_extensions());
     PartsResult parts = format->read(path, progress, options);
-    if (parts && !wrap_textures(*parts)) parts->notices.push_back(file + ": " + kUnchangedTextures);
+    if (parts && !set_samplers(*parts)) parts->notices.push_back(file + ": " + kUnchangedTextures);
     if (parts && format->read != read_vrut_file) focus_on_what_is_seen(*parts);
     if (parts && wants_studio(*format, *parts, options.studio)) add_studio(*parts);
     return parts;

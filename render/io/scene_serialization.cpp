@@ -199,8 +199,8 @@ void serialize_optional(Stream& stream, std::optional<Item>& item, Pass serializ
 }
 
 template <class Stream>
-void serialize(Stream& stream, scene::Wraps& wraps) {
-    for (scene::Wrap& wrap : wraps) {
+void serialize(Stream& stream, scene::Sampler& sampler) {
+    for (scene::Wrap& wrap : sampler.wraps) {
         int number = static_cast<int>(wrap);
         stream.integer(number, 0, 2);
         wrap = static_cast<scene::Wrap>(number);
@@ -218,7 +218,7 @@ void serialize(Stream& stream, scene::Texture& texture) {
                        static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 4,
                    "4 bytes for each pixel");
     serialize_flag(stream, texture.transparent);
-    serialize(stream, texture.wraps);
+    serialize(stream, texture.sampler);
 }
 
 template <class Stream>
@@ -244,7 +244,7 @@ void serialize(Stream& stream, scene::Material& material, const scene::ScenePart
     stream.text(material.normal_image);
     serialize_index(stream, material.normal_texture, parts.textures.size());
     stream.number(material.normal_scale, -kMostNumber, kMostNumber);
-    serialize(stream, material.wraps);
+    serialize(stream, material.sampler);
 }
 
 template <class Vector>

@@ -204,25 +204,25 @@ void decode_embedded_textures(scene::SceneParts& parts, const fs::path& scene_fi
     notices.append_to(parts.notices);
 }
 
-bool wrap_textures(scene::SceneParts& parts, std::uint64_t max_pixels) {
-    std::map<std::pair<scene::Index, scene::Wraps>, scene::Index> known;
-    std::map<scene::Index, std::uint64_t> seen;  // by how many wraps
+bool set_samplers(scene::SceneParts& parts, std::uint64_t max_pixels) {
+    std::map<std::pair<scene::Index, scene::Sampler>, scene::Index> known;
+    std::map<scene::Index, std::uint64_t> seen;  // by how many samplers
     for (const scene::Texture& texture : parts.textures)
         max_pixels -= std::min<std::uint64_t>(max_pixels, texture.image.rgba.size() / 4);
     bool all = true;
-    const auto wrap = [&](scene::Index& index, const scene::Wraps& wraps) {
+    const auto set = [&](scene::Index& index, const scene::Sampler& sampler) {
         if (index == scene::kNone) return;
-        const auto [place, is_new] = known.try_emplace({index, wraps}, index);
+        const auto [place, is_new] = known.try_emplace({index, sampler}, index);
         scene::Texture& texture = parts.textures[static_cast<std::size_t>(index)];
         if (const std::uint64_t pixels = texture.image.rgba.size() / 4; !is_new) {
             // It is there already.
         } else if (seen[index]++ == 0) {
-            texture.wraps = wraps;
+            texture.sampler = sampler;
         } else if (pixels <= max_pixels) {
             max_pixels -= pixels;
             place->second = static_cast<scene::Index>(parts.textures.size());
             scene::Texture copy = texture;
-            copy.wraps = wraps;
+            copy.sampler = sampler;
             parts.textures.push_back(std::move(copy));
         } else {
             all = false;
@@ -233,7 +233,7 @@ bool wrap_textures(scene::SceneParts& parts, std::uint64_t max_pixels) {
         for (const auto texture :
              {&scene::Material::texture, &scene::Material::emissive_texture,
               &scene::Material::occlusion_roughness_metallic_texture, &scene::Material::normal_texture})
-            wrap(material.*texture, material.wraps);
+            set(material.*texture, material.sampler);
     return all;
 }
 

@@ -33,9 +33,10 @@ using EmbeddedDecoder =
 void decode_embedded_textures(scene::SceneParts& parts, const std::filesystem::path& scene_file,
                               const EmbeddedDecoder& decode);
 
-/// Gives each texture the wraps of the materials that see it. Where they differ, each has a copy. Returns
-/// false if all textures would have more than `max_pixels`: then some have other wraps than their materials.
-bool wrap_textures(scene::SceneParts& parts, std::uint64_t max_pixels = kMaxTexturePixels);
+/// Gives each texture the sampler of the materials that see it. Where they differ, each has a copy. Returns
+/// false if all textures would have more than `max_pixels`: then some have another sampler than their
+/// materials.
+bool set_samplers(scene::SceneParts& parts, std::uint64_t max_pixels = kMaxTexturePixels);
 
 /// How a material sees the image of its texture.
 struct TextureChange {

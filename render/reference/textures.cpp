@@ -124,14 +124,14 @@ const glm::dvec4& MipMap::texel(int level, int x, int y) const {
 }
 
 glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change,
-                          const scene::Wraps& wraps) const {
-    glm::dvec2 inside(wrapped(uv.x, wraps[0]), wrapped(uv.y, wraps[1]));
+                          const scene::Sampler& sampler) const {
+    glm::dvec2 inside(wrapped(uv.x, sampler.wraps[0]), wrapped(uv.y, sampler.wraps[1]));
     if (!(std::isfinite(inside.x) && std::isfinite(inside.y))) inside = glm::dvec2(0);
     const double texels = longer_side(change, glm::dvec2(width(0), height(0)));
     return trilinear(texels, levels(), [&](int level) {
         const int w = width(level), h = height(level);
         return BilinearFootprint(inside, w, h).mix([&](int x, int y) {
-            return texel(level, wrapped(x, w, wraps[0]), wrapped(y, h, wraps[1]));
+            return texel(level, wrapped(x, w, sampler.wraps[0]), wrapped(y, h, sampler.wraps[1]));
         });
     });
 }

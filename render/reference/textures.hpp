@@ -25,7 +25,7 @@ public:
     /// with respect to the pixel's x (right) and y (up). If the longer side of the pixel's footprint exceeds
     /// one texel, filtering is trilinear between the two nearest levels, else bilinear in level 0.
     glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change,
-                      const scene::Wraps& wraps) const;
+                      const scene::Sampler& sampler) const;
 
 private:
     struct MipLevel {

@@ -9,7 +9,7 @@ namespace vrut::reference {
 
 namespace {
 
-constexpr scene::Wraps kClamp{scene::Wrap::clamp, scene::Wrap::clamp};
+constexpr scene::Sampler kClamp{{scene::Wrap::clamp, scene::Wrap::clamp}};
 
 const scene::Image& image_of(const plan::View& view, scene::Index texture) {
     return view.scene->scene->textures()[static_cast<std::size_t>(texture)].image;
@@ -154,7 +154,7 @@ glm::dvec4 Tracer::texel(scene::Index texture, const TracedInstance& part,
     if (texture == scene::kNone || part.geometry->texcoords.empty()) return none;
     const auto index = static_cast<std::size_t>(texture);
     return textures_[index]->sample(interaction.texcoord, interaction.duv_dxy,
-                                    view_.scene->scene->textures()[index].wraps);
+                                    view_.scene->scene->textures()[index].sampler);
 }
 
 glm::dvec3 Tracer::metallic_color(const PathRay& path, const TracedInstance& part,

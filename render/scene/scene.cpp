@@ -152,7 +152,7 @@ void move_texcoords_near_zero(std::vector<Geometry>& geometries, const std::vect
     for (const SceneParts::PartNode& part : nodes) {
         const auto* data = std::get_if<GeometryData>(&part.node.data);
         if (data && data->geometry != kNone && data->material != kNone &&
-            materials[static_cast<std::size_t>(data->material)].wraps != kRepeat)
+            !materials[static_cast<std::size_t>(data->material)].sampler.repeats())
             repeats[static_cast<std::size_t>(data->geometry)] = false;
     }
     for (std::size_t i = 0; i < geometries.size(); ++i)

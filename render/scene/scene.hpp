@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -26,22 +27,26 @@ inline constexpr Id kMaxId = (Id{1} << 53) - 1;
 using Index = std::int32_t;
 inline constexpr Index kNone = -1;
 
-/// An image file that materials and backgrounds show.
 /// What lies beyond an image's edge: the image again, its mirror image, or the edge's pixels.
 enum class Wrap { repeat, mirror, clamp };
 
 /// The keyword of the scene text format.
 std::string_view name_of(Wrap wrap);
 
-/// Along u, and along v.
-using Wraps = std::array<Wrap, 2>;
-inline constexpr Wraps kRepeat{Wrap::repeat, Wrap::repeat};
+/// How the colour of an image is found at texture coordinates.
+struct Sampler {
+    std::array<Wrap, 2> wraps{Wrap::repeat, Wrap::repeat};  ///< along u, and along v
 
+    auto operator<=>(const Sampler&) const = default;
+    bool repeats() const { return wraps == Sampler().wraps; }
+};
+
+/// An image file that materials and backgrounds show.
 struct Texture {
     std::string file;  ///< relative to the scene's, or absolute
     Image image;
     bool transparent = false;  ///< some alpha is below 255
-    Wraps wraps = kRepeat;
+    Sampler sampler = {};
 };
 
 /// A surface as glTF describes it: how much of it is metal, and how rough it is, 0 to 1. `clear_coat` is how
@@ -81,7 +86,7 @@ struct Material {
     std::string normal_image;
     Index normal_texture = kNone;
     double normal_scale = 1;  ///< multiplies what they have along u and v
-    Wraps wraps = kRepeat;    ///< of all its images; its textures have the same
+    Sampler sampler;          ///< of all its images; its textures have the same
 };
 
 struct Geometry {

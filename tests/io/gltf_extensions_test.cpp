@@ -426,27 +426,28 @@ TEST_CASE("a glTF texture is clamped and mirrored as its sampler says") {
     file.document["meshes"][0]["primitives"].push_back(second);
     const scene::Scene scene = file.read();
     REQUIRE(scene.materials().size() == 2);
-    constexpr scene::Wraps kClampMirror{scene::Wrap::clamp, scene::Wrap::mirror};
-    const auto wraps_of = [](const scene::Scene& read, std::size_t material) {
+    constexpr scene::Sampler kClampMirror{{scene::Wrap::clamp, scene::Wrap::mirror}};
+    const auto sampler_of = [](const scene::Scene& read, std::size_t material) {
         const scene::Index texture = read.materials()[material].texture;
         REQUIRE(texture != scene::kNone);
-        CHECK(read.textures()[static_cast<std::size_t>(texture)].wraps == read.materials()[material].wraps);
-        return read.materials()[material].wraps;
+        CHECK(read.textures()[static_cast<std::size_t>(texture)].sampler ==
+              read.materials()[material].sampler);
+        return read.materials()[material].sampler;
     };
-    CHECK(wraps_of(scene, 0) == kClampMirror);
-    CHECK(wraps_of(scene, 1) == scene::kRepeat);
+    CHECK(sampler_of(scene, 0) == kClampMirror);
+    CHECK(sampler_of(scene, 1) == scene::Sampler());
     CHECK(scene.textures().size() == 2);  // one image, seen in two ways
     CHECK(scene.notices().empty());
     // In one material it is seen as its first texture.
     file.document["materials"][0]["emissiveTexture"] = {{"index", 1}};
     file.document["materials"][0]["emissiveFactor"] = {1, 1, 1};
     const scene::Scene mixed = file.read();
-    CHECK(wraps_of(mixed, 0) == kClampMirror);
+    CHECK(sampler_of(mixed, 0) == kClampMirror);
     CHECK(mixed.materials()[0].emissive_texture == mixed.materials()[0].texture);
     REQUIRE(mixed.notices().size() == 1);
     CHECK(contains(mixed.notices()[0], "an emissive texture lies as the material's first texture does"));
     file.document["samplers"][0] = nlohmann::json::object();
-    CHECK(wraps_of(file.read(), 0) == scene::kRepeat);
+    CHECK(sampler_of(file.read(), 0) == scene::Sampler());
 }
 
 TEST_CASE("a glTF texture whose sampler asks for the nearest texel is filtered, with a notice") {

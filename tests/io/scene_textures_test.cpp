@@ -257,29 +257,29 @@ TEST_CASE("materials that see a texture in other ways get copies, and the last o
     CHECK(textures[0].image.rgba == glass.image.rgba);  // who gets no copy sees it as it is
 }
 
-TEST_CASE("a texture has the wraps of its materials, and a copy for each other ones") {
-    constexpr scene::Wraps kClamp{scene::Wrap::clamp, scene::Wrap::clamp};
+TEST_CASE("a texture has the sampler of its materials, and a copy for each other ones") {
+    constexpr scene::Sampler kClamp{{scene::Wrap::clamp, scene::Wrap::clamp}};
     scene::SceneParts parts;
     parts.textures = {{"a.png", {1, 1, {1, 2, 3, 255}}, false}, {"b.png", {1, 1, {4, 5, 6, 255}}, false}};
     parts.materials.resize(4);
     parts.materials[0].texture = parts.materials[1].texture = parts.materials[2].emissive_texture = 0;
-    parts.materials[1].wraps = parts.materials[2].wraps = kClamp;
+    parts.materials[1].sampler = parts.materials[2].sampler = kClamp;
     parts.materials[2].normal_texture = 1;
     scene::SceneParts no_room = parts;
-    CHECK(io::wrap_textures(parts));
+    CHECK(io::set_samplers(parts));
     REQUIRE(parts.textures.size() == 3);
     CHECK(parts.materials[0].texture == 0);
-    CHECK(parts.textures[0].wraps == scene::kRepeat);
+    CHECK(parts.textures[0].sampler == scene::Sampler());
     CHECK(parts.materials[1].texture == 2);
-    CHECK(parts.textures[2].wraps == kClamp);
+    CHECK(parts.textures[2].sampler == kClamp);
     CHECK(parts.textures[2].image.rgba == parts.textures[0].image.rgba);
     CHECK(parts.materials[2].emissive_texture == 2);
     CHECK(parts.materials[2].normal_texture == 1);
-    CHECK(parts.textures[1].wraps == kClamp);
+    CHECK(parts.textures[1].sampler == kClamp);
     CHECK(parts.materials[3].texture == scene::kNone);
 
-    CHECK_FALSE(io::wrap_textures(no_room, 2));
+    CHECK_FALSE(io::set_samplers(no_room, 2));
     CHECK(no_room.textures.size() == 2);
     CHECK(no_room.materials[1].texture == 0);
-    CHECK(no_room.textures[0].wraps == scene::kRepeat);
+    CHECK(no_room.textures[0].sampler == scene::Sampler());
 }

@@ -97,9 +97,9 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.occlusion_roughness_metallic_image == "textures/worn.png");
     CHECK(paint.normal_image == "textures/leather.png");
     CHECK(paint.normal_scale == 0.5);
-    CHECK(paint.wraps == scene::Wraps{scene::Wrap::mirror, scene::Wrap::clamp});
+    CHECK(paint.sampler == scene::Sampler{{scene::Wrap::mirror, scene::Wrap::clamp}});
     const scene::Material& grey = scene.materials()[1];
-    CHECK(grey.wraps == scene::kRepeat);
+    CHECK(grey.sampler == scene::Sampler());
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
     CHECK(grey.diffuse == glm::dvec4(0.8, 0.8, 0.8, 1));
     CHECK(grey.shininess == 0);

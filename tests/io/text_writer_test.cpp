@@ -36,7 +36,7 @@ bool same(const scene::Material& a, const scene::Material& b) {
         return std::tie(m.id, m.name, m.ambient, m.diffuse, m.specular, m.emission, m.shininess,
                         m.reflectivity, m.two_sided, m.emissive, m.image, m.emissive_image,
                         m.metallic_roughness, m.occlusion_roughness_metallic_image, m.normal_image,
-                        m.normal_scale, m.wraps);
+                        m.normal_scale, m.sampler);
     };
     return members(a) == members(b);
 }
@@ -168,7 +168,7 @@ private:
         result.occlusion_roughness_metallic_image = name();
         result.normal_image = name();
         result.normal_scale = coin() ? 1 : number(1e6);
-        for (scene::Wrap& wrap : result.wraps)
+        for (scene::Wrap& wrap : result.sampler.wraps)
             wrap = coin() ? scene::Wrap::repeat : coin() ? scene::Wrap::mirror : scene::Wrap::clamp;
         return result;
     }

@@ -41,7 +41,7 @@ scene::Scene part_of(const scene::Material& material) {
     geometry.triangles = {{0, 1, 2}};
     parts.textures = {{"surface.png", {1, 1, {10, 20, 30, 255}}, false},
                       {"normals.png", {1, 1, {128, 128, 255, 255}}, false}};
-    for (scene::Texture& texture : parts.textures) texture.wraps = material.wraps;
+    for (scene::Texture& texture : parts.textures) texture.sampler = material.sampler;
     parts.materials = {material};
     scene::Node node;
     node.id = 1;
@@ -170,23 +170,23 @@ TEST_CASE(
     "GLB files keep how textures go on beyond their edges, OBJ files where they are clamped or repeat") {
     using scene::Wrap;
     const TemporaryFolder folder;
-    for (const scene::Wraps& wraps :
-         {scene::kRepeat, scene::Wraps{Wrap::clamp, Wrap::clamp}, scene::Wraps{Wrap::mirror, Wrap::clamp}})
+    for (const scene::Sampler& sampler : {scene::Sampler(), scene::Sampler{{Wrap::clamp, Wrap::clamp}},
+                                          scene::Sampler{{Wrap::mirror, Wrap::clamp}}})
         for (const char* file : {"x.glb", "x.obj"}) {
             CAPTURE(file);
             scene::Material paint;
             paint.name = "Paint";
             paint.two_sided = true;
             paint.texture = 0;
-            paint.wraps = wraps;
+            paint.sampler = sampler;
             const auto lost = io::write_scene(part_of(paint), folder.path() / file);
             REQUIRE_MESSAGE(lost, lost.error());
-            const bool is_lost = wraps[0] == Wrap::mirror && std::string(file) == "x.obj";
+            const bool is_lost = sampler.wraps[0] == Wrap::mirror && std::string(file) == "x.obj";
             const auto tells = [](const std::string& what) {
                 return what.find("a texture repeats where it was mirrored") != std::string::npos;
             };
             CHECK(std::ranges::any_of(*lost, tells) == is_lost);
             const scene::Scene scene = read_well(folder.path() / file);
-            CHECK(material_of(scene, "Paint").wraps == (is_lost ? scene::kRepeat : wraps));
+            CHECK(material_of(scene, "Paint").sampler == (is_lost ? scene::Sampler() : sampler));
         }
 }

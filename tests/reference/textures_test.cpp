@@ -9,7 +9,7 @@ using namespace vrut;
 
 namespace {
 
-constexpr scene::Wraps kClamp{scene::Wrap::clamp, scene::Wrap::clamp};
+constexpr scene::Sampler kClamp{{scene::Wrap::clamp, scene::Wrap::clamp}};
 
 scene::Image image_of_grays(int width, int height, const std::vector<int>& grays) {
     scene::Image image;
@@ -102,14 +102,14 @@ TEST_CASE("magnified it is bilinear, and repeats") {
     }
     // One number by hand: at u = 1/16 of two texels, 3/8 of the last one and 5/8 of the first.
     const reference::MipMap map(image_of_grays(2, 1, {0, 200}));
-    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, scene::kRepeat).r == doctest::Approx(75 / 255.0));
+    CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, scene::Sampler()).r == doctest::Approx(75 / 255.0));
     CHECK(map.sample({1.0 / 16, 0.3}, kMagnified, kClamp).r == 0);
     // Mirrored, u = 1.25 is 0.75, and -1.75 is 0.25.
-    constexpr scene::Wraps kMirror{scene::Wrap::mirror, scene::Wrap::repeat};
+    constexpr scene::Sampler kMirror{{scene::Wrap::mirror, scene::Wrap::repeat}};
     CHECK(map.sample({1.25, 0.3}, kMagnified, kMirror).r == doctest::Approx(200 / 255.0));
     CHECK(map.sample({-1.75, 0.3}, kMagnified, kMirror).r == 0);
     CHECK(map.sample({17.0 / 16, 0.3}, kMagnified, kMirror).r == doctest::Approx(200 / 255.0));
-    CHECK(map.sample({std::nan(""), 1e300}, kMagnified, scene::kRepeat).a == 1);
+    CHECK(map.sample({std::nan(""), 1e300}, kMagnified, scene::Sampler()).a == 1);
 }
 
 TEST_CASE("each level is a box filter of the one before, weighted by area") {

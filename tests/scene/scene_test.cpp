@@ -546,7 +546,7 @@ TEST_CASE("whole numbers are taken off texture coordinates, but where a texture 
         parts.geometries = {geometry_of({{0, 0, 0}, {1, 0, 0}})};
         parts.geometries[0].texcoords = {{5, 0.5F}, {6, 0.5F}};
         parts.materials.resize(1);
-        if (!repeats) parts.materials[0].wraps[0] = scene::Wrap::clamp;
+        if (!repeats) parts.materials[0].sampler.wraps[0] = scene::Wrap::clamp;
         parts.nodes = {geometry_part(1, 0, 0)};
         std::get<scene::GeometryData>(parts.nodes[0].node.data).material = 0;
         const auto scene = scene::Scene::build(std::move(parts));

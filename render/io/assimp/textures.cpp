@@ -45,9 +45,10 @@ scene::Wrap wrap_of(const aiMaterial& from, aiTextureType type, const char* key)
 /// All images of a material lie as its first one does.
 void set_sampling(const aiMaterial& from, aiTextureType type, bool first, scene::Material& material,
                   ConversionWarnings& warnings) {
-    const scene::Wraps wraps{wrap_of(from, type, "$tex.mapmodeu"), wrap_of(from, type, "$tex.mapmodev")};
-    if (first) material.wraps = wraps;
-    if (material.wraps != wraps)
+    const scene::Sampler sampler{
+        {wrap_of(from, type, "$tex.mapmodeu"), wrap_of(from, type, "$tex.mapmodev")}};
+    if (first) material.sampler = sampler;
+    if (material.sampler != sampler)
         warnings.add(
             "a texture goes on beyond its edges as the material's first texture does, not as the file says");
     aiUVTransform shift;

@@ -192,16 +192,16 @@ private:
     /// Of a further texture: all lie as the first one does.
     void add_mapping(const GltfJson& info, const std::string& what) {
         const GltfTextureMapping mapping = mapping_of(info);
-        const GltfJson& sampler = sampler_of(info);
-        const scene::Wraps wraps{wrap_in(sampler, "wrapS"), wrap_in(sampler, "wrapT")};
-        if (size_in(sampler, "magFilter", kGltfLinear) == kGltfNearest)
+        const GltfJson& from = sampler_of(info);
+        const scene::Sampler sampler{{wrap_in(from, "wrapS"), wrap_in(from, "wrapT")}};
+        if (size_in(from, "magFilter", kGltfLinear) == kGltfNearest)
             warnings_.add("a texture is filtered, although its sampler asks for the nearest texel");
         if (!has_mapping_) {
             result_.mapping = mapping;
-            result_.material.wraps = wraps;
+            result_.material.sampler = sampler;
         }
         has_mapping_ = true;
-        if (mapping.key() != result_.mapping.key() || wraps != result_.material.wraps)
+        if (mapping.key() != result_.mapping.key() || sampler != result_.material.sampler)
             warnings_.add(what + " lies as the material's first texture does, not as the file says");
     }
 

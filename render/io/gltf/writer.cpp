@@ -306,21 +306,24 @@ private:
 
     void write_textures() {
         if (buffer_.image_count() == 0) return;
-        std::vector<scene::Wraps> samplers;
+        std::vector<scene::Sampler> samplers;
         json_.open_array("textures");
         for (const auto& [texture, own] : images_) {
             json_.open_object().number(own, "source");
-            const scene::Wraps& wraps = scene_.textures()[static_cast<std::size_t>(texture)].wraps;
-            if (wraps != scene::kRepeat) {
+            const scene::Sampler& sampler = scene_.textures()[static_cast<std::size_t>(texture)].sampler;
+            if (sampler != scene::Sampler()) {
                 json_.number(samplers.size(), "sampler");
-                samplers.push_back(wraps);
+                samplers.push_back(sampler);
             }
             json_.close();
         }
         json_.close();
         if (!samplers.empty()) json_.open_array("samplers");
-        for (const auto& [u, v] : samplers)
-            json_.open_object().number(gltf_wrap(u), "wrapS").number(gltf_wrap(v), "wrapT").close();
+        for (const scene::Sampler& sampler : samplers)
+            json_.open_object()
+                .number(gltf_wrap(sampler.wraps[0]), "wrapS")
+                .number(gltf_wrap(sampler.wraps[1]), "wrapT")
+                .close();
         if (!samplers.empty()) json_.close();
         json_.open_array("images");
         for (std::size_t i = 0; i < buffer_.image_count(); ++i)

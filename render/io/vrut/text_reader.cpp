@@ -187,7 +187,7 @@ private:
             {"image", [&] { material.image = tokens_.take_string("the image's file"); }},
             {"image-wrap",
              [&] {
-                 for (scene::Wrap& wrap : material.wraps) wrap = take_wrap();
+                 for (scene::Wrap& wrap : material.sampler.wraps) wrap = take_wrap();
              }},
             {"metallic-roughness",
              [&] {
@@ -457,7 +457,7 @@ private:
     /// Of textures that do not repeat, whole numbers make a difference.
     void put_back_where_needed(const scene::GeometryData& data) {
         if (data.geometry == scene::kNone || data.material == scene::kNone ||
-            parts_.materials[static_cast<std::size_t>(data.material)].wraps == scene::kRepeat)
+            parts_.materials[static_cast<std::size_t>(data.material)].sampler.repeats())
             return;
         const auto geometry = static_cast<std::size_t>(data.geometry);
         const glm::dvec2 taken_off = std::exchange(taken_off_[geometry], glm::dvec2(0));

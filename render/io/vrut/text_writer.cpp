@@ -107,11 +107,8 @@ private:
                     material.occlusion_roughness_metallic_image);
         write_image("normal-image", material.normal_texture, material.normal_image);
         if (material.normal_scale != 1) text("\n  normal-scale").number(material.normal_scale);
-        if (material.wraps != scene::kRepeat)
-            text("\n  image-wrap ")
-                .text(name_of(material.wraps[0]))
-                .text(" ")
-                .text(name_of(material.wraps[1]));
+        if (const auto& [u, v] = material.sampler.wraps; !material.sampler.repeats())
+            text("\n  image-wrap ").text(name_of(u)).text(" ").text(name_of(v));
         text("\nend\n");
     }
 
