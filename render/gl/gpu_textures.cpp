@@ -70,6 +70,8 @@ GlTexture make_texture_for(const TextureData& data) {
                                                largest.height, data.images.back().level + 1);
     glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_S, gl_wrap(data.sampler.wraps[0]));
     glTextureParameteri(texture.get(), GL_TEXTURE_WRAP_T, gl_wrap(data.sampler.wraps[1]));
+    if (data.sampler.magnification == scene::Magnification::nearest)
+        glTextureParameteri(texture.get(), GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     return texture;
 }
 

@@ -72,16 +72,9 @@ const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const sc
 }
 
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry) {
-    glm::dvec2 low(geometry.texcoords.front()), high = low;
-    for (const glm::dvec2 texcoord : geometry.texcoords) {
-        low = glm::min(low, texcoord);
-        high = glm::max(high, texcoord);
-    }
-    const glm::dvec2 origin = glm::floor((low + high) / 2.0);
     std::vector<glm::vec2> result;
     result.reserve(corners.size());
-    for (const unsigned corner : corners)
-        result.emplace_back(glm::dvec2(geometry.texcoords[corner]) - origin);
+    for (const unsigned corner : corners) result.push_back(geometry.texcoords[corner]);
     return result;
 }
 

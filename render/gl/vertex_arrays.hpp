@@ -25,8 +25,7 @@ VertexArrays make_arrays(const scene::Geometry& geometry, const glm::dvec3& orig
 
 const std::vector<glm::uvec3>& triangles_of(const VertexArrays& arrays, const scene::Geometry& geometry);
 
-/// Returns texture coordinates minus an integer offset, which a repeating texture does not show: float keeps
-/// more digits of the interpolated coordinates.
+/// Returns the texture coordinates of each vertex.
 std::vector<glm::vec2> texcoords_of(const std::vector<unsigned>& corners, const scene::Geometry& geometry);
 
 /// Returns the colour of each vertex.

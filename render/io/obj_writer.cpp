@@ -153,6 +153,8 @@ void report_lost_shading(const scene::Scene& scene, const scene::Material& mater
     warnings.add("a material's two-sided flag is lost");
     if (material.texture != scene::kNone && !material.sampler.repeats() && material.sampler.wraps != kClamped)
         warnings.add("a texture repeats where it was mirrored, or clamped in one direction");
+    if (material.texture != scene::kNone && material.sampler.magnification == scene::Magnification::nearest)
+        warnings.add("a texture's magnification by the nearest texel is lost");
     if (material.reflectivity > 0) warnings.add("a material's reflectivity is lost");
     if (material.emissive != glm::dvec3(0)) warnings.add("a material's emissive light is lost");
     if (has_holes(scene, material) && material.diffuse.a < 1)

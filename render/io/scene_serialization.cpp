@@ -205,6 +205,9 @@ void serialize(Stream& stream, scene::Sampler& sampler) {
         stream.integer(number, 0, 2);
         wrap = static_cast<scene::Wrap>(number);
     }
+    int magnification = static_cast<int>(sampler.magnification);
+    stream.integer(magnification, 0, 1);
+    sampler.magnification = static_cast<scene::Magnification>(magnification);
 }
 
 template <class Stream>

@@ -130,6 +130,9 @@ glm::dvec4 MipMap::sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>&
     const double texels = longer_side(change, glm::dvec2(width(0), height(0)));
     return trilinear(texels, levels(), [&](int level) {
         const int w = width(level), h = height(level);
+        if (level == 0 && sampler.magnification == scene::Magnification::nearest)
+            return texel(0, std::min(static_cast<int>(inside.x * w), w - 1),
+                         std::min(static_cast<int>(inside.y * h), h - 1));
         return BilinearFootprint(inside, w, h).mix([&](int x, int y) {
             return texel(level, wrapped(x, w, sampler.wraps[0]), wrapped(y, h, sampler.wraps[1]));
         });

@@ -23,7 +23,8 @@ public:
 
     /// Returns RGBA, 0 to 1, at `uv` ((0, 0) is the bottom left). `change` holds the derivatives of uv
     /// with respect to the pixel's x (right) and y (up). If the longer side of the pixel's footprint exceeds
-    /// one texel, filtering is trilinear between the two nearest levels, else bilinear in level 0.
+    /// one texel, filtering is trilinear between the two nearest levels, else bilinear in level 0. If the
+    /// sampler magnifies by the nearest texel, level 0 shows the texel in which `uv` lies instead.
     glm::dvec4 sample(const glm::dvec2& uv, const std::array<glm::dvec2, 2>& change,
                       const scene::Sampler& sampler) const;
 

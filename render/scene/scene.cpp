@@ -13,6 +13,10 @@ std::string_view name_of(Wrap wrap) {
     return wrap == Wrap::repeat ? "repeat" : wrap == Wrap::mirror ? "mirror" : "clamp";
 }
 
+std::string_view name_of(Magnification magnification) {
+    return magnification == Magnification::linear ? "linear" : "nearest";
+}
+
 std::string_view name_of(NodeType type) {
     switch (type) {
         case NodeType::assembly:

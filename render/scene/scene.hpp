@@ -33,9 +33,17 @@ enum class Wrap { repeat, mirror, clamp };
 /// The keyword of the scene text format.
 std::string_view name_of(Wrap wrap);
 
+/// What is seen of texels that are larger than pixels: a mix of the four around it, or the one in which it
+/// lies.
+enum class Magnification { linear, nearest };
+
+/// The keyword of the scene text format.
+std::string_view name_of(Magnification magnification);
+
 /// How the colour of an image is found at texture coordinates.
 struct Sampler {
     std::array<Wrap, 2> wraps{Wrap::repeat, Wrap::repeat};  ///< along u, and along v
+    Magnification magnification = Magnification::linear;
 
     auto operator<=>(const Sampler&) const = default;
     bool repeats() const { return wraps == Sampler().wraps; }

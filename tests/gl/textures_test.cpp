@@ -14,17 +14,19 @@ struct Board {
     glm::dvec2 scale{1}, offset{0};  ///< texcoord = position · scale + offset
     glm::dmat4 matrix{1};
     double half = 1000;
+    scene::Sampler sampler = {};
 };
 
 std::shared_ptr<const scene::PlacedScene> scene_of(const Board& board, const scene::Material& given = {}) {
     scene::SceneParts parts;
-    parts.textures = {{"board.png", board.image, false}};
+    parts.textures = {{"board.png", board.image, false, board.sampler}};
     scene::Geometry geometry = quad(board.half);
     for (const glm::dvec3& position : geometry.positions)
         geometry.texcoords.emplace_back(glm::dvec2(position) * board.scale + board.offset);
     parts.geometries = {geometry};
     parts.materials = {given};
     parts.materials[0].texture = 0;
+    parts.materials[0].sampler = board.sampler;
     parts.nodes = {{scene::Node{1,
                                 {},
                                 scene::NodeType::geometry,
@@ -106,6 +108,29 @@ TEST_CASE("magnified: bilinear, repeated in both directions") {
             const PictureMismatch off = check(board, pixel_view(96, 64), studio);
             CHECK_MESSAGE(off.worst <= 2, off.where);
         }
+}
+
+TEST_CASE(
+    "magnified by the nearest texel, beyond the edges of the picture, too; and a mix of levels where it is "
+    "minified") {
+    RendererFixture studio;
+    const auto wraps = {scene::Wrap::repeat, scene::Wrap::mirror, scene::Wrap::clamp};
+    for (const scene::Wrap wrap : wraps)
+        for (const glm::ivec2 size : kSizes)
+            for (const double texel : {0.8, 1.7, 8.0, 33.3}) {
+                CAPTURE(wrap);
+                CAPTURE(size.x);
+                CAPTURE(size.y);
+                CAPTURE(texel);
+                const Board board{noise(size.x, size.y),
+                                  1.0 / (glm::dvec2(size) * texel),
+                                  {0.301, -0.903},
+                                  glm::dmat4(1),
+                                  1000,
+                                  {{wrap, wrap}, scene::Magnification::nearest}};
+                const PictureMismatch off = check(board, pixel_view(96, 64), studio);
+                CHECK_MESSAGE(off.worst <= 2, off.where);
+            }
 }
 
 TEST_CASE("minified: trilinear at the level of the pixel's longer side") {

@@ -22,7 +22,7 @@ material 3 "Paint" ambient 0.02 0.01 0 1 diffuse 0.6 0.02 0.03 0.5 specular 0.8 
   emission 0.1 0.2 0.3 1 shininess 64 reflectivity 0.25 two-sided 1 image "red.png"
   emissive 0.5 0 2 emissive-image "red.png"
   metallic-roughness 0.25 0.5 clear-coat 0.75 occlusion-roughness-metallic-image "red.png"
-  normal-image "a.png" normal-scale 0.5 image-wrap clamp mirror end
+  normal-image "a.png" normal-scale 0.5 image-wrap clamp mirror image-magnification nearest end
 material 12 "Grey" image "no such.png" end
 geometry 7 vertices 4 0 0 0  1 0 0  0 1 0  1 1 -0.25 normals 4 0 0 1  0 0 1  0 0 1  0 1 0
   texcoords 4 0 0  1 0  0 1  1.5 -2 colors 4 1 0 0  0 0.5 0  0 0 1  1 1 1 triangles 2 0 1 2  2 1 3 end

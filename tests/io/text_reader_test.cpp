@@ -21,7 +21,7 @@ material 3 "Paint \"red\" \\ #1"
   emissive 0.5 0 2   emissive-image "textures/glow.png"
   metallic-roughness 0.25 0.5   clear-coat 0.75   occlusion-roughness-metallic-image "textures/worn.png"
   normal-image "textures/leather.png"   normal-scale 0.5
-  image "textures/plate.png"   image-wrap mirror clamp
+  image "textures/plate.png"   image-wrap mirror clamp   image-magnification nearest
 end
 geometry 7
   triangles 2  0 1 2  2 1 3
@@ -97,7 +97,8 @@ TEST_CASE("materials, geometries and the file's own facts") {
     CHECK(paint.occlusion_roughness_metallic_image == "textures/worn.png");
     CHECK(paint.normal_image == "textures/leather.png");
     CHECK(paint.normal_scale == 0.5);
-    CHECK(paint.sampler == scene::Sampler{{scene::Wrap::mirror, scene::Wrap::clamp}});
+    CHECK(paint.sampler ==
+          scene::Sampler{{scene::Wrap::mirror, scene::Wrap::clamp}, scene::Magnification::nearest});
     const scene::Material& grey = scene.materials()[1];
     CHECK(grey.sampler == scene::Sampler());
     CHECK(grey.ambient == glm::dvec4(0, 0, 0, 1));
@@ -345,6 +346,8 @@ TEST_CASE("what is malformed is refused with file, line and what was expected") 
         {h + "material 9007199254740992 \"x\" end", 2, "the material's id"},
         {h + "material 1 \"x\" image-wrap clamp tile end", 2,
          "expected repeat, mirror or clamp, found 'tile'"},
+        {h + "material 1 \"x\" image-magnification sharp end", 2,
+         "expected linear or nearest, found 'sharp'"},
         {h + "material 1 x end", 2, "the material's name in quotes, found 'x'"},
         {h + "material 1 \"x\" shininess 1\nshininess 2 end", 3, "'shininess' once in material 1"},
         {h + "material 1 \"x\" end\nmaterial 1 \"y\" end", 3, "each material once, found 1 twice"},

@@ -170,6 +170,7 @@ private:
         result.normal_scale = coin() ? 1 : number(1e6);
         for (scene::Wrap& wrap : result.sampler.wraps)
             wrap = coin() ? scene::Wrap::repeat : coin() ? scene::Wrap::mirror : scene::Wrap::clamp;
+        if (coin()) result.sampler.magnification = scene::Magnification::nearest;
         return result;
     }
 

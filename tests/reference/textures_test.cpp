@@ -112,6 +112,30 @@ TEST_CASE("magnified it is bilinear, and repeats") {
     CHECK(map.sample({std::nan(""), 1e300}, kMagnified, scene::Sampler()).a == 1);
 }
 
+TEST_CASE("by the nearest texel it is magnified without mixing, and so is its share between two levels") {
+    const reference::MipMap map(image_of_grays(2, 1, {0, 200}));
+    scene::Sampler sampler;
+    sampler.magnification = scene::Magnification::nearest;
+    const auto gray_at = [&](double u, const std::array<glm::dvec2, 2>& change) {
+        return map.sample({u, 0.3}, change, sampler).r * 255;
+    };
+    CHECK(gray_at(1.0 / 16, kMagnified) == 0);
+    CHECK(gray_at(0.49, kMagnified) == 0);
+    CHECK(gray_at(0.51, kMagnified) == doctest::Approx(200));
+    CHECK(gray_at(-0.01, kMagnified) == doctest::Approx(200));  // repeats
+    CHECK(gray_at(std::nan(""), kMagnified) == 0);
+    // Level 1 is the mean. A pixel is √2 texels long: half of each level.
+    const std::array<glm::dvec2, 2> shrunk{{{std::sqrt(2.0) / 2, 0}, {0, 0}}};
+    CHECK(gray_at(0.51, shrunk) == doctest::Approx((200 + 100) / 2.0));
+    sampler.wraps = {scene::Wrap::mirror, scene::Wrap::clamp};
+    CHECK(gray_at(1.25, kMagnified) == doctest::Approx(200));
+    CHECK(gray_at(1.75, kMagnified) == 0);
+    CHECK(gray_at(2.0, kMagnified) == 0);
+    sampler.wraps = {scene::Wrap::clamp, scene::Wrap::clamp};
+    CHECK(gray_at(1.0, kMagnified) == doctest::Approx(200));
+    CHECK(gray_at(-3, kMagnified) == 0);
+}
+
 TEST_CASE("each level is a box filter of the one before, weighted by area") {
     const reference::MipMap five(image_of_grays(5, 1, {10, 20, 40, 80, 160}));
     REQUIRE(five.levels() == 3);

@@ -1,6 +1,6 @@
 // Textures of upload_texture() and upload_cube_map(), for fragment shaders. Bilinear where a pixel is smaller than a
 // texel, else trilinear at the level log2 of the pixel's longer side in texels. Drivers approximate that level, and the
-// mixing of two; so both are computed here.
+// mixing of two; so both are computed here. At level 0 the texture's own magnification counts.
 
 // Of a pixel whose sides, in texels, are these.
 float mip_level(vec3 across, vec3 up) { return 0.5 * log2(max(max(dot(across, across), dot(up, up)), 1)); }

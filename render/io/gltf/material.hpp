@@ -13,6 +13,7 @@ inline constexpr double kGltfDielectric = 0.22;
 
 /// A sampler's modes beyond the edges of an image, those of OpenGL.
 inline constexpr std::uint64_t kGltfRepeat = 10497, kGltfMirror = 33648, kGltfClamp = 33071;
+/// How it magnifies.
 inline constexpr std::uint64_t kGltfNearest = 9728, kGltfLinear = 9729;
 
 /// The factors of a glTF material; colours are linear, 0 to 1.

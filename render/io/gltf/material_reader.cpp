@@ -193,9 +193,10 @@ private:
     void add_mapping(const GltfJson& info, const std::string& what) {
         const GltfTextureMapping mapping = mapping_of(info);
         const GltfJson& from = sampler_of(info);
-        const scene::Sampler sampler{{wrap_in(from, "wrapS"), wrap_in(from, "wrapT")}};
-        if (size_in(from, "magFilter", kGltfLinear) == kGltfNearest)
-            warnings_.add("a texture is filtered, although its sampler asks for the nearest texel");
+        const scene::Sampler sampler{{wrap_in(from, "wrapS"), wrap_in(from, "wrapT")},
+                                     size_in(from, "magFilter", kGltfLinear) == kGltfNearest
+                                         ? scene::Magnification::nearest
+                                         : scene::Magnification::linear};
         if (!has_mapping_) {
             result_.mapping = mapping;
             result_.material.sampler = sampler;

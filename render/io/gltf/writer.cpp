@@ -319,11 +319,14 @@ private:
         }
         json_.close();
         if (!samplers.empty()) json_.open_array("samplers");
-        for (const scene::Sampler& sampler : samplers)
+        for (const scene::Sampler& sampler : samplers) {
             json_.open_object()
                 .number(gltf_wrap(sampler.wraps[0]), "wrapS")
-                .number(gltf_wrap(sampler.wraps[1]), "wrapT")
-                .close();
+                .number(gltf_wrap(sampler.wraps[1]), "wrapT");
+            if (sampler.magnification == scene::Magnification::nearest)
+                json_.number(kGltfNearest, "magFilter");
+            json_.close();
+        }
         if (!samplers.empty()) json_.close();
         json_.open_array("images");
         for (std::size_t i = 0; i < buffer_.image_count(); ++i)

@@ -165,6 +165,14 @@ private:
         throw ParseError(line, "expected repeat, mirror or clamp, found '" + excerpt(word) + "'");
     }
 
+    scene::Magnification take_magnification() {
+        const std::size_t line = tokens_.line();
+        const std::string_view word = tokens_.take_word("linear or nearest");
+        for (const auto magnification : {scene::Magnification::linear, scene::Magnification::nearest})
+            if (word == name_of(magnification)) return magnification;
+        throw ParseError(line, "expected linear or nearest, found '" + excerpt(word) + "'");
+    }
+
     void read_material(std::size_t line) {
         scene::Material material;
         material.id = take_id("the material's id");
@@ -189,6 +197,7 @@ private:
              [&] {
                  for (scene::Wrap& wrap : material.sampler.wraps) wrap = take_wrap();
              }},
+            {"image-magnification", [&] { material.sampler.magnification = take_magnification(); }},
             {"metallic-roughness",
              [&] {
                  metallic_roughness(material).metallic = tokens_.take_number("metallic", 0, 1);

@@ -109,6 +109,9 @@ private:
         if (material.normal_scale != 1) text("\n  normal-scale").number(material.normal_scale);
         if (const auto& [u, v] = material.sampler.wraps; !material.sampler.repeats())
             text("\n  image-wrap ").text(name_of(u)).text(" ").text(name_of(v));
+        if (const auto magnification = material.sampler.magnification;
+            magnification != scene::Magnification::linear)
+            text("\n  image-magnification ").text(name_of(magnification));
         text("\nend\n");
     }
 
