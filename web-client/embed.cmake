@@ -1,5 +1,5 @@
 # Writes OUT, a C++ source with the table of page_files.hpp: what ESBUILD makes of app.js, of all that it imports and of
-# style.css in FOLDER, and the other FILES (separated by commas) as they are.
+# the style sheets in FOLDER, and the other FILES (separated by commas) as they are.
 # The references of index.html are changed to lead to the folder named by content, and a modulepreload is added for
 # each file that app.js imports at once. Those that are loaded when they are needed (`import('…')`) have none.
 cmake_minimum_required(VERSION 3.25)
@@ -14,7 +14,7 @@ string(REPLACE "," ";" files "${FILES}")
 cmake_path(REMOVE_EXTENSION OUT LAST_ONLY OUTPUT_VARIABLE bundle)
 file(REMOVE_RECURSE ${bundle})
 execute_process(
-    COMMAND ${ESBUILD} app.js style.css --bundle --splitting --format=esm --minify --charset=utf8 --log-level=warning
+    COMMAND ${ESBUILD} app.js style.css trust.css --bundle --splitting --format=esm --minify --charset=utf8 --log-level=warning
             --chunk-names=[name]-[hash] --outdir=${bundle} --metafile=${bundle}.json
     WORKING_DIRECTORY ${FOLDER} COMMAND_ERROR_IS_FATAL ANY)
 file(GLOB bundled RELATIVE ${bundle} ${bundle}/*)

@@ -12,6 +12,8 @@
 
 namespace vrut::server::net {
 
+namespace asio = boost::asio;
+
 namespace {
 
 bool is_numeric(const std::string& host) {
@@ -40,6 +42,11 @@ ListenAddress parse_listen_address(std::string_view text) {
 
 bool is_loopback(const std::string& host) { return host == "::1" || host.starts_with("127."); }
 
+bool is_loopback(const asio::ip::address& address) {
+    return address.is_loopback() || (address.is_v6() && address.to_v6().is_v4_mapped() &&
+                                     make_address_v4(asio::ip::v4_mapped, address.to_v6()).is_loopback());
+}
+
 bool is_any(const std::string& host) { return host == "0.0.0.0" || host == "::"; }
 
 std::vector<std::string> network_addresses() {
@@ -64,9 +71,9 @@ std::vector<std::string> page_hosts(const std::string& listen) {
     return hosts;
 }
 
-std::string page_address(const std::string& host, std::uint16_t port) {
+std::string page_address(const std::string& host, std::uint16_t port, bool secure) {
     const std::string name = host.find(':') == std::string::npos ? host : "[" + host + "]";
-    return "http://" + name + ":" + std::to_string(port) + "/";
+    return (secure ? "https://" : "http://") + name + ":" + std::to_string(port) + "/";
 }
 
 bool names_loopback(std::string_view host) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/asio/ip/address.hpp>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct ListenAddress {
 ListenAddress parse_listen_address(std::string_view text);
 
 bool is_loopback(const std::string& host);
+bool is_loopback(const boost::asio::ip::address& address);
 /// "0.0.0.0" or "::".
 bool is_any(const std::string& host);
 /// Numeric IPv4 addresses under which others reach this machine, as its interfaces say.
@@ -23,8 +25,8 @@ std::vector<std::string> network_addresses();
 
 /// Hosts under which the page is reached where the server listens at `listen`, the best one first.
 std::vector<std::string> page_hosts(const std::string& listen);
-/// "http://HOST:PORT/".
-std::string page_address(const std::string& host, std::uint16_t port);
+/// "http://HOST:PORT/", or with "https:".
+std::string page_address(const std::string& host, std::uint16_t port, bool secure);
 /// True if a request's host, with or without a port, is the loopback interface: "localhost:8080".
 bool names_loopback(std::string_view host);
 /// RFC 3986: all but unreserved characters as %XX.

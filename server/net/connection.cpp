@@ -66,8 +66,8 @@ const char* reason_of(const protocol::Error& error, close_code code) {
 
 }  // namespace
 
-Connection::Connection(Stream stream, ConnectionLimit::Place place, ConnectionRegistry& registry)
-    : socket_(std::move(stream)),
+Connection::Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry)
+    : socket_(std::move(transport)),
       registry_(registry),
       hello_deadline_(socket_.get_executor()),
       deadline_timer_(socket_.get_executor()),
@@ -84,7 +84,8 @@ Connection::~Connection() { registry_.connections.erase(this); }
 
 void Connection::accept(const HttpRequest& request) {
     Stream& stream = beast::get_lowest_layer(socket_);
-    stream.expires_never();  // from here on the WebSocket's own deadlines hold
+    stream.expires_never();        // from here on the WebSocket's own deadlines hold
+    traffic().unfinished.reset();  // that was the request
     beast::error_code ignored;
     stream.socket().set_option(boost::asio::ip::tcp::no_delay(true), ignored);
     stream.socket().set_option(boost::asio::socket_base::send_buffer_size(kSendBuffer), ignored);

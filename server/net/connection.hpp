@@ -14,7 +14,7 @@
 #include "net/flow_control.hpp"
 #include "net/http_request.hpp"
 #include "net/registry.hpp"
-#include "net/traffic.hpp"
+#include "net/transport.hpp"
 
 namespace vrut::server::net {
 
@@ -26,7 +26,7 @@ inline constexpr int kLeastRate = 1000;
 /// wait, nothing is read.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-    Connection(Stream stream, ConnectionLimit::Place place, ConnectionRegistry& registry);
+    Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -93,7 +93,7 @@ private:
     std::size_t sending() const;
     bool takes_too_little(base::Clock::time_point now);
 
-    boost::beast::websocket::stream<Stream, false> socket_;
+    boost::beast::websocket::stream<Transport, false> socket_;
     ConnectionRegistry& registry_;
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, deadline_timer_, rate_timer_, flow_timer_;

@@ -1,5 +1,7 @@
 #include "net/http_connection.hpp"
 
+#include <sys/socket.h>
+
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -9,6 +11,7 @@
 #include <optional>
 
 #include "codec.hpp"
+#include "net/addresses.hpp"
 #include "net/connection.hpp"
 #include "net/http_request.hpp"
 #include "net/http_response.hpp"
@@ -90,9 +93,21 @@ std::optional<HttpResponse> turned_away(const HttpRequest& request, const Access
     return std::nullopt;
 }
 
+/// How to trust the certificates of a server with an authority of its own, and that authority's.
+std::optional<HttpResponse> trust_response(const HttpRequest& request, std::string_view path,
+                                           const ConnectionRegistry& registry) {
+    const CertificateAuthority* const authority = registry.tls ? registry.tls->authority() : nullptr;
+    if (authority && path == "/trust") return page_response(request, "/trust.html");
+    if (authority && path == "/authority.crt")
+        return HttpResponse{http::status::ok, "application/x-x509-ca-cert",
+                            std::make_shared<const std::string>(authority->certificate())};
+    return std::nullopt;
+}
+
 HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& registry) {
     const std::string_view path = path_of(request);
     if (auto file = page_response(request, path)) return *std::move(file);
+    if (auto page = trust_response(request, path, registry)) return *std::move(page);
     if (path == "/ws")
         return rejection(http::status::upgrade_required,
                          "this address is for WebSockets of version 13: send their handshake");
@@ -117,11 +132,25 @@ HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& regis
     return rejection(http::status::not_found, "there is nothing at this address: the page is at /");
 }
 
+/// What is served to who comes without TLS where there is TLS, and not from this machine: how to trust the
+/// server's certificates, and what that page needs. Else the same address of HTTPS.
+HttpResponse respond_insecurely(const HttpRequest& request, const ConnectionRegistry& registry) {
+    const std::string_view path = path_of(request);
+    if (path != "/" && path != "/index.html")
+        if (auto file = page_response(request, path)) return *std::move(file);
+    if (auto page = trust_response(request, path, registry)) return *std::move(page);
+    const std::string_view host = view(request[http::field::host]);
+    HttpResponse response =
+        rejection(http::status::permanent_redirect, "this server speaks HTTPS with other devices");
+    response.fields = "Location: https://" + std::string(host) + std::string(view(request.target())) + "\r\n";
+    return response;
+}
+
 /// One connection. A request is answered before the next is read, and none that cannot be trusted is followed
 /// by another.
 class HttpConnection : public std::enable_shared_from_this<HttpConnection> {
 public:
-    HttpConnection(asio::ip::tcp::socket socket, ConnectionLimit::Place place, ConnectionRegistry& registry)
+    HttpConnection(Transport socket, ConnectionLimit::Place place, ConnectionRegistry& registry)
         : socket_(std::move(socket)),
           place_(std::move(place)),
           deadline_timer_(socket_.get_executor()),
@@ -129,13 +158,45 @@ public:
 
     void start() {
         beast::error_code ignored;
-        socket_.set_option(asio::ip::tcp::no_delay(true), ignored);
+        tcp().set_option(asio::ip::tcp::no_delay(true), ignored);
         expire_after(registry_.deadlines.request);
         poll_deadline();
+        if (registry_.tls) return wait_for_first_byte();
         read();
     }
 
 private:
+    asio::ip::tcp::socket& tcp() { return socket_.next_layer().socket(); }
+
+    // --- TLS or not
+
+    void wait_for_first_byte() {
+        tcp().async_wait(asio::ip::tcp::socket::wait_read,
+                         [self = shared_from_this()](beast::error_code error) {
+                             if (!error) self->look_at_first_byte();
+                         });
+    }
+
+    void look_at_first_byte() {
+        constexpr unsigned char kHandshake = 22;  // RFC 8446, 5.1
+        unsigned char first = 0;
+        if (::recv(tcp().native_handle(), &first, 1, MSG_PEEK | MSG_DONTWAIT) != 1) return;
+        beast::error_code gone;
+        const auto local = tcp().local_endpoint(gone).address();
+        const auto peer = tcp().remote_endpoint(gone).address();
+        if (gone) return;
+        if (first != kHandshake) {
+            is_insecure_ = !is_loopback(peer);
+            return read();
+        }
+        socket_.async_secure(registry_.tls->context_for(local),
+                             [self = shared_from_this()](beast::error_code error) {
+                                 if (!error) return self->read();
+                                 ++self->registry_.metrics->tls_handshakes_failed;
+                                 observe::log_info("tls_failed", {{"reason", error.message()}});
+                             });
+    }
+
     // --- reading
 
     void next() {
@@ -175,6 +236,7 @@ private:
         head_only_ = request.method() == http::verb::head;
         host_ = std::string(view(request[http::field::host]));
         if (auto response = turned_away(request, registry_.access)) return send(*std::move(response));
+        if (is_insecure_) return send(respond_insecurely(request, registry_));
         if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request) &&
             view(request[http::field::sec_websocket_version]) == "13")
             return open_websocket(request);
@@ -233,8 +295,7 @@ private:
         }
         if (registry_.stopping) return;
         deadline_timer_.cancel();
-        std::make_shared<Connection>(Stream(std::move(socket_)), std::move(place_), registry_)
-            ->accept(request);
+        std::make_shared<Connection>(std::move(socket_), std::move(place_), registry_)->accept(request);
     }
 
     // --- writing
@@ -254,19 +315,17 @@ private:
                 self->expire_after(self->keep_alive_ ? self->registry_.deadlines.request : kForEnd);
                 self->answered_ = true;
                 if (self->keep_alive_) return self->next();
-                beast::error_code ignored;
-                self->socket_.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-                self->drain();
+                self->socket_.async_end_sending([self] { self->drain(); });
             });
     }
 
     /// Closing with bytes unread would take the last answer away from the peer.
     void drain() {
         incoming_.clear();
-        socket_.async_read_some(incoming_.prepare(kMaxRequest),
-                                [self = shared_from_this()](beast::error_code error, std::size_t) {
-                                    if (!error) self->drain();
-                                });
+        tcp().async_read_some(incoming_.prepare(kMaxRequest),
+                              [self = shared_from_this()](beast::error_code error, std::size_t) {
+                                  if (!error) self->drain();
+                              });
     }
 
     // --- deadlines
@@ -280,18 +339,17 @@ private:
             const auto self = weak.lock();
             if (stopped || !self) return;
             if (base::Clock::now() < self->deadline_) return self->poll_deadline();
-            beast::error_code ignored;
-            self->socket_.close(ignored);
+            self->socket_.next_layer().close();
         });
     }
 
-    asio::ip::tcp::socket socket_;
+    Transport socket_;
     ConnectionLimit::Place place_;
     asio::steady_timer deadline_timer_;
     base::Clock::time_point deadline_;
     ConnectionRegistry& registry_;
     beast::flat_buffer incoming_{kMaxRequest};
-    bool keep_alive_ = false, head_only_ = false, answered_ = false;
+    bool keep_alive_ = false, head_only_ = false, answered_ = false, is_insecure_ = false;
     std::string host_, head_;
     std::shared_ptr<const std::string> body_;
 };
@@ -299,7 +357,7 @@ private:
 }  // namespace
 
 void serve_http(asio::ip::tcp::socket socket, ConnectionLimit::Place place, ConnectionRegistry& registry) {
-    std::make_shared<HttpConnection>(std::move(socket), std::move(place), registry)->start();
+    std::make_shared<HttpConnection>(Transport(std::move(socket)), std::move(place), registry)->start();
 }
 
 void reject_connection(asio::ip::tcp::socket socket) {

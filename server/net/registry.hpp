@@ -12,6 +12,7 @@
 #include "net/connection_limit.hpp"
 #include "net/deadlines.hpp"
 #include "net/document_updates.hpp"
+#include "net/tls.hpp"
 #include "net/view_pictures.hpp"
 #include "observe/metrics.hpp"
 
@@ -25,6 +26,7 @@ struct ConnectionRegistry {
     std::size_t max_clients = 64;
     std::chrono::milliseconds longest_busy{30'000};  ///< of a loop that has something to do
     Deadlines deadlines;
+    std::shared_ptr<Tls> tls;              ///< null: none
     std::optional<ConnectionLimit> limit;  ///< of connections of any kind
     observe::Metrics* metrics = nullptr;
     engine::Engine* engine = nullptr;

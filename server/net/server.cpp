@@ -31,6 +31,7 @@ struct Server::Impl {
         listen();
         limit_connections();
         registry.access = options.access;
+        registry.tls = options.tls;
         registry.max_clients = options.max_clients;
         registry.longest_busy = options.longest_busy;
         registry.deadlines = options.deadlines;
@@ -48,9 +49,10 @@ struct Server::Impl {
                 stop();
             });
         };
-        engine::EngineOptions engine_options{
-            std::move(scene), options.library, options.record_folder, options.keep_changes,
-            share_address(options.listen, acceptor.local_endpoint().port(), options.access)};
+        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder,
+                                             options.keep_changes,
+                                             share_address(options.listen, acceptor.local_endpoint().port(),
+                                                           options.tls != nullptr, options.access)};
         engine = std::make_unique<engine::Engine>(std::move(engine_options), renderer, metrics,
                                                   std::move(callbacks));
         registry.engine = engine.get();
@@ -107,7 +109,7 @@ struct Server::Impl {
         if (gone) return;
         if (auto place = registry.limit->enter(peer.address()))
             serve_http(std::move(socket), *std::move(place), registry);
-        else
+        else if (!options.tls)
             reject_connection(std::move(socket));
     }
 

@@ -10,6 +10,7 @@
 #include "net/access.hpp"
 #include "net/addresses.hpp"
 #include "net/deadlines.hpp"
+#include "net/tls.hpp"
 #include "scenes/library.hpp"
 
 namespace vrut::server::observe {
@@ -21,6 +22,8 @@ namespace vrut::server::net {
 struct ServerOptions {
     ListenAddress listen{"127.0.0.1", 8080};
     Access access;
+    /// Clients may speak TLS, and those that are not on this machine must. Null: none may.
+    std::shared_ptr<Tls> tls = nullptr;
     std::size_t max_clients = 64;
     Deadlines deadlines{};
     scenes::SceneLibrary library{};

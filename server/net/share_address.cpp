@@ -22,8 +22,9 @@ std::string_view host_of(std::string_view address) {
 
 }  // namespace
 
-room::ShareAddress share_address(const ListenAddress& listen, std::uint16_t port, const Access& access) {
-    return [host = listen.host, port,
+room::ShareAddress share_address(const ListenAddress& listen, std::uint16_t port, bool secure,
+                                 const Access& access) {
+    return [host = listen.host, port, secure,
             access](std::string page) -> tl::expected<protocol::SharedAddress, protocol::Error> {
         if (!page.empty() && host_of(page).empty())
             return tl::unexpected(
@@ -31,7 +32,7 @@ room::ShareAddress share_address(const ListenAddress& listen, std::uint16_t port
         if (access.needs_token() && access.view_token.empty())
             return tl::unexpected(
                 protocol::Error{{}, code::failed, "the server has no token for those who only watch"});
-        const std::string own = page_address(page_hosts(host).front(), port);
+        const std::string own = page_address(page_hosts(host).front(), port, secure);
         if (page.empty() || (names_loopback(host_of(page)) && !names_loopback(host_of(own)))) page = own;
         protocol::SharedAddress shared;
         shared.loopback = names_loopback(host_of(page));

@@ -88,6 +88,8 @@ void add_clients(Exposition& to, const Metrics& metrics) {
              metrics.connections_opened - closed);
     to.counter("connections_opened_total", "WebSocket connections ever.", metrics.connections_opened);
     to.words("counter", "closes_total", "reason", "WebSocket connections that ended.", metrics.closes);
+    to.counter("tls_handshakes_failed_total", "TLS handshakes that did not come to their end.",
+               metrics.tls_handshakes_failed);
     to.counter("messages_received_total", "Messages that clients sent.", metrics.messages_received);
     to.counter("received_bytes_total", "Bytes of messages that clients sent.", metrics.bytes_received);
     to.words("counter", "errors_total", "code", "Messages answered by an error.", metrics.errors);

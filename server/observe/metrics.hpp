@@ -65,6 +65,7 @@ inline constexpr std::array kCloseReasons{"normal",    "handshake", "hello",    
 struct Metrics {
     Counters<kRoles> clients;  ///< connected now
     Counter clients_joined{0}, clients_left{0};
+    Counter tls_handshakes_failed{0};
     Counter connections_opened{0};  ///< WebSocket connections, also those without a `hello`
     Counters<kCloseReasons> closes;
     Counter messages_received{0}, bytes_received{0};

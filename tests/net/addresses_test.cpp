@@ -20,14 +20,18 @@ TEST_CASE("which addresses are whose") {
     CHECK(is_loopback("127.0.0.1"));
     CHECK(is_loopback("::1"));
     CHECK_FALSE(is_loopback("0.0.0.0"));
+    for (const char* address : {"127.0.0.1", "127.9.9.9", "::1", "::ffff:127.0.0.1"})
+        CHECK_MESSAGE(is_loopback(boost::asio::ip::make_address(address)), address);
+    for (const char* address : {"192.0.2.7", "::ffff:192.0.2.7", "fe80::1"})
+        CHECK_FALSE_MESSAGE(is_loopback(boost::asio::ip::make_address(address)), address);
     CHECK(is_any("0.0.0.0"));
     CHECK(is_any("::"));
     for (const std::string& address : network_addresses()) CHECK_FALSE(is_loopback(address));
 }
 
 TEST_CASE("the addresses of a page") {
-    CHECK(page_address("192.0.2.7", 80) == "http://192.0.2.7:80/");
-    CHECK(page_address("::1", 8080) == "http://[::1]:8080/");
+    CHECK(page_address("192.0.2.7", 80, false) == "http://192.0.2.7:80/");
+    CHECK(page_address("::1", 8080, true) == "https://[::1]:8080/");
     CHECK(page_hosts("192.0.2.7") == std::vector<std::string>{"192.0.2.7"});
     CHECK_FALSE(page_hosts("0.0.0.0").empty());
     CHECK_FALSE(is_any(page_hosts("0.0.0.0").front()));

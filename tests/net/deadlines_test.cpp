@@ -15,8 +15,16 @@ using std::chrono::steady_clock;
 
 namespace {
 
-ServerOptions with(const Deadlines& deadlines) {
-    ServerOptions options;
+/// Each in turn.
+Over tcp_and_tls() {
+    Over over = Over::tcp;
+    SUBCASE("") {}
+    SUBCASE("by TLS") { over = Over::tls; }
+    return over;
+}
+
+ServerOptions with(const Deadlines& deadlines, Over over = Over::tcp) {
+    ServerOptions options = over == Over::tls ? with_tls() : ServerOptions();
     options.deadlines = deadlines;
     return options;
 }
@@ -48,24 +56,26 @@ const std::string kGet = "GET /healthz HTTP/1.1\r\nHost: 127.0.0.1\r\n";
 }  // namespace
 
 TEST_CASE("a request that trickles in is cut, and the next on its connection as well") {
-    TestServer server({}, with({.request = 1s}));
-    RawConnection slow(server.port());
+    const Over over = tcp_and_tls();
+    TestServer server({}, with({.request = 1s}, over));
+    RawConnection slow(server.port(), over);
     const auto took = trickle(slow, kGet + "X: " + std::string(1000, 'x'));
     CHECK(took > 500ms);
     CHECK(took < 10s);
-    RawConnection second(server.port());
+    RawConnection second(server.port(), over);
     second.send(kGet + "\r\n");
     CHECK(second.answer().status == 200);
     CHECK(trickle(second, kGet + "X: " + std::string(1000, 'x')) < 10s);
-    RawConnection idle(server.port());
+    RawConnection idle(server.port(), over);
     CHECK(idle.ended(10s));
     CHECK(http(server.port(), "GET", "/healthz").status == 200);
 }
 
 TEST_CASE("a hello that trickles in is cut like one that does not come") {
-    TestServer server({}, with({.hello = 1s}));
+    const Over over = tcp_and_tls();
+    TestServer server({}, with({.hello = 1s}, over));
     for (const bool trickles : {true, false}) {
-        RawWebSocket client(server.port());
+        RawWebSocket client(server.port(), {}, over);
         REQUIRE(client.handshake.status == 101);
         const std::string hello = frame(kFinal | kText, R"({"type":"hello","role":"view"})");
         client.connection.send(trickles ? hello.substr(0, hello.size() / 2) : "");

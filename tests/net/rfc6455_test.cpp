@@ -225,11 +225,11 @@ int end_of(RawWebSocket& client, std::vector<std::string>& pongs) {
     return 1006;
 }
 
-void check(const std::vector<Case>& cases) {
-    TestServer server;
+void check(const std::vector<Case>& cases, Over over) {
+    TestServer server({}, over == Over::tls ? with_tls() : server::net::ServerOptions());
     for (const Case& each : cases) {
         CAPTURE(each.what);
-        RawWebSocket client(server.port());
+        RawWebSocket client(server.port(), {}, over);
         client.join();
         client.connection.send(each.bytes);
         if (each.ends[0] == kGoesOn) client.connection.send(text(R"({"type":"tree","id":99})"));
@@ -246,11 +246,15 @@ void check(const std::vector<Case>& cases) {
 
 }  // namespace
 
-TEST_CASE("RFC 6455: framing, masks, lengths, reserved bits and opcodes") { check(framing()); }
-TEST_CASE("RFC 6455: fragments, with control frames between them") { check(fragmentation()); }
-TEST_CASE("RFC 6455: pings and pongs") { check(pings()); }
-TEST_CASE("RFC 6455: UTF-8, whole and cut by fragments") { check(encoding()); }
-TEST_CASE("RFC 6455: ends of a connection") { check(closes()); }
+TEST_CASE("RFC 6455: framing, masks, lengths, reserved bits and opcodes") { check(framing(), Over::tcp); }
+TEST_CASE("RFC 6455: fragments, with control frames between them") { check(fragmentation(), Over::tcp); }
+TEST_CASE("RFC 6455: pings and pongs") { check(pings(), Over::tcp); }
+TEST_CASE("RFC 6455: UTF-8, whole and cut by fragments") { check(encoding(), Over::tcp); }
+TEST_CASE("RFC 6455: ends of a connection") { check(closes(), Over::tcp); }
+TEST_CASE("RFC 6455: all of that by TLS") {
+    for (const auto& cases : {framing(), fragmentation(), pings(), encoding(), closes()})
+        check(cases, Over::tls);
+}
 
 TEST_CASE("RFC 6455: bytes that come one by one are the same messages") {
     TestServer server;

@@ -16,8 +16,9 @@ Access tokens() {
     return access;
 }
 
-protocol::SharedAddress shared(const std::string& listen, const Access& access, const std::string& page) {
-    const auto result = share_address({listen, 0}, 8080, access)(page);
+protocol::SharedAddress shared(const std::string& listen, const Access& access, const std::string& page,
+                               bool secure = false) {
+    const auto result = share_address({listen, 0}, 8080, secure, access)(page);
     REQUIRE_MESSAGE(result.has_value(), result.error().message);
     return *result;
 }
@@ -38,6 +39,7 @@ TEST_CASE("a page that was opened on the server's own machine is shared by its a
         const auto told = shared("192.0.2.7", tokens(), page);
         CHECK(told.address.starts_with("http://192.0.2.7:8080/#watch&token="));
         CHECK_FALSE(told.loopback);
+        CHECK(shared("192.0.2.7", tokens(), page, true).address.starts_with("https://192.0.2.7:8080/#"));
     }
 }
 
@@ -59,7 +61,7 @@ TEST_CASE("the QR code is that of the address") {
 
 TEST_CASE("what is no address, and a server whose only token lets steer, are refused") {
     const auto code = [](const Access& access, const std::string& page) {
-        const auto result = share_address({"127.0.0.1", 0}, 8080, access)(page);
+        const auto result = share_address({"127.0.0.1", 0}, 8080, false, access)(page);
         return result ? "" : result.error().code;
     };
     for (const char* page :

@@ -27,7 +27,8 @@ std::string frame(int first, const std::string& payload) {
     return bytes;
 }
 
-RawWebSocket::RawWebSocket(std::uint16_t port, const std::string& fields) : connection(port) {
+RawWebSocket::RawWebSocket(std::uint16_t port, const std::string& fields, Over over)
+    : connection(port, over) {
     connection.send(
         "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n"
         "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +

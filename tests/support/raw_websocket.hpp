@@ -22,7 +22,7 @@ struct Frame {
 /// A WebSocket of which a test sees and sends the bytes.
 class RawWebSocket {
 public:
-    explicit RawWebSocket(std::uint16_t port, const std::string& fields = {});
+    explicit RawWebSocket(std::uint16_t port, const std::string& fields = {}, Over over = Over::tcp);
     void join(const std::string& role = "view");
     /// What the server sends next; none at the end.
     std::optional<Frame> receive();

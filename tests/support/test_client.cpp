@@ -18,6 +18,7 @@
 #include "io/vrut/text_reader.hpp"
 #include "plan/render_job.hpp"
 #include "plan/view.hpp"
+#include "temporary_folder.hpp"
 
 namespace vrut::test {
 
@@ -85,6 +86,14 @@ server::engine::FrameRendererFactory FakeRenderer::factory() const {
         };
         return renderer;
     };
+}
+
+server::net::ServerOptions with_tls() {
+    const TemporaryFolder folder;
+    server::net::ServerOptions options;
+    options.tls = std::make_shared<server::net::Tls>(
+        server::net::CertificateAuthority(folder.path() / "authority.pem"));
+    return options;
 }
 
 TestServer::TestServer(const FakeRenderer& renderer, const server::net::ServerOptions& options)

@@ -26,6 +26,9 @@ struct FakeRenderer {
 /// A scene as read from its text.
 server::scenes::LoadedScene scene_of(const std::string& text, const std::string& name = "test.vrut");
 
+/// With certificates of an authority of its own.
+server::net::ServerOptions with_tls();
+
 /// A server in this process, on a port of its own. It serves one triangle if nothing else is said.
 class TestServer {
 public:
