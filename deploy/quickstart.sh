@@ -13,17 +13,17 @@ Usage: deploy/quickstart.sh [--lan] [-- SERVE-ARGUMENTS...]
 Installs the Debian packages that are missing, builds the program, and starts its server.
 When everything is there, it starts at once.
 
-  --lan     listen for tablets and other computers on the network (0.0.0.0:8080, with access tokens),
-            not for this computer alone (127.0.0.1:8080)
+  --lan     serve tablets and other computers on the network (0.0.0.0:8080, by HTTPS, with access tokens),
+            not this computer alone (127.0.0.1:8080)
   --help    this text
   --        what follows goes to 'vrut-preview serve': a scene, --listen ADDRESS:PORT, ...
 TEXT
 }
 
-listen=127.0.0.1:8080
+serve=(serve)
 while [ $# -gt 0 ]; do
     case $1 in
-    --lan) listen=0.0.0.0:8080 ;;
+    --lan) serve+=(--lan) ;;
     -h | --help)
         usage
         exit 0
@@ -38,10 +38,6 @@ while [ $# -gt 0 ]; do
         ;;
     esac
     shift
-done
-serve=(serve --listen "$listen")
-for argument in "$@"; do
-    case $argument in --listen | --listen=*) serve=(serve) ;; esac
 done
 
 # Configures where that has not been done, and builds; the build tool says how far it is.

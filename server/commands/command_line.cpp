@@ -184,12 +184,30 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
         "scripts. It prints the address of its page when it accepts connections, and logs to standard error. "
         "SIGINT, SIGTERM and SIGHUP end it.",
         "Beyond this machine, clients need a token. Where neither a file nor the environment has one, the "
-        "server makes two, and prints the addresses with their tokens, one of them as a QR code."};
+        "server makes two, and prints the addresses with their tokens, one of them as a QR code.",
+        "Where the server speaks HTTPS, plain HTTP is served to this machine alone. With --lan, the page "
+        "/trust shows other devices how to trust the server's authority, which they need once."};
     add_file(*command, "SCENE", arguments.scene, "Serve this scene file.")->default_str("the car");
-    command->add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
-        ->type_name("ADDR:PORT")
-        ->capture_default_str()
-        ->group(kNetwork);
+    auto* const listen =
+        command->add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
+            ->type_name("ADDR:PORT")
+            ->capture_default_str()
+            ->group(kNetwork);
+    auto* const lan =
+        command
+            ->add_flag("--lan", arguments.lan,
+                       "Serve the network: listen at 0.0.0.0:8080 if --listen is not given, and speak HTTPS "
+                       "with other devices, with certificates of an authority that is made once and kept.")
+            ->group(kNetwork);
+    auto* const certificate =
+        add_file(*command, "--tls-cert", arguments.tls_cert,
+                 "Speak HTTPS with this certificate, in PEM, followed by those of its authorities.")
+            ->group(kNetwork)
+            ->excludes(lan);
+    auto* const key = add_file(*command, "--tls-key", arguments.tls_key, "The certificate's key, in PEM.")
+                          ->group(kNetwork)
+                          ->needs(certificate);
+    certificate->needs(key);
     add_number(*command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
         ->capture_default_str()
         ->group(kNetwork);
@@ -218,14 +236,16 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
          "Token of clients that may steer, of 16 to 1000 bytes. That of --token-file has priority."},
         {"VRUT_PREVIEW_VIEW_TOKEN", "Token of clients that only watch, likewise."},
         {"CREDENTIALS_DIRECTORY", "The group may read a token file in this folder, which systemd makes."},
-        state_folder("measured levels, and what clients have changed of scenes")};
+        state_folder("measured levels, what clients have changed of scenes, and the authority of --lan")};
     command->exit_statuses = statuses("A signal has ended the server.");
-    command->examples = {
-        {"vrut-preview serve", "Serve the car at http://127.0.0.1:8080/."},
-        {"vrut-preview serve my.glb --listen 0.0.0.0:8080", "Serve a scene to the tablets of a network."},
-        {"vrut-preview serve my.vrut --scenes scenes --record recordings",
-         "Let clients open other scenes, and record sessions."}};
-    command->callback([&arguments] { serve_command(arguments); });
+    command->examples = {{"vrut-preview serve", "Serve the car at http://127.0.0.1:8080/."},
+                         {"vrut-preview serve my.glb --lan", "Serve a scene to the tablets of a network."},
+                         {"vrut-preview serve my.vrut --scenes scenes --record recordings",
+                          "Let clients open other scenes, and record sessions."}};
+    command->callback([&arguments, listen] {
+        if (arguments.lan && listen->count() == 0) arguments.listen = "0.0.0.0:8080";
+        serve_command(arguments);
+    });
     return command;
 }
 

@@ -19,6 +19,8 @@ struct ServeArguments {
     std::filesystem::path scene;  ///< empty: the car
     io::ReadOptions read = kShown;
     std::string listen = "127.0.0.1:8080";
+    bool lan = false;                         ///< HTTPS by an authority of the server's own
+    std::filesystem::path tls_cert, tls_key;  ///< HTTPS by these; both or none
     std::vector<std::string> allowed_origins;
     std::optional<int> device;
     std::size_t max_clients = 64;

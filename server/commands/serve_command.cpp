@@ -14,13 +14,15 @@
 #include "observe/progress.hpp"
 #include "scenes/change_store.hpp"
 #include "scenes/library.hpp"
+#include "scenes/state_folder.hpp"
 
 namespace vrut::server::commands {
 
 namespace {
 
-std::string url(const std::string& host, std::uint16_t port, const std::string& token) {
-    return net::page_address(host, port) + (token.empty() ? "" : "#token=" + net::percent_encoded(token));
+std::string url(const std::string& host, std::uint16_t port, bool secure, const std::string& token) {
+    return net::page_address(host, port, secure) +
+           (token.empty() ? "" : "#token=" + net::percent_encoded(token));
 }
 
 /// An empty path stays one. Throws std::runtime_error where there is no such folder.
@@ -30,16 +32,39 @@ std::filesystem::path existing_folder(const std::string& option, const std::file
     return path;
 }
 
-void announce(const net::ListenAddress& listen, std::uint16_t port, const net::Access& access) {
+/// Null where HTTP alone is spoken. Throws std::runtime_error.
+std::shared_ptr<net::Tls> tls_of(const ServeArguments& arguments) {
+    if (!arguments.tls_cert.empty()) return std::make_shared<net::Tls>(arguments.tls_cert, arguments.tls_key);
+    if (!arguments.lan) return nullptr;
+    const std::filesystem::path folder = scenes::state_folder();
+    if (folder.empty())
+        throw std::runtime_error(
+            "--lan: there is no folder for its certificate authority: neither XDG_STATE_HOME nor HOME is "
+            "set");
+    return std::make_shared<net::Tls>(net::CertificateAuthority(folder / "authority.pem"));
+}
+
+void announce(const net::ServerOptions& options, std::uint16_t port) {
+    const net::Access& access = options.access;
+    const bool secure = options.tls != nullptr;
     const std::string& token = access.control_token.empty() ? access.view_token : access.control_token;
-    const std::vector<std::string> hosts = net::page_hosts(listen.host);
+    const std::vector<std::string> hosts = net::page_hosts(options.listen.host);
     if (!net::is_loopback(hosts[0])) {
-        std::cout << net::qr_code(url(hosts[0], port, token))
+        std::cout << net::qr_code(url(hosts[0], port, secure, token))
                   << "Scan it with the tablet, or open the address.\n";
         if (!access.control_token.empty() && !access.view_token.empty())
-            std::cout << "To watch without steering: " << url(hosts[0], port, access.view_token) << "\n";
+            std::cout << "To watch without steering: " << url(hosts[0], port, secure, access.view_token)
+                      << "\n";
+        if (secure && options.tls->authority())
+            std::cout << "The first time, open " << net::page_address(hosts[0], port, false)
+                      << "trust on it. The authority that it will trust has the fingerprint (SHA-256)\n"
+                      << options.tls->authority()->fingerprint() << "\n";
     }
-    for (const std::string& host : hosts) std::cout << "listening on " << url(host, port, token) << std::endl;
+    for (const std::string& host : hosts)
+        std::cout << "listening on " << url(host, port, secure && !net::is_loopback(host), token)
+                  << std::endl;
+    if (secure && net::is_any(options.listen.host))
+        std::cout << "and for this machine on " << url("127.0.0.1", port, false, token) << std::endl;
 }
 
 /// Throws std::runtime_error where there are fewer threads than the server and a driver in software take:
@@ -76,6 +101,7 @@ void serve_command(const ServeArguments& arguments) {
     net::ServerOptions options;
     options.listen = net::parse_listen_address(arguments.listen);
     options.max_clients = arguments.max_clients;
+    options.tls = tls_of(arguments);
     options.access = net::read_access(arguments.token_file);
     options.access.allowed_origins = arguments.allowed_origins;
     if (!net::is_loopback(options.listen.host) && !options.access.needs_token()) {
@@ -100,7 +126,7 @@ void serve_command(const ServeArguments& arguments) {
 
     net::Server server(options, *std::move(scene), engine::gl_renderer(arguments.device));
     server.stop_on_signals();  // before the address is told: from then on somebody may stop it
-    announce(options.listen, server.port(), options.access);
+    announce(options, server.port());
     observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
     server.run();
     ignore_further_signals();

@@ -1,25 +1,11 @@
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { after, before, describe, test } from 'node:test';
+import { assertClean } from './axe.js';
 import { Server } from './program.js';
 import { Tablet, browserIsMissing, launchBrowser } from './tablet.js';
 
 // Axe looks at elements, not at pixels: one for each of CSS is enough.
 const SIZES = { 'a tablet': { width: 1180, height: 820, pixelRatio: 1 }, 'a phone': { width: 390, height: 844, pixelRatio: 1 } };
-const axe = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
-
-async function assertClean(page) {
-  const { passes, violations: found } = await page.evaluate(async (source) => {
-    if (!window.axe) (0, eval)(source);
-    // What fades is looked at when it has.
-    await Promise.allSettled(document.getAnimations().map((animation) => animation.finished));
-    const { violations, passes } = await window.axe.run(document, { resultTypes: ['violations'] });
-    return { passes: passes.length, violations: violations.map(({ id, help, nodes }) => ({ id, help, nodes: nodes.map(({ html, failureSummary }) => [html, failureSummary]) })) };
-  }, axe);
-  assert.deepEqual(found, []);
-  assert.ok(passes > 10, `${passes} rules passed`);
-}
 
 describe('axe finds nothing', { skip: browserIsMissing }, () => {
   let server;
