@@ -46,39 +46,15 @@ void Room::apply(const Received& received, const protocol::Fit& fit) {
 
 // --- flights
 
-namespace {
-
-/// The keyframes' cameras: each is laid over the one before, the first over `from`.
-tl::expected<std::vector<navigation::CameraKeyframe>, Error> keyframes_of(const protocol::Fly& fly,
-                                                                          const scene::Camera& from,
-                                                                          const scene::PlacedScene& placed) {
-    std::vector<navigation::CameraKeyframe> keyframes;
-    scene::Camera before = from;
-    for (const protocol::Fly::Keyframe& keyframe : fly.keyframes) {
-        auto laid = overlaid(before, keyframe.camera, placed,
-                             "keyframes[" + std::to_string(keyframes.size()) + "].camera");
-        if (!laid) return tl::unexpected(laid.error());
-        keyframes.push_back({keyframe.at, *laid});
-        before = *laid;
-    }
-    return keyframes;
-}
-
-}  // namespace
-
 void Room::apply(const Received& received, const protocol::Fly& fly) {
-    auto keyframes = keyframes_of(fly, camera(), *scene_);
-    if (!keyframes) return reject(received, keyframes.error().code.c_str(), keyframes.error().message);
+    auto path = flight_path(fly, camera(), *scene_);
+    if (!path) return reject(received, path.error().code.c_str(), path.error().message);
     const scene::Camera before = camera();
     steer(received);  // which may bring another size, and so another home
-    if (camera() != before) keyframes = keyframes_of(fly, camera(), *scene_);
-    if (!keyframes) return answer(received);  // whose poses do not fit to that: it stays there
-    flight_.emplace(InFlight{{camera(), *keyframes, static_cast<navigation::Easing>(fly.easing)},
-                             received.client,
-                             received.message.id.value_or(0),
-                             time_,
-                             state_.camera,
-                             fly});
+    if (camera() != before) path = flight_path(fly, camera(), *scene_);
+    if (!path) return answer(received);  // whose poses do not fit to that: it stays there
+    flight_.emplace(
+        InFlight{*path, received.client, received.message.id.value_or(0), time_, state_.camera, fly});
     answer(received);
     document();  // the message is its client's doing, what follows nobody's
     advance(time_);
@@ -167,16 +143,11 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     for (const protocol::LoggedFrame& frame : header.frames)
         frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
     if (const auto& flight = header.flight) {
-        const auto keyframes = keyframes_of(flight->fly, camera_of(flight->from), *scene_);
-        if (!keyframes) return tl::unexpected(keyframes.error());
+        const auto path = flight_path(flight->fly, camera_of(flight->from), *scene_);
+        if (!path) return tl::unexpected(path.error());
         const SessionTime since(std::llround(flight->since * 1000));
-        flight_.emplace(InFlight{
-            {camera_of(flight->from), *keyframes, static_cast<navigation::Easing>(flight->fly.easing)},
-            flight->client,
-            flight->id,
-            time_ - since,
-            flight->from,
-            flight->fly});
+        flight_.emplace(
+            InFlight{*path, flight->client, flight->id, time_ - since, flight->from, flight->fly});
     }
     gestures_.restart(camera());
     update_visible();

@@ -253,6 +253,20 @@ tl::expected<scene::Camera, Error> overlaid(const scene::Camera& base, const pro
     return scene::with_orthogonal_up(camera);
 }
 
+tl::expected<navigation::CameraPath, Error> flight_path(const protocol::Fly& fly, const scene::Camera& from,
+                                                        const scene::PlacedScene& placed) {
+    std::vector<navigation::CameraKeyframe> keyframes;
+    scene::Camera before = from;
+    for (const protocol::Fly::Keyframe& keyframe : fly.keyframes) {
+        auto laid = overlaid(before, keyframe.camera, placed,
+                             "keyframes[" + std::to_string(keyframes.size()) + "].camera");
+        if (!laid) return tl::unexpected(laid.error());
+        keyframes.push_back({keyframe.at, *laid});
+        before = *laid;
+    }
+    return navigation::CameraPath(from, keyframes, static_cast<navigation::Easing>(fly.easing));
+}
+
 tl::expected<std::vector<scene::NodeState>, Error> node_states(
     const scene::Scene& scene, protocol::SharedMap<protocol::NodeOverride>& overrides) {
     std::vector<scene::NodeState> states = scene::file_states(scene);

@@ -4,7 +4,9 @@
 
 #include "frame_header.hpp"
 #include "mesh/picking_trees.hpp"
+#include "messages.hpp"
 #include "navigation/camera_moves.hpp"
+#include "navigation/flight.hpp"
 #include "plan/view.hpp"
 #include "scene/scene.hpp"
 #include "scenes/loaded_scene.hpp"
@@ -41,6 +43,12 @@ tl::expected<scene::Camera, protocol::Error> overlaid(const scene::Camera& base,
                                                       const protocol::CameraOverlay& overlay,
                                                       const scene::PlacedScene& placed,
                                                       const std::string& what);
+
+/// The path of a flight that begins at `from`, or what is wrong with a keyframe: each is laid over the one
+/// before, the first over `from`.
+tl::expected<navigation::CameraPath, protocol::Error> flight_path(const protocol::Fly& fly,
+                                                                  const scene::Camera& from,
+                                                                  const scene::PlacedScene& placed);
 
 /// How many of its nodes are solid, transparent and reflective, into the state.
 void count_classes(protocol::State& state, const scene::PlacedScene& placed);
