@@ -88,6 +88,14 @@ tl::expected<ClientMessage, Error> decode(std::string_view text) {
     }
 }
 
+tl::expected<Fly, Error> parse_flight(std::string_view text) {
+    return or_error([&] {
+        const Json json = parse_strictly(text);
+        if (!json.is_object()) throw BadJson{error_code::bad_message, "a flight must be a JSON object"};
+        return checked(read_struct<Fly>(json, ""));
+    });
+}
+
 std::string encode(const ClientMessage& message) { return dump(to_json(message)); }
 
 const char* name_of(Role role) { return kRole.words[static_cast<std::size_t>(role)].data(); }

@@ -14,6 +14,9 @@ tl::expected<ClientMessage, Error> decode(std::string_view text);
 /// The other way: decode() of it gives the same message. What has its default is left out.
 std::string encode(const ClientMessage& message);
 
+/// A flight from the text of a JSON object with the members of `fly`; others are ignored.
+tl::expected<Fly, Error> parse_flight(std::string_view text);
+
 /// A server's text message.
 std::string encode(const Welcome& message);
 std::string encode(const Ok& message);

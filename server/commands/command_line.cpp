@@ -314,7 +314,19 @@ void add_camera(Command& command, RenderArguments& arguments) {
         ->group(kCamera);
 }
 
-/// What the image is drawn with, and what is written besides.
+void add_film(Command& command, RenderArguments& arguments) {
+    auto* keyframes =
+        add_file(command, "--keyframes", arguments.keyframes,
+                 "Draw the flight of this JSON file, which has the members of the protocol's message 'fly'.")
+            ->group(kCamera);
+    auto* frames =
+        add_number(command, "--frames", arguments.frames, 2, 100'000, "Draw N images of the flight")
+            ->needs(keyframes)
+            ->group(kCamera);
+    keyframes->needs(frames);
+}
+
+/// What the image is drawn with, and what is written besides. After add_film().
 void add_drawing(Command& command, RenderArguments& arguments) {
     add_number(command, "--samples", arguments.samples, 1, 4096, "Draw N samples a pixel")
         ->capture_default_str()
@@ -331,9 +343,11 @@ void add_drawing(Command& command, RenderArguments& arguments) {
     add_file(command, "--float", arguments.unrounded,
              "Write the values of --reference before they are rounded too, as a PFM image.")
         ->needs(reference)
+        ->excludes(command.get_option("--keyframes"))
         ->group(kOutput);
     add_file(command, "--ids", arguments.ids,
              "Write the node ids at the centres of the pixels too, as a PNG image: 24 bits, white for none.")
+        ->excludes(command.get_option("--keyframes"))
         ->group(kOutput);
     command.add_flag("--stats", arguments.stats, "Print what drawing took, as JSON.")
         ->excludes(reference)
@@ -345,8 +359,9 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
     auto command = std::make_shared<Command>("Draw an image of a scene.", "render");
     command->description = {
         "The image shows the first view of the scene, unless options choose another one. --eye, --focus, "
-        "--up "
-        "and --fov have priority over --camera, and --camera has priority over --set."};
+        "--up and --fov have priority over --camera, and --camera has priority over --set.",
+        "With --keyframes it draws a film: the images of a flight, in equal times from its start to its end. "
+        "Their names have a number behind that of --output: film-0001.png, film-0002.png and so on."};
     add_file(*command, "SCENE", arguments.scene, "Draw this scene file.")->required();
     add_file(*command, "-o,--output", arguments.output,
              "Write the image to this file, whose name ends in .png, .jpg or .jpeg.")
@@ -357,6 +372,7 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         ->capture_default_str()
         ->group(kOutput);
     add_camera(*command, arguments);
+    add_film(*command, arguments);
     command->add_option("--set", arguments.set, "Change the state document by this JSON merge patch.")
         ->type_name("JSON")
         ->group(kScene);
@@ -368,6 +384,8 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
     command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
                          {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
                           "Draw it from a point, in another size."},
+                         {"vrut-preview render my.vrut -o film.png --keyframes flight.json --frames 250",
+                          "Draw a film of ten seconds, at 25 images a second."},
                          {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
                           "Trace a scene with mirrors ray by ray."}};
     command->callback([&arguments] { render_command(arguments); });

@@ -40,7 +40,9 @@ struct RenderArguments {
     std::filesystem::path camera_file;
     std::optional<glm::dvec3> eye, focus, up;
     std::optional<double> fov;
-    std::string set;  ///< a merge patch on the state
+    std::filesystem::path keyframes;  ///< of a film; empty: one image
+    int frames = 0;                   ///< of the film
+    std::string set;                  ///< a merge patch on the state
     std::vector<std::pair<std::string, std::string>>
         patches;  ///< further ones, with the option that they are of
     std::optional<int> device;

@@ -1,10 +1,13 @@
+#include <array>
 #include <cmath>
 #include <fstream>
+#include <future>
 #include <iostream>
 #include <iterator>
 #include <stdexcept>
 
 #include "base/files.hpp"
+#include "codec.hpp"
 #include "commands/commands.hpp"
 #include "engine/images.hpp"
 #include "mesh/detail_levels.hpp"
@@ -20,10 +23,10 @@ namespace vrut::server::commands {
 
 namespace {
 
-std::string read_text(const std::filesystem::path& path) {
+std::string read_text(const std::string& option, const std::filesystem::path& path) {
     std::ifstream stream(path, std::ios::binary);
     std::string text{std::istreambuf_iterator<char>(stream), {}};
-    if (!stream) throw std::runtime_error("--camera: " + path.string() + " cannot be read");
+    if (!stream) throw std::runtime_error(option + ": " + path.string() + " cannot be read");
     return text;
 }
 
@@ -44,7 +47,7 @@ void patch(room::Room& room, const std::string& option, const std::string& text)
 scene::Camera wanted_camera(const RenderArguments& arguments, const room::Room& room) {
     protocol::CameraOverlay overlay;
     if (!arguments.camera_file.empty()) {
-        auto camera = protocol::parse_camera(read_text(arguments.camera_file));
+        auto camera = protocol::parse_camera(read_text("--camera", arguments.camera_file));
         if (!camera) throw std::runtime_error(arguments.camera_file.string() + ": " + camera.error().message);
         overlay = *camera;
         if (overlay.eye && overlay.focus) overlay.node.reset();  // a whole pose, maybe of another scene
@@ -59,7 +62,31 @@ scene::Camera wanted_camera(const RenderArguments& arguments, const room::Room& 
     return *camera;
 }
 
-plan::View view_of(const RenderArguments& arguments) {
+/// Of each image: the one that the options give, or those of a flight that begins there, in equal times.
+std::vector<scene::Camera> wanted_cameras(const RenderArguments& arguments, const room::Room& room) {
+    const scene::Camera first = wanted_camera(arguments, room);
+    if (arguments.keyframes.empty()) return {first};
+    const auto fail = [&](const protocol::Error& error) {
+        throw std::runtime_error(arguments.keyframes.string() + ": " + error.message);
+    };
+    const auto flight = protocol::parse_flight(read_text("--keyframes", arguments.keyframes));
+    if (!flight) fail(flight.error());
+    const auto path = room::flight_path(*flight, first, room.scene());
+    if (!path) fail(path.error());
+    std::vector<scene::Camera> cameras;
+    const int last = arguments.frames - 1;
+    for (int i = 0; i < last; ++i) cameras.push_back(path->at(path->duration() * i / last));
+    cameras.push_back(path->at(path->duration()));
+    return cameras;
+}
+
+/// What is drawn, but for the camera, and the camera of each image.
+struct Film {
+    plan::View view;
+    std::vector<scene::Camera> cameras;
+};
+
+Film film_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name), {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
@@ -74,12 +101,22 @@ plan::View view_of(const RenderArguments& arguments) {
     for (const auto& [option, text] : arguments.patches) patch(room, option, text);
 
     plan::View view = room.visible();
-    view.camera = wanted_camera(arguments, room);
     view.width = arguments.width;
     view.height = arguments.height;
     view.samples = arguments.samples;
     view.detail = arguments.detail;
-    return view;
+    return {view, wanted_cameras(arguments, room)};
+}
+
+/// Of image `i`, from 0. Those of films have numbers, from 0001.
+std::filesystem::path output_of(const RenderArguments& arguments, std::size_t i) {
+    if (arguments.keyframes.empty()) return arguments.output;
+    const std::string number = std::to_string(i + 1);
+    std::filesystem::path path = arguments.output;
+    path.replace_filename(path.stem().string() + "-" +
+                          std::string(number.size() < 4 ? 4 - number.size() : 0, '0') + number +
+                          path.extension().string());
+    return path;
 }
 
 /// Node ids as 24-bit RGB, white for none. Throws std::runtime_error where one is too high.
@@ -102,11 +139,11 @@ scene::Image picture_of_ids(const plan::View& view, const std::vector<scene::Ind
     return image;
 }
 
-void write_picture(const RenderArguments& arguments, const scene::Image& image) {
-    base::write_file(arguments.output,
-                     arguments.output.extension() == ".png"
-                         ? io::encode_png(image)
-                         : engine::JpegEncoder().encode(image, arguments.jpeg_quality, false));
+void write_picture(const RenderArguments& arguments, const std::filesystem::path& output,
+                   const scene::Image& image) {
+    base::write_file(output, output.extension() == ".png"
+                                 ? io::encode_png(image)
+                                 : engine::JpegEncoder().encode(image, arguments.jpeg_quality, false));
 }
 
 void write_ids(const RenderArguments& arguments, const plan::View& view,
@@ -125,17 +162,29 @@ void require_surfaces_only(const plan::View& view) {
             std::string(edges ? "--wireframe, --mode stylized" : "--select, markers") + ")");
 }
 
-void trace_picture(const RenderArguments& arguments, const plan::View& view) {
+void trace_film(const RenderArguments& arguments, Film film) {
+    plan::View& view = film.view;
     require_surfaces_only(view);
-    const reference::ReferenceImage picture = reference::trace(view);
-    if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
-    write_picture(arguments, reference::image_of(picture));
-    if (!arguments.unrounded.empty())
-        base::write_file(arguments.unrounded,
-                         engine::encode_pfm(picture.width, picture.height, picture.color));
+    for (std::size_t i = 0; i < film.cameras.size(); ++i) {
+        view.camera = film.cameras[i];
+        const reference::ReferenceImage picture = reference::trace(view);
+        if (!arguments.ids.empty()) write_ids(arguments, view, picture.node);
+        write_picture(arguments, output_of(arguments, i), reference::image_of(picture));
+        if (!arguments.unrounded.empty())
+            base::write_file(arguments.unrounded,
+                             engine::encode_pfm(picture.width, picture.height, picture.color));
+    }
 }
 
-void draw_picture(const RenderArguments& arguments, plan::View view) {
+void print_stats(const std::string& device, const plan::View& view, const plan::FrameStats& stats) {
+    std::cout << protocol::encode(protocol::RenderReport{device, view.width, view.height, view.samples,
+                                                         stats.passes, stats.draws, stats.triangles,
+                                                         stats.render_ms, stats.readback_ms})
+              << std::endl;
+}
+
+void draw_film(const RenderArguments& arguments, Film film) {
+    plan::View& view = film.view;
     if (view.detail > 0) {
         const auto levels =
             std::make_shared<const mesh::DetailLevels>(view.scene->scene, [](const std::string& reason) {
@@ -148,16 +197,20 @@ void draw_picture(const RenderArguments& arguments, plan::View view) {
     if (std::max(view.width, view.height) > renderer.max_size())
         throw std::runtime_error("--size: this device draws up to " + std::to_string(renderer.max_size()) +
                                  " pixels a side");
-    if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
-    scene::Image image;
-    plan::FrameStats stats;
-    renderer.render(view, image, stats);
-    write_picture(arguments, image);
-    if (arguments.stats)
-        std::cout << protocol::encode(protocol::RenderReport{
-                         renderer.description(), view.width, view.height, view.samples, stats.passes,
-                         stats.draws, stats.triangles, stats.render_ms, stats.readback_ms})
-                  << std::endl;
+    std::array<scene::Image, 2> images;  // one is drawn while the other is encoded and written
+    std::future<void> written;
+    for (std::size_t i = 0; i < film.cameras.size(); ++i) {
+        view.camera = film.cameras[i];
+        if (!arguments.ids.empty()) write_ids(arguments, view, renderer.node_ids(view));
+        scene::Image& image = images[i % 2];
+        plan::FrameStats stats;
+        renderer.render(view, image, stats);
+        if (written.valid()) written.get();
+        written = std::async(std::launch::async,
+                             [&, i] { write_picture(arguments, output_of(arguments, i), image); });
+        if (arguments.stats) print_stats(renderer.description(), view, stats);
+    }
+    written.get();
 }
 
 }  // namespace
@@ -167,11 +220,11 @@ void render_command(const RenderArguments& arguments) {
     if (extension != ".png" && extension != ".jpg" && extension != ".jpeg")
         throw std::runtime_error(arguments.output.string() +
                                  ": the name of an image ends in .png, .jpg or .jpeg");
-    const plan::View view = view_of(arguments);
+    Film film = film_of(arguments);
     if (arguments.reference)
-        trace_picture(arguments, view);
+        trace_film(arguments, std::move(film));
     else
-        draw_picture(arguments, view);
+        draw_film(arguments, std::move(film));
 }
 
 }  // namespace vrut::server::commands

@@ -71,6 +71,17 @@ test('what cannot be done is told in a sentence, with status 1', () => {
   fails(1, /picture\.gif/, 'render', CAR, '-o', file('picture.gif'));
   fails(1, /no-such-folder/, 'render', CAR, '-o', file('no-such-folder/x.png'), '--size', '8x8');
   fails(1, /camera\.json/, 'render', CAR, '-o', file('x.png'), '--camera', file('camera.json'));
+  const film = (...words) => ['render', CAR, '-o', file('x.png'), '--keyframes', ...words];
+  fails(1, /--keyframes: .*no-flight\.json cannot be read/, ...film(file('no-flight.json'), '--frames', '2'));
+  for (const [flight, culprit] of [
+    ['[]', /bad\.json: a flight must be a JSON object/],
+    ['{"keyframes":[]}', /bad\.json: .*'keyframes'/],
+    ['{"keyframes":[{"at":5,"camera":{}},{"at":5,"camera":{}}]}', /'keyframes\[1\]\.at' must be later than the one before/],
+    ['{"keyframes":[{"at":5,"camera":{"eye":[0,0,0],"focus":[0,0,0]}}]}', /keyframes\[0\]\.camera: eye and focus must be apart/],
+  ]) {
+    fs.writeFileSync(file('bad.json'), flight);
+    fails(1, culprit, ...film(file('bad.json'), '--frames', '2'));
+  }
   fails(1, /--size/, 'render', CAR, '-o', file('x.png'), '--size', '100000x2');
   fails(1, /'camera\.nose'/, 'render', CAR, '-o', file('x.png'), '--set', '{"camera":{"nose":1}}');
   fails(1, /eye and focus/, 'render', CAR, '-o', file('x.png'), '--eye', '0,0,0', '--focus', '0,0,0');
@@ -100,6 +111,27 @@ test('render draws pictures of the size asked for', () => {
   assert.deepEqual(pngSize('line.png'), [1, 700]);
   succeeds('render', CAR, '-o', file('car.jpg'), '--size', '64x64', '--jpeg-quality', '50');
   assert.equal(fs.readFileSync(file('car.jpg')).readUInt16BE(0), 0xffd8);
+});
+
+test('render draws a film: its images begin at the camera, pass the keyframes in their times, and end at the last', () => {
+  fs.writeFileSync(file('flight.json'), JSON.stringify({
+    type: 'fly', id: 7, keyframes: [{ at: 1000, camera: { fov: 30 } }, { at: 2500, camera: { eye: [4, 1, 3], focus: [0, 0.6, 0] } }],
+  }));
+  const draw = (name, ...options) => succeeds('render', CAR, '-o', file(name), '--size', '64x36', '--samples', '1', ...options);
+  assert.equal(draw('film.png', '--keyframes', file('flight.json'), '--frames', '6', '--stats').trim().split('\n').length, 6);
+  draw('begin.png');
+  draw('third.png', '--fov', '30');
+  draw('end.png', '--fov', '30', '--eye', '4,1,3', '--focus', '0,0.6,0');
+  const image = (number) => fs.readFileSync(file(`film-000${number}.png`));
+  assert.deepEqual(image(1), fs.readFileSync(file('begin.png')));
+  assert.deepEqual(image(3), fs.readFileSync(file('third.png')));
+  assert.deepEqual(image(6), fs.readFileSync(file('end.png')));
+  assert.equal(new Set([1, 2, 3, 4, 5, 6].map((number) => image(number).toString('base64'))).size, 6);
+  assert.deepEqual([fs.existsSync(file('film.png')), fs.existsSync(file('film-0007.png'))], [false, false]);
+  draw('traced.jpg', '--keyframes', file('flight.json'), '--frames', '2', '--reference', '--eye', '5,1,1');
+  assert.equal(fs.readFileSync(file('traced-0002.jpg')).readUInt16BE(0), 0xffd8);
+  fails(2, /--keyframes requires --frames/, 'render', CAR, '-o', file('x.png'), '--keyframes', file('flight.json'));
+  fails(2, /--frames requires --keyframes/, 'render', CAR, '-o', file('x.png'), '--frames', '3');
 });
 
 test('what is left out of a scene is told on standard error, and the picture drawn', () => {
