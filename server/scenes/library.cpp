@@ -17,6 +17,18 @@ namespace vrut::server::scenes {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Clients see the scene's name, and not where its file lies.
+std::vector<protocol::Notice> with_name(std::vector<protocol::Notice> notices, const std::string& path,
+                                        const std::string& name) {
+    for (protocol::Notice& notice : notices)
+        if (notice.message.starts_with(path)) notice.message.replace(0, path.size(), name);
+    return notices;
+}
+
+}  // namespace
+
 tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const std::string& name,
                                                   const io::ReadProgress& progress,
                                                   const ImportOptions& options) try {
@@ -35,7 +47,7 @@ tl::expected<LoadedScene, std::string> load_scene(const fs::path& path, const st
         loaded.up_axis = options.read.z_up ? protocol::UpAxis::z : protocol::UpAxis::y;
     if (progress) progress(1);
     loaded.placed = std::make_shared<const scene::PlacedScene>(scene::place(*std::move(scene)));
-    loaded.notices = all_notices(*loaded.placed);
+    loaded.notices = with_name(all_notices(*loaded.placed), path.string(), name);
     if (const std::size_t bytes = most_state_bytes(loaded); bytes > kMaxStateBytes)
         return tl::unexpected(path.string() + ": its cameras, lights, materials and backgrounds take " +
                               std::to_string(bytes) + " bytes in the state that clients get, and at most " +

@@ -190,6 +190,17 @@ TEST_CASE("a name that is too long for the sentence is cut, and for the system r
     CHECK(found.error().size() < 150);
 }
 
+TEST_CASE("notices name a scene as it was asked for, and not where its file lies") {
+    const TemporaryFolder folder;
+    const auto file =
+        folder.write("secret/torn.vrut", "vrut-text 1\nmaterial 7 \"Torn\" image \"nowhere.png\" end\n");
+    const auto scene = load_scene(file, "cars/torn.vrut");
+    REQUIRE_MESSAGE(scene, scene.error());
+    REQUIRE(scene->notices.size() == 1);
+    CHECK(scene->notices[0].message.starts_with("cars/torn.vrut:"));
+    CHECK(scene->notices[0].message.find("secret") == std::string::npos);
+}
+
 TEST_CASE("a scene is loaded with its name, its digest and what is to be said of it") {
     const TemporaryFolder folder;
     const fs::path file = folder.write("room.vrut", kScene);
