@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
@@ -9,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <tl/expected.hpp>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -45,7 +45,10 @@ struct Sampler {
     std::array<Wrap, 2> wraps{Wrap::repeat, Wrap::repeat};  ///< along u, and along v
     Magnification magnification = Magnification::linear;
 
-    auto operator<=>(const Sampler&) const = default;
+    bool operator==(const Sampler&) const = default;
+    bool operator<(const Sampler& other) const {
+        return std::tie(wraps, magnification) < std::tie(other.wraps, other.magnification);
+    }
     bool repeats() const { return wraps == Sampler().wraps; }
 };
 

@@ -177,6 +177,29 @@ Entry state_folder(const std::string& what) {
             "Folder for " + what + ", in its subfolder vrut-preview. Default: ~/.local/state."};
 }
 
+/// Where it listens, and what it speaks TLS with.
+void add_network(Command& command, ServeArguments& arguments) {
+    command.add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
+        ->type_name("ADDR:PORT")
+        ->capture_default_str()
+        ->group(kNetwork);
+    auto* const lan =
+        command
+            .add_flag("--lan", arguments.lan,
+                      "Serve the network: listen at 0.0.0.0:8080 if --listen is not given, and speak HTTPS "
+                      "with other devices, with certificates of an authority that is made once and kept.")
+            ->group(kNetwork);
+    auto* const certificate =
+        add_file(command, "--tls-cert", arguments.tls_cert,
+                 "Speak HTTPS with this certificate, in PEM, followed by those of its authorities.")
+            ->group(kNetwork)
+            ->excludes(lan);
+    auto* const key = add_file(command, "--tls-key", arguments.tls_key, "The certificate's key, in PEM.")
+                          ->group(kNetwork)
+                          ->needs(certificate);
+    certificate->needs(key);
+}
+
 std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
     auto command = std::make_shared<Command>("Serve a scene to tablets, hosts and scripts.", "serve");
     command->description = {
@@ -188,26 +211,7 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
         "Where the server speaks HTTPS, plain HTTP is served to this machine alone. With --lan, the page "
         "/trust shows other devices how to trust the server's authority, which they need once."};
     add_file(*command, "SCENE", arguments.scene, "Serve this scene file.")->default_str("the car");
-    auto* const listen =
-        command->add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
-            ->type_name("ADDR:PORT")
-            ->capture_default_str()
-            ->group(kNetwork);
-    auto* const lan =
-        command
-            ->add_flag("--lan", arguments.lan,
-                       "Serve the network: listen at 0.0.0.0:8080 if --listen is not given, and speak HTTPS "
-                       "with other devices, with certificates of an authority that is made once and kept.")
-            ->group(kNetwork);
-    auto* const certificate =
-        add_file(*command, "--tls-cert", arguments.tls_cert,
-                 "Speak HTTPS with this certificate, in PEM, followed by those of its authorities.")
-            ->group(kNetwork)
-            ->excludes(lan);
-    auto* const key = add_file(*command, "--tls-key", arguments.tls_key, "The certificate's key, in PEM.")
-                          ->group(kNetwork)
-                          ->needs(certificate);
-    certificate->needs(key);
+    add_network(*command, arguments);
     add_number(*command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
         ->capture_default_str()
         ->group(kNetwork);
@@ -242,7 +246,7 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
                          {"vrut-preview serve my.glb --lan", "Serve a scene to the tablets of a network."},
                          {"vrut-preview serve my.vrut --scenes scenes --record recordings",
                           "Let clients open other scenes, and record sessions."}};
-    command->callback([&arguments, listen] {
+    command->callback([&arguments, listen = command->get_option("--listen")] {
         if (arguments.lan && listen->count() == 0) arguments.listen = "0.0.0.0:8080";
         serve_command(arguments);
     });

@@ -74,6 +74,7 @@ std::vector<scene::Camera> wanted_cameras(const RenderArguments& arguments, cons
     const auto path = room::flight_path(*flight, first, room.scene());
     if (!path) fail(path.error());
     std::vector<scene::Camera> cameras;
+    cameras.reserve(static_cast<std::size_t>(arguments.frames));
     const int last = arguments.frames - 1;
     for (int i = 0; i < last; ++i) cameras.push_back(path->at(path->duration() * i / last));
     cameras.push_back(path->at(path->duration()));

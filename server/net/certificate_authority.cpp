@@ -24,7 +24,7 @@ namespace {
 using Bio = OpenSslPointer<BIO, BIO_free_all>;
 using Number = OpenSslPointer<BIGNUM, BN_free>;
 
-constexpr long kDay = 24 * 3600;  // seconds
+constexpr long kDay = 24L * 3600;  // seconds
 /// Clocks of devices may be behind.
 constexpr long kSince = -kDay, kAuthorityUntil = 3650 * kDay, kUntil = 397 * kDay;
 
