@@ -388,8 +388,6 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
     command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
                          {"vrut-preview render my.vrut -o my.jpg --size 1920x1080 --eye 3,2,5",
                           "Draw it from a point, in another size."},
-                         {"vrut-preview render my.vrut -o film.png --keyframes flight.json --frames 250",
-                          "Draw a film of ten seconds, at 25 images a second."},
                          {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
                           "Trace a scene with mirrors ray by ray."}};
     command->callback([&arguments] { render_command(arguments); });

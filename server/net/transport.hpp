@@ -26,7 +26,7 @@ public:
     /// TCP, by which bytes are counted.
     Stream& next_layer();
 
-    /// Speaks TLS from here on, as a server. The context must live until the handshake is done.
+    /// Speaks TLS from here on, as a server. The context is needed for the call alone.
     void async_secure(boost::asio::ssl::context& context, Handler handler);
     /// Says that nothing more will be sent. Calls `handler` when that is on its way, with TLS when the peer
     /// has answered, or could not.
