@@ -15,6 +15,7 @@
 #include "io/read_scene.hpp"
 #include "mesh/simplification.hpp"
 #include "mesh/vertex_cache_order.hpp"
+#include "repetitions.hpp"
 
 using namespace vrut;
 
@@ -130,7 +131,8 @@ double furthest(const scene::Geometry& geometry, const std::vector<glm::uvec3>& 
                 const std::vector<glm::uvec3>& to) {
     const std::vector<glm::dvec3>& p = geometry.positions;
     double result = 0;
-    const std::size_t step = 1 + from.size() * to.size() / 100'000;
+    constexpr std::size_t kPairs = test::repetitions(100'000);
+    const std::size_t step = 1 + from.size() * to.size() / kPairs;
     for (std::size_t i = 0; i < from.size(); i += step)
         for (int u = 0; u <= 4; ++u)
             for (int v = 0; u + v <= 4; ++v) {
