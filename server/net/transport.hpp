@@ -13,8 +13,8 @@
 
 namespace vrut::server::net {
 
-/// The bytes of a connection: as TCP carries them, or by TLS over it. A stream of Asio and Beast, whose
-/// buffers and handlers have one type each below this: every other one would compile all layers anew.
+/// The bytes of a connection: as TCP carries them, or by TLS over it. A stream of Asio and Beast. It hands
+/// buffers and handlers of one type to the layers below, so that these are compiled once.
 class Transport {
 public:
     using executor_type = Stream::executor_type;

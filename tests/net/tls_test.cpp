@@ -24,20 +24,17 @@ using std::chrono::steady_clock;
 
 namespace {
 
-template <class Type, void (*free)(Type*)>
-using Owned = std::unique_ptr<Type, std::integral_constant<decltype(free), free>>;
-
-Owned<X509, X509_free> certificate_of(const std::string& pem) {
-    const Owned<BIO, BIO_free_all> bio(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
-    return Owned<X509, X509_free>(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr));
+OpenSslPointer<X509, X509_free> certificate_of(const std::string& pem) {
+    const OpenSslPointer<BIO, BIO_free_all> bio(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())));
+    return OpenSslPointer<X509, X509_free>(PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr));
 }
 
 /// Why a client that trusts this authority alone refuses the certificate; X509_V_OK if it does not.
 int verdict(const CertificateAuthority& authority, X509* certificate) {
     const auto root = certificate_of(authority.certificate());
-    const Owned<X509_STORE, X509_STORE_free> store(X509_STORE_new());
+    const OpenSslPointer<X509_STORE, X509_STORE_free> store(X509_STORE_new());
     X509_STORE_add_cert(store.get(), root.get());
-    const Owned<X509_STORE_CTX, X509_STORE_CTX_free> context(X509_STORE_CTX_new());
+    const OpenSslPointer<X509_STORE_CTX, X509_STORE_CTX_free> context(X509_STORE_CTX_new());
     X509_STORE_CTX_init(context.get(), store.get(), certificate, nullptr);
     X509_STORE_CTX_set_purpose(context.get(), X509_PURPOSE_SSL_SERVER);
     X509_verify_cert(context.get());
@@ -63,8 +60,8 @@ struct Handshake {
     }
     boost::asio::io_context io;
     tcp::socket socket{io};
-    Owned<SSL_CTX, SSL_CTX_free> context{SSL_CTX_new(TLS_client_method())};
-    Owned<SSL, SSL_free> tls;
+    OpenSslPointer<SSL_CTX, SSL_CTX_free> context{SSL_CTX_new(TLS_client_method())};
+    OpenSslPointer<SSL, SSL_free> tls;
     bool succeeds = false;
 };
 
@@ -113,7 +110,7 @@ TEST_CASE("certificates are good for a server's addresses, and the authority for
     // Whoever steals its key has no use of it elsewhere.
     std::FILE* const stream = std::fopen((folder.path() / "a.pem").c_str(), "r");
     REQUIRE(stream != nullptr);
-    const Owned<EVP_PKEY, EVP_PKEY_free> key(PEM_read_PrivateKey(stream, nullptr, nullptr, nullptr));
+    const OpenSslPointer<EVP_PKEY, EVP_PKEY_free> key(PEM_read_PrivateKey(stream, nullptr, nullptr, nullptr));
     std::fclose(stream);
     const auto verdict_on = [&](const std::string& name) {
         const Certificate site = authority.issue({});
