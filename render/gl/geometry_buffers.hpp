@@ -3,8 +3,10 @@
 #include <cstddef>
 #include <glm/glm.hpp>
 #include <memory>
+#include <vector>
 
 #include "gl/handles.hpp"
+#include "mesh/triangle_clusters.hpp"
 #include "plan/draw_groups.hpp"
 #include "scene/scene.hpp"
 
@@ -46,6 +48,7 @@ struct GpuGeometry {
     GLint first_vertex = 0;  ///< added to each index
     GLsizei index_count = 0;
     glm::dvec3 origin{0};
+    std::vector<mesh::TriangleCluster> clusters;  ///< mesh::triangle_clusters()
 
     /// Scene::needs_double_single()
     bool is_double_single() const { return bool(buffers->low_positions); }

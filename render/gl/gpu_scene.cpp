@@ -17,6 +17,7 @@ PreparedData geometry_data(const scene::Geometry& geometry, bool double_single) 
     PreparedData data;
     const glm::dvec3 origin = geometry.bounds.center();
     data.arrays = make_arrays(geometry, origin);
+    data.clusters = mesh::triangle_clusters(geometry);
     if (double_single) data.low_positions = low_positions_of(data.arrays.corners, geometry, origin);
     if (!geometry.texcoords.empty()) data.texcoords = texcoords_of(data.arrays.corners, geometry);
     if (!geometry.colors.empty()) data.colors = colors_of(data.arrays.corners, geometry);
@@ -216,6 +217,7 @@ void GpuScene::create_geometry(Arrival& arrival) {
     geometry = buffer_pool_.allocate({data.arrays.vertices.size(), triangles.size(), !data.texcoords.empty(),
                                       !data.colors.empty(), !data.low_positions.empty()});
     geometry.origin = read.bounds.center();
+    geometry.clusters = std::move(arrival.result.data.clusters);
     const auto first_vertex = static_cast<std::size_t>(geometry.first_vertex);
     arrival.upload.add(geometry.buffers->vertices, data.arrays.vertices, first_vertex);
     arrival.upload.add(geometry.buffers->indices, triangles, geometry.first_index / 3);

@@ -20,7 +20,8 @@ std::size_t bytes_of(const std::vector<Element>& elements) {
 
 std::size_t PreparedData::bytes() const {
     std::size_t bytes = bytes_of(arrays.vertices) + bytes_of(arrays.corners) + bytes_of(arrays.triangles) +
-                        bytes_of(low_positions) + bytes_of(texcoords) + bytes_of(colors) + bytes_of(edges);
+                        bytes_of(clusters) + bytes_of(low_positions) + bytes_of(texcoords) +
+                        bytes_of(colors) + bytes_of(edges);
     for (const scene::Image& image : texture.made) bytes += image.rgba.size();
     return bytes;
 }

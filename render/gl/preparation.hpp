@@ -12,6 +12,7 @@
 
 #include "gl/gpu_textures.hpp"
 #include "gl/vertex_arrays.hpp"
+#include "mesh/triangle_clusters.hpp"
 #include "scene/scene.hpp"
 
 namespace vrut::gl {
@@ -29,10 +30,11 @@ struct ResourceKey {
     }
 };
 
-/// A resource in memory, in the layout of the GPU. A geometry or a level fills the first four members,
+/// A resource in memory, in the layout of the GPU. A geometry or a level fills the first five members,
 /// another kind of resource one of the others.
 struct PreparedData {
     VertexArrays arrays;
+    std::vector<mesh::TriangleCluster> clusters;
     std::vector<glm::vec3> low_positions;
     std::vector<glm::vec2> texcoords;
     std::vector<glm::vec3> colors;

@@ -139,6 +139,13 @@ void APIENTRY glDrawElementsBaseVertex(GLenum mode, GLsizei count, GLenum type, 
     draw_or_fail([&] { draw(mode, count, type, indices, first_vertex); });
 }
 
+void APIENTRY glMultiDrawElementsBaseVertex(GLenum mode, const GLsizei* counts, GLenum type,
+                                            const void* const* indices, GLsizei draws,
+                                            const GLint* first_vertices) {
+    static auto* const draw = real<decltype(glMultiDrawElementsBaseVertex)>("glMultiDrawElementsBaseVertex");
+    draw_or_fail([&] { draw(mode, counts, type, indices, draws, first_vertices); });
+}
+
 void APIENTRY glMultiDrawElementsIndirect(GLenum mode, GLenum type, const void* draws, GLsizei count,
                                           GLsizei stride) {
     static auto* const draw = real<decltype(glMultiDrawElementsIndirect)>("glMultiDrawElementsIndirect");

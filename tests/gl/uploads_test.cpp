@@ -209,7 +209,10 @@ TEST_CASE("a level of detail is drawn once it is uploaded; until then, what is t
     const scene::Image expected = drawn_at_once(coarse), expected_lines = drawn_at_once(lines);
     renderer::Renderer renderer;
     renderer.upload(view);
-    const std::uint64_t all = view.scene->scene->triangle_count();
+    scene::Image whole;
+    plan::FrameStats of_whole;
+    renderer.render(view, whole, of_whole);
+    const std::uint64_t all = of_whole.triangles;
     std::uint64_t most = 0;
     Copies copies;
     const scene::Image image =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <vector>
 
 namespace vrut::gl {
 
@@ -56,11 +57,35 @@ void set_scissor(const std::optional<math::PixelBox>& box) {
 }
 
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats) {
+    const plan::TriangleRange all{0, static_cast<std::size_t>(geometry.index_count) / 3};
+    draw_triangles(geometry, {&all, 1}, stats);
+}
+
+void draw_triangles(const GpuGeometry& geometry, std::span<const plan::TriangleRange> ranges,
+                    plan::FrameStats& stats) {
     glBindVertexArray(geometry.buffers->vertex_array.get());
-    const std::uintptr_t offset = std::uintptr_t{geometry.first_index} * sizeof(unsigned);
-    glDrawElementsBaseVertex(GL_TRIANGLES, geometry.index_count, GL_UNSIGNED_INT,
-                             std::bit_cast<const void*>(offset), geometry.first_vertex);
-    count_draw(geometry.index_count, stats);
+    const auto offset_of = [&](const plan::TriangleRange& range) {
+        const std::uintptr_t index = std::uintptr_t{geometry.first_index} + 3 * range.first;
+        return std::bit_cast<const void*>(index * sizeof(unsigned));
+    };
+    if (ranges.size() == 1) {
+        const auto indices = static_cast<GLsizei>(3 * ranges[0].count);
+        glDrawElementsBaseVertex(GL_TRIANGLES, indices, GL_UNSIGNED_INT, offset_of(ranges[0]),
+                                 geometry.first_vertex);
+        return count_draw(indices, stats);
+    }
+    std::vector<GLsizei> counts;
+    std::vector<const void*> offsets;
+    GLsizei indices = 0;
+    for (const plan::TriangleRange& range : ranges) {
+        counts.push_back(static_cast<GLsizei>(3 * range.count));
+        offsets.push_back(offset_of(range));
+        indices += counts.back();
+    }
+    const std::vector<GLint> first_vertices(ranges.size(), geometry.first_vertex);
+    glMultiDrawElementsBaseVertex(GL_TRIANGLES, counts.data(), GL_UNSIGNED_INT, offsets.data(),
+                                  static_cast<GLsizei>(ranges.size()), first_vertices.data());
+    count_draw(indices, stats);
 }
 
 void draw_triangles(const GpuTriangles& triangles, plan::FrameStats& stats) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "gl/gpu_scene.hpp"
+#include "plan/backface_culling.hpp"
 #include "plan/frame_plan.hpp"
 #include "plan/view.hpp"
 
@@ -43,6 +45,8 @@ void set_scissor(const std::optional<math::PixelBox>& box);
 
 /// With the current program; adds to the draws and triangles of `stats`.
 void draw_triangles(const GpuGeometry& geometry, plan::FrameStats& stats);
+void draw_triangles(const GpuGeometry& geometry, std::span<const plan::TriangleRange> ranges,
+                    plan::FrameStats& stats);
 void draw_triangles(const GpuTriangles& triangles, plan::FrameStats& stats);
 
 }  // namespace vrut::gl

@@ -12,7 +12,7 @@ namespace {
 
 /// A CPU that draws rasterizes what is flushed while it processes the next vertices; a graphics card takes
 /// some time for each flush. Measured by bench_bare_gl.
-constexpr std::uint64_t kFlushedTriangles = 7'000, kMostFlushes = 64;
+constexpr std::uint64_t kFlushedTriangles = 30'000, kMostFlushes = 64;
 
 enum SurfaceUniform : GLint {
     clip_from_view_at = 0,  // of programs of one colour; surfaces find it in the view's block
@@ -244,6 +244,20 @@ void SurfacePrograms::use(SurfaceKind kind, const plan::DrawItem& item, const Gp
     if (item.clip_plane) glUniform4fv(clip_plane_at, 1, glm::value_ptr(clip_plane_of(item, geometry)));
 }
 
+/// Returns false if all of the item's triangles would be culled.
+bool SurfacePrograms::find_facing(const plan::DrawItem& item, const GpuGeometry& geometry) {
+    const std::size_t triangles = static_cast<std::size_t>(geometry.index_count) / 3;
+    if (item.cull_mode == plan::CullMode::none || geometry.clusters.empty()) {
+        facing_.assign(1, {0, triangles});
+        return true;
+    }
+    const glm::dvec3 eye =
+        -glm::inverse(glm::dmat3(item.view_from_node)) * glm::dvec3(item.view_from_node[3]);
+    plan::find_facing(geometry.clusters, triangles, eye, facing_);
+    return !facing_.empty();
+}
+
+/// Of what is facing, with the few triangles between.
 void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
                                    const scene::Material& material) {
     GpuInstance& instance = instances_.emplace_back();
@@ -253,8 +267,11 @@ void SurfacePrograms::add_instance(const plan::DrawItem& item, const GpuGeometry
     instance.diffuse_reflectivity = {glm::vec3(material.diffuse), reflectivity_of(item, material, false)};
     instance.specular_shininess = {highlight_of(item, material), material.shininess};
     if (item.clip_plane) instance.clip_plane = clip_plane_of(item, geometry);
-    draws_.push_back({static_cast<GLuint>(geometry.index_count), 1,
-                      item.mirrored ? geometry.first_turned_index : geometry.first_index,
+    const std::size_t first = facing_.front().first;
+    const std::size_t count = facing_.back().first + facing_.back().count - first;
+    draws_.push_back({static_cast<GLuint>(3 * count), 1,
+                      (item.mirrored ? geometry.first_turned_index : geometry.first_index) +
+                          static_cast<GLuint>(3 * first),
                       geometry.first_vertex, static_cast<GLuint>(draws_.size())});
 }
 
@@ -288,9 +305,12 @@ void SurfacePrograms::draw_run(std::span<const plan::DrawItem> items, const Pipe
     const plan::DrawItem& first = items.front();
     instances_.clear();
     draws_.clear();
-    for (const plan::DrawItem& item : items)
-        add_instance(item, scene_->geometry(item),
-                     material ? *material : scene_->scene()->material(item.material));
+    for (const plan::DrawItem& item : items) {
+        const GpuGeometry& geometry = scene_->geometry(item);
+        if (find_facing(item, geometry))
+            add_instance(item, geometry, material ? *material : scene_->scene()->material(item.material));
+    }
+    if (draws_.empty()) return;
     write_instances();
     SurfaceVariant variant = variant_of(SurfaceKind::faces, first, scene_->geometry(first));
     variant.instanced = true;
@@ -321,11 +341,11 @@ void SurfacePrograms::draw_faces(std::span<const plan::DrawItem> items, const Pi
         if (geometry.buffers->shared && !first.emissive && !plan::is_mapped(first)) {
             length = run_length(items);
             draw_run(items.first(length), state, material, stats);
-        } else {
+        } else if (find_facing(first, geometry)) {
             use(SurfaceKind::faces, first, geometry,
                 material ? *material : scene_->scene()->material(first.material));
             apply(state.for_item(first));
-            draw_triangles(geometry, stats);
+            draw_triangles(geometry, facing_, stats);
         }
         items = items.subspan(length);
         if (stats.triangles - flushed < flushed_at_once) continue;

@@ -53,6 +53,7 @@ private:
     bool reflects_environment(const plan::DrawItem& item) const;
     const GlTexture& texture_or_white(scene::Index texture);
     std::size_t run_length(std::span<const plan::DrawItem> items);
+    bool find_facing(const plan::DrawItem& item, const GpuGeometry& geometry);
     void add_instance(const plan::DrawItem& item, const GpuGeometry& geometry,
                       const scene::Material& material);
     void write_instances();
@@ -66,7 +67,8 @@ private:
     GlTexture white_;  // stands for an image where there is none
     GpuScene* scene_ = nullptr;
     std::optional<std::array<scene::Index, 6>> cube_map_;
-    std::vector<GpuInstance> instances_;  // of the draw call to come
+    std::vector<plan::TriangleRange> facing_;  // of the item to come
+    std::vector<GpuInstance> instances_;       // of the draw call to come
     std::vector<IndirectDraw> draws_;
     GlBuffer instance_buffer_, draw_buffer_;
 };
