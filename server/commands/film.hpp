@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "commands/commands.hpp"
+#include "messages.hpp"
+#include "plan/view.hpp"
+#include "renderer/renderer.hpp"
+
+namespace vrut::server::commands {
+
+/// What is drawn, but for the camera, and the camera of each image.
+struct Film {
+    plan::View view;
+    std::vector<scene::Camera> cameras;
+    std::string sha256;  ///< of the scene's file
+};
+
+/// Reads the scene, and lays over it what the arguments say. Throws std::runtime_error with a sentence.
+Film film_of(const RenderArguments& arguments);
+
+/// Computes the levels of detail that the view asks for.
+void add_levels(plan::View& view);
+
+/// Throws std::runtime_error where the device cannot draw images of that size.
+void require_size(const plan::View& view, const renderer::Renderer& renderer);
+
+/// By the name's ending. Throws std::runtime_error where it is of another format.
+protocol::ImageFormat format_of(const std::filesystem::path& output);
+
+/// The image's file.
+std::vector<std::uint8_t> encoded(const scene::Image& image, protocol::ImageFormat format, int jpeg_quality);
+
+}  // namespace vrut::server::commands
