@@ -9,7 +9,7 @@
 BUILD_PACKAGES=(
     g++ cmake:cmake ninja-build:ninja pkgconf:pkg-config
     libboost1.81-dev nlohmann-json3-dev libexpected-dev libcli11-dev libspdlog-dev libglm-dev
-    libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libwebp-dev libtiff-dev libstb-dev zlib1g-dev libssl-dev libqrencode-dev
+    libegl-dev libopengl-dev libturbojpeg0-dev libpng-dev libwebp-dev libtiff-dev libstb-dev zlib1g-dev libssl-dev libqrencode-dev libnats-dev
     libosd-dev libassimp-dev libmeshoptimizer-dev libdraco-dev esbuild:esbuild
 )
 # To run: EGL, and Mesa's drivers, with one that draws in software where there is no GPU; and the libraries that the
@@ -17,7 +17,7 @@ BUILD_PACKAGES=(
 # shellcheck disable=SC2034
 RUN_PACKAGES=(
     libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
-    libassimp5 libmeshoptimizer2d libdraco7 libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 libwebp7 libtiff6 zlib1g libssl3 libqrencode4
+    libassimp5 libmeshoptimizer2d libdraco7 libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 libwebp7 libtiff6 zlib1g libssl3 libqrencode4 libnats3.4
 )
 # To make the Debian packages (cpack), and of them a container's root (container.sh).
 # shellcheck disable=SC2034
@@ -32,7 +32,7 @@ TEST_PACKAGES=(
 # comments, and clang with the sanitizers' runtime and libFuzzer.
 # shellcheck disable=SC2034
 ALL_TEST_PACKAGES=(
-    firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy openssl:openssl
+    firefox-esr:firefox-esr gnuplot-nox:gnuplot python3-websockets curl:curl haproxy:haproxy nats-server:nats-server openssl:openssl
     bubblewrap:bwrap doxygen:doxygen lintian:lintian
     clang-14:clang++-14 libclang-rt-14-dev clang-tidy-14:clang-tidy-14
 )

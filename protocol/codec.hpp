@@ -35,7 +35,7 @@ const char* name_of(NavigationState::Style style);
 
 /// The JSON Schema (draft 2020-12) of everything that travels, and of what is kept in files. Its $defs hold
 /// each message, and `clientMessage`, `serverMessage`, `frameHeader`, `stateDocument`, `statePatch`,
-/// `eventLogHeader`, `eventLogLine` and `levelTable`.
+/// `eventLogHeader`, `eventLogLine`, `levelTable` and `renderJob`.
 std::string json_schema();
 
 }  // namespace vrut::protocol

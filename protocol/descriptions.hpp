@@ -6,6 +6,7 @@
 #include "frame_header.hpp"
 #include "level_table.hpp"
 #include "messages.hpp"
+#include "render_job.hpp"
 #include "state.hpp"
 #include "state_fields.hpp"
 
@@ -762,6 +763,28 @@ void describe(V& v, const LevelTable*) {
     v.required("width", &LevelTable::width, kPixels, "Of the frames measured, at scale 1.");
     v.required("height", &LevelTable::height, kPixels, "Of the frames measured, at scale 1.");
     v.required("levels", &LevelTable::levels, List<Object<Level>>{{}, 1, kMaxLevels}, "By rising accuracy.");
+}
+
+// --- the queue of images
+
+template <class V>
+void describe(V& v, const RenderJob*) {
+    v.required("run", &RenderJob::run, Text{100}, "By which the images of one film are known.");
+    v.required("image", &RenderJob::image, Integer{1, kMaxFilmImages}, "Its number in the film.");
+    v.required("scene", &RenderJob::scene, Text{1000}, "The scene's name in the workers' folder of scenes.");
+    v.required("sha256", &RenderJob::sha256, Text{100}, "SHA-256 of all that the scene shows.");
+    v.required("upAxis", &RenderJob::up_axis, kUpAxis, "Of a file that does not define it.");
+    v.required("studio", &RenderJob::studio, word("automatic", "on", "off"),
+               "Whether the scene is shown in a studio.");
+    v.required("width", &RenderJob::width, kPixels, "Pixels.");
+    v.required("height", &RenderJob::height, kPixels, "Pixels.");
+    v.required("samples", &RenderJob::samples, Integer{1, 4096}, "A pixel.");
+    v.required("detail", &RenderJob::detail, Number{0, 1000}, "By how many pixels surfaces may lie off.");
+    v.required("format", &RenderJob::format, kFormat, "Of the image's file.");
+    v.required("jpegQuality", &RenderJob::jpeg_quality, kJpegQuality, "Of a JPEG file.");
+    v.required("patches", &RenderJob::patches, List<Text>{{kMaxMessageBytes}, 0, 100},
+               "Merge patches of the state, as text.");
+    v.required("camera", &RenderJob::camera, kCameraOverlay, "The whole camera.");
 }
 
 }  // namespace vrut::protocol

@@ -124,6 +124,7 @@ std::string json_schema() {
     defs["quality"] = schema_of_struct<Quality>();
     defs["view"] = schema_of_struct<Resize>();
     defs["levelTable"] = schema_of_struct<LevelTable>();
+    defs["renderJob"] = schema_of_struct<RenderJob>();
     defs["frameHeader"] = schema_of_struct<FrameHeader>();
     defs["stateDocument"] = schema_of_struct<State>();
     defs["statePatch"] = patch_schema_of_struct<State>();

@@ -103,8 +103,8 @@ void add_vector(Command& command, const std::string& name, std::optional<glm::dv
         ->group(kCamera);
 }
 
-void add_device(Command& command, std::optional<int>& device) {
-    command.add_option("--device", device, "Draw on this EGL device, counted from 0.")
+CLI::Option* add_device(Command& command, std::optional<int>& device) {
+    return command.add_option("--device", device, "Draw on this EGL device, counted from 0.")
         ->check(is_whole_number)
         ->type_name("N")
         ->default_str("the first that works")
@@ -318,6 +318,10 @@ void add_camera(Command& command, RenderArguments& arguments) {
         ->group(kCamera);
 }
 
+CLI::Option* add_nats(Command& command, std::string& url, const std::string& sentence) {
+    return command.add_option("--nats", url, sentence)->type_name("URL");
+}
+
 void add_film(Command& command, RenderArguments& arguments) {
     auto* keyframes =
         add_file(command, "--keyframes", arguments.keyframes,
@@ -328,6 +332,10 @@ void add_film(Command& command, RenderArguments& arguments) {
             ->needs(keyframes)
             ->group(kCamera);
     keyframes->needs(frames);
+    add_nats(command, arguments.nats, "Let the workers of this NATS server draw the film (see 'worker').")
+        ->needs(keyframes)
+        ->excludes(command.get_option("--textures"))
+        ->group(kNetwork);
 }
 
 /// What the image is drawn with, and what is written besides. After add_film().
@@ -343,6 +351,7 @@ void add_drawing(Command& command, RenderArguments& arguments) {
                           .add_flag("--reference", arguments.reference,
                                     "Trace rays in double precision, without a graphics card.")
                           ->excludes(detail)
+                          ->excludes(command.get_option("--nats"))
                           ->group(kDrawing);
     add_file(command, "--float", arguments.unrounded,
              "Write the values of --reference before they are rounded too, as a PFM image.")
@@ -355,8 +364,9 @@ void add_drawing(Command& command, RenderArguments& arguments) {
         ->group(kOutput);
     command.add_flag("--stats", arguments.stats, "Print what drawing took, as JSON.")
         ->excludes(reference)
+        ->excludes(command.get_option("--nats"))
         ->group(kOutput);
-    add_device(command, arguments.device);
+    add_device(command, arguments.device)->excludes(command.get_option("--nats"));
 }
 
 std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
@@ -376,13 +386,13 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
         ->capture_default_str()
         ->group(kOutput);
     add_camera(*command, arguments);
-    add_film(*command, arguments);
     command->add_option("--set", arguments.set, "Change the state document by this JSON merge patch.")
         ->type_name("JSON")
         ->group(kScene);
     add_patches(*command, arguments);
     add_reading(*command, arguments.read);
     add_studio(*command, arguments.read);
+    add_film(*command, arguments);
     add_drawing(*command, arguments);
     command->exit_statuses = statuses("The image is written.");
     command->examples = {{"vrut-preview render my.glb -o my.png", "Draw the first view of a scene."},
@@ -391,6 +401,34 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
                          {"vrut-preview render mirror.vrut -o truth.png --size 320x180 --reference",
                           "Trace a scene with mirrors ray by ray."}};
     command->callback([&arguments] { render_command(arguments); });
+    return command;
+}
+
+std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
+    auto command = std::make_shared<Command>("Draw images of films for others.", "worker");
+    command->description = {
+        "A worker takes images from a queue, draws them and sends them to where 'render --nats' waits for "
+        "them. Any number of workers share a queue. When one dies, another draws its image after 5 s. "
+        "SIGINT, "
+        "SIGTERM and SIGHUP end a worker once its image is sent.",
+        "A worker finds the scene of an image by the name of its file, and draws it only if the scene and "
+        "its "
+        "textures are the same as where the film was asked for."};
+    add_nats(*command, arguments.nats, "Take images from the queue of this NATS server, which has JetStream.")
+        ->required()
+        ->group(kNetwork);
+    add_folder(*command, "--scenes", arguments.scenes, "Look for scenes in this folder and below.")
+        ->required()
+        ->group(kScene);
+    add_device(*command, arguments.device);
+    add_log_level(*command);
+    command->exit_statuses = statuses("A signal has ended the worker.");
+    command->examples = {{"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
+                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
+                          "Draw on the first graphics card."},
+                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --log-level error",
+                          "Log errors alone."}};
+    command->callback([&arguments] { worker_command(arguments); });
     return command;
 }
 
@@ -554,6 +592,7 @@ std::shared_ptr<Command> describe_program(Arguments& arguments) {
                          {"vrut-preview serve --help", "Print the options of a command."}};
     program->add_subcommand(describe_serve(arguments.serve));
     program->add_subcommand(describe_render(arguments.render));
+    program->add_subcommand(describe_worker(arguments.worker));
     program->add_subcommand(describe_replay(arguments.replay));
     program->add_subcommand(describe_info(arguments.info));
     program->add_subcommand(describe_convert(arguments.convert));

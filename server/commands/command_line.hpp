@@ -14,6 +14,7 @@ constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2;
 struct Arguments {
     ServeArguments serve;
     RenderArguments render;
+    WorkerArguments worker;
     ReplayArguments replay;
     InfoArguments info;
     ConvertArguments convert;

@@ -42,7 +42,8 @@ struct RenderArguments {
     std::optional<double> fov;
     std::filesystem::path keyframes;  ///< of a film; empty: one image
     int frames = 0;                   ///< of the film
-    std::string set;                  ///< a merge patch on the state
+    std::string nats;  ///< the address of NATS, whose workers draw the film; empty: this machine
+    std::string set;   ///< a merge patch on the state
     std::vector<std::pair<std::string, std::string>>
         patches;  ///< further ones, with the option that they are of
     std::optional<int> device;
@@ -52,6 +53,13 @@ struct RenderArguments {
         ids;  ///< further pictures: of the reference's values, of node ids; or empty
 };
 void render_command(const RenderArguments& arguments);
+
+struct WorkerArguments {
+    std::string nats;              ///< the address of NATS
+    std::filesystem::path scenes;  ///< where the scenes of the jobs are
+    std::optional<int> device;
+};
+void worker_command(const WorkerArguments& arguments);
 
 struct ReplayArguments {
     std::filesystem::path log;

@@ -80,7 +80,6 @@ Film film_of(const RenderArguments& arguments) {
     const std::string name = arguments.scene.filename().string();
     auto scene = scenes::load_scene(arguments.scene, name, observe::loading_bar(name), {{}, arguments.read});
     if (!scene) throw std::runtime_error(scene.error());
-    const std::string sha256 = scene->sha256;
     for (const protocol::Notice& notice : scene->notices)
         observe::log_warning("notice", {{"text", notice.message}});
     room::Room room(*std::move(scene));
@@ -96,7 +95,7 @@ Film film_of(const RenderArguments& arguments) {
     view.height = arguments.height;
     view.samples = arguments.samples;
     view.detail = arguments.detail;
-    return {view, wanted_cameras(arguments, room), sha256};
+    return {view, wanted_cameras(arguments, room)};
 }
 
 void add_levels(plan::View& view) {

@@ -16,7 +16,6 @@ namespace vrut::server::commands {
 struct Film {
     plan::View view;
     std::vector<scene::Camera> cameras;
-    std::string sha256;  ///< of the scene's file
 };
 
 /// Reads the scene, and lays over it what the arguments say. Throws std::runtime_error with a sentence.

@@ -1,14 +1,19 @@
 #include <array>
 #include <future>
 #include <iostream>
+#include <set>
 #include <stdexcept>
 
 #include "base/files.hpp"
 #include "commands/commands.hpp"
 #include "commands/film.hpp"
+#include "commands/stop_signals.hpp"
 #include "engine/images.hpp"
+#include "nats/render_queue.hpp"
+#include "observe/log.hpp"
 #include "reference/reference.hpp"
 #include "report.hpp"
+#include "scenes/library.hpp"
 
 namespace vrut::server::commands {
 
@@ -108,10 +113,64 @@ void draw_film(const RenderArguments& arguments, Film film) {
     written.get();
 }
 
+/// All that workers need to draw it.
+std::vector<protocol::RenderJob> jobs_of(const RenderArguments& arguments, const Film& film,
+                                         const std::string& run) {
+    protocol::RenderJob job;
+    job.run = run;
+    job.scene = arguments.scene.filename().string();
+    job.sha256 = scenes::sha256_of_scene(*film.view.scene->scene);
+    job.up_axis = arguments.read.z_up ? protocol::UpAxis::z : protocol::UpAxis::y;
+    job.studio = static_cast<protocol::RenderJob::Studio>(arguments.read.studio);
+    job.width = arguments.width;
+    job.height = arguments.height;
+    job.samples = arguments.samples;
+    job.detail = arguments.detail;
+    job.format = format_of(arguments.output);
+    job.jpeg_quality = arguments.jpeg_quality;
+    job.patches.push_back(arguments.set.empty() ? "{}" : arguments.set);
+    for (const auto& [option, patch] : arguments.patches) job.patches.push_back(patch);
+    std::vector<protocol::RenderJob> jobs;
+    for (const scene::Camera& camera : film.cameras) {
+        job.image = static_cast<int>(jobs.size()) + 1;
+        job.camera = {{}, camera.eye, camera.focus, camera.up, camera.center, camera.fov};
+        jobs.push_back(job);
+    }
+    return jobs;
+}
+
+/// By workers. Each image is written when it comes, whole.
+void collect_film(const RenderArguments& arguments) {
+    const StopSignals stop;
+    const nats::Connection connection(arguments.nats);
+    nats::FilmQueue queue(connection, nats::new_run());
+    const Film film = film_of(arguments);
+    for (const protocol::RenderJob& job : jobs_of(arguments, film, queue.run())) queue.post(job);
+    const std::size_t images = film.cameras.size();
+    std::set<std::string> known_problems;
+    for (std::size_t written = 0; written < images;) {
+        if (stop.came())
+            throw std::runtime_error("a signal stopped the film: " + std::to_string(written) + " of " +
+                                     std::to_string(images) + " images are written");
+        const std::optional<nats::FilmQueue::Result> result = queue.next();
+        if (!result) continue;
+        if (result->given_up)
+            throw std::runtime_error("image " + std::to_string(result->image) + ": " + result->problem);
+        if (!result->problem.empty()) {
+            if (known_problems.insert(result->problem).second)
+                observe::log_warning("worker_problem", {{"reason", result->problem}});
+            continue;
+        }
+        base::write_file(output_of(arguments, static_cast<std::size_t>(result->image) - 1), result->file);
+        ++written;
+    }
+}
+
 }  // namespace
 
 void render_command(const RenderArguments& arguments) {
     format_of(arguments.output);
+    if (!arguments.nats.empty()) return collect_film(arguments);
     Film film = film_of(arguments);
     if (arguments.reference)
         trace_film(arguments, std::move(film));

@@ -7,11 +7,13 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <stdexcept>
 #include <vector>
 
 #include "base/abandonable_task.hpp"
 #include "base/utf8.hpp"
+#include "io/vrut/text_writer.hpp"
 
 namespace vrut::server::scenes {
 
@@ -197,6 +199,20 @@ std::string sha256_of_text(std::string_view text) {
     Sha256 sum;
     sum.add(text);
     return sum.digest();
+}
+
+std::string sha256_of_scene(const scene::Scene& scene) {
+    std::vector<std::string> images;  // by their contents, wherever they lie
+    for (const scene::Texture& texture : scene.textures()) {
+        const std::vector<std::uint8_t>& rgba = texture.image.rgba;
+        Sha256 sum;
+        sum.add(std::to_string(texture.image.width) + "x");
+        sum.add({reinterpret_cast<const char*>(rgba.data()), rgba.size()});
+        images.push_back(sum.digest());
+    }
+    std::ostringstream text;
+    io::write_vrut_text(scene, text, {}, images);
+    return sha256_of_text(text.view());
 }
 
 }  // namespace vrut::server::scenes

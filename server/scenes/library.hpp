@@ -58,5 +58,7 @@ private:
 /// SHA-256 of a file in hexadecimal. Throws std::runtime_error, also where it is asked to stop.
 std::string sha256_of(const std::filesystem::path& path, const std::stop_token& stop = {});
 std::string sha256_of_text(std::string_view text);
+/// Of all that a scene shows, its images among it: the same wherever its files lie.
+std::string sha256_of_scene(const scene::Scene& scene);
 
 }  // namespace vrut::server::scenes

@@ -709,6 +709,37 @@ export type Quality = {
   subsampling: '4:2:0' | '4:4:4';
 };
 
+export type RenderJob = {
+  /** The whole camera. */
+  camera: CameraOverlay;
+  /** By how many pixels surfaces may lie off. */
+  detail: number;
+  /** Of the image's file. */
+  format: 'jpeg' | 'png';
+  /** Pixels. */
+  height: number;
+  /** Its number in the film. */
+  image: number;
+  /** Of a JPEG file. */
+  jpegQuality: number;
+  /** Merge patches of the state, as text. */
+  patches: Array<string>;
+  /** By which the images of one film are known. */
+  run: string;
+  /** A pixel. */
+  samples: number;
+  /** The scene's name in the workers' folder of scenes. */
+  scene: string;
+  /** SHA-256 of all that the scene shows. */
+  sha256: string;
+  /** Whether the scene is shown in a studio. */
+  studio: 'automatic' | 'on' | 'off';
+  /** Of a file that does not define it. */
+  upAxis: 'y' | 'z';
+  /** Pixels. */
+  width: number;
+};
+
 export type ServerError = {
   /** For programs. */
   code: 'bad-message' | 'out-of-range' | 'unknown-member' | 'read-only' | 'unknown-node' | 'unknown-frame' | 'stale-revision' | 'not-in-control' | 'not-allowed' | 'refused-scene' | 'busy' | 'too-many' | 'failed';

@@ -1,0 +1,66 @@
+#include "nats/connection.hpp"
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+
+#include "observe/log.hpp"
+
+namespace vrut::server::nats {
+
+namespace {
+
+using Options = Handle<natsOptions, natsOptions_Destroy>;
+
+/// Without name and password.
+std::string public_part(const std::string& url) {
+    const std::size_t scheme = url.find("://"), at = url.rfind('@');
+    if (at == std::string::npos) return url;
+    return (scheme == std::string::npos ? "" : url.substr(0, scheme + 3)) + url.substr(at + 1);
+}
+
+/// By the client's library, on a thread of its own; also when the connection is closed here.
+void on_lost(natsConnection* connection, void*) {
+    if (!natsConnection_IsClosed(connection)) observe::log_warning("nats_disconnected", {});
+}
+void on_back(natsConnection*, void*) { observe::log_info("nats_reconnected", {}); }
+
+std::string reason_of(natsStatus status, jsErrCode error) {
+    if (error == JSNotEnabledErr || status == NATS_NO_RESPONDERS)
+        return "JetStream is off; start nats-server with -js";
+    if (status == NATS_NO_SERVER) return "no NATS server answers there";
+    if (status == NATS_CONNECTION_AUTH_FAILED)
+        return "the server refuses the name and the password, or their lack";
+    return natsStatus_GetText(status);
+}
+
+}  // namespace
+
+Connection::Connection(const std::string& url) : name_(public_part(url)) {
+    constexpr std::chrono::milliseconds kPatience{2000};
+    natsOptions* created = nullptr;
+    require(natsOptions_Create(&created), "the client cannot start");
+    const Options options(created);
+    const bool has_scheme = url.starts_with("nats://") || url.starts_with("tls://");
+    if (!has_scheme || natsOptions_SetURL(options.get(), url.c_str()) != NATS_OK)
+        throw std::runtime_error("--nats: '" + name_ +
+                                 "' is no address of a NATS server, as in nats://HOST:4222");
+    natsOptions_SetTimeout(options.get(), kPatience.count());
+    natsOptions_SetMaxReconnect(options.get(), -1);
+    natsOptions_SetName(options.get(), "vrut-preview");
+    natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
+    natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);
+    natsConnection* connected = nullptr;
+    require(natsConnection_Connect(&connected, options.get()), "it cannot be reached");
+    connection_.reset(connected);
+    jsCtx* jetstream = nullptr;
+    require(natsConnection_JetStream(&jetstream, connected, nullptr), "it has no JetStream");
+    jetstream_.reset(jetstream);
+}
+
+void Connection::require(natsStatus status, const std::string& what, jsErrCode error) const {
+    if (status == NATS_OK) return;
+    throw std::runtime_error("--nats: " + name_ + ": " + what + ": " + reason_of(status, error));
+}
+
+}  // namespace vrut::server::nats

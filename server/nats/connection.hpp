@@ -1,0 +1,40 @@
+#pragma once
+
+#include <nats/nats.h>
+
+#include <memory>
+#include <string>
+
+namespace vrut::server::nats {
+
+/// An object of the NATS client's library, which the function frees.
+template <class Object, auto destroy>
+struct Destroy {
+    void operator()(Object* object) const { destroy(object); }
+};
+template <class Object, auto destroy>
+using Handle = std::unique_ptr<Object, Destroy<Object, destroy>>;
+
+using Message = Handle<natsMsg, natsMsg_Destroy>;
+using Subscription = Handle<natsSubscription, natsSubscription_Destroy>;
+
+/// A connection to a NATS server with JetStream. When it is lost it comes back by itself, and what is asked
+/// meanwhile waits or fails.
+class Connection {
+public:
+    /// Throws std::runtime_error with a sentence that names the address, without a password in it.
+    explicit Connection(const std::string& url);
+
+    natsConnection* get() const { return connection_.get(); }
+    jsCtx* jetstream() const { return jetstream_.get(); }
+    const std::string& name() const { return name_; }
+    /// Throws std::runtime_error, naming `what` cannot be done, if it is not OK.
+    void require(natsStatus status, const std::string& what, jsErrCode error = {}) const;
+
+private:
+    std::string name_;  // the address without a password
+    Handle<natsConnection, natsConnection_Destroy> connection_;
+    Handle<jsCtx, jsCtx_Destroy> jetstream_;
+};
+
+}  // namespace vrut::server::nats

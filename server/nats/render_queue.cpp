@@ -1,0 +1,297 @@
+#include "nats/render_queue.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <random>
+#include <stdexcept>
+#include <string_view>
+
+#include "observe/log.hpp"
+
+namespace vrut::server::nats {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char *kJobs = "VRUT_JOBS", *kWorkers = "workers";
+constexpr std::size_t kPartBytes = std::size_t{512} << 10;  // a NATS server takes messages of a megabyte
+constexpr std::size_t kMostParts = 4096;
+constexpr std::chrono::milliseconds kPoll{500};
+constexpr int kPollsOfCheck = 4;  // after so many without a message it is asked whether the queue is there
+constexpr std::int64_t kKept = std::chrono::nanoseconds(24h).count();
+
+std::string jobs_subject(const std::string& run) { return "vrut.jobs." + run; }
+std::string images_subject(const std::string& run) { return "vrut.images." + run; }
+std::string images_stream(const std::string& run) { return "VRUT_IMAGES_" + run; }
+
+void add_stream(const Connection& connection, const std::string& name, const std::string& subject,
+                jsRetentionPolicy retention) {
+    std::array<const char*, 1> subjects{subject.c_str()};
+    jsStreamConfig config;
+    jsStreamConfig_Init(&config);
+    config.Name = name.c_str();
+    config.Subjects = subjects.data();
+    config.SubjectsLen = 1;
+    config.Retention = retention;
+    config.MaxAge = kKept;
+    jsErrCode error{};
+    const natsStatus status = js_AddStream(nullptr, connection.jetstream(), &config, nullptr, &error);
+    connection.require(status, "the queue " + name + " cannot be made", error);
+}
+
+/// False where the server says so, not where it says nothing.
+bool has_stream(const Connection& connection, const std::string& name) {
+    jsStreamInfo* info = nullptr;
+    jsErrCode error{};
+    js_GetStreamInfo(&info, connection.jetstream(), name.c_str(), nullptr, &error);
+    jsStreamInfo_Destroy(info);
+    return error != JSStreamNotFoundErr;
+}
+
+std::string header_of(natsMsg* message, const char* name) {
+    const char* value = nullptr;
+    return natsMsgHeader_Get(message, name, &value) == NATS_OK && value ? value : "";
+}
+
+/// From 0, or none.
+std::optional<std::size_t> number_of(const std::string& text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return number;
+}
+
+std::string_view text_of(natsMsg* message) {
+    return {natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message))};
+}
+
+}  // namespace
+
+std::string new_run() {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::random_device random;
+    std::string run;
+    for (int i = 0; i < 16; ++i) run += kDigits[random() % kDigits.size()];
+    return run;
+}
+
+// --- the worker's side
+
+TakenJob::TakenJob(const Connection& connection, Message message, protocol::RenderJob job, int delivery)
+    : connection_(connection),
+      message_(std::move(message)),
+      job_(std::move(job)),
+      delivery_(delivery),
+      heartbeat_([raw = message_.get()](const std::stop_token& stop) {
+          std::mutex mutex;
+          std::condition_variable_any stopped;
+          std::unique_lock lock(mutex);
+          while (!stopped.wait_for(lock, stop, kJobPatience / 4, [&] { return stop.stop_requested(); }))
+              natsMsg_InProgress(raw, nullptr);
+      }) {}
+
+/// False where nobody collects the run any more.
+bool TakenJob::publish(std::span<const std::byte> bytes, const std::map<std::string, std::string>& headers) {
+    natsMsg* created = nullptr;
+    std::string data(bytes.size(), 0);
+    std::ranges::transform(bytes, data.begin(), [](std::byte byte) { return static_cast<char>(byte); });
+    connection_.require(natsMsg_Create(&created, images_subject(job_.run).c_str(), nullptr, data.data(),
+                                       static_cast<int>(data.size())),
+                        "an image cannot be sent");
+    const Message message(created);
+    for (const auto& [name, value] : headers) natsMsgHeader_Set(created, name.c_str(), value.c_str());
+    jsErrCode error{};
+    const natsStatus status = js_PublishMsg(nullptr, connection_.jetstream(), created, nullptr, &error);
+    // Nobody takes an image while JetStream starts, either.
+    if (status == NATS_NO_RESPONDERS && !has_stream(connection_, images_stream(job_.run))) return false;
+    connection_.require(status, "an image cannot be sent", error);
+    return true;
+}
+
+void TakenJob::finish(std::span<const std::uint8_t> file) {
+    const std::size_t parts = std::max<std::size_t>((file.size() + kPartBytes - 1) / kPartBytes, 1);
+    const std::string sender = new_run();
+    for (std::size_t i = 0; i < parts; ++i) {
+        const std::size_t first = i * kPartBytes;
+        const bool wanted =
+            publish(std::as_bytes(file.subspan(first, std::min(kPartBytes, file.size() - first))),
+                    {{"Image", std::to_string(job_.image)},
+                     {"Sender", sender},
+                     {"Part", std::to_string(i)},
+                     {"Parts", std::to_string(parts)}});
+        if (!wanted) break;
+    }
+    heartbeat_ = {};
+    natsMsg_AckSync(message_.get(), nullptr, nullptr);
+}
+
+void TakenJob::give_back(const std::string& sentence) {
+    const bool last = delivery_ >= kMostDeliveries;
+    bool wanted = true;
+    try {
+        wanted =
+            publish(std::as_bytes(std::span(sentence)),
+                    {{"Image", std::to_string(job_.image)}, {"Problem", "1"}, {"Last", last ? "1" : "0"}});
+    } catch (const std::exception&) {
+        return;  // the server is away: the job waits there, and is given to a worker again
+    }
+    heartbeat_ = {};
+    if (wanted && !last)
+        natsMsg_NakWithDelay(message_.get(), std::chrono::milliseconds(1s).count(), nullptr);
+    else
+        natsMsg_Term(message_.get(), nullptr);
+}
+
+JobQueue::JobQueue(const Connection& connection) : connection_(connection) { subscribe(); }
+
+void JobQueue::subscribe() {
+    add_stream(connection_, kJobs, jobs_subject("*"), js_WorkQueuePolicy);
+    jsSubOptions options;
+    jsSubOptions_Init(&options);
+    options.Stream = kJobs;
+    options.Config.AckPolicy = js_AckExplicit;
+    options.Config.AckWait = std::chrono::nanoseconds(kJobPatience).count();
+    jsErrCode error{};
+    natsSubscription* subscription = nullptr;
+    const natsStatus status =
+        js_PullSubscribe(&subscription, connection_.jetstream(), jobs_subject("*").c_str(), kWorkers, nullptr,
+                         &options, &error);
+    connection_.require(status, "the queue of jobs cannot be read", error);
+    subscription_.reset(subscription);
+}
+
+/// A server that has lost a queue answers as one whose queue is empty.
+bool JobQueue::is_lost() {
+    jsConsumerInfo* info = nullptr;
+    jsErrCode error{};
+    const natsStatus status = natsSubscription_GetConsumerInfo(&info, subscription_.get(), nullptr, &error);
+    jsConsumerInfo_Destroy(info);
+    return status != NATS_OK && status != NATS_TIMEOUT;
+}
+
+std::unique_ptr<TakenJob> JobQueue::take() {
+    natsMsgList list{};
+    const natsStatus status = natsSubscription_Fetch(&list, subscription_.get(), 1, kPoll.count(), nullptr);
+    Message message(status == NATS_OK && list.Count > 0 ? std::exchange(list.Msgs[0], nullptr) : nullptr);
+    natsMsgList_Destroy(&list);
+    if (message) return take_message(std::move(message));
+    if (status != NATS_OK && status != NATS_TIMEOUT) std::this_thread::sleep_for(kPoll);
+    if (++empty_polls_ % kPollsOfCheck != 0 || !is_lost()) return {};
+    try {
+        subscribe();
+    } catch (const std::exception& error) {
+        observe::log_debug("queue_unreachable",
+                           {{"reason", error.what()}});  // the connection's loss is logged
+    }
+    return {};
+}
+
+std::unique_ptr<TakenJob> JobQueue::take_message(Message message) {
+    auto job = protocol::parse_render_job(text_of(message.get()));
+    if (job && jobs_subject(job->run) != natsMsg_GetSubject(message.get()))
+        job = tl::unexpected<std::string>("'run' is not that of its subject");
+    if (!job) {
+        observe::log_warning("invalid_job", {{"reason", job.error()}});
+        natsMsg_Term(message.get(), nullptr);
+        return {};
+    }
+    jsMsgMetaData* meta = nullptr;
+    const bool has_meta = natsMsg_GetMetaData(&meta, message.get()) == NATS_OK;
+    const int delivery = has_meta ? static_cast<int>(meta->NumDelivered) : 1;
+    jsMsgMetaData_Destroy(meta);
+    auto taken = std::make_unique<TakenJob>(connection_, std::move(message), *std::move(job), delivery);
+    if (delivery <= kMostDeliveries) return taken;
+    taken->give_back("the image was given to " + std::to_string(kMostDeliveries) +
+                     " workers, and none finished it");
+    return {};
+}
+
+// --- the film's side
+
+FilmQueue::FilmQueue(const Connection& connection, std::string run)
+    : connection_(connection), run_(std::move(run)), stream_(images_stream(run_)) {
+    add_stream(connection, kJobs, jobs_subject("*"), js_WorkQueuePolicy);
+    add_stream(connection, stream_, images_subject(run_), js_LimitsPolicy);
+    jsSubOptions options;
+    jsSubOptions_Init(&options);
+    options.Stream = stream_.c_str();
+    options.Ordered = true;
+    jsErrCode error{};
+    natsSubscription* subscription = nullptr;
+    const natsStatus status = js_SubscribeSync(&subscription, connection.jetstream(),
+                                               images_subject(run_).c_str(), nullptr, &options, &error);
+    connection.require(status, "the images cannot be read", error);
+    subscription_.reset(subscription);
+}
+
+FilmQueue::~FilmQueue() {
+    const std::string subject = jobs_subject(run_);
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Stream.Purge.Subject = subject.c_str();
+    js_PurgeStream(connection_.jetstream(), kJobs, &options, nullptr);
+    js_DeleteStream(connection_.jetstream(), stream_.c_str(), nullptr, nullptr);
+}
+
+void FilmQueue::post(const protocol::RenderJob& job) {
+    const std::string text = protocol::encode(job);
+    jsErrCode error{};
+    const natsStatus status = js_Publish(nullptr, connection_.jetstream(), jobs_subject(run_).c_str(),
+                                         text.data(), static_cast<int>(text.size()), nullptr, &error);
+    connection_.require(status, "a job cannot be sent", error);
+    posted_ = std::max(posted_, job.image);
+}
+
+/// What has come needs no place in the server, up to this message.
+void FilmQueue::forget_received(natsMsg* last) const {
+    jsMsgMetaData* meta = nullptr;
+    if (natsMsg_GetMetaData(&meta, last) == NATS_OK) {
+        jsOptions options;
+        jsOptions_Init(&options);
+        options.Stream.Purge.Sequence = meta->Sequence.Stream + 1;
+        js_PurgeStream(connection_.jetstream(), stream_.c_str(), &options, nullptr);
+    }
+    jsMsgMetaData_Destroy(meta);
+}
+
+std::optional<FilmQueue::Result> FilmQueue::next() {
+    natsMsg* received = nullptr;
+    if (natsSubscription_NextMsg(&received, subscription_.get(), kPoll.count()) != NATS_OK) {
+        if (++empty_polls_ % kPollsOfCheck == 0 && !has_stream(connection_, stream_))
+            throw std::runtime_error("--nats: " + connection_.name() +
+                                     ": the server has lost the film's queue; start the film again");
+        return {};
+    }
+    const Message message(received);
+    const auto image = number_of(header_of(received, "Image"));
+    if (!image || *image == 0 || *image > static_cast<std::size_t>(posted_)) return {};
+    Result result;
+    result.image = static_cast<int>(*image);
+    if (complete_.contains(result.image)) return {};
+    if (header_of(received, "Problem") == "1") {
+        result.problem = text_of(received);
+        result.given_up = header_of(received, "Last") == "1";
+        return result;
+    }
+    const auto part = number_of(header_of(received, "Part")), parts = number_of(header_of(received, "Parts"));
+    if (!part || !parts || *parts > kMostParts || *part >= *parts) return {};
+    Parts& incomplete = incomplete_[{result.image, header_of(received, "Sender")}];
+    if (incomplete.parts.empty()) incomplete = {std::vector<std::vector<std::uint8_t>>(*parts), *parts};
+    if (incomplete.parts.size() != *parts || !incomplete.parts[*part].empty()) return {};
+    const std::string_view text = text_of(received);
+    incomplete.parts[*part].assign(text.begin(), text.end());
+    if (--incomplete.missing > 0) return {};
+    for (const std::vector<std::uint8_t>& bytes : incomplete.parts)
+        result.file.insert(result.file.end(), bytes.begin(), bytes.end());
+    std::erase_if(incomplete_, [&](const auto& entry) { return entry.first.first == result.image; });
+    complete_.insert(result.image);
+    forget_received(received);
+    return result;
+}
+
+}  // namespace vrut::server::nats
