@@ -1,4 +1,6 @@
+#include <chrono>
 #include <stdexcept>
+#include <thread>
 
 #include "codec.hpp"
 #include "commands/commands.hpp"
@@ -11,6 +13,14 @@
 namespace vrut::server::commands {
 
 namespace {
+
+/// A worker without the scene of a job leaves the queue to others for so long.
+constexpr std::chrono::seconds kPause{5};
+
+/// The worker has not the scene of a job.
+struct MissingScene : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
 
 /// Draws jobs, and keeps the scene of the last one for the next.
 class Worker {
@@ -61,7 +71,7 @@ private:
             prepared_ = wanted;
             return;
         }
-        throw std::runtime_error(
+        throw MissingScene(
             "'" + job.scene + "' is " +
             (has_name
                  ? "another scene here than where the film was asked for: its file or its textures differ"
@@ -74,6 +84,12 @@ private:
     plan::View view_;
     scene::Image image_;
 };
+
+void pause(const StopSignals& stop) {
+    const auto end = std::chrono::steady_clock::now() + kPause;
+    while (!stop.came() && std::chrono::steady_clock::now() < end)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
 
 }  // namespace
 
@@ -92,6 +108,10 @@ void worker_command(const WorkerArguments& arguments) {
             taken->finish(worker.draw(taken->job()));
             observe::log_info("image_drawn",
                               {{"run", taken->job().run}, {"image", std::int64_t{taken->job().image}}});
+        } catch (const MissingScene& error) {
+            observe::log_warning("scene_missing", {{"run", taken->job().run}, {"reason", error.what()}});
+            taken->hand_on(error.what());
+            pause(stop);
         } catch (const std::exception& error) {
             observe::log_warning("image_returned",
                                  {{"image", std::int64_t{taken->job().image}}, {"reason", error.what()}});

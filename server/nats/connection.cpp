@@ -29,6 +29,8 @@ std::string reason_of(natsStatus status, jsErrCode error) {
     if (error == JSNotEnabledErr || status == NATS_NO_RESPONDERS)
         return "JetStream is off; start nats-server with -js";
     if (status == NATS_NO_SERVER) return "no NATS server answers there";
+    if (status == NATS_SSL_ERROR)
+        return "TLS fails: this machine does not trust the server's certificate, or it is for another name";
     if (status == NATS_CONNECTION_AUTH_FAILED)
         return "the server refuses the name and the password, or their lack";
     return natsStatus_GetText(status);

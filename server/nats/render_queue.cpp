@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <random>
 #include <stdexcept>
@@ -130,21 +129,37 @@ void TakenJob::finish(std::span<const std::uint8_t> file) {
     natsMsg_AckSync(message_.get(), nullptr, nullptr);
 }
 
+/// To whoever collects the film. False where nobody does; true, too, where the server is away: then the job
+/// waits there.
+bool TakenJob::report(const std::string& sentence, bool last) {
+    try {
+        return publish(std::as_bytes(std::span(sentence)),
+                       {{"Image", std::to_string(job_.image)}, {"Problem", "1"}, {"Last", last ? "1" : "0"}});
+    } catch (const std::exception&) {
+        return true;
+    }
+}
+
 void TakenJob::give_back(const std::string& sentence) {
     const bool last = delivery_ >= kMostDeliveries;
-    bool wanted = true;
-    try {
-        wanted =
-            publish(std::as_bytes(std::span(sentence)),
-                    {{"Image", std::to_string(job_.image)}, {"Problem", "1"}, {"Last", last ? "1" : "0"}});
-    } catch (const std::exception&) {
-        return;  // the server is away: the job waits there, and is given to a worker again
-    }
+    const bool wanted = report(sentence, last);
     heartbeat_ = {};
     if (wanted && !last)
         natsMsg_NakWithDelay(message_.get(), std::chrono::milliseconds(1s).count(), nullptr);
     else
         natsMsg_Term(message_.get(), nullptr);
+}
+
+/// A new message has had no delivery. If it cannot be sent, the old one stays.
+void TakenJob::hand_on(const std::string& sentence) {
+    const bool wanted = report(sentence, false);
+    const std::string_view text = text_of(message_.get());
+    const natsStatus status =
+        wanted ? js_Publish(nullptr, connection_.jetstream(), jobs_subject(job_.run).c_str(), text.data(),
+                            static_cast<int>(text.size()), nullptr, nullptr)
+               : NATS_OK;
+    heartbeat_ = {};
+    if (status == NATS_OK) natsMsg_AckSync(message_.get(), nullptr, nullptr);
 }
 
 JobQueue::JobQueue(const Connection& connection) : connection_(connection) { subscribe(); }

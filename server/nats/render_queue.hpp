@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -39,8 +40,11 @@ public:
     /// Gives the job back, for another worker or a later try. The sentence goes to whoever collects the film,
     /// where it can be sent.
     void give_back(const std::string& sentence);
+    /// The same for a worker that lacks what the job needs: this delivery does not count.
+    void hand_on(const std::string& sentence);
 
 private:
+    bool report(const std::string& sentence, bool last);
     bool publish(std::span<const std::byte> bytes, const std::map<std::string, std::string>& headers);
 
     const Connection& connection_;
@@ -55,14 +59,13 @@ class JobQueue {
 public:
     /// Throws std::runtime_error where the queue can be neither found nor made.
     explicit JobQueue(const Connection& connection);
-    /// Waits for a job for half a second. What is no job is taken out of the queue, and logged. A queue that
-    /// the server has lost is made anew.
+    /// Waits for a job for half a second. Takes out of the queue what is no job, and logs it. Makes the queue
+    /// anew if the server has lost it.
     std::unique_ptr<TakenJob> take();
 
 private:
     void subscribe();
     std::unique_ptr<TakenJob> take_message(Message message);
-
     bool is_lost();
 
     const Connection& connection_;
@@ -70,7 +73,8 @@ private:
     int empty_polls_ = 0;
 };
 
-/// The side of whoever wants a film. What is left of it in the queue goes with the object.
+/// The client's side: posts the jobs of a film, and receives its images. The destructor removes from the
+/// server what is left of the film.
 class FilmQueue {
 public:
     struct Result {

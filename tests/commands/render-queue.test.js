@@ -69,12 +69,15 @@ async function streams() {
   return Object.fromEntries((account?.stream_detail ?? []).map((stream) => [stream.name, stream.state.messages]));
 }
 
-/// How many workers wait for jobs.
-async function waiting() {
+/// What the NATS server tells of the workers.
+async function consumer() {
   const answer = await fetch(`http://127.0.0.1:${monitoring}/jsz?consumers=1`);
   const [account] = (await answer.json()).account_details ?? [];
-  return account?.stream_detail?.[0]?.consumer_detail?.[0]?.num_waiting ?? 0;
+  return (account?.stream_detail ?? []).find((stream) => stream.name === 'VRUT_JOBS')?.consumer_detail?.[0] ?? {};
 }
+
+/// How many workers wait for jobs.
+const waiting = async () => (await consumer()).num_waiting ?? 0;
 
 function worker(scenes = path.dirname(CAR)) {
   return start(PROGRAM, 'worker', '--nats', url(), '--scenes', scenes);
@@ -101,7 +104,7 @@ async function isWhole(collector, name, expected) {
   images(name).forEach((image, i) => assert.ok(image.equals(expected[i]), `image ${i + 1} of ${name}`));
 }
 
-const missing = fs.existsSync(NATS_SERVER) ? false : `${NATS_SERVER} is missing`;
+const missing = [NATS_SERVER, '/usr/bin/openssl'].filter((name) => !fs.existsSync(name)).map((name) => `${name} is missing`).join(', ') || false;
 
 describe('a queue of images', { skip: missing }, () => {
   before(async () => {
@@ -211,7 +214,8 @@ describe('a queue of images', { skip: missing }, () => {
       const wrong = worker(file(name));
       const collector = queued(`${name}.png`);
       await eventually('the problem', () => /is another scene here than where the film was asked for/.test(collector.text));
-      await stop(wrong, 'SIGTERM');
+      assert.equal(await stop(wrong, 'SIGTERM'), 0);
+      assert.equal((await consumer()).num_ack_pending, 0);  // what it cannot draw waits as if nobody had tried
       const right = worker();
       await isWhole(collector, `${name}.png`, alone(`${name}-alone.png`));
       await stop(right, 'SIGTERM');
@@ -276,6 +280,26 @@ describe('a queue of images', { skip: missing }, () => {
     await startNats('-js', '-sd', file('store'), '--user', 'drawer', '--pass', 'secret');
     for (const child of at(url())) await fails(child, /the server refuses the name and the password/);
     for (const child of at(`nats://drawer:wrong@127.0.0.1:${port}`)) await fails(child, /the server refuses the name and the password/);
+    const pem = (name) => [file(`${name}.key`), file(`${name}.crt`)];
+    for (const name of ['localhost', 'example.org']) {
+      const [key, certificate] = pem(name);
+      const made = spawnSync('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-keyout', key,
+        '-out', certificate, '-days', '2', '-subj', `/CN=${name}`, '-addext', `subjectAltName=DNS:${name}`]);
+      assert.equal(made.status, 0, String(made.stderr));
+    }
+    const byTls = (trusted) => start('env', `SSL_CERT_FILE=${trusted}`, PROGRAM, 'worker', '--nats', `tls://localhost:${port}`, '--scenes', folder);
+    for (const [name, trusted] of [['localhost', '/dev/null'], ['example.org', file('example.org.crt')]]) {
+      await stop(nats, 'SIGTERM');
+      const [key, certificate] = pem(name);
+      await startNats('-js', '-sd', file('store'), '--tls', '--tlskey', key, '--tlscert', certificate);
+      await fails(byTls(trusted), /TLS fails: this machine does not trust the server's certificate, or it is for another name\n$/);
+    }
+    await stop(nats, 'SIGTERM');
+    await startNats('-js', '-sd', file('store'), '--tls', '--tlskey', file('localhost.key'), '--tlscert', file('localhost.crt'));
+    const encrypted = byTls(file('localhost.crt'));
+    await eventually('the worker by TLS', () => /waiting_for_jobs nats=tls:/.test(encrypted.text));
+    await stop(nats, 'SIGTERM');
+    await startNats('-js', '-sd', file('store'), '--user', 'drawer', '--pass', 'secret');
     const known = start(PROGRAM, 'worker', '--nats', `nats://drawer:secret@127.0.0.1:${port}`, '--scenes', folder);
     await eventually('the worker', () => /waiting_for_jobs nats=nats:\/\/127/.test(known.text));
   });

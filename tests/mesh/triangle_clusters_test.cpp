@@ -83,7 +83,7 @@ TEST_CASE("what faces away is culled") {
     CHECK(from_far < ball.triangles.size() / 2);
 }
 
-TEST_CASE("triangles of which none can be culled have no clusters") {
+TEST_CASE("a geometry that cannot be culled has no clusters") {
     CHECK(mesh::triangle_clusters(box(glm::dvec3(1))).empty());
     CHECK(mesh::triangle_clusters({}).empty());
     scene::Geometry points;  // without an area

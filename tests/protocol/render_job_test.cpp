@@ -52,7 +52,7 @@ TEST_CASE("a job reads back as it was written, to the last bit") {
     CHECK(encode(*read) == encode(job));
 }
 
-TEST_CASE("what is wrong with a job is told in a sentence that names it") {
+TEST_CASE("an invalid job is rejected with a sentence that names the member") {
     CHECK(job_rejection("samples", 4096) == "");
     CHECK(job_rejection("samples", 4097).starts_with("'samples'"));
     CHECK(job_rejection("image", 0).starts_with("'image'"));
