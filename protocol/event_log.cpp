@@ -78,6 +78,7 @@ std::string encode(const LogHeader& header) {
 std::string encode(const LogLine& line) {
     Json json = {{"at", to_ms(line.at)}};
     if (!line.client.empty()) json["client"] = line.client;
+    if (line.sequence > 0) json["sequence"] = line.sequence;
     if (const auto* message = std::get_if<ClientMessage>(&line.what))
         json["message"] = as_it_came(*message);
     else
@@ -103,13 +104,17 @@ tl::expected<LogLine, Error> decode_log_line(std::string_view text) {
         LogLine line;
         line.at = read_time(member(read_object(json, "line"), "at"));
         if (json.contains("client")) line.client = kClientId.read(json["client"], "client");
+        if (json.contains("sequence"))
+            line.sequence =
+                static_cast<std::uint64_t>(read_integer(json["sequence"], "sequence", 1, kMaxInteger));
         if (json.contains("message"))
             line.what = read_client_message(json["message"]);
         else
             read_event(json, line);
         const bool of_nobody = std::holds_alternative<LogLine::ControlPassed>(line.what) ||
                                std::holds_alternative<LogLine::Opened>(line.what) ||
-                               std::holds_alternative<LogLine::Drawn>(line.what);
+                               std::holds_alternative<LogLine::Drawn>(line.what) ||
+                               std::holds_alternative<LogLine::Revised>(line.what);
         if (line.client.empty() && !of_nobody)
             throw BadJson{error_code::bad_message, "member 'client' is missing"};
         return line;

@@ -35,6 +35,9 @@ struct LogHeader {
         Role role = Role::view;
         std::optional<Resize> wanted;
         std::string name = {};  ///< empty: none
+        // Only where a room goes on with the log:
+        std::string resume = {};     ///< its key
+        std::uint64_t sequence = 0;  ///< of its last message
     };
     std::vector<Client> clients;
     // What else the camera depends on:
@@ -52,12 +55,14 @@ struct LogHeader {
         Fly fly;
     };
     std::optional<Flight> flight;  ///< that was going on
+    std::int64_t revision = 0;     ///< of the state; 0: not known
 };
 
 struct LogLine {
     struct Connected {
         Role role = Role::view;
-        std::string name = {};  ///< empty: none
+        std::string name = {};    ///< empty: none
+        std::string resume = {};  ///< as in the header
     };
     struct Disconnected {};
     /// From here on this line's client holds control, or nobody where it has none.
@@ -72,9 +77,16 @@ struct LogLine {
     struct Drawn {
         std::int64_t frame = 0;
     };
+    /// What is shown now is this revision of the state. Only where a room goes on with the log.
+    struct Revised {
+        std::int64_t revision = 0;
+        std::optional<std::vector<Notice>> notices = {};  ///< of the server; none: unchanged
+        std::optional<std::string> recording = {};        ///< that goes on, empty: none does; none: unchanged
+    };
     LogTime at{0};
-    std::string client;  ///< empty where it was none's doing
-    std::variant<ClientMessage, Connected, Disconnected, ControlPassed, Opened, Drawn> what;
+    std::uint64_t sequence = 0;  ///< of this message among those of its client; 0: not known
+    std::string client;          ///< empty where it was none's doing
+    std::variant<ClientMessage, Connected, Disconnected, ControlPassed, Opened, Drawn, Revised> what;
 };
 
 /// Without the line's end.

@@ -23,6 +23,10 @@ void describe(V& v, const LogHeader::Client*) {
     v.required("client", &LogHeader::Client::client, kClientId, "The client's id.");
     v.required("role", &LogHeader::Client::role, kRole, "The role given.");
     v.optional("name", &LogHeader::Client::name, kClientName, "As in its `hello`.");
+    v.optional("resume", &LogHeader::Client::resume, Text{1000},
+               "As in its `hello`; only in a shared room's log.");
+    v.optional("sequence", &LogHeader::Client::sequence, Integer{},
+               "Of its last message; only in a shared room's log.");
 }
 
 /// The size that it asked for stands in the same object, where it asked for one.
@@ -71,6 +75,7 @@ void describe(V& v, const LogHeader*) {
     v.optional("frames", &LogHeader::frames, List<Object<LoggedFrame>>{{}, 0, 1000},
                "Frames that clients may still name.");
     v.optional("flight", &LogHeader::flight, Object<LogHeader::Flight>{}, "The flight that was going on.");
+    v.optional("revision", &LogHeader::revision, Integer{}, "Of the state; only in a shared room's log.");
 }
 
 /// The text of an object.
@@ -86,6 +91,8 @@ template <class V>
 void describe(V& v, const LogLine::Connected*) {
     v.required("role", &LogLine::Connected::role, kRole, "The role given.");
     v.optional("name", &LogLine::Connected::name, kClientName, "As in its `hello`.");
+    v.optional("resume", &LogLine::Connected::resume, Text{1000},
+               "As in its `hello`; only in a shared room's log.");
 }
 template <class V>
 void describe(V&, const LogLine::Disconnected*) {}
@@ -105,6 +112,15 @@ void describe(V& v, const LogLine::Drawn*) {
     v.required("frame", &LogLine::Drawn::frame, Integer{1, kMaxInteger}, "Number of the frame.");
 }
 
+template <class V>
+void describe(V& v, const LogLine::Revised*) {
+    v.required("revision", &LogLine::Revised::revision, Integer{1, kMaxInteger}, "Of the state.");
+    v.optional("notices", &LogLine::Revised::notices, List<Defined<Object<Notice>>>{kNotice, 0, kMaxNotices},
+               "The server's; missing: unchanged.");
+    v.optional("recording", &LogLine::Revised::recording, Text{1000},
+               "The event log that is being recorded, empty: none; missing: unchanged.");
+}
+
 /// Calls `use(event, client, prototype)` for each line that is no message: the word in `event`, what its
 /// `client` means (null: it is nobody's doing), and a value of its type.
 template <class Use>
@@ -114,6 +130,7 @@ void for_each_event(Use use) {
     use("control", "Who holds control from here on; missing: nobody.", LogLine::ControlPassed{});
     use("opened", nullptr, LogLine::Opened{});
     use("drawn", nullptr, LogLine::Drawn{});
+    use("revised", nullptr, LogLine::Revised{});
 }
 
 }  // namespace vrut::protocol

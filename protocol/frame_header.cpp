@@ -11,10 +11,8 @@ namespace {
 
 constexpr std::size_t kLongestComment = 65'533;
 
-}  // namespace
-
-std::string encode(const FrameHeader& header) {
-    Json json = write_struct(header);
+/// No longer than a COM segment.
+std::string text_of(Json json) {
     std::string text = dump(json);
     if (text.size() > kLongestComment && json.erase("markers") > 0) text = dump(json);
     // Of the others, the only one without a bound.
@@ -22,14 +20,26 @@ std::string encode(const FrameHeader& header) {
     return text;
 }
 
-EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header) : header_(header) {
-    header_.handled = 0;
-    header_.timing.since_input_ms = 0;
+std::string without_clients_part(FrameHeader header) {
+    header.handled = 0;
+    header.timing.since_input_ms = 0;
+    return dump(write_struct(header));
+}
+
+}  // namespace
+
+std::string encode(const FrameHeader& header) { return text_of(write_struct(header)); }
+
+EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header)
+    : EncodedFrameHeader(without_clients_part(header)) {}
+
+EncodedFrameHeader::EncodedFrameHeader(const std::string& text) {
     // Quotes within a name are escaped, so that neither of the two stands elsewhere.
-    const std::string text = dump(write_struct(header_)),
-                      handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
-    const std::size_t first = text.find(handled + "0,") + handled.size(),
-                      second = text.find(since_input, first);
+    const std::string handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
+    const std::size_t at = text.find(handled + "0,"), second = text.find(since_input, std::min(at, text.size()));
+    if (at == std::string::npos || second == std::string::npos)
+        throw std::runtime_error("a frame's header has no 'handled' or no 'sinceInputMs'");
+    const std::size_t first = at + handled.size();
     before_handled_ = text.substr(0, first);
     before_since_input_ = text.substr(first + 1, second - first - 1);
     rest_ = text.substr(second + since_input.size());
@@ -40,10 +50,7 @@ std::string EncodedFrameHeader::with(std::int64_t handled, std::optional<double>
     if (since_input_ms) text += ",\"sinceInputMs\":" + dump(Json(*since_input_ms));
     text += rest_;
     if (text.size() <= kLongestComment) return text;
-    FrameHeader shorter = header_;
-    shorter.handled = handled;
-    shorter.timing.since_input_ms = since_input_ms;
-    return encode(shorter);
+    return text_of(Json::parse(text));
 }
 
 std::size_t comment_offset(std::span<const std::uint8_t> jpeg) {

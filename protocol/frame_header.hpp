@@ -45,11 +45,14 @@ class EncodedFrameHeader {
 public:
     EncodedFrameHeader() = default;
     explicit EncodedFrameHeader(const FrameHeader& header);
+    /// From text(); throws std::runtime_error if it is not one.
+    explicit EncodedFrameHeader(const std::string& text);
+    /// With `handled` 0 and `sinceInputMs` 0.
+    std::string text() const { return with(0, 0.0); }
     /// As encode() of the header with these two of a client.
     std::string with(std::int64_t handled, std::optional<double> since_input_ms) const;
 
 private:
-    FrameHeader header_;
     std::string before_handled_, before_since_input_, rest_;
 };
 

@@ -216,8 +216,13 @@ struct SectionLister {
 }  // namespace
 
 std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& previous, const State& state) {
+    return next(previous, state, previous.revision_ + 1);
+}
+
+std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& previous, const State& state,
+                                                         std::int64_t revision) {
     auto document = std::make_shared<StateDocument>(previous);
-    document->revision_ = previous.revision_ + 1;
+    document->revision_ = revision;
     document->state_ = state;
     const bool first = previous.sections_.empty();
     std::size_t place = 0;
@@ -236,6 +241,72 @@ std::shared_ptr<const StateDocument> StateDocument::next(const StateDocument& pr
     SectionLister<decltype(update)> lister{state, previous.state_, update};
     describe(lister, static_cast<const State*>(nullptr));
     return document;
+}
+
+namespace {
+
+/// Takes the names of the sections, in their order.
+struct SectionNames {
+    std::vector<std::string> names;
+    template <class Member, class Kind>
+    void writable(const char* name, Member, const Kind&, const char*) {
+        names.emplace_back(name);
+    }
+    template <class Member, class Kind>
+    void fixed(const char* name, Member, const Kind&, const char*) {
+        names.emplace_back(name);
+    }
+};
+
+const std::vector<std::string>& section_names() {
+    static const std::vector<std::string> names = [] {
+        SectionNames lister;
+        describe(lister, static_cast<const State*>(nullptr));
+        return lister.names;
+    }();
+    return names;
+}
+
+}  // namespace
+
+tl::expected<std::shared_ptr<const StateDocument>, std::string> StateDocument::received(
+    std::string_view text, const StateDocument* known) {
+    const auto read = [&]() -> std::shared_ptr<const StateDocument> {
+        const Json message = parse_strictly(text);
+        read_object(message, "message");
+        constexpr std::array<std::string_view, 2> kTypes{"state", "patch"};
+        const bool is_patch = read_word(member(message, "type"), "type", kTypes) == 1;
+        if (is_patch && !known)
+            throw BadJson{error_code::bad_message, "a patch came before the state that it changes"};
+        auto document = std::make_shared<StateDocument>();
+        document->revision_ = read_integer(member(message, "revision"), "revision", 1, kMaxInteger);
+        const Json& sections = read_object(member(message, is_patch ? "patch" : "state"), "state");
+        for (std::size_t i = 0; i < section_names().size(); ++i) {
+            const std::string& name = section_names()[i];
+            if (is_patch && !sections.contains(name)) {
+                document->sections_.push_back(known->sections_[i]);
+                continue;
+            }
+            Json json = is_patch ? known->sections_[i]->json : Json();
+            if (const Json& change = member(sections, name); is_patch)
+                json.merge_patch(change);
+            else
+                json = change;
+            document->sections_.push_back(
+                std::make_shared<Section>(Section{name, std::move(json), document->revision_}));
+        }
+        return document;
+    };
+    return or_error(read).map_error([](const Error& error) { return error.message; });
+}
+
+bool StateDocument::has_scene_of(const StateDocument& other) const {
+    const auto scene = [](const StateDocument& document) {
+        return *std::ranges::find(document.sections_, "scene",
+                                  [](const auto& section) { return section->name; });
+    };
+    const auto own = scene(*this), others = scene(other);
+    return own == others || own->json == others->json;
 }
 
 Json StateDocument::json() const {

@@ -260,6 +260,15 @@ public:
     StateDocument() = default;
     /// The document after `previous`, one revision later; the same object contents where nothing changed.
     static std::shared_ptr<const StateDocument> next(const StateDocument& previous, const State& state);
+    /// The same, with a later revision than the next.
+    static std::shared_ptr<const StateDocument> next(const StateDocument& previous, const State& state,
+                                                     std::int64_t revision);
+
+    /// The document that a message of encode() or encode_patch_from() leads to; that of a patch must lead
+    /// from `known`, which may be null for a whole one. Or a sentence that tells what is wrong with the text.
+    /// shows() is false for any state, and last_change() is its own revision.
+    static tl::expected<std::shared_ptr<const StateDocument>, std::string> received(
+        std::string_view text, const StateDocument* known);
 
     std::int64_t revision() const { return revision_; }
     bool shows(const State& state) const { return state_ == state; }
@@ -270,7 +279,7 @@ public:
     /// The `patch` message that leads from an earlier document to this one; `by` may be empty.
     std::string encode_patch_from(const StateDocument& earlier, const std::string& by) const;
     /// Of the same scene: else the difference may be as large as the document, and that is sent.
-    bool has_scene_of(const StateDocument& other) const { return state_.scene == other.state_.scene; }
+    bool has_scene_of(const StateDocument& other) const;
     /// Revision of the last change to anything that `patch` names.
     std::int64_t last_change(const nlohmann::json& patch) const;
 

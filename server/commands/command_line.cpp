@@ -8,6 +8,7 @@
 
 #include "io/read_scene.hpp"
 #include "io/write_scene.hpp"
+#include "room_relay.hpp"
 
 namespace vrut::server::commands {
 
@@ -177,8 +178,23 @@ Entry state_folder(const std::string& what) {
             "Folder for " + what + ", in its subfolder vrut-preview. Default: ~/.local/state."};
 }
 
+CLI::Option* add_nats(Command& command, std::string& url, const std::string& sentence) {
+    return command.add_option("--nats", url, sentence)->type_name("URL")->group(kNetwork);
+}
+
+CLI::Option* add_room(Command& command, std::string& room) {
+    return command.add_option("--room", room, "The name of the room there.")
+        ->check([](const std::string& text) {
+            return protocol::is_room_name(text)
+                       ? std::string()
+                       : "expected 1 to 32 lower-case letters, digits and hyphens, found '" + text + "'";
+        })
+        ->type_name("NAME")
+        ->group(kNetwork);
+}
+
 /// Where it listens, and what it speaks TLS with.
-void add_network(Command& command, ServeArguments& arguments) {
+void add_network(Command& command, NetworkArguments& arguments) {
     command.add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
         ->type_name("ADDR:PORT")
         ->capture_default_str()
@@ -198,6 +214,29 @@ void add_network(Command& command, ServeArguments& arguments) {
                           ->group(kNetwork)
                           ->needs(certificate);
     certificate->needs(key);
+    add_number(command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
+        ->capture_default_str()
+        ->group(kNetwork);
+    add_file(
+        command, "--token-file", arguments.token_file,
+        R"(Read the tokens from this JSON file, {"control": TOKEN, "view": TOKEN}, which nobody but its )"
+        R"(owner may read.)")
+        ->group(kAccess);
+    command
+        .add_option("--allow-origin", arguments.allowed_origins,
+                    "Accept pages of this origin, besides the server's own.")
+        ->allow_extra_args(false)  // what follows the one is the scene
+        ->type_name("ORIGIN")
+        ->group(kAccess);
+}
+
+/// Calls what runs the command, listening to the network with --lan.
+template <class Run, class Arguments>
+std::function<void()> with_network(const Command& command, Arguments& arguments, Run run) {
+    return [&arguments, run, listen = command.get_option("--listen")] {
+        if (arguments.network.lan && listen->count() == 0) arguments.network.listen = "0.0.0.0:8080";
+        run(arguments);
+    };
 }
 
 std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
@@ -211,21 +250,10 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
         "Where the server speaks HTTPS, plain HTTP is served to this machine alone. With --lan, the page "
         "/trust shows other devices how to trust the server's authority, which they need once."};
     add_file(*command, "SCENE", arguments.scene, "Serve this scene file.")->default_str("the car");
-    add_network(*command, arguments);
-    add_number(*command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
-        ->capture_default_str()
-        ->group(kNetwork);
-    add_file(
-        *command, "--token-file", arguments.token_file,
-        R"(Read the tokens from this JSON file, {"control": TOKEN, "view": TOKEN}, which nobody but its )"
-        R"(owner may read.)")
-        ->group(kAccess);
-    command
-        ->add_option("--allow-origin", arguments.allowed_origins,
-                     "Accept pages of this origin, besides the server's own.")
-        ->allow_extra_args(false)  // what follows the one is the scene
-        ->type_name("ORIGIN")
-        ->group(kAccess);
+    add_network(*command, arguments.network);
+    auto* const nats = add_nats(*command, arguments.nats, "Share the room over this NATS server (see 'edge').");
+    add_room(*command, arguments.room)->needs(nats);
+    nats->needs(command->get_option("--room"));
     add_folder(*command, "--scenes", arguments.scenes,
                "Let clients open the scenes in this folder and below.")
         ->group(kScene);
@@ -246,10 +274,34 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
                          {"vrut-preview serve my.glb --lan", "Serve a scene to the tablets of a network."},
                          {"vrut-preview serve my.vrut --scenes scenes --record recordings",
                           "Let clients open other scenes, and record sessions."}};
-    command->callback([&arguments, listen = command->get_option("--listen")] {
-        if (arguments.lan && listen->count() == 0) arguments.listen = "0.0.0.0:8080";
-        serve_command(arguments);
-    });
+    command->callback(with_network(*command, arguments, serve_command));
+    return command;
+}
+
+std::shared_ptr<Command> describe_edge(EdgeArguments& arguments) {
+    auto command = std::make_shared<Command>("Serve the rooms of other servers to clients.", "edge");
+    command->description = {
+        "An edge brings clients to the rooms that servers share with 'serve --nats --room': the page of a room "
+        "is at /rooms/NAME/. It draws nothing itself, and sends on each image that a server has encoded once. "
+        "The more edges there are, the more clients can watch. "
+        "SIGINT, SIGTERM and SIGHUP end it.",
+        "Clients need the tokens of the room. The edge's own tokens are for those who monitor it. Without "
+        "them, an edge that other machines can reach keeps its metrics to itself."};
+    add_nats(*command, arguments.nats, "Find the rooms at this NATS server.")->required();
+    add_network(*command, arguments.network);
+    add_log_level(*command);
+    command->environment = {
+        {"VRUT_PREVIEW_CONTROL_TOKEN, VRUT_PREVIEW_VIEW_TOKEN",
+         "Tokens of those who monitor the edge, of 16 to 1000 bytes. Those of --token-file have priority."},
+        {"CREDENTIALS_DIRECTORY", "The group may read a token file in this folder, which systemd makes."},
+        state_folder("the authority of --lan")};
+    command->exit_statuses = statuses("A signal has ended the edge.");
+    command->examples = {
+        {"vrut-preview edge --nats nats://127.0.0.1 --listen 127.0.0.1:8090",
+         "Serve rooms at http://127.0.0.1:8090/rooms/NAME/."},
+        {"vrut-preview edge --nats nats://127.0.0.1 --lan", "Serve rooms to the tablets of a network."},
+        {"vrut-preview edge --nats nats://127.0.0.1 --max-clients 1000", "Let a thousand clients in."}};
+    command->callback(with_network(*command, arguments, edge_command));
     return command;
 }
 
@@ -318,10 +370,6 @@ void add_camera(Command& command, RenderArguments& arguments) {
         ->group(kCamera);
 }
 
-CLI::Option* add_nats(Command& command, std::string& url, const std::string& sentence) {
-    return command.add_option("--nats", url, sentence)->type_name("URL");
-}
-
 void add_film(Command& command, RenderArguments& arguments) {
     auto* keyframes =
         add_file(command, "--keyframes", arguments.keyframes,
@@ -334,8 +382,7 @@ void add_film(Command& command, RenderArguments& arguments) {
     keyframes->needs(frames);
     add_nats(command, arguments.nats, "Let the workers of this NATS server draw the film (see 'worker').")
         ->needs(keyframes)
-        ->excludes(command.get_option("--textures"))
-        ->group(kNetwork);
+        ->excludes(command.get_option("--textures"));
 }
 
 /// What the image is drawn with, and what is written besides. After add_film().
@@ -415,8 +462,7 @@ std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
         "its "
         "textures are the same as where the film was asked for."};
     add_nats(*command, arguments.nats, "Take images from the queue of this NATS server, which has JetStream.")
-        ->required()
-        ->group(kNetwork);
+        ->required();
     add_folder(*command, "--scenes", arguments.scenes, "Look for scenes in this folder and below.")
         ->required()
         ->group(kScene);
@@ -591,6 +637,7 @@ std::shared_ptr<Command> describe_program(Arguments& arguments) {
                          {"vrut-preview render my.glb -o my.png", "Draw an image of a scene."},
                          {"vrut-preview serve --help", "Print the options of a command."}};
     program->add_subcommand(describe_serve(arguments.serve));
+    program->add_subcommand(describe_edge(arguments.edge));
     program->add_subcommand(describe_render(arguments.render));
     program->add_subcommand(describe_worker(arguments.worker));
     program->add_subcommand(describe_replay(arguments.replay));

@@ -13,6 +13,7 @@ constexpr int kDone = 0, kFailed = 1, kWrongUsage = 2;
 /// What the options of all commands fill.
 struct Arguments {
     ServeArguments serve;
+    EdgeArguments edge;
     RenderArguments render;
     WorkerArguments worker;
     ReplayArguments replay;

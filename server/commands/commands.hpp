@@ -15,20 +15,32 @@ namespace vrut::server::commands {
 /// Of commands that show scenes.
 inline const io::ReadOptions kShown{.studio = io::Studio::automatic};
 
-struct ServeArguments {
-    std::filesystem::path scene;  ///< empty: the car
-    io::ReadOptions read = kShown;
+/// How clients reach a server, and who may.
+struct NetworkArguments {
     std::string listen = "127.0.0.1:8080";
     bool lan = false;                         ///< HTTPS by an authority of the server's own
     std::filesystem::path tls_cert, tls_key;  ///< HTTPS by these; both or none
-    std::vector<std::string> allowed_origins;
-    std::optional<int> device;
     std::size_t max_clients = 64;
     std::filesystem::path token_file;
+    std::vector<std::string> allowed_origins;
+};
+
+struct ServeArguments {
+    std::filesystem::path scene;  ///< empty: the car
+    io::ReadOptions read = kShown;
+    NetworkArguments network;
+    std::string nats, room;  ///< the address of NATS, and the room's name there; empty: none
+    std::optional<int> device;
     std::filesystem::path scenes;  ///< what clients may open; empty: nothing
     std::filesystem::path record;  ///< where recordings go; empty: nowhere
 };
 void serve_command(const ServeArguments& arguments);
+
+struct EdgeArguments {
+    NetworkArguments network;
+    std::string nats;  ///< the address of NATS
+};
+void edge_command(const EdgeArguments& arguments);
 
 struct RenderArguments {
     std::filesystem::path scene, output;

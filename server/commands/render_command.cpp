@@ -143,7 +143,7 @@ std::vector<protocol::RenderJob> jobs_of(const RenderArguments& arguments, const
 void collect_film(const RenderArguments& arguments) {
     const StopSignals stop;
     const nats::Connection connection(arguments.nats);
-    nats::FilmQueue queue(connection, nats::new_run());
+    nats::FilmQueue queue(connection, nats::random_id());
     const Film film = film_of(arguments);
     for (const protocol::RenderJob& job : jobs_of(arguments, film, queue.run())) queue.post(job);
     const std::size_t images = film.cameras.size();

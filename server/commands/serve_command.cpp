@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <csignal>
-#include <iostream>
 #include <latch>
 #include <stdexcept>
 #include <system_error>
@@ -8,7 +6,9 @@
 #include <vector>
 
 #include "commands/commands.hpp"
+#include "commands/network.hpp"
 #include "engine/images.hpp"
+#include "nats/shared_room.hpp"
 #include "net/server.hpp"
 #include "observe/log.hpp"
 #include "observe/progress.hpp"
@@ -20,51 +20,11 @@ namespace vrut::server::commands {
 
 namespace {
 
-std::string url(const std::string& host, std::uint16_t port, bool secure, const std::string& token) {
-    return net::page_address(host, port, secure) +
-           (token.empty() ? "" : "#token=" + net::percent_encoded(token));
-}
-
 /// An empty path stays one. Throws std::runtime_error where there is no such folder.
 std::filesystem::path existing_folder(const std::string& option, const std::filesystem::path& path) {
     if (!path.empty() && !std::filesystem::is_directory(path))
         throw std::runtime_error(option + ": there is no folder " + path.string());
     return path;
-}
-
-/// Null where HTTP alone is spoken. Throws std::runtime_error.
-std::shared_ptr<net::Tls> tls_of(const ServeArguments& arguments) {
-    if (!arguments.tls_cert.empty()) return std::make_shared<net::Tls>(arguments.tls_cert, arguments.tls_key);
-    if (!arguments.lan) return nullptr;
-    const std::filesystem::path folder = scenes::state_folder();
-    if (folder.empty())
-        throw std::runtime_error(
-            "--lan: there is no folder for its certificate authority: neither XDG_STATE_HOME nor HOME is "
-            "set");
-    return std::make_shared<net::Tls>(net::CertificateAuthority(folder / "authority.pem"));
-}
-
-void announce(const net::ServerOptions& options, std::uint16_t port) {
-    const net::Access& access = options.access;
-    const bool secure = options.tls != nullptr;
-    const std::string& token = access.control_token.empty() ? access.view_token : access.control_token;
-    const std::vector<std::string> hosts = net::page_hosts(options.listen.host);
-    if (!net::is_loopback(hosts[0])) {
-        std::cout << net::qr_code(url(hosts[0], port, secure, token))
-                  << "Scan it with the tablet, or open the address.\n";
-        if (!access.control_token.empty() && !access.view_token.empty())
-            std::cout << "To watch without steering: " << url(hosts[0], port, secure, access.view_token)
-                      << "\n";
-        if (secure && options.tls->authority())
-            std::cout << "The first time, open " << net::page_address(hosts[0], port, false)
-                      << "trust on it. The authority that it will trust has the fingerprint (SHA-256)\n"
-                      << options.tls->authority()->fingerprint() << "\n";
-    }
-    for (const std::string& host : hosts)
-        std::cout << "listening on " << url(host, port, secure && !net::is_loopback(host), token)
-                  << std::endl;
-    if (secure && net::is_any(options.listen.host))
-        std::cout << "and for this machine on " << url("127.0.0.1", port, false, token) << std::endl;
 }
 
 /// Throws std::runtime_error where there are fewer threads than the server and a driver in software take:
@@ -85,25 +45,64 @@ void require_threads() {
                                  std::to_string(needed) + " are needed: raise the limit (ulimit -u)");
 }
 
-/// Whoever asks again for an end that has begun does not change what it is.
-void ignore_further_signals() {
-    sigset_t signals;
-    sigemptyset(&signals);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) sigaddset(&signals, signal);
-    pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // those that come stay pending; this thread is the last
+/// Finds a scene that a shared room shows among those of this server, by what it shows.
+room::SceneFinder finder(const scenes::SceneLibrary& library) {
+    return
+        [library](const std::string& name, const std::string& sha256,
+                  std::optional<protocol::UpAxis> up_axis) -> tl::expected<scenes::LoadedScene, std::string> {
+            const auto path = library.find(name);
+            if (!path) return tl::unexpected(path.error());
+            scenes::ImportOptions options = library.options();
+            if (up_axis) options.read.z_up = up_axis == protocol::UpAxis::z;
+            auto scene = scenes::load_scene(*path, name, {}, options);
+            if (scene && scene->sha256 != sha256)
+                return tl::unexpected(path->string() + " is not the scene '" + name + "' of the room");
+            return scene;
+        };
+}
+
+/// Serves a room that other servers serve, too, until a signal ends it: while one of them draws it this one
+/// follows.
+void serve_shared(const ServeArguments& arguments, net::ServerOptions options,
+                  const scenes::LoadedScene& scene) {
+    const nats::Connection connection(arguments.nats);
+    bool is_announced = false;
+    for (bool is_superseded = true; std::exchange(is_superseded, false);) {
+        net::Server* running = nullptr;
+        nats::SharedRoom::Options shared_options;
+        shared_options.room = arguments.room;
+        shared_options.role_for = [access = options.access](auto wanted, const auto& token) {
+            return access.role_for(wanted, token);
+        };
+        shared_options.find_scene = finder(options.library);
+        shared_options.on_superseded = [&](const std::string&) {
+            is_superseded = true;
+            running->stop();
+        };
+        nats::SharedRoom shared(connection, std::move(shared_options));
+        options.shared = shared.hooks();
+        options.relay = [&](engine::EngineCallbacks to_clients) {
+            return shared.relay(std::move(to_clients));
+        };
+        net::Server server(options, scene, engine::gl_renderer(arguments.device));
+        running = &server;
+        shared.begin(server.engine());
+        if (std::exchange(is_announced, true))
+            server.stop_on_signals();
+        else
+            announce(server, options);
+        options.listen.port = server.port();
+        server.run();
+        shared.stop();
+    }
+    end_serving();
 }
 
 }  // namespace
 
 void serve_command(const ServeArguments& arguments) {
-    std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
     require_threads();
-    net::ServerOptions options;
-    options.listen = net::parse_listen_address(arguments.listen);
-    options.max_clients = arguments.max_clients;
-    options.tls = tls_of(arguments);
-    options.access = net::read_access(arguments.token_file);
-    options.access.allowed_origins = arguments.allowed_origins;
+    net::ServerOptions options = server_options(arguments.network);
     if (!net::is_loopback(options.listen.host) && !options.access.needs_token()) {
         options.access.control_token = net::make_token();
         options.access.view_token = net::make_token();
@@ -124,13 +123,9 @@ void serve_command(const ServeArguments& arguments) {
         {{"file", path.string()}, {"nodes", read.nodes().size()}, {"triangles", read.triangle_count()}});
     options.record_folder = existing_folder("--record", arguments.record);
 
+    if (!arguments.nats.empty()) return serve_shared(arguments, std::move(options), *scene);
     net::Server server(options, *std::move(scene), engine::gl_renderer(arguments.device));
-    server.stop_on_signals();  // before the address is told: from then on somebody may stop it
-    announce(options, server.port());
-    observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
-    server.run();
-    ignore_further_signals();
-    observe::log_info("shut_down", {});
+    run(server, options);
 }
 
 }  // namespace vrut::server::commands

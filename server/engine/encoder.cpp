@@ -11,7 +11,8 @@ namespace {
 // With its header it is no longer than a message may be.
 constexpr std::size_t kLargestPicture = protocol::kMaxServerMessageBytes - 65'600;
 
-/// A picture that is counted as long as anybody holds it.
+}  // namespace
+
 std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
     const std::uint64_t held = ++metrics.pictures_held;
     std::uint64_t most = metrics.pictures_held_most;
@@ -23,8 +24,6 @@ std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics) {
                 delete picture;
             }};
 }
-
-}  // namespace
 
 std::vector<std::uint8_t> EncodedPicture::header_of_file(std::int64_t handled,
                                                          std::optional<double> since_input_ms) const {

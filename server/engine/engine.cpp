@@ -58,6 +58,8 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
       share_(std::move(options.share)),
       metrics_(metrics),
       callbacks_(std::move(callbacks)),
+      shared_(std::move(options.shared)),
+      follows_(shared_.has_value()),
       file_results_(
           std::make_shared<ResultPost>([this](FileWorkDone done) { mailbox_.push(std::move(done)); })),
       lookup_(
@@ -136,6 +138,12 @@ Engine::Engine(EngineOptions options, FrameRendererFactory factory, observe::Met
 
 void Engine::stop() { mailbox_.close(); }
 
+std::optional<std::string> Engine::why_unready() const {
+    if (follows_) return "another server draws this room";
+    if (draws_) return std::nullopt;
+    return "the graphics driver is being started again";
+}
+
 Engine::~Engine() {
     stop();
     thread_.join();
@@ -159,10 +167,7 @@ void Engine::begin(const scenes::LoadedScene& scene) {
     pixel_budget_ = limits_;
     use(scenes::built_in_levels());
     read_levels(scene);
-    room::RoomOptions options;
-    connect_files(options);
-    options.share = share_;
-    room_.emplace(prepared(scene), std::move(options));
+    room_.emplace(prepared(scene), shared_ ? room::RoomOptions{} : live_options());
     note_kept();
     try {
         while (renderer_.upload_step && !renderer_.upload_step(room_->visible())) {
@@ -186,16 +191,21 @@ void Engine::run() {
         drain(until);
         check_files();
         apply();
-        publish();
-        check_changes();
+        if (!follows_) {
+            publish();
+            check_changes();
+            keep_checkpoint();
+        }
         until = take_step(scheduler_.next(situation(base::Clock::now())));
     }
 }
 
 void Engine::drain(std::optional<base::Clock::time_point> until) {
     until = earlier(earlier(until, stats_.due()), files_due());
-    if (room_->moves()) until = earlier(until, base::Clock::now() + kFlightStep);
-    if (const auto deadline = room_->deadline()) until = earlier(until, start_ + *deadline);
+    if (room_->moves() && !follows_) until = earlier(until, base::Clock::now() + kFlightStep);
+    if (const auto deadline = room_->deadline(); deadline && !follows_)
+        until = earlier(until, start_ + *deadline);
+    if (lines_ > 0) until = earlier(until, line_at_ + kJournalQuiet);
     if (!waiting_.empty() || (arrived_ && !renewal_)) until = base::Clock::now();
     watchdog_.idle();
     std::vector<EngineEvent> events = mailbox_.wait(until);
@@ -211,7 +221,7 @@ void Engine::apply() {
         pixel_budget_ = limits_;
         failed_.reset();
     }
-    advance_room();
+    if (!follows_) advance_room();
     if (frame_ && is_outdated(*frame_)) give_up_frame();
 }
 
@@ -411,7 +421,9 @@ void Engine::handle_message(const MessageReceived& received, const protocol::Cli
                                       " pixels, each side at most " + std::to_string(limits_.max_side)});
     const plan::View before = room_->visible();
     const protocol::Resize size_before = room_->view_size();
+    sequence_ = received.sequence;
     const bool accepted = room_->handle_message(received.client, message, time_of(received.arrival));
+    sequence_ = 0;
     if (room_->visible() != before || room_->view_size() != size_before) {
         last_change_ = base::Clock::now();
         newest_input_ = received.arrival;
@@ -432,6 +444,7 @@ PictureSize Engine::present_size() const {
 /// Hands over what there is to send.
 void Engine::publish() {
     const base::Clock::time_point now = base::Clock::now();
+    if (shared_) room_->write_revision();
     if (const auto& document = room_->document(); document != reported_) {
         reported_ = output_.document = document;
         output_.by = room_->changed_by();
@@ -443,7 +456,7 @@ void Engine::publish() {
     if (const PictureSize size = present_size(); size != reported_size_) output_.size = reported_size_ = size;
     const std::int64_t present = shows_present() ? newest_.frame : 0;
     if (present != reported_present_) output_.present_frame = reported_present_ = present;
-    output_.answers = room_->take_answers();
+    std::ranges::move(room_->take_answers(), std::back_inserter(output_.answers));
     for (const room::Answer& answer : output_.answers)
         if (!answer.rejection.empty()) {
             ++metrics_.errors[answer.code];

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <deque>
 #include <functional>
@@ -19,7 +18,9 @@
 #include "engine/frame_renderer.hpp"
 #include "engine/level_choice.hpp"
 #include "engine/mailbox.hpp"
+#include "engine/output.hpp"
 #include "engine/recording_writer.hpp"
+#include "engine/room_engine.hpp"
 #include "engine/scene_lookup.hpp"
 #include "engine/scheduler.hpp"
 #include "mesh/detail_levels.hpp"
@@ -27,6 +28,7 @@
 #include "observe/metrics.hpp"
 #include "plan/render_job.hpp"
 #include "plan/view.hpp"
+#include "room/replay.hpp"
 #include "room/room.hpp"
 #include "scenes/library.hpp"
 #include "scenes/loader.hpp"
@@ -34,36 +36,8 @@
 
 namespace vrut::server::engine {
 
-/// What the render thread sends to the net thread after it has handled a batch of events.
-struct EngineOutput {
-    std::shared_ptr<const protocol::StateDocument> document;  ///< the newest; null if unchanged
-    std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
-    std::int64_t by_since = 0;
-    std::vector<room::Answer> answers;
-    std::vector<std::string> failed_pictures;  ///< whose picture cannot be drawn (PictureAsked::name)
-    struct Handled {
-        std::size_t bytes = 0, requests = 0;
-        std::uint64_t sequence = 0;  ///< of the last
-    };
-    std::map<std::string, Handled> handled;  ///< of messages, for each client
-    std::optional<PictureSize> size;         ///< of a picture of the view; none if unchanged
-    /// Number of the frame that shows what is to be seen now, 0 if none does; none if unchanged.
-    std::optional<std::int64_t> present_frame;
-    std::shared_ptr<const std::string> stats, loading;  ///< messages for all; null if there is nothing new
-    bool loads = false;                                 ///< with `loading`: it goes on
-
-    bool empty() const {
-        return !document && answers.empty() && failed_pictures.empty() && handled.empty() && !size &&
-               !present_frame && !stats && !loading;
-    }
-};
-
-struct EngineCallbacks {
-    std::function<void(EngineOutput)> on_output;  ///< on the render thread
-    /// Frames and snapshots (which have a `client`), on an encode thread.
-    std::function<void(std::shared_ptr<const EncodedPicture>)> on_encoded;
-    std::function<void(const std::string& why)> on_failure;  ///< on any of them: nothing more will be drawn
-};
+/// So long after the last line of a shared room's log its state is kept as a whole.
+inline constexpr std::chrono::seconds kJournalQuiet{1};
 
 struct EngineOptions {
     scenes::LoadedScene scene;
@@ -71,37 +45,42 @@ struct EngineOptions {
     std::filesystem::path record_folder;
     ChangeKeeper::Store keep_changes = {};  ///< empty: they are lost with the scene
     room::ShareAddress share = {};
+    /// Of a room that servers share. It follows another server until TakeOver.
+    struct Shared {
+        std::function<void(const protocol::LogLine& line)> on_line;  ///< on the render thread
+        /// On the render thread; the lines before it led here.
+        std::function<void(const room::Room::Checkpoint& checkpoint)> on_checkpoint;
+        std::function<void(const std::string& why)>
+            on_failure;  ///< following has failed: it has to begin anew
+    };
+    std::optional<Shared> shared = {};
 };
 
 /// The render thread: owns the scene, the state and the camera, applies what clients say in the order in
 /// which it came, and draws a picture when something changed and somebody waits for it.
-class Engine {
+class Engine final : public RoomEngine {
 public:
     /// Starts the thread; throws what `factory` throws, and where the scene does not fit. The first output
     /// holds the first document.
     Engine(EngineOptions options, FrameRendererFactory factory, observe::Metrics& metrics,
            EngineCallbacks callbacks);
     /// Waits for the end of what is in hand, a second at most for disks.
-    ~Engine();
-    /// Ends the drawing, the recordings and the loading, without waiting for it. From any thread.
-    void stop();
-    Engine(const Engine&) = delete;
-    Engine& operator=(const Engine&) = delete;
+    ~Engine() override;
 
-    Mailbox& mailbox() { return mailbox_; }
-    const std::string& description() const { return description_; }
-    const PictureLimits& limits() const { return limits_; }
-    /// Events that came and are not handled yet. From any thread.
-    std::size_t events_waiting() const { return mailbox_.size() + waiting_.size(); }
-    /// How long each of its threads has not come round, 0 where it waits for something to do. From any
-    /// thread.
-    std::array<std::pair<const char*, base::Clock::duration>, 3> busy_times() const {
-        return {{{"render", watchdog_.busy_for()},
-                 {"encode", encoder_.busy_for()},
-                 {"snapshot encode", snapshot_encoder_.busy_for()}}};
+    void push(EngineEvent event) override { mailbox_.push(std::move(event)); }
+    PictureLimits limits() const override { return limits_; }
+    std::string description() const override { return description_; }
+    std::optional<std::string> why_unready() const override;
+    /// True while another server draws the room. From any thread.
+    bool follows() const { return follows_; }
+    std::size_t events_waiting() const override { return mailbox_.size() + waiting_.size(); }
+    std::vector<std::pair<const char*, base::Clock::duration>> busy_times() const override {
+        return {{"render", watchdog_.busy_for()},
+                {"encode", encoder_.busy_for()},
+                {"snapshot encode", snapshot_encoder_.busy_for()}};
     }
-    /// Returns true if what draws can draw. From any thread.
-    bool draws() const { return draws_; }
+    /// Ends the drawing, the recordings and the loading.
+    void stop() override;
 
 private:
     struct Client {
@@ -165,6 +144,11 @@ private:
     void handle(const scenes::SceneLoading& loading);
     void handle(const scenes::SceneLoaded& loaded);
     void handle(const FileWorkDone& done);
+    void handle(const FollowFrom& from);
+    void handle(const Follow& what);
+    void handle(const TakeOver& take_over);
+    room::RoomOptions live_options();
+    void keep_checkpoint();
     /// Handles some of what waits: the clients in turn, so that none waits behind another's thousand.
     void handle_waiting();
     void handle_message(const MessageReceived& received, const protocol::ClientMessage& message,
@@ -237,7 +221,14 @@ private:
     EngineCallbacks callbacks_;
     PictureLimits limits_;
     std::string description_;
-    const base::Clock::time_point start_ = base::Clock::now();
+    base::Clock::time_point start_ = base::Clock::now();
+    const std::optional<EngineOptions::Shared> shared_;
+    std::atomic<bool> follows_{false};
+    std::uint64_t sequence_ = 0;                      ///< of the message in hand; 0: none
+    std::deque<room::Answer> followed_answers_;       ///< the newest
+    std::deque<room::PictureOrder> followed_orders_;  ///< likewise
+    std::size_t lines_ = 0;                           ///< since the last checkpoint
+    base::Clock::time_point line_at_;                 ///< the last one
     Mailbox mailbox_;
     const std::shared_ptr<ResultPost> file_results_;
     SceneLookup lookup_;

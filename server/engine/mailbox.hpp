@@ -12,6 +12,7 @@
 #include "engine/link.hpp"
 #include "engine/picture.hpp"
 #include "message_table.hpp"
+#include "room/room.hpp"
 #include "scenes/loader.hpp"
 
 namespace vrut::server::engine {
@@ -25,6 +26,7 @@ struct ClientJoined {
     std::string name;
     std::int64_t id = 0;          ///< of its `hello`; 0: it had none
     std::string resume_key = {};  ///< see room::Steering::join
+    std::string token = {};       ///< as it gave it
 };
 
 struct ClientLeft {
@@ -35,9 +37,10 @@ struct MessageReceived {
     std::string client;
     tl::expected<protocol::ClientMessage, protocol::Error> message;  ///< or why it cannot be read
     base::Clock::time_point arrival;
-    std::size_t bytes = 0;       ///< on the wire, merged ones summed
-    bool may_steer = true;       ///< else its moves are not merged: each is answered as wrong
-    std::uint64_t sequence = 0;  ///< of this client's messages, from 1
+    std::size_t bytes = 0;        ///< on the wire, merged ones summed
+    bool may_steer = true;        ///< else its moves are not merged: each is answered as wrong
+    std::uint64_t sequence = 0;   ///< of this client's messages, from 1
+    std::string unreadable = {};  ///< the text of one that cannot be read
 
     bool is_request() const {
         return !message || protocol::traits_of(*message).weight == protocol::Weight::request;
@@ -78,14 +81,29 @@ struct PictureAsked {
     int width = 0, height = 0;  ///< 0: the view's
 };
 
+/// Another server draws the room: what it did, which is done here likewise, until TakeOver.
+struct FollowFrom {
+    std::shared_ptr<const room::Room::Checkpoint> checkpoint;
+    std::shared_ptr<const scenes::LoadedScene> scene;
+};
+struct Follow {
+    protocol::LogLine line;
+    std::shared_ptr<const scenes::LoadedScene> scene = nullptr;  ///< of an `opened`
+};
+/// From here on this server draws the room. Other events have to wait for `done`, on the render thread: those
+/// of clients would not wait for what is followed.
+struct TakeOver {
+    std::function<void()> done;
+};
+
 /// Work on files is done: what the render thread does with its result.
 struct FileWorkDone {
     std::function<void()> use;
 };
 
-using EngineEvent =
-    std::variant<ClientJoined, ClientLeft, MessageReceived, FramesWanted, SnapshotSent, FrameEncoded,
-                 PictureFailed, PictureAsked, scenes::SceneLoading, scenes::SceneLoaded, FileWorkDone>;
+using EngineEvent = std::variant<ClientJoined, ClientLeft, MessageReceived, FramesWanted, SnapshotSent,
+                                 FrameEncoded, PictureFailed, PictureAsked, scenes::SceneLoading,
+                                 scenes::SceneLoaded, FileWorkDone, FollowFrom, Follow, TakeOver>;
 
 /// The one way into the render thread. Of a client's moves that come one after the other the last of each
 /// pointer is kept, and of what it wants the newest; nothing else is merged or dropped.

@@ -1,8 +1,11 @@
 #include "nats/connection.hpp"
 
+#include <charconv>
 #include <chrono>
+#include <random>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "observe/log.hpp"
 
@@ -38,8 +41,28 @@ std::string reason_of(natsStatus status, jsErrCode error) {
 
 }  // namespace
 
+std::string header_of(natsMsg* message, const char* name) {
+    const char* value = nullptr;
+    return natsMsgHeader_Get(message, name, &value) == NATS_OK && value ? value : "";
+}
+
+std::optional<std::size_t> number_of(const std::string& text) {
+    std::size_t number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (error != std::errc() || end != text.data() + text.size()) return {};
+    return number;
+}
+
+std::string random_id() {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::random_device random;
+    std::string id;
+    for (int i = 0; i < 16; ++i) id += kDigits[random() % kDigits.size()];
+    return id;
+}
+
 Connection::Connection(const std::string& url) : name_(public_part(url)) {
-    constexpr std::chrono::milliseconds kPatience{2000};
+    constexpr std::chrono::milliseconds kPatience{2000}, kReconnect{250}, kPing{1000};
     natsOptions* created = nullptr;
     require(natsOptions_Create(&created), "the client cannot start");
     const Options options(created);
@@ -49,6 +72,12 @@ Connection::Connection(const std::string& url) : name_(public_part(url)) {
                                  "' is no address of a NATS server, as in nats://HOST:4222");
     natsOptions_SetTimeout(options.get(), kPatience.count());
     natsOptions_SetMaxReconnect(options.get(), -1);
+    natsOptions_SetReconnectWait(options.get(), kReconnect.count());
+    // A server that hangs is found lost within three seconds.
+    natsOptions_SetPingInterval(options.get(), kPing.count());
+    natsOptions_SetMaxPingsOut(options.get(), 2);
+    natsOptions_SetWriteDeadline(options.get(), kPatience.count());
+    natsOptions_SetSendAsap(options.get(), true);
     natsOptions_SetName(options.get(), "vrut-preview");
     natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
     natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);
@@ -58,6 +87,10 @@ Connection::Connection(const std::string& url) : name_(public_part(url)) {
     jsCtx* jetstream = nullptr;
     require(natsConnection_JetStream(&jetstream, connected, nullptr), "it has no JetStream");
     jetstream_.reset(jetstream);
+}
+
+bool Connection::is_connected() const {
+    return natsConnection_Status(connection_.get()) == NATS_CONN_STATUS_CONNECTED;
 }
 
 void Connection::require(natsStatus status, const std::string& what, jsErrCode error) const {

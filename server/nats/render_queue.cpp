@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <condition_variable>
 #include <mutex>
-#include <random>
 #include <stdexcept>
 #include <string_view>
 
@@ -52,32 +50,11 @@ bool has_stream(const Connection& connection, const std::string& name) {
     return error != JSStreamNotFoundErr;
 }
 
-std::string header_of(natsMsg* message, const char* name) {
-    const char* value = nullptr;
-    return natsMsgHeader_Get(message, name, &value) == NATS_OK && value ? value : "";
-}
-
-/// From 0, or none.
-std::optional<std::size_t> number_of(const std::string& text) {
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size()) return {};
-    return number;
-}
-
 std::string_view text_of(natsMsg* message) {
     return {natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message))};
 }
 
 }  // namespace
-
-std::string new_run() {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::random_device random;
-    std::string run;
-    for (int i = 0; i < 16; ++i) run += kDigits[random() % kDigits.size()];
-    return run;
-}
 
 // --- the worker's side
 
@@ -114,7 +91,7 @@ bool TakenJob::publish(std::span<const std::byte> bytes, const std::map<std::str
 
 void TakenJob::finish(std::span<const std::uint8_t> file) {
     const std::size_t parts = std::max<std::size_t>((file.size() + kPartBytes - 1) / kPartBytes, 1);
-    const std::string sender = new_run();
+    const std::string sender = random_id();
     for (std::size_t i = 0; i < parts; ++i) {
         const std::size_t first = i * kPartBytes;
         const bool wanted =

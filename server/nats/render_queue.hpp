@@ -113,7 +113,4 @@ private:
     std::set<int> complete_;
 };
 
-/// Returns a name for a run, which no other has.
-std::string new_run();
-
 }  // namespace vrut::server::nats

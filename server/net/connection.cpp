@@ -66,9 +66,11 @@ const char* reason_of(const protocol::Error& error, close_code code) {
 
 }  // namespace
 
-Connection::Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry)
+Connection::Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry,
+                       std::shared_ptr<ServedRoom> room)
     : socket_(std::move(transport)),
       registry_(registry),
+      room_(std::move(room)),
       hello_deadline_(socket_.get_executor()),
       deadline_timer_(socket_.get_executor()),
       rate_timer_(socket_.get_executor()),
@@ -118,7 +120,7 @@ void Connection::accept(const HttpRequest& request) {
         self->hello_deadline_.expires_after(self->registry_.deadlines.hello);
         self->hello_deadline_.async_wait([weak = self->weak_from_this()](beast::error_code stopped) {
             const auto connection = weak.lock();
-            if (!stopped && connection && connection->client_.empty())
+            if (!stopped && connection && connection->client_.empty() && !connection->is_joining_)
                 connection->reject_and_close(
                     {{}, protocol::error_code::bad_message, "no 'hello' came within 5 s"},
                     close_code::policy_error);
@@ -137,7 +139,7 @@ void Connection::read() {
 
 /// Before the next message.
 bool Connection::must_wait() {
-    if (unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
+    if (is_joining_ || unhandled_bytes_ >= kMaxUnhandled || unhandled_requests_ >= kMaxRequests ||
         answer_bytes_ >= kMaxAnswers)
         return true;
     const base::Clock::duration wait = rate_.wait(base::Clock::now());
@@ -214,53 +216,68 @@ void Connection::on_text(std::string_view text) {
         grant = *granted;
     const std::optional<std::int64_t> id = message ? message->id : std::nullopt;
     if (!grant || id)
-        forward(std::move(message), text.size());  // a grant's id rises with those of the others
+        forward(std::move(message), text);  // a grant's id rises with those of the others
     if (grant) on_grant(*grant, id);
 }
 
-void Connection::forward(tl::expected<protocol::ClientMessage, protocol::Error> message, std::size_t bytes) {
-    engine::MessageReceived received{client_, std::move(message), base::Clock::now(), bytes,
+void Connection::forward(tl::expected<protocol::ClientMessage, protocol::Error> message,
+                         std::string_view text) {
+    engine::MessageReceived received{client_, std::move(message), base::Clock::now(), text.size(),
                                      role_ == protocol::Role::control};
+    if (!received.message) received.unreadable = text;
     received.sequence = ++sequence_;
     unhandled_bytes_ += received.bytes;
     unhandled_requests_ += received.is_request();
-    registry_.engine->mailbox().push(std::move(received));
+    room_->engine->push(std::move(received));
 }
 
 void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id) {
-    const std::optional<protocol::Role> role = registry_.access.role_for(hello.role, hello.token);
-    if (!role)
-        return reject_and_close({id, protocol::error_code::not_allowed,
-                                 hello.token.empty() ? "this server asks for a token" : "the token is wrong"},
-                                close_code::policy_error);
-    if (registry_.clients.size() >= registry_.max_clients)
+    const std::string client = "c" + std::to_string(registry_.next_client++) + room_->suffix;
+    is_joining_ = true;
+    room_->admit({client, hello.role, hello.token},
+                 [self = shared_from_this(), client, hello,
+                  id](const tl::expected<protocol::Role, protocol::Error>& role) {
+                     self->is_joining_ = false;
+                     if (self->dropped_ || self->closing_) return;
+                     if (role) return self->join(client, *role, hello, id);
+                     const auto code = role.error().code == protocol::error_code::not_allowed
+                                           ? close_code::policy_error
+                                           : close_code::try_again_later;
+                     self->reject_and_close({id, role.error().code, role.error().message}, code);
+                 });
+}
+
+void Connection::join(const std::string& client, protocol::Role role, const protocol::Hello& hello,
+                      std::optional<std::int64_t> id) {
+    if (registry_.clients() >= registry_.max_clients)
         return reject_and_close(
             {id, protocol::error_code::too_many,
              "the server has its " + std::to_string(registry_.max_clients) + " clients already"},
             close_code::try_again_later);
     if (registry_.stopping) return;  // the close is on its way
     hello_deadline_.cancel();
-    role_ = *role;
-    client_ = "c" + std::to_string(registry_.next_client++);
-    registry_.clients[client_] = shared_from_this();
-    if (!registry_.loads) loading_ = registry_.loading;  // over before it came
+    role_ = role;
+    client_ = client;
+    room_->clients[client_] = shared_from_this();
+    if (!room_->loads) loading_ = room_->loading;  // over before it came
     ++registry_.metrics->clients_joined;
-    ++registry_.metrics->clients[name_of(*role)];
+    ++registry_.metrics->clients[name_of(role)];
     observe::log_info("joined",
-                      {{"client", client_}, {"role", name_of(*role)}, {"name", hello.name}, {"peer", peer_}});
+                      {{"client", client_}, {"role", name_of(role)}, {"name", hello.name}, {"peer", peer_}});
     sequence_ = engine::kHelloSequence;
-    registry_.engine->mailbox().push(
-        engine::ClientJoined{client_, *role, hello.name, id.value_or(0), hello.resume});
+    room_->engine->push(
+        engine::ClientJoined{client_, role, hello.name, id.value_or(0), hello.resume, hello.token});
 
     protocol::Welcome welcome;
     welcome.id = id;
     welcome.server = VRUT_VERSION;
     welcome.client = client_;
-    welcome.role = *role;
-    welcome.limits.max_pixels = registry_.engine->limits().max_pixels;
+    welcome.role = role;
+    welcome.limits.max_pixels = room_->engine->limits().max_pixels;
     welcome.limits.messages_per_second = kMessagesPerSecond;
     welcome.input = room::input_rules();
     answer({client_, protocol::encode(welcome), 0});
+    read();
 }
 
 void Connection::reject_and_close(const protocol::Error& error, close_code code) {
@@ -319,8 +336,8 @@ void Connection::drop(const char* reason) {
     observe::log_info("left", {{"client", client_}, {"peer", peer_}, {"reason", reason}});
     ++registry_.metrics->clients_left;
     --registry_.metrics->clients[name_of(role_)];
-    registry_.engine->mailbox().push(engine::ClientLeft{client_});
-    registry_.clients.erase(client_);
+    room_->engine->push(engine::ClientLeft{client_});
+    room_->clients.erase(client_);
 }
 
 }  // namespace vrut::server::net

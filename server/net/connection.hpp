@@ -26,7 +26,8 @@ inline constexpr int kLeastRate = 1000;
 /// wait, nothing is read.
 class Connection : public std::enable_shared_from_this<Connection> {
 public:
-    Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry);
+    Connection(Transport transport, ConnectionLimit::Place place, ConnectionRegistry& registry,
+               std::shared_ptr<ServedRoom> room);
     ~Connection();
     Connection(const Connection&) = delete;
     Connection& operator=(const Connection&) = delete;
@@ -37,7 +38,7 @@ public:
     // What the engine says.
     void answer(room::Answer answer);
     void handled(const engine::EngineOutput::Handled& handled);
-    /// registry.newest has changed; `before` is the number of the previous newest frame, 0 if none.
+    /// The room's newest frame has changed; `before` is the number of the previous newest frame, 0 if none.
     void newest_changed(std::int64_t before);
     /// A picture that this client asked for.
     void take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture);
@@ -58,10 +59,12 @@ private:
     bool must_wait();
     void on_text(std::string_view text);
     void on_hello(const protocol::Hello& hello, std::optional<std::int64_t> id);
+    void join(const std::string& client, protocol::Role role, const protocol::Hello& hello,
+              std::optional<std::int64_t> id);
     void reject_and_close(const protocol::Error& error, boost::beast::websocket::close_code code);
 
     /// To the engine.
-    void forward(tl::expected<protocol::ClientMessage, protocol::Error> message, std::size_t bytes);
+    void forward(tl::expected<protocol::ClientMessage, protocol::Error> message, std::string_view text);
     void on_grant(const protocol::FrameGrant& grant, std::optional<std::int64_t> id);
     void ask_for_frames(base::Clock::time_point now);
     bool has_newer_frame() const;
@@ -95,10 +98,12 @@ private:
 
     boost::beast::websocket::stream<Transport, false> socket_;
     ConnectionRegistry& registry_;
+    const std::shared_ptr<ServedRoom> room_;
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, deadline_timer_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;
-    std::string client_;  // empty before hello
+    std::string client_;        // empty until it has joined
+    bool is_joining_ = false;  // its hello is not answered yet
     protocol::Role role_ = protocol::Role::view;
     std::string peer_;
     bool dropped_ = false;

@@ -45,13 +45,13 @@ void Connection::on_grant(const protocol::FrameGrant& grant, std::optional<std::
 
 /// Tells the engine what may be sent, where that has changed.
 void Connection::ask_for_frames(base::Clock::time_point now) {
-    const std::int64_t known = holds_in_vain(now) ? registry_.newest->header.frame : last_frame_;
+    const std::int64_t known = holds_in_vain(now) ? room_->newest->header.frame : last_frame_;
     const engine::FramesWanted wanted{client_, known, flow_.frames_allowed(now), granted_at_,
                                       flow_.link(now)};
     if (wanted == wanted_) return;
     const bool matters = wanted.count > 0 || wanted_.count > 0;
     wanted_ = wanted;
-    if (matters) registry_.engine->mailbox().push(wanted);
+    if (matters) room_->engine->push(wanted);
 }
 
 void Connection::take_snapshot(std::shared_ptr<const engine::EncodedPicture> picture) {
@@ -74,16 +74,16 @@ void Connection::newest_changed(std::int64_t before) {
 
 /// One that shows what the messages before the newest grant did, or what is to be seen after them.
 bool Connection::has_newer_frame() const {
-    const auto& newest = registry_.newest;
+    const auto& newest = room_->newest;
     if (!newest || newest->header.frame <= last_frame_) return false;
     const auto applied = newest->applied.find(client_);
     if (applied != newest->applied.end() && applied->second.sequence >= granted_at_) return true;
-    return handled_sequence_ >= granted_at_ && registry_.present_frame == newest->header.frame;
+    return handled_sequence_ >= granted_at_ && room_->present_frame == newest->header.frame;
 }
 
 /// When the newest frame may be sent, as far as the time decides for which the view has been idle.
 base::Clock::time_point Connection::newest_from(base::Clock::time_point now) const {
-    return flow_.may_send_from(registry_.newest->file.size(), registry_.newest->idle_since, now);
+    return flow_.may_send_from(room_->newest->file.size(), room_->newest->idle_since, now);
 }
 
 bool Connection::frame_is_due(base::Clock::time_point now) const {
@@ -92,7 +92,7 @@ bool Connection::frame_is_due(base::Clock::time_point now) const {
 
 /// The newest frame waits for the view to have rested, and the view has moved on.
 bool Connection::holds_in_vain(base::Clock::time_point now) const {
-    return has_newer_frame() && registry_.newest->header.frame != registry_.present_frame &&
+    return has_newer_frame() && room_->newest->header.frame != room_->present_frame &&
            newest_from(now) > now;
 }
 
@@ -126,7 +126,7 @@ void Connection::pump() {
     if (!client_.empty() && flow_.wants_ping()) return send_ping(now);
     // A frame or answer goes when the client knows the revision that it speaks of.
     const bool frame_due = frame_is_due(now);
-    if (frame_due && known >= registry_.newest->header.revision) return send_frame();
+    if (frame_due && known >= room_->newest->header.revision) return send_frame();
     if (!answers_.empty() && known >= answers_.front().revision) return send_answer();
     if (!snapshots_.empty() && known >= snapshots_.front()->header.revision) return send_snapshot();
     const bool waited_for = frame_due || !answers_.empty() || !snapshots_.empty();
@@ -137,20 +137,20 @@ void Connection::pump() {
 /// A client that has not joined the room gets no document: its first one tells who has control.
 bool Connection::has_updates() const {
     const bool has_joined = handled_sequence_ >= engine::kHelloSequence;
-    return has_joined && registry_.document.newest() &&
-           (document_ != registry_.document.newest() || has_broadcasts());
+    return has_joined && room_->document.newest() &&
+           (document_ != room_->document.newest() || has_broadcasts());
 }
 
-bool Connection::has_broadcasts() const { return loading_ != registry_.loading || stats_ != registry_.stats; }
+bool Connection::has_broadcasts() const { return loading_ != room_->loading || stats_ != room_->stats; }
 
 /// Of each only the newest counts: the document, how far loading is, and statistics. The document goes first,
 /// unless the others have waited for long.
 void Connection::send_update(base::Clock::time_point now) {
     const bool waits = has_broadcasts() && now - had_broadcasts_ >= kLongestBroadcast;
-    if (document_ != registry_.document.newest() && !waits) return send_document();
+    if (document_ != room_->document.newest() && !waits) return send_document();
     had_broadcasts_ = now;
     for (const auto& [newest, sent] :
-         {std::pair(&registry_.loading, &loading_), std::pair(&registry_.stats, &stats_)})
+         {std::pair(&room_->loading, &loading_), std::pair(&room_->stats, &stats_)})
         if (*newest != *sent) {
             *sent = *newest;
             flow_.sent_update((*sent)->size(), now);
@@ -168,8 +168,8 @@ void Connection::send_answer() {
 }
 
 void Connection::send_document() {
-    Text update = registry_.document.update_from(document_.get(), *registry_.metrics);
-    document_ = registry_.document.newest();
+    Text update = room_->document.update_from(document_.get(), *registry_.metrics);
+    document_ = room_->document.newest();
     flow_.sent_update(update->size(), base::Clock::now());
     send_text(std::move(update));
 }
@@ -184,7 +184,7 @@ void Connection::send_ping(base::Clock::time_point now) {
 }
 
 void Connection::send_frame() {
-    picture_ = registry_.newest;
+    picture_ = room_->newest;
     last_frame_ = picture_->header.frame;
     const auto applied = picture_->applied.find(client_);
     // A snapshot may have shown more.
@@ -215,7 +215,7 @@ void Connection::send_snapshot() {
     picture_ = std::move(snapshots_.front());
     snapshots_.pop_front();
     ++registry_.metrics->snapshots_sent;
-    registry_.engine->mailbox().push(engine::SnapshotSent{client_});
+    room_->engine->push(engine::SnapshotSent{client_});
     handled_ = std::max(handled_, picture_->header.handled);
     flow_.sent(picture_->file.size(), base::Clock::now());
     send_picture(picture_->header.timing.since_input_ms);

@@ -18,6 +18,7 @@
 #include "net/monitoring.hpp"
 #include "net/page_response.hpp"
 #include "observe/log.hpp"
+#include "room_relay.hpp"
 
 namespace vrut::server::net {
 
@@ -28,6 +29,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
+constexpr std::string_view kRooms = "/rooms/";
 constexpr auto kForEnd = 1s;  // for the peer to take the last answer and to close, too
 
 std::string_view path_of(const HttpRequest& request) {
@@ -35,11 +37,46 @@ std::string_view path_of(const HttpRequest& request) {
     return target.substr(0, target.find('?'));
 }
 
-bool has_token(const HttpRequest& request, const ConnectionRegistry& registry) {
+/// What a request is for.
+struct Address {
+    std::optional<std::string> room;  ///< whose name may be empty; none: it is for the server itself
+    std::string_view path;            ///< within that
+};
+
+Address address_of(const HttpRequest& request, const ConnectionRegistry& registry) {
+    std::string_view path = path_of(request);
+    if (!registry.open_room) return {"", path};
+    if (!path.starts_with(kRooms)) return {{}, path};
+    const std::string_view rest = path.substr(kRooms.size());
+    const std::string_view name = rest.substr(0, rest.find('/'));
+    if (name.size() == rest.size() || !protocol::is_room_name(name)) return {{}, path};
+    return {std::string(name), rest.substr(name.size())};
+}
+
+/// Null where it cannot be had.
+std::shared_ptr<ServedRoom> find_room(const std::string& name, ConnectionRegistry& registry) {
+    if (const auto found = registry.rooms.find(name); found != registry.rooms.end()) return found->second;
+    return registry.open_room ? registry.open_room(name) : nullptr;
+}
+
+std::string token_of(const HttpRequest& request) {
     constexpr std::string_view kScheme = "Bearer ";
     const std::string_view header = view(request[http::field::authorization]);
-    const std::string_view token = header.starts_with(kScheme) ? header.substr(kScheme.size()) : "";
-    return registry.access.role_for(protocol::Role::view, token).has_value();
+    return std::string(header.starts_with(kScheme) ? header.substr(kScheme.size()) : "");
+}
+
+bool has_token(const HttpRequest& request, const ConnectionRegistry& registry) {
+    return registry.access.role_for(protocol::Role::view, token_of(request)).has_value();
+}
+
+HttpResponse needs_token() {
+    return rejection(http::status::unauthorized,
+                     "this address needs a token: send it as 'Authorization: Bearer TOKEN'");
+}
+
+HttpResponse no_room() {
+    return rejection(http::status::service_unavailable,
+                     "too many rooms are open here: try again later, or at another server");
 }
 
 /// Subprotocols are a comma-separated list; a client that offers none gets version 1.
@@ -104,32 +141,49 @@ std::optional<HttpResponse> trust_response(const HttpRequest& request, std::stri
     return std::nullopt;
 }
 
-HttpResponse respond(const HttpRequest& request, const ConnectionRegistry& registry) {
-    const std::string_view path = path_of(request);
-    if (auto file = page_response(request, path)) return *std::move(file);
+HttpResponse state_response(const std::optional<std::string>& fault, const char* good) {
+    return fault ? rejection(http::status::service_unavailable, *fault)
+                 : text_response(http::status::ok, good);
+}
+
+/// Of the server, or of a room, which is opened: for a moment it is not ready.
+HttpResponse readiness(const std::optional<std::string>& name, ConnectionRegistry& registry) {
+    auto why = why_unready(registry);
+    if (!why && name) {
+        const auto room = find_room(*name, registry);
+        if (!room) return no_room();
+        why = why_unready(*room);
+    }
+    return state_response(why, "ready\n");
+}
+
+HttpResponse respond(const HttpRequest& request, ConnectionRegistry& registry) {
+    const auto [room, path] = address_of(request, registry);
+    if (room || (path != "/" && path != "/index.html"))
+        if (auto file = page_response(request, path)) return *std::move(file);
     if (auto page = trust_response(request, path, registry)) return *std::move(page);
-    if (path == "/ws")
+    if (room && path == "/ws")
         return rejection(http::status::upgrade_required,
                          "this address is for WebSockets of version 13: send their handshake");
-    const auto state = [](const std::optional<std::string>& fault, const char* good) {
-        return fault ? rejection(http::status::service_unavailable, *fault)
-                     : text_response(http::status::ok, good);
-    };
-    if (path == "/healthz") return state(why_unhealthy(registry), "ok\n");
-    if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json" || path == "/frame.jpg") {
-        if (!has_token(request, registry))
-            return rejection(http::status::unauthorized,
-                             "this address needs a token: send it as 'Authorization: Bearer TOKEN'");
+    if (path == "/healthz") return state_response(why_unhealthy(registry), "ok\n");
+    if (path == "/readyz" || path == "/metrics" || path == "/protocol.schema.json") {
+        if (!has_token(request, registry)) return needs_token();
         if (path == "/protocol.schema.json") {
             static const auto schema = std::make_shared<const std::string>(protocol::json_schema());
             return {http::status::ok, "application/schema+json", schema};
         }
-        if (path == "/frame.jpg") return {};  // the session's, who can wait for it
-        if (path == "/readyz") return state(why_unready(registry), "ready\n");
+        if (path == "/readyz") return readiness(room, registry);
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
                 std::make_shared<const std::string>(metrics_text(registry))};
     }
-    return rejection(http::status::not_found, "there is nothing at this address: the page is at /");
+    if (!room && path.starts_with(kRooms) && protocol::is_room_name(path.substr(kRooms.size()))) {
+        HttpResponse response = rejection(http::status::permanent_redirect, "a room's address ends with /");
+        response.fields = "Location: " + std::string(path) + "/\r\n";
+        return response;
+    }
+    return rejection(http::status::not_found,
+                     !room ? "there is nothing at this address: rooms are at /rooms/NAME/"
+                           : "there is nothing at this address: the page is at /");
 }
 
 /// What is served to who comes without TLS where there is TLS, and not from this machine: how to trust the
@@ -237,43 +291,55 @@ private:
         host_ = std::string(view(request[http::field::host]));
         if (auto response = turned_away(request, registry_.access)) return send(*std::move(response));
         if (is_insecure_) return send(respond_insecurely(request, registry_));
-        if (path_of(request) == "/ws" && beast::websocket::is_upgrade(request) &&
+        const auto [room, path] = address_of(request, registry_);
+        if (room && path == "/ws" && beast::websocket::is_upgrade(request) &&
             view(request[http::field::sec_websocket_version]) == "13")
-            return open_websocket(request);
-        HttpResponse response = respond(request, registry_);
-        if (path_of(request) == "/frame.jpg" && response.status == http::status::ok)
-            return send_picture(request);
-        send(std::move(response));
+            return open_websocket(request, *room);
+        if (room && path == "/frame.jpg") return admit_to_picture(request, *room);
+        send(respond(request, registry_));
+    }
+
+    void admit_to_picture(const HttpRequest& request, const std::string& name) {
+        room_ = find_room(name, registry_);
+        if (!room_) return send(no_room());
+        deadline_ = base::Clock::time_point::max();  // the room's server has one of its own
+        room_->admit(
+            {{}, protocol::Role::view, token_of(request)},
+            [self = shared_from_this(), request](const tl::expected<protocol::Role, protocol::Error>& role) {
+                if (role) return self->send_picture(request);
+                if (role.error().code == protocol::error_code::not_allowed) return self->send(needs_token());
+                self->send(rejection(http::status::service_unavailable, role.error().message));
+            });
     }
 
     /// The present view, in the size asked for or the view's own.
     void send_picture(const HttpRequest& request) {
-        const engine::PictureLimits& limits = registry_.engine->limits();
+        const engine::PictureLimits limits = room_->engine->limits();
         const auto width = query_number(request, "width"), height = query_number(request, "height");
         if (!width || !height || (*width == 0) != (*height == 0) || !engine::fits(*width, *height, limits))
             return send(
                 rejection(http::status::bad_request,
                           "'width' and 'height' must be given together, as numbers from 1, of at most " +
                               std::to_string(limits.max_pixels) + " pixels"));
-        ViewPictureKey key{registry_.document.newest() ? registry_.document.newest()->revision() : 0,
-                           registry_.size, registry_.size};
+        ViewPictureKey key{room_->document.newest() ? room_->document.newest()->revision() : 0, room_->size,
+                           room_->size};
         if (*width > 0) key.size = {static_cast<int>(*width), static_cast<int>(*height)};
-        const std::string tag = registry_.pictures.tag(key);
-        if (registry_.document.newest() && names_tag(view(request[http::field::if_none_match]), tag))
+        const std::string tag = room_->pictures.tag(key);
+        if (room_->document.newest() && names_tag(view(request[http::field::if_none_match]), tag))
             return send({http::status::not_modified, "image/jpeg", nullptr, "ETag: " + tag + "\r\n"});
-        if (const ViewPicture* kept = registry_.pictures.find(key)) return send_file(*kept);
+        if (const ViewPicture* kept = room_->pictures.find(key)) return send_file(*kept);
         if (head_only_)
             return send({http::status::ok, "image/jpeg", nullptr,
-                         registry_.document.newest() ? "ETag: " + tag + "\r\n" : std::string{}});
+                         room_->document.newest() ? "ETag: " + tag + "\r\n" : std::string{}});
         deadline_ = base::Clock::time_point::max();  // it takes as long as it takes
-        const bool asked = registry_.pictures.ask(
+        const bool asked = room_->pictures.ask(
             key,
             [self = shared_from_this()](const ViewPicture* picture) {
                 if (picture) return self->send_file(*picture);
                 self->send(rejection(http::status::service_unavailable,
                                      "this image cannot be drawn: the log says why"));
             },
-            registry_.engine->mailbox());
+            *room_->engine, room_->suffix);
         if (!asked)
             send(rejection(http::status::service_unavailable,
                            "too many images are being drawn: try again later"));
@@ -281,10 +347,10 @@ private:
 
     void send_file(const ViewPicture& picture) {
         send({http::status::ok, "image/jpeg", picture.file,
-              "ETag: " + registry_.pictures.tag(picture.key) + "\r\n"});
+              "ETag: " + room_->pictures.tag(picture.key) + "\r\n"});
     }
 
-    void open_websocket(const HttpRequest& request) {
+    void open_websocket(const HttpRequest& request, const std::string& name) {
         if (!speaks_our_subprotocol(request))
             return send(
                 rejection(http::status::bad_request, "'Sec-WebSocket-Protocol' must hold vrut-preview.v1"));
@@ -294,8 +360,11 @@ private:
                 rejection(http::status::bad_request, "nothing may follow a handshake before its answer"));
         }
         if (registry_.stopping) return;
+        auto room = find_room(name, registry_);
+        if (!room) return send(no_room());
         deadline_timer_.cancel();
-        std::make_shared<Connection>(std::move(socket_), std::move(place_), registry_)->accept(request);
+        std::make_shared<Connection>(std::move(socket_), std::move(place_), registry_, std::move(room))
+            ->accept(request);
     }
 
     // --- writing
@@ -348,6 +417,7 @@ private:
     asio::steady_timer deadline_timer_;
     base::Clock::time_point deadline_;
     ConnectionRegistry& registry_;
+    std::shared_ptr<ServedRoom> room_;  // of the image that is asked for
     beast::flat_buffer incoming_{kMaxRequest};
     bool keep_alive_ = false, head_only_ = false, answered_ = false, is_insecure_ = false;
     std::string host_, head_;

@@ -6,6 +6,7 @@
 namespace vrut::server::net {
 
 struct ConnectionRegistry;
+struct ServedRoom;
 
 /// The answers of /healthz, /readyz and /metrics, made on the net thread, which is alive where it answers.
 
@@ -13,6 +14,7 @@ struct ConnectionRegistry;
 std::optional<std::string> why_unhealthy(const ConnectionRegistry& registry);
 /// Why no pictures can be had now; none where they can.
 std::optional<std::string> why_unready(const ConnectionRegistry& registry);
+std::optional<std::string> why_unready(const ServedRoom& room);
 /// As Metrics::text().
 std::string metrics_text(const ConnectionRegistry& registry);
 

@@ -18,15 +18,61 @@ void bound_backlog(ConnectionRegistry& registry) {
     // What was being sent to those who were cut is given up soon.
     for (const Connection* connection : registry.connections)
         if (connection->is_dropped()) held -= std::min(held, connection->backlog());
-    while (held > kMostHeld && !registry.clients.empty()) {
-        const auto most =
-            std::max_element(registry.clients.begin(), registry.clients.end(),
-                             [](auto& a, auto& b) { return a.second->backlog() < b.second->backlog(); });
-        const std::shared_ptr<Connection> connection = most->second;
-        if (connection->backlog() == 0) return;
-        held -= std::min(held, connection->backlog());
-        connection->drop("backlog");
+    while (held > kMostHeld) {
+        std::shared_ptr<Connection> most;
+        std::size_t most_waits = 0;
+        for (const auto& [name, room] : registry.rooms)
+            for (const auto& [client, connection] : room->clients)
+                if (const std::size_t waits = connection->backlog(); waits > most_waits) {
+                    most = connection;
+                    most_waits = waits;
+                }
+        if (!most) return;
+        held -= std::min(held, most_waits);
+        most->drop("backlog");
     }
+}
+
+std::size_t ConnectionRegistry::clients() const {
+    std::size_t clients = 0;
+    for (const auto& [name, room] : rooms) clients += room->clients.size();
+    return clients;
+}
+
+void ServedRoom::take(engine::EngineOutput output) {
+    const auto find = [&](const std::string& client) {
+        const auto found = clients.find(client);
+        return found == clients.end() ? nullptr : found->second;
+    };
+    if (output.document) {
+        document.set(std::move(output.document), std::move(output.by), output.by_since);
+        pictures.forget_before(document.newest()->revision());
+    }
+    if (output.stats) stats = std::move(output.stats);
+    if (output.loading) {
+        loading = std::move(output.loading);
+        loads = output.loads;
+    }
+    if (output.size) size = *output.size;
+    if (output.present_frame) present_frame = *output.present_frame;
+    for (auto& answer : output.answers)
+        if (const auto connection = find(answer.client)) connection->answer(std::move(answer));
+    for (const std::string& name : output.failed_pictures) pictures.give_up(name);
+    for (const auto& [client, handled] : output.handled)
+        if (const auto connection = find(client)) connection->handled(handled);
+    for (const auto& [name, connection] : clients) connection->pump();
+}
+
+void ServedRoom::take(std::shared_ptr<const engine::EncodedPicture> picture) {
+    if (!picture->client.empty()) {
+        if (pictures.take(*picture)) return;
+        if (const auto found = clients.find(picture->client); found != clients.end())
+            found->second->take_snapshot(std::move(picture));
+        return;
+    }
+    const std::int64_t before = newest ? newest->header.frame : 0;
+    newest = std::move(picture);
+    for (const auto& [name, connection] : clients) connection->newest_changed(before);
 }
 
 }  // namespace vrut::server::net

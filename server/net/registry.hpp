@@ -1,13 +1,16 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
+#include <tl/expected.hpp>
 
-#include "engine/engine.hpp"
+#include "engine/output.hpp"
+#include "engine/room_engine.hpp"
 #include "net/access.hpp"
 #include "net/connection_limit.hpp"
 #include "net/deadlines.hpp"
@@ -20,16 +23,16 @@ namespace vrut::server::net {
 
 class Connection;
 
-/// State shared by all connections. On the net thread only, except the engine's mailbox and the metrics.
-struct ConnectionRegistry {
-    Access access;
-    std::size_t max_clients = 64;
-    std::chrono::milliseconds longest_busy{30'000};  ///< of a loop that has something to do
-    Deadlines deadlines;
-    std::shared_ptr<Tls> tls;              ///< null: none
-    std::optional<ConnectionLimit> limit;  ///< of connections of any kind
-    observe::Metrics* metrics = nullptr;
-    engine::Engine* engine = nullptr;
+/// A room, as this server's connections know it. On the net thread only, except its engine.
+struct ServedRoom {
+    /// Whether a client may come in, and in which role: `done` is called with it, or with why it may not.
+    using Admit =
+        std::function<void(const engine::Admission& asked,
+                           std::function<void(tl::expected<protocol::Role, protocol::Error>)> done)>;
+
+    std::shared_ptr<engine::RoomEngine> engine;
+    Admit admit;
+    std::string suffix = {};  ///< of its clients' names and its pictures', which no other server's have
     DocumentUpdates document;
     std::shared_ptr<const engine::EncodedPicture> newest;
     std::int64_t present_frame = 0;  ///< the frame that shows what is to be seen now; 0: none
@@ -38,9 +41,32 @@ struct ConnectionRegistry {
     engine::PictureSize size;                           ///< of a picture of the view
     ViewPictures pictures;
     std::map<std::string, std::shared_ptr<Connection>> clients;  ///< those that said hello
-    std::set<Connection*> connections;                           ///< those, and those that did not yet
+
+    // What its engine says.
+    void take(engine::EngineOutput output);
+    void take(std::shared_ptr<const engine::EncodedPicture> picture);
+};
+
+/// State shared by all connections. On the net thread only, except the metrics.
+struct ConnectionRegistry {
+    Access access;
+    std::size_t max_clients = 64;
+    std::chrono::milliseconds longest_busy{30'000};  ///< of a loop that has something to do
+    Deadlines deadlines;
+    std::shared_ptr<Tls> tls;              ///< null: none
+    std::optional<ConnectionLimit> limit;  ///< of connections of any kind
+    observe::Metrics* metrics = nullptr;
+    std::map<std::string, std::shared_ptr<ServedRoom>> rooms;  ///< by name; the one of this process has none
+    /// Of a server for rooms that others draw: opens one. Empty: there is only this process's.
+    std::function<std::shared_ptr<ServedRoom>(const std::string& name)> open_room;
+    /// Why no room can be served, a sentence; none if one can.
+    std::function<std::optional<std::string>()> why_unready;
+    std::set<Connection*> connections;
     std::int64_t next_client = 1;
     bool stopping = false;
+
+    /// Those that said hello, of all rooms.
+    std::size_t clients() const;
 };
 
 /// Cuts the clients for whom the most waits, while more waits for all than the server keeps.

@@ -8,9 +8,11 @@
 #include <csignal>
 #include <stdexcept>
 
+#include "engine/engine.hpp"
 #include "net/connection.hpp"
 #include "net/descriptors.hpp"
 #include "net/http_connection.hpp"
+#include "net/monitoring.hpp"
 #include "net/share_address.hpp"
 #include "observe/log.hpp"
 
@@ -20,9 +22,26 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using namespace std::chrono_literals;
 
+namespace {
+
+constexpr std::size_t kMostRooms = 64;  // open at once
+constexpr auto kRoomKept = 10s;         // that nobody is in
+
+/// By the tokens of this server.
+ServedRoom::Admit admit_by(Access access) {
+    return [access = std::move(access)](const engine::Admission& asked, const auto& done) {
+        if (const auto role = access.role_for(asked.role, asked.token)) return done(*role);
+        done(tl::unexpected(
+            protocol::Error{{},
+                            protocol::error_code::not_allowed,
+                            asked.token.empty() ? "this server asks for a token" : "the token is wrong"}));
+    };
+}
+
+}  // namespace
+
 struct Server::Impl {
-    Impl(ServerOptions server_options, scenes::LoadedScene scene,
-         const engine::FrameRendererFactory& renderer)
+    explicit Impl(ServerOptions server_options)
         : options(std::move(server_options)),
           acceptor(context),
           accept_pause(context),
@@ -36,32 +55,98 @@ struct Server::Impl {
         registry.longest_busy = options.longest_busy;
         registry.deadlines = options.deadlines;
         registry.metrics = &metrics;
+    }
+
+    Impl(ServerOptions server_options, scenes::LoadedScene scene,
+         const engine::FrameRendererFactory& renderer)
+        : Impl(std::move(server_options)) {
+        const auto room = std::make_shared<ServedRoom>();
+        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder,
+                                             options.keep_changes,
+                                             share_address(options.listen, acceptor.local_endpoint().port(),
+                                                           options.tls != nullptr, options.access)};
+        engine_options.shared = options.shared;
+        engine::EngineCallbacks callbacks = callbacks_of(room);
+        if (options.relay) callbacks = options.relay(std::move(callbacks));
+        const auto engine = std::make_shared<engine::Engine>(std::move(engine_options), renderer, metrics,
+                                                             std::move(callbacks));
+        room->engine = engine;
+        room->admit = [engine = engine.get(), by_token = admit_by(options.access)](
+                          const engine::Admission& asked, const auto& done) {
+            if (!engine->follows()) return by_token(asked, done);
+            done(tl::unexpected(
+                protocol::Error{{},
+                                protocol::error_code::failed,
+                                "another server draws this room: go to that one, or to an edge"}));
+        };
+        registry.rooms[""] = room;
+        registry.why_unready = [room = room.get()] { return net::why_unready(*room); };
+    }
+
+    Impl(ServerOptions server_options, RemoteRooms remote_rooms) : Impl(std::move(server_options)) {
+        registry.why_unready = remote_rooms.why_unready;
+        registry.open_room = [this, remote = std::move(remote_rooms)](const std::string& name) {
+            return open_room(name, remote);
+        };
+        forget_unused_rooms();
+    }
+
+    ~Impl() {
+        for (const auto& [name, room] : registry.rooms) {
+            room->engine.reset();
+            room->newest.reset();
+            room->pictures.stop();
+            room->clients.clear();
+        }
+    }
+
+    /// What the engine of a room says comes to the net thread.
+    engine::EngineCallbacks callbacks_of(const std::weak_ptr<ServedRoom>& to) {
+        const auto post = [this, to](auto said) {
+            asio::post(context, [this, to, moved = std::move(said)]() mutable {
+                const auto room = to.lock();
+                if (!room) return;
+                room->take(std::move(moved));
+                bound_backlog(registry);
+            });
+        };
         engine::EngineCallbacks callbacks;
-        callbacks.on_output = [this](engine::EngineOutput output) {
-            asio::post(context, [this, moved = std::move(output)]() mutable { take(std::move(moved)); });
-        };
-        callbacks.on_encoded = [this](std::shared_ptr<const engine::EncodedPicture> picture) {
-            asio::post(context, [this, moved = std::move(picture)]() mutable { take(std::move(moved)); });
-        };
+        callbacks.on_output = post;
+        callbacks.on_encoded = post;
         callbacks.on_failure = [this](const std::string& why) {
             asio::post(context, [this, why] {
                 failure = why;
                 stop();
             });
         };
-        engine::EngineOptions engine_options{std::move(scene), options.library, options.record_folder,
-                                             options.keep_changes,
-                                             share_address(options.listen, acceptor.local_endpoint().port(),
-                                                           options.tls != nullptr, options.access)};
-        engine = std::make_unique<engine::Engine>(std::move(engine_options), renderer, metrics,
-                                                  std::move(callbacks));
-        registry.engine = engine.get();
+        return callbacks;
     }
 
-    ~Impl() {
-        registry.newest.reset();
-        registry.pictures.stop();
-        registry.clients.clear();
+    // --- rooms that others draw
+
+    std::shared_ptr<ServedRoom> open_room(const std::string& name, const RemoteRooms& remote) {
+        if (registry.rooms.size() >= kMostRooms || registry.stopping) return nullptr;
+        const auto room = std::make_shared<ServedRoom>();
+        RemoteRooms::Room opened = remote.open(name, metrics, callbacks_of(room));
+        room->engine = std::move(opened.engine);
+        room->admit = [this, admit = std::move(opened.admit)](const engine::Admission& asked, auto done) {
+            admit(asked,
+                  [this, done = std::move(done)](const tl::expected<protocol::Role, protocol::Error>& role) {
+                      asio::post(context, [done, role] { done(role); });
+                  });
+        };
+        room->suffix = remote.suffix;
+        return registry.rooms[name] = room;
+    }
+
+    void forget_unused_rooms() {
+        unused_rooms.expires_after(kRoomKept);
+        unused_rooms.async_wait([this](boost::system::error_code stopped) {
+            if (stopped) return;
+            // Connections that have said no hello yet hold theirs, too.
+            std::erase_if(registry.rooms, [](const auto& entry) { return entry.second.use_count() == 1; });
+            forget_unused_rooms();
+        });
     }
 
     void listen() {
@@ -113,57 +198,12 @@ struct Server::Impl {
             reject_connection(std::move(socket));
     }
 
-    // --- what the engine says, on the net thread
-
-    Connection* find(const std::string& client) {
-        const auto connection = registry.clients.find(client);
-        return connection == registry.clients.end() ? nullptr : connection->second.get();
-    }
-
-    void take(engine::EngineOutput output) {
-        if (output.document) {
-            registry.document.set(std::move(output.document), std::move(output.by), output.by_since);
-            registry.pictures.forget_before(registry.document.newest()->revision());
-        }
-        if (output.stats) registry.stats = std::move(output.stats);
-        if (output.loading) {
-            registry.loading = std::move(output.loading);
-            registry.loads = output.loads;
-        }
-        if (output.size) registry.size = *output.size;
-        if (output.present_frame) registry.present_frame = *output.present_frame;
-        for (auto& answer : output.answers)
-            if (Connection* connection = find(answer.client)) connection->answer(std::move(answer));
-        for (const std::string& name : output.failed_pictures) registry.pictures.give_up(name);
-        for (const auto& [client, handled] : output.handled)
-            if (Connection* connection = find(client)) connection->handled(handled);
-        for_each_client([](Connection& connection) { connection.pump(); });
-        bound_backlog(registry);
-    }
-
-    void take(std::shared_ptr<const engine::EncodedPicture> picture) {
-        if (!picture->client.empty()) return take_ordered(std::move(picture));
-        const std::int64_t before = registry.newest ? registry.newest->header.frame : 0;
-        registry.newest = std::move(picture);
-        for_each_client([&](Connection& connection) { connection.newest_changed(before); });
-    }
-
-    void take_ordered(std::shared_ptr<const engine::EncodedPicture> picture) {
-        if (registry.pictures.take(*picture)) return;
-        if (Connection* connection = find(picture->client)) connection->take_snapshot(std::move(picture));
-        bound_backlog(registry);
-    }
-
-    template <class Function>
-    void for_each_client(Function function) {
-        for (const auto& [name, connection] : registry.clients) function(*connection);
-    }
-
     // --- the end
 
     void stop() {
         if (std::exchange(registry.stopping, true)) return;
-        engine->stop();
+        for (const auto& [name, room] : registry.rooms) room->engine->stop();
+        unused_rooms.cancel();
         acceptor.close();
         accept_pause.cancel();
         signals.cancel();
@@ -188,18 +228,24 @@ struct Server::Impl {
     tcp::acceptor acceptor;
     asio::steady_timer accept_pause;
     asio::signal_set signals;
-    asio::steady_timer deadline, goodbye{context};
+    asio::steady_timer deadline, goodbye{context}, unused_rooms{context};
     std::optional<std::string> failure;
-    std::unique_ptr<engine::Engine> engine;
 };
 
 Server::Server(ServerOptions options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), renderer)) {}
+Server::Server(ServerOptions options, RemoteRooms rooms)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(rooms))) {}
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().port(); }
-const std::string& Server::description() const { return impl_->engine->description(); }
+std::string Server::description() const {
+    const auto room = impl_->registry.rooms.find("");
+    return room == impl_->registry.rooms.end() ? "" : room->second->engine->description();
+}
 const observe::Metrics& Server::metrics() const { return impl_->metrics; }
+
+engine::RoomEngine& Server::engine() { return *impl_->registry.rooms.at("")->engine; }
 
 void Server::stop_on_signals() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) impl_->signals.add(signal);

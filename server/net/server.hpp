@@ -2,14 +2,19 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 
 #include "engine/change_keeper.hpp"
+#include "engine/engine.hpp"
 #include "engine/frame_renderer.hpp"
+#include "engine/output.hpp"
+#include "engine/room_engine.hpp"
 #include "net/access.hpp"
 #include "net/addresses.hpp"
 #include "net/deadlines.hpp"
+#include "net/registry.hpp"
 #include "net/tls.hpp"
 #include "scenes/library.hpp"
 
@@ -30,23 +35,45 @@ struct ServerOptions {
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
     /// Stores what clients change of a scene. Empty: their changes are lost with the scene.
     engine::ChangeKeeper::Store keep_changes = {};
+    /// Of a room that servers share, and what its engine says to clients on the way to them. Both or none.
+    std::optional<engine::EngineOptions::Shared> shared = {};
+    std::function<engine::EngineCallbacks(engine::EngineCallbacks to_clients)> relay = {};
     /// A thread that has something to do and does not come round for longer is not alive.
     std::chrono::milliseconds longest_busy{30'000};
 };
 
-/// The preview server: an engine, and clients that reach it over HTTP and WebSocket.
+/// Rooms that other servers draw.
+struct RemoteRooms {
+    struct Room {
+        std::shared_ptr<engine::RoomEngine> engine;
+        ServedRoom::Admit admit;
+    };
+    /// Opens the room of this name. Callbacks and `done` of its Admit are called from any thread. A room that
+    /// no server has draws nothing.
+    std::function<Room(const std::string& name, observe::Metrics& metrics, engine::EngineCallbacks callbacks)>
+        open;
+    /// Why none can be had now, a sentence; none if they can.
+    std::function<std::optional<std::string>()> why_unready;
+    std::string suffix;  ///< of clients' names; no other server of these rooms has it
+};
+
+/// The preview server: clients reach rooms over HTTP and WebSocket.
 class Server {
 public:
-    /// Listens and draws from here on, and serves once run() runs. Throws std::runtime_error where the port
-    /// is taken or nothing can draw.
+    /// One room, drawn here. Listens and draws from here on, and serves once run() runs. Throws
+    /// std::runtime_error where the port is taken or nothing can draw.
     Server(ServerOptions options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer);
+    /// Any room of those, at /rooms/NAME/.
+    Server(ServerOptions options, RemoteRooms rooms);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
 
     std::uint16_t port() const;
-    /// What draws.
-    const std::string& description() const;
+    /// What draws; empty: that is elsewhere.
+    std::string description() const;
+    /// Of the room that is drawn here.
+    engine::RoomEngine& engine();
     const observe::Metrics& metrics() const;
 
     /// From here on SIGTERM, SIGINT and SIGHUP do what stop() does.

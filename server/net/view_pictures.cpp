@@ -32,16 +32,17 @@ const ViewPicture* ViewPictures::find(const ViewPictureKey& key) const {
     return found == kept_.end() ? nullptr : &*found;
 }
 
-bool ViewPictures::ask(const ViewPictureKey& key, Done done, engine::Mailbox& mailbox) {
+bool ViewPictures::ask(const ViewPictureKey& key, Done done, engine::RoomEngine& engine,
+                       const std::string& suffix) {
     for (auto& [name, drawing] : waiting_)
         if (drawing.key == key) {
             drawing.waiting.push_back(std::move(done));
             return true;
         }
     if (waiting_.size() >= kMostWaiting) return false;
-    const std::string name = "picture " + std::to_string(next_++);
+    const std::string name = "picture " + std::to_string(next_++) + suffix;
     waiting_[name] = {key, {std::move(done)}};
-    mailbox.push(engine::PictureAsked{name, key.size.width, key.size.height});
+    engine.push(engine::PictureAsked{name, key.size.width, key.size.height});
     return true;
 }
 

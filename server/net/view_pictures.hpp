@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "engine/frame_quality.hpp"
-#include "engine/mailbox.hpp"
 #include "engine/picture.hpp"
+#include "engine/room_engine.hpp"
 
 namespace vrut::server::net {
 
@@ -41,8 +41,9 @@ public:
     /// Null if it is not kept.
     const ViewPicture* find(const ViewPictureKey& key) const;
     /// Asks the engine for an image of this revision or a newer one, and calls `done` with it. False if
-    /// kMostWaiting are being drawn.
-    bool ask(const ViewPictureKey& key, Done done, engine::Mailbox& mailbox);
+    /// kMostWaiting are being drawn. `suffix`: of its name there.
+    bool ask(const ViewPictureKey& key, Done done, engine::RoomEngine& engine,
+             const std::string& suffix);
     /// False where `picture` is none that was asked for here.
     bool take(const engine::EncodedPicture& picture);
     /// The picture that was asked for by this name cannot be drawn.

@@ -47,7 +47,7 @@ struct Player {
         return "a message that was accepted is rejected now: " + why;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Connected& connected) const {
-        room.join(line.client, connected.role, line.at, connected.name);
+        room.join(line.client, connected.role, line.at, connected.name, connected.resume);
         return std::nullopt;
     }
     std::optional<std::string> operator()(const protocol::LogLine::Disconnected&) const {
@@ -65,6 +65,10 @@ struct Player {
         room.show(*std::move(scene), line.at);
         return std::nullopt;
     }
+    std::optional<std::string> operator()(const protocol::LogLine::Revised& revised) const {
+        room.follow(revised, line.at);
+        return std::nullopt;
+    }
     std::optional<std::string> operator()(const protocol::LogLine::Drawn& drawn) const {
         room.advance(line.at);
         room.remember(drawn.frame);
@@ -74,6 +78,11 @@ struct Player {
 };
 
 }  // namespace
+
+std::optional<std::string> play(Room& room, const protocol::LogLine& line, const SceneFinder& find_scene,
+                                const ReplayWatcher& watcher) {
+    return std::visit(Player{room, line, find_scene, watcher}, line.what);
+}
 
 tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& find_scene,
                                        const ReplayWatcher& watcher) {
@@ -87,7 +96,7 @@ tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& f
     std::size_t number = 1;
     for (const protocol::LogLine& line : log.lines) {
         ++number;
-        if (const auto wrong = std::visit(Player{room, line, find_scene, watcher}, line.what))
+        if (const auto wrong = play(room, line, find_scene, watcher))
             return tl::unexpected("line " + std::to_string(number) + ": " + *wrong);
         room.take_answers();
         room.take_orders();

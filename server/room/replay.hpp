@@ -33,6 +33,10 @@ struct ReplayWatcher {
     std::function<void(std::int64_t frame, const Room& room)> on_drawn = {};
 };
 
+/// Does what one line says, in a room that replays. Or what is wrong with it.
+std::optional<std::string> play(Room& room, const protocol::LogLine& line, const SceneFinder& find_scene,
+                                const ReplayWatcher& watcher = {});
+
 /// Plays a session again, with its own times: the same log and scene give the same camera to the last bit.
 /// The room as it stands at the last line; or why not.
 tl::expected<Room, std::string> replay(const EventLog& log, const SceneFinder& find_scene,

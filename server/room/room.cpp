@@ -41,8 +41,10 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     changing_.clear();  // who holds control is the server's doing
     add_client(client, {role, {}, own_name(name, resume_key), resume_key});
     list_clients();
-    record(client, protocol::LogLine::Connected{role, clients_[client].name});
-    if (role != Role::control || options_.replaying) return;
+    write_recording(client, protocol::LogLine::Connected{role, clients_[client].name});
+    write_journal(client, protocol::LogLine::Connected{role, clients_[client].name, resume_key});
+    if (role != Role::control) return;
+    if (options_.replaying) return steering_.arrive(client, resume_key);
     steering_.join(client, resume_key);
     show_holder();
     record_holder();
@@ -159,7 +161,10 @@ bool Room::handle(const Received& received, SessionTime at, Apply apply) {
     apply();
     if (size_waits_ && !gestures_.any_pressed()) use_holders_size();
     update_visible();
-    if (accepted_ && recorded && received.traits.recorded) record(received.client, received.message);
+    if (accepted_ && received.traits.recorded) {
+        write_journal(received.client, received.message);
+        if (recorded) write_recording(received.client, received.message);
+    }
     record_holder();
     return accepted_;
 }
@@ -287,6 +292,13 @@ const std::shared_ptr<const protocol::StateDocument>& Room::document() {
         changed_by_ = changing_;
     }
     return document_;
+}
+
+std::vector<std::pair<std::string, Role>> Room::clients() const {
+    std::vector<std::pair<std::string, Role>> here;
+    here.reserve(clients_.size());
+    for (const auto& [name, client] : clients_) here.emplace_back(name, client.role);
+    return here;
 }
 
 // --- messages

@@ -55,6 +55,8 @@ struct RoomOptions {
     /// Looks up the scenes that can be loaded; Room::scenes_listed() takes them.
     std::function<void(std::int64_t request)> scenes = {};
     ShareAddress share = {};  ///< none: nowhere
+    /// Takes each line of the log of all that happens here, with times of the session.
+    std::function<void(protocol::LogLine line)> journal = {};
     /// What is said was accepted before: it is not judged again by revisions or by who holds control, nor
     /// recorded. Control passes on as the log says.
     bool replaying = false;
@@ -99,6 +101,21 @@ public:
     void remember(std::int64_t frame);
     /// To be called first, if at all: as things stood when a recording began.
     tl::expected<void, protocol::Error> restore(const protocol::LogHeader& header);
+    /// As things stand now, for restore() and, behind it, follow(); none while something goes on that they do
+    /// not hold.
+    struct Checkpoint {
+        protocol::LogHeader header;
+        protocol::LogLine::Revised revised;
+    };
+    std::optional<Checkpoint> checkpoint();
+    /// A line for the journal, where the state has a revision that it does not name yet.
+    void write_revision();
+    /// In a replay: the state has this revision now.
+    void follow(const protocol::LogLine::Revised& revised, SessionTime at);
+    /// Ends a replay: from here on what is said is judged.
+    void go_on(RoomOptions options);
+    SessionTime time() const { return time_; }
+    std::vector<std::pair<std::string, protocol::Role>> clients() const;
 
     const scene::PlacedScene& scene() const { return *scene_; }
     const protocol::State& state() const { return state_; }
@@ -287,7 +304,11 @@ private:
     void stop_recording(const Received& received);
     /// The one that takes lines.
     Recording* active_recording();
+    protocol::LogHeader header_of_now() const;
     RecordingSink::Header log_header() const;
+    void write_journal(const std::string& client, decltype(protocol::LogLine::what) what);
+    void write_recording(const std::string& client, decltype(protocol::LogLine::what) what);
+    /// Both.
     void record(const std::string& client, decltype(protocol::LogLine::what) what);
     void press_anew(const std::string& client);
 
@@ -336,6 +357,7 @@ private:
     std::int64_t newest_request_ = 0, newest_recording_ = 0;
     std::map<std::int64_t, AnsweredLater> requests_;  ///< whose answers take a disk
     std::map<std::int64_t, Recording> recordings_;    ///< until all of them is written
+    protocol::LogLine::Revised journaled_;            ///< as the journal has it
 };
 
 }  // namespace vrut::server::room

@@ -14,6 +14,8 @@ Recording* Room::active_recording() {
 void Room::apply(const Received& received, const protocol::Record& record) {
     if (options_.replaying) {
         steer(received);
+        end_swings();
+        tap_.reset();
         return answer(received);
     }
     if (!options_.recordings)
@@ -66,7 +68,7 @@ void Room::stop_recording(const Received& received) {
     Recording* active = active_recording();
     if (!active) return reject(received, code::failed, "nothing is being recorded");
     steer(received);
-    record(received.client, received.message);
+    write_recording(received.client, received.message);
     active->stop = {received.client, received.message};
     options_.recordings->end(recordings_.rbegin()->first);
     state_.recording.reset();
@@ -122,13 +124,22 @@ void Room::press_anew(const std::string& client) {
 }
 
 void Room::record(const std::string& client, decltype(protocol::LogLine::what) what) {
+    write_journal(client, what);
+    write_recording(client, std::move(what));
+}
+
+void Room::write_journal(const std::string& client, decltype(protocol::LogLine::what) what) {
+    if (options_.journal) options_.journal({time_, 0, client, std::move(what)});
+}
+
+void Room::write_recording(const std::string& client, decltype(protocol::LogLine::what) what) {
     if (const Recording* active = active_recording())
         options_.recordings->write(
             recordings_.rbegin()->first,
-            protocol::encode(protocol::LogLine{time_ - active->since, client, std::move(what)}));
+            protocol::encode(protocol::LogLine{time_ - active->since, 0, client, std::move(what)}));
 }
 
-RecordingSink::Header Room::log_header() const {
+protocol::LogHeader Room::header_of_now() const {
     protocol::LogHeader header;
     header.scene = loaded_.name;
     header.scene_sha256 = loaded_.sha256;
@@ -144,12 +155,58 @@ RecordingSink::Header Room::log_header() const {
         header.flight = {flight_->client, flight_->id,
                          static_cast<double>((time_ - flight_->start).count()) / 1000, flight_->from,
                          flight_->asked};
-    return [header, state = state_](const std::string& name, const std::string& started) mutable {
+    return header;
+}
+
+RecordingSink::Header Room::log_header() const {
+    return [header = header_of_now(), state = state_](const std::string& name,
+                                                      const std::string& started) mutable {
         header.started = started;
         state.recording = protocol::RecordingState{name};
         header.state = protocol::document_of(state);
         return protocol::encode(header);
     };
+}
+
+// --- the journal, which another server follows
+
+std::optional<Room::Checkpoint> Room::checkpoint() {
+    const bool is_quiet = swings_.empty() && !tap_ && !gestures_.any_pressed() &&
+                          gestures_.held_keys().empty() && requests_.empty() && recordings_.empty() &&
+                          !steering_.deadline();
+    if (!is_quiet) return std::nullopt;
+    Checkpoint now{header_of_now(), {document()->revision(), state_.notices, ""}};
+    now.header.state = protocol::document_of(state_);
+    now.header.revision = document()->revision();
+    for (protocol::LogHeader::Client& client : now.header.clients)
+        client.resume = clients_.at(client.client).resume_key;
+    return now;
+}
+
+void Room::write_revision() {
+    const std::string recording = state_.recording ? state_.recording->name : "";
+    protocol::LogLine::Revised revised{document()->revision(), {}, {}};
+    if (journaled_.notices != state_.notices) revised.notices = journaled_.notices = state_.notices;
+    if (journaled_.recording != recording) revised.recording = journaled_.recording = recording;
+    if (revised.revision == std::exchange(journaled_.revision, revised.revision)) return;
+    write_journal({}, revised);
+}
+
+void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
+    advance(at);
+    if (revised.notices) state_.notices = *revised.notices;
+    if (revised.recording) {
+        state_.recording.reset();
+        if (!revised.recording->empty()) state_.recording = protocol::RecordingState{*revised.recording};
+    }
+    if (revised.revision > document_->revision())
+        document_ = protocol::StateDocument::next(*document_, state_, revised.revision);
+}
+
+void Room::go_on(RoomOptions options) {
+    options_ = std::move(options);
+    options_.replaying = false;
+    state_.recording.reset();  // its file was another server's
 }
 
 }  // namespace vrut::server::room

@@ -135,10 +135,12 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     state_.camera =
         at != scene::kNone ? state_at_node(camera(), *scene_, at) : state_of(camera(), scene_->bounds);
     select(selected ? scene_->scene->find_node(*selected) : scene::kNone);
+    for (const protocol::LogHeader::Client& client : header.clients) {
+        if (client.role == protocol::Role::control) steering_.arrive(client.client, client.resume);
+        add_client(client.client, {client.role, client.wanted, client.name, client.resume});
+    }
     if (state_.control.holder) steering_.take(*state_.control.holder);
     for (const protocol::ControlState::Asking& asking : state_.control.asking) steering_.ask(asking.client);
-    for (const protocol::LogHeader::Client& client : header.clients)
-        add_client(client.client, {client.role, client.wanted, client.name});
     list_clients();
     for (const protocol::LoggedFrame& frame : header.frames)
         frames_.push_back({frame.frame, camera_of(frame.camera), frame.view});
@@ -151,6 +153,7 @@ tl::expected<void, Error> Room::restore(const protocol::LogHeader& header) {
     }
     gestures_.restart(camera());
     update_visible();
+    if (header.revision > 0) document_ = protocol::StateDocument::next({}, state_, header.revision);
     return {};
 }
 

@@ -22,6 +22,10 @@ public:
     /// A control client comes. It holds control if nobody does, or if the holder came with the same
     /// `resume_key`. An empty key is like no other.
     void join(const std::string& client, const std::string& resume_key);
+    /// A control client comes, and who holds control is told by others.
+    void arrive(const std::string& client, const std::string& resume_key) {
+        candidates_.push_back({client, resume_key});
+    }
     /// A client goes. A holder with a resume key, or any that `keeps_control`, is absent from then on; from
     /// others control passes on.
     void leave(const std::string& client, SessionTime now, bool keeps_control = false);

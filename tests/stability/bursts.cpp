@@ -42,7 +42,7 @@ public:
                        take(*picture);
                    },
                    [](const std::string&) {}}) {
-        engine_.mailbox().push(server::engine::ClientJoined{kClient, protocol::Role::control, {}});
+        engine_.push(server::engine::ClientJoined{kClient, protocol::Role::control, {}});
         say(protocol::Control{});
         want_newer_than(0);
     }
@@ -54,7 +54,7 @@ public:
         message.id = id;
         message.payload = std::move(payload);
         const server::base::Clock::time_point now = server::base::Clock::now();
-        engine_.mailbox().push(server::engine::MessageReceived{kClient, std::move(message), now});
+        engine_.push(server::engine::MessageReceived{kClient, std::move(message), now});
         return now;
     }
 
@@ -85,7 +85,7 @@ private:
     }
 
     void want_newer_than(std::int64_t frame) {
-        engine_.mailbox().push(server::engine::FramesWanted{kClient, frame, 1, 0, kUnlimited});
+        engine_.push(server::engine::FramesWanted{kClient, frame, 1, 0, kUnlimited});
     }
 
     void take(const server::engine::EncodedPicture& picture) {

@@ -38,7 +38,7 @@ public:
     ~TestServer();
     std::uint16_t port() const { return server_->port(); }
     const server::observe::Metrics& metrics() const { return server_->metrics(); }
-    const std::string& description() const { return server_->description(); }
+    std::string description() const { return server_->description(); }
     /// Returns how long it took until run() ended.
     std::chrono::milliseconds stop();
 

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, describe, test } from 'node:test';
 import { ContractClient, ServerError } from './contract-client.js';
-import { Server } from './server.js';
+import { BY_EDGE, Server } from './server.js';
 
 const CONTROL = 'control-token-16-b';
 const VIEW = 'view-token-16-b+/';
@@ -53,7 +53,8 @@ describe('an address to watch at', () => {
 
   test('works on one machine only where the server listens for no other', async (t) => {
     assert.deepEqual(await ask(t, open, open.url).then(({ address, loopback }) => [address, loopback]), [`${open.url}#watch`, true]);
-    assert.equal((await ask(t, open)).address, `${open.url}#watch`);
+    // An edge leaves that to the room's server, which knows its own address.
+    if (!BY_EDGE) assert.equal((await ask(t, open)).address, `${open.url}#watch`);
   });
 
   test('is told to control clients, whoever holds control, and for addresses of pages', async (t) => {

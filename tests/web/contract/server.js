@@ -1,9 +1,10 @@
 // Starts the real program. VRUT_PREVIEW in the environment says where it is.
 import { spawn } from 'node:child_process';
 import { once } from 'node:events';
-import { mkdtempSync, rmSync } from 'node:fs';
+import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
+import { setTimeout as delay } from 'node:timers/promises';
 import { fileURLToPath } from 'node:url';
 import { Schema } from './schema.js';
 
@@ -12,6 +13,8 @@ const STOPPED_WITHIN_MS = 10_000;
 
 export const PROGRAM = process.env.VRUT_PREVIEW;
 export const SCENES = fileURLToPath(new URL('scene', import.meta.url));
+/** The same for clients that come by an edge. */
+export const BY_EDGE = Boolean(process.env.VRUT_BY_EDGE);
 export const sceneFile = (name) => path.join(SCENES, name);
 
 /** A folder that goes when the process does. */
@@ -21,8 +24,34 @@ export function temporaryFolder() {
   return folder;
 }
 
+/** @returns {Promise<string>} the address of a NATS server of this process's own */
+async function startNats() {
+  const folder = temporaryFolder();
+  const child = spawn('/usr/sbin/nats-server', ['-a', '127.0.0.1', '-p', '-1', '-js', '-sd', folder, '--ports_file_dir', folder], { stdio: 'ignore' });
+  child.unref();  // it goes with this process
+  process.on('exit', () => child.kill('SIGKILL'));
+  const file = path.join(folder, `nats-server_${child.pid}.ports`);
+  for (const end = Date.now() + READY_WITHIN_MS; Date.now() < end; await delay(20)) if (existsSync(file)) break;
+  return JSON.parse(readFileSync(file, 'utf8')).nats[0];
+}
+
+/** Options of `serve`, and those of them that `edge` has, too. */
+function divided(options) {
+  const own = [], network = [];
+  for (let i = 0; i < options.length; ++i) {
+    const list = ['--max-clients', '--token-file', '--allow-origin'].includes(options[i]) ? network : own;
+    list.push(options[i]);
+    if (options[i].startsWith('--') && options[i + 1] !== undefined && !options[i + 1].startsWith('--')) list.push(options[++i]);
+  }
+  return { own, network };
+}
+
+/** @type {Promise<string> | undefined} */
+let nats;
+let rooms = 0;
+
 export class Server {
-  #child;
+  #children = [];
   #log = '';
 
   /**
@@ -31,16 +60,29 @@ export class Server {
    */
   static async start({ scene = sceneFile('stage.vrut'), options = [], env = {}, bearer } = {}) {
     const server = new Server();
-    server.url = await server.#start(['serve', scene, '--listen', '127.0.0.1:0', ...options], env);
+    const listen = ['--listen', '127.0.0.1:0'];
+    if (BY_EDGE) {
+      const url = await (nats ??= startNats());
+      const room = `room-${++rooms}`;
+      // Who may come in is the room's to say; which page may connect, and how many clients may be here, the edge's.
+      const { own, network } = divided(options);
+      await server.#start(['serve', scene, ...listen, '--nats', url, '--room', room, ...own, ...network], env);
+      server.url = `${await server.#start(['edge', '--nats', url, ...listen, ...network], env)}rooms/${room}/`;
+    } else {
+      server.url = await server.#start(['serve', scene, ...listen, ...options], env);
+    }
     server.ws = server.url.replace('http', 'ws') + 'ws';
     server.headers = bearer ? { authorization: `Bearer ${bearer}` } : {};
+    // A room that was just opened at an edge is not ready for a moment.
+    for (const end = Date.now() + READY_WITHIN_MS; BY_EDGE && (await server.get('readyz')).status === 503 && Date.now() < end;) await delay(20);
     server.schema = await Schema.fetch(server);
     return server;
   }
 
   #start(command, env) {
     if (!PROGRAM) throw new Error('The environment has to give the path of the program in VRUT_PREVIEW.');
-    const child = (this.#child = spawn(PROGRAM, command, { env: { ...process.env, XDG_STATE_HOME: temporaryFolder(), ...env } }));
+    const child = spawn(PROGRAM, command, { env: { ...process.env, XDG_STATE_HOME: temporaryFolder(), ...env } });
+    this.#children.push(child);
     process.on('exit', () => child.kill('SIGKILL'));
     let printed = '';
     return new Promise((resolve, reject) => {
@@ -69,12 +111,18 @@ export class Server {
 
   /** @returns {Promise<number | null>} the exit status */
   async stop(signal = 'SIGTERM') {
-    if (this.#child.exitCode !== null || this.#child.signalCode !== null) return this.#child.exitCode;
-    const ended = once(this.#child, 'exit');
-    this.#child.kill(signal);
-    const limit = setTimeout(() => this.#child.kill('SIGKILL'), STOPPED_WITHIN_MS);
-    const [status] = await ended;
-    clearTimeout(limit);
+    let status = null;
+    for (const child of this.#children.reverse()) {
+      if (child.exitCode !== null || child.signalCode !== null) {
+        status = child.exitCode;
+        continue;
+      }
+      const ended = once(child, 'exit');
+      child.kill(signal);
+      const limit = setTimeout(() => child.kill('SIGKILL'), STOPPED_WITHIN_MS);
+      [status] = await ended;
+      clearTimeout(limit);
+    }
     return status;
   }
 }

@@ -1,0 +1,239 @@
+#include "nats/room_store.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string_view>
+
+#include "observe/log.hpp"
+
+namespace vrut::server::nats {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char *kLeases = "VRUT_LEASES", *kStates = "VRUT_ROOMS";
+/// A room that nobody has drawn for so long is forgotten.
+constexpr std::int64_t kKept = std::chrono::nanoseconds(10min).count();
+constexpr std::chrono::milliseconds kPatience{400};
+constexpr std::array kReplicas{3, 1};  // as many as the servers of NATS allow
+constexpr std::size_t kMostEntries = 256;
+
+std::string upper(std::string text) {
+    std::ranges::transform(text, text.begin(), [](char c) {
+        return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    });
+    return text;
+}
+
+/// As its size, a line, and what zlib makes of it.
+std::string deflated(const std::string& text) {
+    uLongf size = compressBound(text.size());
+    std::string bytes(size, 0);
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(text.data()),
+                  text.size(), Z_BEST_SPEED) != Z_OK)
+        return {};
+    bytes.resize(size);
+    return std::to_string(text.size()) + "\n" + bytes;
+}
+
+/// None where it is not what deflated() gives.
+std::optional<std::string> inflated(std::string_view bytes) {
+    constexpr std::size_t kLargest = std::size_t{256} << 20;
+    const std::size_t line = std::min(bytes.find('\n'), bytes.size());
+    const auto expected = number_of(std::string(bytes.substr(0, line)));
+    if (!expected || *expected > kLargest || line == bytes.size()) return {};
+    std::string text(*expected, 0);
+    uLongf size = text.size();
+    bytes.remove_prefix(line + 1);
+    if (uncompress(reinterpret_cast<Bytef*>(text.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()),
+                   bytes.size()) != Z_OK)
+        return {};
+    text.resize(size);
+    return text;
+}
+
+}  // namespace
+
+RoomStore::RoomStore(const Connection& connection, std::string room)
+    : connection_(connection),
+      room_(std::move(room)),
+      log_("VRUT_LOG_" + upper(room_)),
+      subject_("vrut.rooms." + room_ + ".log"),
+      leases_(bucket(kLeases, std::chrono::nanoseconds(kLease).count())),
+      states_(bucket(kStates, kKept)) {
+    add_log();
+}
+
+RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_live) const {
+    kvStore* store = nullptr;
+    if (js_KeyValue(&store, connection_.jetstream(), name) == NATS_OK) return KeyValue(store);
+    natsStatus status = NATS_OK;
+    for (const int replicas : kReplicas) {
+        kvConfig config;
+        kvConfig_Init(&config);
+        config.Bucket = name;
+        config.TTL = time_to_live;
+        config.History = 1;
+        config.Replicas = replicas;
+        status = js_CreateKeyValue(&store, connection_.jetstream(), &config);
+        if (status == NATS_OK) return KeyValue(store);
+    }
+    connection_.require(status, "the bucket " + std::string(name) + " cannot be made");
+    return {};
+}
+
+void RoomStore::add_log() const {
+    jsErrCode error{};
+    natsStatus status = NATS_OK;
+    for (const int replicas : kReplicas) {
+        std::array<const char*, 1> subjects{subject_.c_str()};
+        jsStreamConfig config;
+        jsStreamConfig_Init(&config);
+        config.Name = log_.c_str();
+        config.Subjects = subjects.data();
+        config.SubjectsLen = 1;
+        config.Retention = js_LimitsPolicy;
+        config.Replicas = replicas;
+        status = js_AddStream(nullptr, connection_.jetstream(), &config, nullptr, &error);
+        // It is there, with another number of replicas.
+        if (status == NATS_OK || error == JSStreamNameExistErr) return;
+    }
+    connection_.require(status, "the log " + log_ + " cannot be made", error);
+}
+
+// --- who draws the room
+
+std::optional<std::uint64_t> RoomStore::take_lease(const std::string& holder) {
+    std::uint64_t revision = 0;
+    if (kvStore_CreateString(&revision, leases_.get(), room_.c_str(), holder.c_str()) != NATS_OK)
+        return std::nullopt;
+    holder_ = holder;
+    lease_revision_ = revision;
+    return revision;
+}
+
+RoomStore::Renewed RoomStore::renew_lease() {
+    std::uint64_t revision = 0;
+    const natsStatus status =
+        kvStore_UpdateString(&revision, leases_.get(), room_.c_str(), holder_.c_str(), lease_revision_);
+    if (status == NATS_OK) {
+        lease_revision_ = revision;
+        return Renewed::yes;
+    }
+    if (status != NATS_ERR) return Renewed::unknown;
+    kvEntry* found = nullptr;
+    const natsStatus read = kvStore_Get(&found, leases_.get(), room_.c_str());
+    const Handle<kvEntry, kvEntry_Destroy> entry(found);
+    if (read == NATS_NOT_FOUND) return Renewed::expired;
+    if (read != NATS_OK) return Renewed::unknown;
+    const bool is_own = kvEntry_ValueString(found) == holder_;
+    if (is_own) lease_revision_ = kvEntry_Revision(found);  // an answer was lost
+    return is_own ? Renewed::yes : Renewed::lost;
+}
+
+void RoomStore::release_lease() { kvStore_Delete(leases_.get(), room_.c_str()); }
+
+// --- its state
+
+std::optional<RoomStore::State> RoomStore::state() const {
+    kvEntry* found = nullptr;
+    const natsStatus status = kvStore_Get(&found, states_.get(), room_.c_str());
+    const Handle<kvEntry, kvEntry_Destroy> entry(found);
+    if (status == NATS_NOT_FOUND) return std::nullopt;
+    connection_.require(status, "the state of the room cannot be read");
+    const std::string_view value(static_cast<const char*>(kvEntry_Value(found)),
+                                 static_cast<std::size_t>(kvEntry_ValueLen(found)));
+    const std::size_t line = std::min(value.find('\n'), value.size());
+    const auto sequence = number_of(std::string(value.substr(0, line)));
+    auto text = sequence && line < value.size() ? inflated(value.substr(line + 1)) : std::nullopt;
+    if (!text)
+        throw std::runtime_error("the state of the room '" + room_ +
+                                 "' cannot be read: forget it with 'nats kv del " + kStates + " " + room_ +
+                                 "'");
+    return State{*sequence, *std::move(text)};
+}
+
+bool RoomStore::store_state(const State& state) {
+    const std::string value = std::to_string(state.sequence) + "\n" + deflated(state.text);
+    const natsStatus status =
+        kvStore_Put(nullptr, states_.get(), room_.c_str(), value.data(), static_cast<int>(value.size()));
+    if (status != NATS_OK) return false;
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Stream.Purge.Sequence = state.sequence + 1;
+    js_PurgeStream(connection_.jetstream(), log_.c_str(), &options, nullptr);
+    return true;
+}
+
+// --- the log
+
+void RoomStore::follow(std::uint64_t sequence) {
+    jsSubOptions options;
+    jsSubOptions_Init(&options);
+    options.Stream = log_.c_str();
+    options.Ordered = true;
+    options.Config.DeliverPolicy = js_DeliverByStartSequence;
+    options.Config.OptStartSeq = sequence + 1;
+    jsErrCode error{};
+    natsSubscription* subscription = nullptr;
+    const natsStatus status =
+        js_SubscribeSync(&subscription, connection_.jetstream(), subject_.c_str(), nullptr, &options, &error);
+    connection_.require(status, "the log of the room cannot be read", error);
+    subscription_.reset(subscription);
+    followed_ = sequence;
+}
+
+std::vector<RoomStore::Entry> RoomStore::next(std::chrono::milliseconds patience) {
+    std::vector<Entry> entries;
+    natsMsg* received = nullptr;
+    while (entries.size() < kMostEntries &&
+           natsSubscription_NextMsg(&received, subscription_.get(), entries.empty() ? patience.count() : 1) ==
+               NATS_OK) {
+        const Message message(received);
+        jsMsgMetaData* meta = nullptr;
+        if (natsMsg_GetMetaData(&meta, received) != NATS_OK) continue;
+        const std::uint64_t sequence = meta->Sequence.Stream;
+        jsMsgMetaData_Destroy(meta);
+        if (sequence <= followed_) continue;
+        if (sequence != followed_ + 1)
+            throw std::runtime_error("entries of the room's log are lost, from " +
+                                     std::to_string(followed_ + 1));
+        followed_ = sequence;
+        entries.push_back({sequence, std::string(natsMsg_GetData(received),
+                                                 static_cast<std::size_t>(natsMsg_GetDataLength(received)))});
+    }
+    return entries;
+}
+
+std::optional<std::uint64_t> RoomStore::last_sequence() const {
+    jsStreamInfo* info = nullptr;
+    const natsStatus status =
+        js_GetStreamInfo(&info, connection_.jetstream(), log_.c_str(), nullptr, nullptr);
+    if (status != NATS_OK) return std::nullopt;
+    const std::uint64_t last = info->State.LastSeq;
+    jsStreamInfo_Destroy(info);
+    return last;
+}
+
+RoomStore::Appended RoomStore::append(const std::string& text, std::uint64_t last, const std::string& id) {
+    natsMsg* created = nullptr;
+    if (natsMsg_Create(&created, subject_.c_str(), nullptr, text.data(), static_cast<int>(text.size())) !=
+        NATS_OK)
+        return Appended::unknown;
+    const Message message(created);
+    natsMsgHeader_Set(created, "Nats-Expected-Last-Sequence", std::to_string(last).c_str());
+    natsMsgHeader_Set(created, "Nats-Msg-Id", id.c_str());
+    jsPubOptions options;
+    jsPubOptions_Init(&options);
+    options.MaxWait = kPatience.count();
+    jsErrCode error{};
+    const natsStatus status = js_PublishMsg(nullptr, connection_.jetstream(), created, &options, &error);
+    if (status == NATS_OK) return Appended::yes;
+    return error == JSStreamWrongLastSequenceErr ? Appended::superseded : Appended::unknown;
+}
+
+}  // namespace vrut::server::nats

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "nats/connection.hpp"
+
+namespace vrut::server::nats {
+
+/// What servers of one room keep at NATS: who draws it, its state, and the log of what happened since.
+class RoomStore {
+public:
+    /// Makes what is not there. Throws std::runtime_error where it cannot be made.
+    RoomStore(const Connection& connection, std::string room);
+
+    // --- who draws the room: a key that expires
+    static constexpr std::chrono::seconds kLease{2};
+    /// The lease's number, higher than any before; none: another server has it, or NATS does not answer.
+    std::optional<std::uint64_t> take_lease(const std::string& holder);
+    enum class Renewed { yes, expired, lost, unknown };  ///< lost: to another server
+    Renewed renew_lease();
+    void release_lease();
+
+    // --- its state at one point of the log
+    struct State {
+        std::uint64_t sequence = 0;  ///< of the last entry of the log that led there
+        std::string text;
+    };
+    /// None where none is kept. Throws std::runtime_error where NATS does not answer.
+    std::optional<State> state() const;
+    /// And forgets the log up to there. Returns false if it could not be stored.
+    bool store_state(const State& state);
+
+    // --- the log
+    struct Entry {
+        std::uint64_t sequence = 0;
+        std::string text;
+    };
+    /// Follows the log from behind `sequence` on.
+    void follow(std::uint64_t sequence);
+    /// The next ones, none within `patience`. Throws std::runtime_error where some are lost.
+    std::vector<Entry> next(std::chrono::milliseconds patience);
+    /// The sequence of the last entry; none where NATS does not answer.
+    std::optional<std::uint64_t> last_sequence() const;
+    enum class Appended { yes, superseded, unknown };
+    /// Adds an entry behind the one of `last`, and only there. `id`: it is added once, however often it is
+    /// tried.
+    Appended append(const std::string& text, std::uint64_t last, const std::string& id);
+
+private:
+    using KeyValue = Handle<kvStore, kvStore_Destroy>;
+    KeyValue bucket(const char* name, std::int64_t time_to_live) const;
+    void add_log() const;
+
+    const Connection& connection_;
+    const std::string room_, log_, subject_;
+    KeyValue leases_, states_;
+    std::string holder_;
+    std::uint64_t lease_revision_ = 0;  ///< of the key, as this server renewed it last
+    std::uint64_t followed_ = 0;        ///< sequence of the last entry that came
+    Subscription subscription_;
+};
+
+}  // namespace vrut::server::nats

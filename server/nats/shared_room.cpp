@@ -1,0 +1,334 @@
+#include "nats/shared_room.hpp"
+
+#include <algorithm>
+#include <future>
+#include <sstream>
+
+#include "observe/log.hpp"
+
+namespace vrut::server::nats {
+
+namespace {
+
+using namespace std::chrono_literals;
+using std::chrono::steady_clock;
+
+constexpr auto kPoll = 50ms;
+constexpr auto kRenew = 500ms;
+constexpr auto kPause = 500ms;                               // before it begins anew
+constexpr auto kStateAgain = 2min;                           // before it expires
+constexpr std::size_t kEntryBytes = std::size_t{256} << 10;  // of lines, at most
+constexpr std::size_t kMostLines = 100'000;                  // that wait for NATS
+constexpr std::size_t kMostGated = 2'000;                    // what edges would be told
+
+std::string text_of(const room::Room::Checkpoint& checkpoint) {
+    return protocol::encode(checkpoint.header) + "\n" +
+           protocol::encode(protocol::LogLine{protocol::LogTime{0}, 0, {}, checkpoint.revised});
+}
+
+}  // namespace
+
+SharedRoom::SharedRoom(const Connection& connection, Options options)
+    : connection_(connection),
+      options_(std::move(options)),
+      store_(connection, options_.room),
+      owner_(connection, options_.room, options_.role_for) {}
+
+SharedRoom::~SharedRoom() { stop(); }
+
+void SharedRoom::stop() {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+}
+
+engine::EngineOptions::Shared SharedRoom::hooks() {
+    engine::EngineOptions::Shared hooks;
+    hooks.on_line = [this](const protocol::LogLine& line) {
+        {
+            const std::lock_guard lock(mutex_);
+            note(line);
+            lines_.push_back({protocol::encode(line), ++written_lines_});
+        }
+        written_.notify_one();
+    };
+    hooks.on_checkpoint = [this](const room::Room::Checkpoint& checkpoint) {
+        const std::lock_guard lock(mutex_);
+        room::Room::Checkpoint with_sequences = checkpoint;
+        for (protocol::LogHeader::Client& client : with_sequences.header.clients)
+            client.sequence = clients_[client.client].sequence;
+        checkpoint_ = Checkpoint{text_of(with_sequences), written_lines_};
+    };
+    hooks.on_failure = [this](const std::string& why) {
+        const std::lock_guard lock(mutex_);
+        failure_ = why;
+    };
+    return hooks;
+}
+
+/// Who is here, and what of their messages the log has.
+void SharedRoom::note(const protocol::LogLine& line) {
+    if (const auto* connected = std::get_if<protocol::LogLine::Connected>(&line.what))
+        clients_[line.client] = {connected->role == protocol::Role::control, engine::kHelloSequence};
+    else if (std::holds_alternative<protocol::LogLine::Disconnected>(line.what))
+        clients_.erase(line.client);
+    else if (line.sequence > 0)
+        clients_[line.client].sequence = line.sequence;
+}
+
+engine::EngineCallbacks SharedRoom::relay(engine::EngineCallbacks to_clients) {
+    engine::EngineCallbacks callbacks;
+    callbacks.on_output = [this, own = std::move(to_clients.on_output)](const engine::EngineOutput& output) {
+        when_stored([own, output] { own(output); }, [this, output] { owner_.send(output); });
+    };
+    callbacks.on_encoded = [this, own = std::move(to_clients.on_encoded)](
+                               const std::shared_ptr<const engine::EncodedPicture>& picture) {
+        when_stored([own, picture] { own(picture); }, [this, picture] { owner_.send(picture); });
+    };
+    callbacks.on_failure = std::move(to_clients.on_failure);
+    return callbacks;
+}
+
+void SharedRoom::when_stored(std::function<void()> to_clients, std::function<void()> to_edges) {
+    const std::lock_guard lock(mutex_);
+    const bool is_stored = stored_lines_ == written_lines_;
+    if ((is_stored || is_away_) && to_clients_.empty())
+        to_clients();
+    else
+        to_clients_.push_back({written_lines_, std::move(to_clients)});
+    if (is_stored && to_edges_.empty())
+        to_edges();
+    else
+        to_edges_.push_back({written_lines_, std::move(to_edges)});
+    if (to_edges_.size() <= kMostGated) return;
+    // Edges find that something is missing, and ask for all.
+    owner_.skip();
+    to_edges_.front().release();
+    to_edges_.pop_front();
+}
+
+void SharedRoom::release(Gate& gate, std::uint64_t stored) {
+    while (!gate.empty() && gate.front().number <= stored) {
+        gate.front().release();
+        gate.pop_front();
+    }
+}
+
+void SharedRoom::begin(engine::RoomEngine& engine) {
+    engine_ = &engine;
+    has_state_ = load_state();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void SharedRoom::run(const std::stop_token& stop) {
+    try {
+        if (follow(stop)) own(stop);
+    } catch (const std::exception& error) {
+        observe::log_warning("room_left", {{"room", options_.room}, {"reason", error.what()}});
+        std::unique_lock lock(mutex_);
+        written_.wait_for(lock, stop, kPause, [] { return false; });
+        lock.unlock();
+        if (!stop.stop_requested()) options_.on_superseded(error.what());
+    }
+}
+
+// --- while another server draws the room
+
+/// As the room stood when its state was stored last; false: it has none. Throws std::runtime_error where it
+/// cannot be shown.
+bool SharedRoom::load_state() {
+    const auto state = store_.state();
+    if (!state) return false;
+    std::istringstream lines(state->text);
+    std::string header_line, revised_line;
+    std::getline(lines, header_line);
+    std::getline(lines, revised_line);
+    auto header = protocol::decode_log_header(header_line);
+    const auto revised = protocol::decode_log_line(revised_line);
+    if (!header || !revised)
+        throw std::runtime_error("the state of the room '" + options_.room +
+                                 "' cannot be used: " + (header ? revised.error() : header.error()).message);
+    auto scene = options_.find_scene(header->scene, header->scene_sha256, header->up_axis);
+    if (!scene)
+        throw std::runtime_error("the room '" + options_.room + "' shows another scene: " + scene.error());
+    auto checkpoint = std::make_shared<room::Room::Checkpoint>();
+    for (const protocol::LogHeader::Client& client : header->clients)
+        clients_[client.client] = {client.role == protocol::Role::control, client.sequence};
+    checkpoint->header = *std::move(header);
+    if (const auto* what = std::get_if<protocol::LogLine::Revised>(&revised->what))
+        checkpoint->revised = *what;
+    engine_->push(
+        engine::FollowFrom{checkpoint, std::make_shared<const scenes::LoadedScene>(*std::move(scene))});
+    store_.follow(followed_ = state->sequence);
+    return true;
+}
+
+void SharedRoom::follow_entry(const RoomStore::Entry& entry) {
+    followed_ = entry.sequence;
+    std::istringstream lines(entry.text);
+    for (std::string text; std::getline(lines, text);) {
+        auto line = protocol::decode_log_line(text);
+        if (!line)
+            throw std::runtime_error("a line of the room's log cannot be read: " + line.error().message);
+        note(*line);
+        engine::Follow follow{*std::move(line)};
+        if (const auto* opened = std::get_if<protocol::LogLine::Opened>(&follow.line.what)) {
+            auto scene = options_.find_scene(opened->scene, opened->sha256, opened->up_axis);
+            if (!scene) throw std::runtime_error(scene.error());
+            follow.scene = std::make_shared<const scenes::LoadedScene>(*std::move(scene));
+        }
+        engine_->push(std::move(follow));
+    }
+}
+
+/// Until this server draws the room. Returns false if it is to stop.
+bool SharedRoom::follow(const std::stop_token& stop) {
+    observe::log_info("room_followed", {{"room", options_.room}});
+    while (!stop.stop_requested()) {
+        if (has_state_)
+            for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+        else
+            has_state_ = load_state();
+        {
+            std::unique_lock lock(mutex_);
+            if (failure_) throw std::runtime_error(*failure_);
+            if (!has_state_) written_.wait_for(lock, stop, kPoll, [] { return false; });
+        }
+        const auto lease = connection_.is_connected() ? store_.take_lease(connection_.id()) : std::nullopt;
+        if (lease && take_over(*lease)) return true;
+    }
+    return false;
+}
+
+/// Behind the last line of who drew the room before: it can add no further one then.
+bool SharedRoom::take_over(std::uint64_t lease) {
+    const std::string id = random_id();
+    // A state may have been stored since it was asked for; else this server is the first.
+    if (!has_state_ && !(has_state_ = load_state())) {
+        followed_ = store_.last_sequence().value_or(0);
+        store_.follow(followed_);
+    }
+    for (const auto end = steady_clock::now() + RoomStore::kLease; steady_clock::now() < end;) {
+        const auto last = store_.last_sequence();
+        while (last && followed_ < *last && steady_clock::now() < end)
+            for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+        if (!last || followed_ < *last) continue;
+        if (store_.append("", followed_, id) != RoomStore::Appended::yes) continue;
+        ++followed_;
+        renewed_at_ = steady_clock::now();
+        observe::log_info("room_taken_over", {{"room", options_.room}, {"lease", lease}});
+        std::map<std::string, RoomOwner::Known> of_edges;
+        std::promise<void> taken_over;
+        engine_->push(engine::TakeOver{[&] { taken_over.set_value(); }});
+        taken_over.get_future().wait();
+        {
+            const std::lock_guard lock(mutex_);
+            of_edges = clients_;
+        }
+        // The door of who drew it before is another's.
+        for (const auto& [client, known] : of_edges)
+            if (!is_of_edge(client)) engine_->push(engine::ClientLeft{client});
+        owner_.begin(*engine_, lease, of_edges);
+        return true;
+    }
+    store_.release_lease();
+    return false;
+}
+
+// --- while this server does
+
+void SharedRoom::own(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        {
+            std::unique_lock lock(mutex_);
+            written_.wait_for(lock, stop, kPoll, [&] { return !lines_.empty(); });
+        }
+        if (steady_clock::now() - renewed_at_ >= kRenew && !renew())
+            throw std::runtime_error("another server draws it");
+        if (!append_lines()) throw std::runtime_error("another server draws it");
+        store_checkpoint();
+    }
+    while (append_lines() && entry_.empty()) {
+        const std::lock_guard lock(mutex_);
+        if (lines_.empty()) break;
+    }
+    owner_.end();
+    store_.release_lease();
+}
+
+/// Returns false if another server draws the room.
+bool SharedRoom::renew() {
+    switch (store_.renew_lease()) {
+        case RoomStore::Renewed::yes:
+            break;
+        case RoomStore::Renewed::lost:
+            return false;
+        case RoomStore::Renewed::unknown:
+            renewed_at_ = steady_clock::now();
+            return true;
+        case RoomStore::Renewed::expired: {
+            const auto lease = store_.take_lease(connection_.id());
+            if (lease) owner_.use_lease(*lease);
+            break;
+        }
+    }
+    renewed_at_ = steady_clock::now();
+    return true;
+}
+
+/// Appends the lines that wait, as one entry. Returns false if another server draws the room.
+bool SharedRoom::append_lines() {
+    if (entry_.empty()) {
+        const std::lock_guard lock(mutex_);
+        if (lines_.empty()) return true;
+        if (lines_.size() > kMostLines)
+            throw std::runtime_error("NATS has not answered for too long: its log of the room is incomplete");
+        // Those behind a checkpoint come when that is stored.
+        const auto is_next = [&] { return !checkpoint_ || lines_.front().number <= checkpoint_->number; };
+        while (!lines_.empty() && is_next() && entry_.size() < kEntryBytes) {
+            entry_ += lines_.front().text + "\n";
+            entry_number_ = lines_.front().number;
+            lines_.pop_front();
+        }
+        if (entry_.empty()) return true;
+        entry_id_ = connection_.id() + "." + std::to_string(++entries_);
+    }
+    const RoomStore::Appended appended = connection_.is_connected()
+                                             ? store_.append(entry_, followed_, entry_id_)
+                                             : RoomStore::Appended::unknown;
+    if (appended == RoomStore::Appended::superseded) return false;
+    const std::lock_guard lock(mutex_);
+    if (is_away_ != (appended == RoomStore::Appended::unknown)) {
+        is_away_ = !is_away_;
+        if (is_away_)
+            observe::log_warning("room_not_stored", {{"room", options_.room}});
+        else
+            observe::log_info("room_stored", {{"room", options_.room}});
+    }
+    if (is_away_) {
+        release(to_clients_, written_lines_);
+        return true;
+    }
+    entry_.clear();
+    ++followed_;
+    stored_lines_ = entry_number_;
+    release(to_clients_, stored_lines_);
+    release(to_edges_, stored_lines_);
+    return true;
+}
+
+/// Where all lines before it are stored, and no others.
+void SharedRoom::store_checkpoint() {
+    {
+        const std::lock_guard lock(mutex_);
+        if (checkpoint_ && checkpoint_->number == stored_lines_ && entry_.empty())
+            kept_ = std::exchange(checkpoint_, std::nullopt);
+        else if (!kept_ || kept_->number != stored_lines_ ||
+                 steady_clock::now() - state_stored_at_ < kStateAgain)
+            return;
+    }
+    state_stored_at_ = steady_clock::now();
+    if (!store_.store_state({followed_, kept_->text}))
+        observe::log_warning("room_state_not_stored", {{"room", options_.room}});
+}
+
+}  // namespace vrut::server::nats

@@ -1,0 +1,84 @@
+// Two servers share a room, and clients come by an edge: they keep their connections, whatever happens to a server.
+import assert from 'node:assert/strict';
+import { describe, test } from 'node:test';
+import { setTimeout as delay } from 'node:timers/promises';
+import { ContractClient } from '../contract/contract-client.js';
+import { Cluster, eventually, missing } from './cluster.js';
+
+const WITHIN_MS = 15_000;
+
+async function stage(t) {
+  const cluster = new Cluster(t);
+  const nats = await cluster.startNats();
+  const servers = [await cluster.serve('stage'), await cluster.serve('stage')];
+  const edge = await cluster.edge();
+  const room = await cluster.room(edge, 'stage');
+  const client = await ContractClient.join(t, room, { name: 'Tablet', resume: 'one-tablet' });
+  await client.ask({ type: 'resize', width: 400, height: 300, pixelRatio: 1 });
+  return { cluster, nats, servers, edge, room, client };
+}
+
+const pointer = (event, x, y) => ({ type: `pointer${event}`, pointerId: 1, pointerType: 'touch', x, y, button: event === 'move' ? -1 : 0, buttons: event === 'up' ? 0 : 1, isPrimary: true });
+
+/** Draws a circle with a finger, and all the time asks for frames. @returns the numbers of the frames that came */
+async function drag(client, milliseconds, during = async () => {}) {
+  client.send(pointer('down', 200, 150));
+  const end = Date.now() + milliseconds;
+  const doing = during();
+  let at = client.frames.length;
+  client.send({ type: 'frame' });
+  for (let i = 0; Date.now() < end; ++i, await delay(16)) {
+    client.send(pointer('move', 200 + 80 * Math.sin(i / 20), 150 + 40 * Math.sin(i / 13)));
+    for (; at < client.frames.length; ++at) client.send({ type: 'frame' });
+  }
+  await doing;
+  client.send(pointer('up', 200, 150));
+  await client.until('the end of the drag', () => true);
+}
+
+const pose = ({ state }) => JSON.stringify(state.camera);
+
+describe('a room of two servers', { skip: missing }, () => {
+  for (const [what, signal] of [['is killed', 'SIGKILL'], ['hangs', 'SIGSTOP'], ['is stopped', 'SIGTERM']]) {
+    test(`goes on for clients when the one that draws it ${what}`, async (t) => {
+      const { cluster, servers, client } = await stage(t);
+      const owner = await cluster.owner(servers);
+      const other = servers.find((server) => server !== owner);
+      await drag(client, 3500, async () => {
+        await delay(500);
+        owner.signal(signal);
+      });
+      // Each patch is answered once, and has happened once.
+      const { revision } = await client.answer(client.send({ type: 'patch', patch: { markers: { here: { point: [1, 2, 3] } } } }));
+      await client.until('the patch', () => client.revision >= revision && client.state.markers.here, WITHIN_MS);
+      assert.equal(client.state.control.holder, client.id, 'control is kept');
+      const before = pose(client);
+      await client.frame((header) => JSON.stringify(header.camera.eye) === JSON.stringify(client.state.camera.eye));
+      assert.equal(await cluster.owner([other]), other);
+      if (signal === 'SIGSTOP') {
+        owner.signal('SIGCONT');
+        await eventually('that the former server follows', () => owner.logged('room_followed').length === 2);
+      }
+      assert.equal(pose(client), before);
+    });
+  }
+
+  test('keeps the camera to the last bit over three servers, one after the other', async (t) => {
+    const { cluster, servers, client, edge } = await stage(t);
+    await drag(client, 400);
+    for (let i = 0; i < 3; ++i) {
+      await client.barrier();
+      const [before, revision] = [pose(client), client.revision];
+      const owner = await cluster.owner(servers);
+      await owner.stop();
+      servers.splice(servers.indexOf(owner), 1, await cluster.serve('stage'));
+      await cluster.owner(servers);
+      // Who comes later gets the state of the server that has taken over.
+      const later = await ContractClient.join(t, await cluster.room(edge, 'stage'), { role: 'view' });
+      assert.equal(pose(later), before);
+      assert.ok(later.revision >= revision);
+      await later.leave();
+      await drag(client, 400);
+    }
+  });
+});
