@@ -1,11 +1,14 @@
 #include "nats/connection.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <random>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "observe/log.hpp"
 
@@ -15,17 +18,33 @@ namespace {
 
 using Options = Handle<natsOptions, natsOptions_Destroy>;
 
-/// Without name and password.
-std::string public_part(const std::string& url) {
-    const std::size_t scheme = url.find("://"), at = url.rfind('@');
-    if (at == std::string::npos) return url;
-    return (scheme == std::string::npos ? "" : url.substr(0, scheme + 3)) + url.substr(at + 1);
+std::vector<std::string> divided(const std::string& urls) {
+    std::vector<std::string> list;
+    std::istringstream stream(urls);
+    for (std::string url; std::getline(stream, url, ',');) list.push_back(url);
+    return list;
+}
+
+/// Without names and passwords.
+std::string public_part(const std::string& urls) {
+    std::string list;
+    for (const std::string& url : divided(urls)) {
+        if (!list.empty()) list += ',';
+        const std::size_t scheme = url.find("://"), at = url.rfind('@');
+        if (at == std::string::npos)
+            list += url;
+        else
+            list += (scheme == std::string::npos ? "" : url.substr(0, scheme + 3)) + url.substr(at + 1);
+    }
+    return list;
 }
 
 /// By the client's library, on a thread of its own; also when the connection is closed here.
 void on_lost(natsConnection* connection, void*) {
     if (!natsConnection_IsClosed(connection)) observe::log_warning("nats_disconnected", {});
 }
+/// Closed for good, as after repeated refusals of the password.
+void on_closed(natsConnection*, void*) { observe::log_warning("nats_closed", {}); }
 void on_back(natsConnection*, void*) { observe::log_info("nats_reconnected", {}); }
 
 std::string reason_of(natsStatus status, jsErrCode error) {
@@ -61,23 +80,32 @@ std::string random_id() {
     return id;
 }
 
-Connection::Connection(const std::string& url) : name_(public_part(url)) {
-    constexpr std::chrono::milliseconds kPatience{2000}, kReconnect{250}, kPing{1000};
+Connection::Connection(const std::string& urls) : name_(public_part(urls)) {
+    constexpr std::chrono::milliseconds kPatience{2000}, kReconnect{250}, kPing{500};
     natsOptions* created = nullptr;
     require(natsOptions_Create(&created), "the client cannot start");
     const Options options(created);
-    const bool has_scheme = url.starts_with("nats://") || url.starts_with("tls://");
-    if (!has_scheme || natsOptions_SetURL(options.get(), url.c_str()) != NATS_OK)
+    const std::vector<std::string> list = divided(urls);
+    std::vector<const char*> servers;
+    servers.reserve(list.size());
+    for (const std::string& url : list) servers.push_back(url.c_str());
+    const bool have_schemes = !list.empty() && std::ranges::all_of(list, [](const std::string& url) {
+        return url.starts_with("nats://") || url.starts_with("tls://");
+    });
+    if (!have_schemes ||
+        natsOptions_SetServers(options.get(), servers.data(), static_cast<int>(servers.size())) != NATS_OK)
         throw std::runtime_error("--nats: '" + name_ +
                                  "' is no address of a NATS server, as in nats://HOST:4222");
     natsOptions_SetTimeout(options.get(), kPatience.count());
     natsOptions_SetMaxReconnect(options.get(), -1);
     natsOptions_SetReconnectWait(options.get(), kReconnect.count());
-    // A server that hangs is found lost within three seconds.
+    // A server that hangs is found lost within two seconds.
     natsOptions_SetPingInterval(options.get(), kPing.count());
     natsOptions_SetMaxPingsOut(options.get(), 2);
     natsOptions_SetWriteDeadline(options.get(), kPatience.count());
     natsOptions_SetSendAsap(options.get(), true);
+    // Without the name and the password of these they would be of no use.
+    natsOptions_SetIgnoreDiscoveredServers(options.get(), true);
     natsOptions_SetName(options.get(), "vrut-preview");
     natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
     natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);

@@ -31,8 +31,9 @@ std::string random_id();
 /// meanwhile waits or fails.
 class Connection {
 public:
-    /// Throws std::runtime_error with a sentence that names the address, without a password in it.
-    explicit Connection(const std::string& url);
+    /// `urls`: of one server, or of several of a cluster, between commas. Throws std::runtime_error with a
+    /// sentence that names them, without a password in it.
+    explicit Connection(const std::string& urls);
 
     natsConnection* get() const { return connection_.get(); }
     jsCtx* jetstream() const { return jetstream_.get(); }

@@ -56,6 +56,16 @@ std::optional<std::string> inflated(std::string_view bytes) {
     return text;
 }
 
+/// A context of JetStream whose calls return within kPatience.
+jsCtx* impatient(natsConnection* connection) {
+    jsOptions options;
+    jsOptions_Init(&options);
+    options.Wait = kPatience.count();
+    jsCtx* context = nullptr;
+    natsConnection_JetStream(&context, connection, &options);
+    return context;
+}
+
 }  // namespace
 
 RoomStore::RoomStore(const Connection& connection, std::string room)
@@ -63,6 +73,7 @@ RoomStore::RoomStore(const Connection& connection, std::string room)
       room_(std::move(room)),
       log_("VRUT_LOG_" + upper(room_)),
       subject_("vrut.rooms." + room_ + ".log"),
+      impatient_(impatient(connection.get())),
       leases_(bucket(kLeases, std::chrono::nanoseconds(kLease).count())),
       states_(bucket(kStates, kKept)) {
     add_log();
@@ -70,7 +81,7 @@ RoomStore::RoomStore(const Connection& connection, std::string room)
 
 RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_live) const {
     kvStore* store = nullptr;
-    if (js_KeyValue(&store, connection_.jetstream(), name) == NATS_OK) return KeyValue(store);
+    if (js_KeyValue(&store, impatient_.get(), name) == NATS_OK) return KeyValue(store);
     natsStatus status = NATS_OK;
     for (const int replicas : kReplicas) {
         kvConfig config;
@@ -80,7 +91,8 @@ RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_liv
         config.History = 1;
         config.Replicas = replicas;
         status = js_CreateKeyValue(&store, connection_.jetstream(), &config);
-        if (status == NATS_OK) return KeyValue(store);
+        kvStore_Destroy(store);
+        if (status == NATS_OK && js_KeyValue(&store, impatient_.get(), name) == NATS_OK) return KeyValue(store);
     }
     connection_.require(status, "the bucket " + std::string(name) + " cannot be made");
     return {};
@@ -165,7 +177,7 @@ bool RoomStore::store_state(const State& state) {
     jsOptions options;
     jsOptions_Init(&options);
     options.Stream.Purge.Sequence = state.sequence + 1;
-    js_PurgeStream(connection_.jetstream(), log_.c_str(), &options, nullptr);
+    js_PurgeStream(impatient_.get(), log_.c_str(), &options, nullptr);
     return true;
 }
 
@@ -212,7 +224,7 @@ std::vector<RoomStore::Entry> RoomStore::next(std::chrono::milliseconds patience
 std::optional<std::uint64_t> RoomStore::last_sequence() const {
     jsStreamInfo* info = nullptr;
     const natsStatus status =
-        js_GetStreamInfo(&info, connection_.jetstream(), log_.c_str(), nullptr, nullptr);
+        js_GetStreamInfo(&info, impatient_.get(), log_.c_str(), nullptr, nullptr);
     if (status != NATS_OK) return std::nullopt;
     const std::uint64_t last = info->State.LastSeq;
     jsStreamInfo_Destroy(info);
@@ -231,7 +243,7 @@ RoomStore::Appended RoomStore::append(const std::string& text, std::uint64_t las
     jsPubOptions_Init(&options);
     options.MaxWait = kPatience.count();
     jsErrCode error{};
-    const natsStatus status = js_PublishMsg(nullptr, connection_.jetstream(), created, &options, &error);
+    const natsStatus status = js_PublishMsg(nullptr, impatient_.get(), created, &options, &error);
     if (status == NATS_OK) return Appended::yes;
     return error == JSStreamWrongLastSequenceErr ? Appended::superseded : Appended::unknown;
 }

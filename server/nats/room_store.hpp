@@ -52,11 +52,13 @@ public:
 
 private:
     using KeyValue = Handle<kvStore, kvStore_Destroy>;
+    using JetStream = Handle<jsCtx, jsCtx_Destroy>;
     KeyValue bucket(const char* name, std::int64_t time_to_live) const;
     void add_log() const;
 
     const Connection& connection_;
     const std::string room_, log_, subject_;
+    const JetStream impatient_;  ///< a server that draws does not wait for long
     KeyValue leases_, states_;
     std::string holder_;
     std::uint64_t lease_revision_ = 0;  ///< of the key, as this server renewed it last

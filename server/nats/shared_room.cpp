@@ -39,6 +39,7 @@ SharedRoom::~SharedRoom() { stop(); }
 void SharedRoom::stop() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
+    owner_.end();  // the engine may end from here on
 }
 
 engine::EngineOptions::Shared SharedRoom::hooks() {
@@ -251,7 +252,7 @@ void SharedRoom::own(const std::stop_token& stop) {
         const std::lock_guard lock(mutex_);
         if (lines_.empty()) break;
     }
-    owner_.end();
+    owner_.end();  // before another draws
     store_.release_lease();
 }
 

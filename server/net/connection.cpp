@@ -4,6 +4,8 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
+#include <boost/asio/post.hpp>
+
 #include "base/utf8.hpp"
 #include "codec.hpp"
 #include "engine/images.hpp"
@@ -238,6 +240,8 @@ void Connection::on_hello(const protocol::Hello& hello, std::optional<std::int64
                  [self = shared_from_this(), client, hello,
                   id](const tl::expected<protocol::Role, protocol::Error>& role) {
                      self->is_joining_ = false;
+                     // Not at once: the hello itself may still be in hand.
+                     boost::asio::post(self->socket_.get_executor(), [self] { self->read(); });
                      if (self->dropped_ || self->closing_) return;
                      if (role) return self->join(client, *role, hello, id);
                      const auto code = role.error().code == protocol::error_code::not_allowed
@@ -277,7 +281,6 @@ void Connection::join(const std::string& client, protocol::Role role, const prot
     welcome.limits.messages_per_second = kMessagesPerSecond;
     welcome.input = room::input_rules();
     answer({client_, protocol::encode(welcome), 0});
-    read();
 }
 
 void Connection::reject_and_close(const protocol::Error& error, close_code code) {

@@ -16,7 +16,7 @@ constexpr double kFirstFov = 20, kStep = 1.0 / 1024;
 
 }  // namespace
 
-Audience::Audience(std::uint16_t port, std::size_t clients) : swarm_(port) {
+Audience::Audience(std::vector<Door> doors, std::size_t clients) : swarm_(std::move(doors)) {
     swarm_.join("control");
     while (swarm_.size() < clients) swarm_.join("view");
 }

@@ -12,7 +12,8 @@ double percentile(std::vector<double>& values, double part);
 /// A presenter who changes the view each time that he sees the change before, and watchers.
 class Audience {
 public:
-    Audience(std::uint16_t port, std::size_t clients);
+    Audience(std::uint16_t port, std::size_t clients) : Audience(std::vector<Door>{{port}}, clients) {}
+    Audience(std::vector<Door> doors, std::size_t clients);
 
     /// They work until then, or until `enough`.
     void work_until(std::chrono::steady_clock::time_point end, const std::function<bool()>& enough = {});

@@ -81,8 +81,9 @@ void RawSocket::reset() {
     close(std::exchange(descriptor_, -1));
 }
 
-std::string upgrade_request() {
-    return "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+std::string upgrade_request(const std::string& path) {
+    return "GET " + path +
+           " HTTP/1.1\r\nHost: 127.0.0.1\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Version: 13\r\n"
            "Sec-WebSocket-Protocol: vrut-preview.v1\r\n\r\n";
 }
@@ -115,19 +116,21 @@ RawSocket standing_client(std::uint16_t port, unsigned source) {
     return socket;
 }
 
-Swarm::Swarm(std::uint16_t port) : port_(port), epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
+Swarm::Swarm(std::uint16_t port) : Swarm(std::vector<Door>{{port}}) {}
+Swarm::Swarm(std::vector<Door> doors) : doors_(std::move(doors)), epoll_(epoll_create1(EPOLL_CLOEXEC)) {}
 Swarm::~Swarm() { close(epoll_); }
 
 std::size_t Swarm::join(const std::string& role) {
     const std::size_t index = clients_.size();
+    const Door& door = doors_[index % doors_.size()];
     Client& client =
-        clients_.emplace_back(Client{RawSocket(port_, {.source = static_cast<unsigned>(2 + index)})});
+        clients_.emplace_back(Client{RawSocket(door.port, {.source = static_cast<unsigned>(2 + index)})});
     client.frame.client = index;
     epoll_event event{};
     event.events = EPOLLIN;
     event.data.u64 = index;
     REQUIRE(epoll_ctl(epoll_, EPOLL_CTL_ADD, client.socket.descriptor(), &event) == 0);
-    REQUIRE(client.socket.send(upgrade_request()));
+    REQUIRE(client.socket.send(upgrade_request(door.path)));
     read_until(std::chrono::steady_clock::now() + 5s, {}, [&] { return client.upgraded; });
     REQUIRE(client.upgraded);
     send(index, {{"type", "hello"}, {"role", role}});

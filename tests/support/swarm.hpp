@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "test_client.hpp"
 
@@ -38,7 +39,12 @@ private:
 };
 
 /// The request that opens a WebSocket.
-std::string upgrade_request();
+std::string upgrade_request(const std::string& path = "/ws");
+/// Where a room is to be had.
+struct Door {
+    std::uint16_t port = 0;
+    std::string path = "/ws";
+};
 /// A WebSocket whose handshake is done.
 RawSocket websocket(std::uint16_t port, const RawSocket::Options& options);
 /// Of a watcher who has joined and asked for frames, and reads nothing.
@@ -60,6 +66,8 @@ public:
     using OnFrame = std::function<void(const Frame&)>;
 
     explicit Swarm(std::uint16_t port);
+    /// The clients come by these in turn.
+    explicit Swarm(std::vector<Door> doors);
     ~Swarm();
     Swarm(const Swarm&) = delete;
     Swarm& operator=(const Swarm&) = delete;
@@ -86,7 +94,7 @@ private:
     bool take_handshake(Client& client);
     void deliver(Client& client, const OnFrame& on_frame);
 
-    std::uint16_t port_;
+    std::vector<Door> doors_;
     int epoll_;
     std::deque<Client> clients_;
     std::uint64_t bytes_ = 0;
