@@ -10,20 +10,11 @@ const path = require('node:path');
 const tls = require('node:tls');
 const { once } = require('node:events');
 const { after, before, describe, test } = require('node:test');
-const { Client, DEPLOY, Running, TOKENS, eventually, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { Client, DEPLOY, Running, TOKENS, eventually, freePort, makeCertificate, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
 
 const { VRUT_PREVIEW, VRUT_CAR, VRUT_EXAMPLE_HOST } = process.env;
 const folder = temporaryFolder();
 const file = (name) => path.join(folder, name);
-
-async function freePort() {
-  const server = net.createServer().listen(0, '127.0.0.1');
-  await once(server, 'listening');
-  const { port } = server.address();
-  server.close();
-  await once(server, 'close');
-  return port;
-}
 
 /** The configuration with each of these replaced, which must be there. */
 function configuration(replacements) {
@@ -34,14 +25,6 @@ function configuration(replacements) {
     text = replaced;
   }
   return text;
-}
-
-function makeCertificate() {
-  output('openssl', [
-    'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2', '-subj', '/CN=localhost',
-    '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1', '-keyout', file('key.pem'), '-out', file('certificate.pem'),
-  ]);
-  fs.writeFileSync(file('both.pem'), fs.readFileSync(file('certificate.pem')) + fs.readFileSync(file('key.pem'), 'utf8'));
 }
 
 /** In front of a server on loopback. */
@@ -103,7 +86,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
   const bearer = { authorization: `Bearer ${TOKENS.view}` };
 
   before(async () => {
-    makeCertificate();
+    makeCertificate(folder);
     server = new Running(VRUT_PREVIEW, ['serve', VRUT_CAR, '--listen', '127.0.0.1:0', '--token-file', tokenFile(folder)]);
     const [, own] = await server.printed(/listening on http:\/\/127\.0\.0\.1:(\d+)\//);
     ({ haproxy, port, plainPort, name } = await startProxy(own));
