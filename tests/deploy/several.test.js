@@ -1,4 +1,5 @@
-// Several servers and edges: deploy/several.sh starts them on this machine, and a room goes on when a server dies.
+// Several servers and edges: deploy/several.sh starts them on this machine, and a room goes on when a server dies. And what
+// deploy/nats.conf says.
 'use strict';
 const assert = require('node:assert/strict');
 const fs = require('node:fs');
@@ -65,4 +66,17 @@ describe('several servers and edges on one machine', { skip: missing('/usr/sbin/
     assert.match(stderr, /^(server|edge)-1 has ended with status 0\. Its last lines:$/m);
     assert.match(stderr, /^several\.sh: there is no (server|edge) left, so the others end as well\.$/m);
   });
+});
+
+test('nats-server understands nats.conf', { skip: missing('/usr/sbin/nats-server', 'openssl') }, () => {
+  makeCertificate(folder);
+  let text = fs.readFileSync(path.join(DEPLOY, 'nats.conf'), 'utf8');
+  for (const [from, to] of [['/etc/nats/server.crt', at('certificate.pem')], ['/etc/nats/server.key', at('key.pem')], ['/etc/nats/ca.crt', at('certificate.pem')], ['/var/lib/nats', at('nats')]]) {
+    assert.ok(text.includes(from), from);
+    text = text.replaceAll(from, to);
+  }
+  fs.writeFileSync(at('nats.conf'), text);
+  assert.match(output('/usr/sbin/nats-server', ['-t', '-c', at('nats.conf')]), /is valid/);
+  fs.writeFileSync(at('wrong.conf'), text.replace('no_advertise', 'no_advert'));
+  assert.throws(() => output('/usr/sbin/nats-server', ['-t', '-c', at('wrong.conf')]), /unknown field/);
 });
