@@ -729,6 +729,9 @@ void describe(V& v, const FrameHeader*) {
     v.required("handled", &FrameHeader::handled, kId,
                "Highest `id` of this client that was handled when the state was taken; 0 before the first.");
     v.required("snapshot", &FrameHeader::snapshot, kId, "The `id` of the `snapshot` that asked for it.");
+    v.required(
+        "lease", &FrameHeader::lease, kId,
+        "Of the server that drew it, where several share the room: it rises with each that takes over.");
     v.required("camera", &FrameHeader::camera, Object<FrameHeader::Camera>{},
                "The state's camera, with matrices.");
     v.required("width", &FrameHeader::width, kId, "Pixels of this file.");

@@ -84,9 +84,9 @@ struct LogLine {
         std::optional<std::string> recording = {};        ///< that goes on, empty: none does; none: unchanged
     };
     LogTime at{0};
-    std::uint64_t sequence = 0;  ///< of this message among those of its client; 0: not known
-    std::string client;          ///< empty where it was none's doing
+    std::string client;  ///< empty where it was none's doing
     std::variant<ClientMessage, Connected, Disconnected, ControlPassed, Opened, Drawn, Revised> what;
+    std::uint64_t sequence = 0;  ///< of this message among those of its client; 0: not known
 };
 
 /// Without the line's end.

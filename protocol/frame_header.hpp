@@ -28,6 +28,7 @@ struct FrameHeader {
     };
     std::int64_t frame = 0, revision = 0, handled = 0;
     std::optional<std::int64_t> snapshot;  ///< id of the message that asked for it
+    std::optional<std::uint64_t> lease;    ///< of the server, where several share the room
     Camera camera;
     int width = 0, height = 0;  ///< of the frame
     Resize view;

@@ -199,6 +199,12 @@ bool is_room_name(std::string_view name) {
     });
 }
 
+std::string answer_key(std::string_view text) {
+    const Json answer = Json::parse(text, nullptr, false);
+    if (!answer.is_object() || !answer.contains("id")) return {};
+    return dump(answer["id"]) + " " + dump(answer.value("type", Json()));
+}
+
 std::string encode(const EdgeMessage& message) {
     Json json = kFromEdge.write(message.what);
     json["edge"] = message.edge;

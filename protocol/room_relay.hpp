@@ -144,6 +144,9 @@ struct RoomMessage {
     std::variant<RoomOutput, RoomAlive, RoomAdmitted, RoomPicture, RoomLeft> what;
 };
 
+/// What of an answer is the same whichever server gives it: its type and its `id`; empty where it has none.
+std::string answer_key(std::string_view text);
+
 std::string encode(const EdgeMessage& message);
 std::string encode(const RoomMessage& message);
 /// Or a sentence that tells what is wrong with the text.

@@ -11,6 +11,7 @@ void edge_command(const EdgeArguments& arguments) {
     if (is_open && !net::is_loopback(options.listen.host)) options.access.control_token = net::make_token();
 
     const nats::Connection connection(arguments.nats);
+    options.nats_connected = [&] { return connection.is_connected(); };
     net::RemoteRooms rooms;
     const std::string edge = connection.id();
     rooms.suffix = "." + edge;
@@ -20,8 +21,9 @@ void edge_command(const EdgeArguments& arguments) {
     };
     rooms.open = [&](const std::string& name, observe::Metrics& metrics, engine::EngineCallbacks callbacks) {
         auto room = std::make_shared<nats::RemoteRoom>(connection, name, edge, metrics, std::move(callbacks));
-        return net::RemoteRooms::Room{
-            room, [room = room.get()](const engine::Admission& asked, auto done) { room->admit(asked, std::move(done)); }};
+        return net::RemoteRooms::Room{room, [room = room.get()](const engine::Admission& asked, auto done) {
+                                          room->admit(asked, std::move(done));
+                                      }};
     };
     net::Server server(options, std::move(rooms));
     if (is_open) options.access = {};  // it is no client's

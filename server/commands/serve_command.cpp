@@ -66,6 +66,7 @@ room::SceneFinder finder(const scenes::SceneLibrary& library) {
 void serve_shared(const ServeArguments& arguments, net::ServerOptions options,
                   const scenes::LoadedScene& scene) {
     const nats::Connection connection(arguments.nats);
+    options.nats_connected = [&] { return connection.is_connected(); };
     bool is_announced = false;
     for (bool is_superseded = true; std::exchange(is_superseded, false);) {
         net::Server* running = nullptr;

@@ -224,6 +224,7 @@ private:
     base::Clock::time_point start_ = base::Clock::now();
     const std::optional<EngineOptions::Shared> shared_;
     std::atomic<bool> follows_{false};
+    std::optional<std::uint64_t> lease_;              ///< of a shared room
     std::uint64_t sequence_ = 0;                      ///< of the message in hand; 0: none
     std::deque<room::Answer> followed_answers_;       ///< the newest
     std::deque<room::PictureOrder> followed_orders_;  ///< likewise

@@ -196,6 +196,7 @@ void Engine::begin_frame(Refinement refinement) {
     Picture picture;
     picture.header = room::header_of(room_->state(), view, view_size);
     picture.header.revision = room_->document()->revision();
+    picture.header.lease = lease_;
     picture.header.quality = quality;
     picture.newest_input = newest_input_;
     // A small one that shows something new delays nobody longer than an interactive frame.
@@ -316,6 +317,7 @@ void Engine::finish_snapshot(Snapshot snapshot) {
     ++metrics_.snapshots_rendered;
     Picture picture;
     picture.header = std::move(snapshot.order.header);
+    picture.header.lease = lease_;
     picture.header.quality = kRefined;
     picture.header.quality.jpeg_quality = snapshot.order.jpeg_quality;
     picture.header.timing.render_ms = snapshot.job->stats.render_ms;

@@ -36,7 +36,7 @@ room::RoomOptions Engine::live_options() {
 void Engine::handle(const FollowFrom& from) {
     if (!follows_) return;
     room::RoomOptions options;
-    options.replaying = true;
+    options.follows = true;
     room_.emplace(prepared(*from.scene), std::move(options));
     if (const auto restored = room_->restore(from.checkpoint->header); !restored)
         return shared_->on_failure("its state cannot be used: " + restored.error().message);
@@ -67,6 +67,7 @@ void Engine::handle(const Follow& what) {
 }
 
 void Engine::handle(const TakeOver& take_over) {
+    lease_ = take_over.lease;
     if (!follows_) return take_over.done();
     const base::Clock::time_point now = base::Clock::now();
     start_ = now - room_->time();

@@ -90,9 +90,11 @@ struct Follow {
     protocol::LogLine line;
     std::shared_ptr<const scenes::LoadedScene> scene = nullptr;  ///< of an `opened`
 };
-/// From here on this server draws the room. Other events have to wait for `done`, on the render thread: those
+/// From here on this server draws the room, under this lease. Where it does already, only that is new. Other
+/// events have to wait for `done`, on the render thread: those
 /// of clients would not wait for what is followed.
 struct TakeOver {
+    std::uint64_t lease = 0;
     std::function<void()> done;
 };
 

@@ -289,10 +289,11 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
     for (const protocol::RoomAnswer& answer : said.answers) {
         const auto found = clients_.find(answer.client);
         if (found == clients_.end()) continue;
-        std::deque<std::size_t>& known = found->second.answers;
-        const std::size_t hash = std::hash<std::string>()(answer.text);
-        if ((is_whole || said.again) && std::ranges::find(known, hash) != known.end()) continue;
-        known.push_back(hash);
+        std::deque<std::string>& known = found->second.answers;
+        std::string key = protocol::answer_key(answer.text);
+        if (is_whole || said.again)
+            if (key.empty() || std::ranges::find(known, key) != known.end()) continue;
+        known.push_back(std::move(key));
         if (known.size() > kAnswersKnown) known.pop_front();
         output.answers.push_back({answer.client, answer.text, answer.revision});
     }

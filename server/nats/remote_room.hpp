@@ -52,7 +52,7 @@ private:
     struct Client {
         protocol::EdgeClient who;
         std::deque<Said> unhandled;
-        std::deque<std::size_t> answers;     ///< hashes of the last
+        std::deque<std::string> answers;     ///< keys of the last
         std::deque<std::int64_t> snapshots;  ///< ids of the last
         engine::FramesWanted wanted;
     };

@@ -23,7 +23,7 @@ constexpr std::size_t kMostGated = 2'000;                    // what edges would
 
 std::string text_of(const room::Room::Checkpoint& checkpoint) {
     return protocol::encode(checkpoint.header) + "\n" +
-           protocol::encode(protocol::LogLine{protocol::LogTime{0}, 0, {}, checkpoint.revised});
+           protocol::encode(protocol::LogLine{protocol::LogTime{0}, {}, checkpoint.revised});
 }
 
 }  // namespace
@@ -218,7 +218,7 @@ bool SharedRoom::take_over(std::uint64_t lease) {
         observe::log_info("room_taken_over", {{"room", options_.room}, {"lease", lease}});
         std::map<std::string, RoomOwner::Known> of_edges;
         std::promise<void> taken_over;
-        engine_->push(engine::TakeOver{[&] { taken_over.set_value(); }});
+        engine_->push(engine::TakeOver{lease, [&] { taken_over.set_value(); }});
         taken_over.get_future().wait();
         {
             const std::lock_guard lock(mutex_);
@@ -267,7 +267,9 @@ bool SharedRoom::renew() {
             return true;
         case RoomStore::Renewed::expired: {
             const auto lease = store_.take_lease(connection_.id());
-            if (lease) owner_.use_lease(*lease);
+            if (!lease) break;
+            owner_.use_lease(*lease);
+            engine_->push(engine::TakeOver{*lease, [] {}});
             break;
         }
     }

@@ -32,8 +32,15 @@ std::string metrics_text(const ConnectionRegistry& registry) {
         if (renderer.empty()) renderer = room->engine->description();
         events_waiting += room->engine->events_waiting();
     }
-    return registry.metrics->text(
-        {!why_unhealthy(registry), !why_unready(registry), std::move(renderer), events_waiting});
+    observe::Metrics::Readings readings;
+    readings.healthy = !why_unhealthy(registry);
+    readings.ready = !why_unready(registry);
+    readings.renderer = std::move(renderer);
+    readings.events_waiting = events_waiting;
+    if (registry.nats_connected) readings.nats_connected = registry.nats_connected();
+    if (registry.room_owner) readings.room_owner = registry.room_owner();
+    if (registry.open_room) readings.rooms = registry.rooms.size();
+    return registry.metrics->text(readings);
 }
 
 }  // namespace vrut::server::net

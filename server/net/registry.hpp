@@ -61,6 +61,8 @@ struct ConnectionRegistry {
     std::function<std::shared_ptr<ServedRoom>(const std::string& name)> open_room;
     /// Why no room can be served, a sentence; none if one can.
     std::function<std::optional<std::string>()> why_unready;
+    /// For those who monitor it; empty: it has nothing to do with NATS, or shares its room with no server.
+    std::function<bool()> nats_connected, room_owner;
     std::set<Connection*> connections;
     std::int64_t next_client = 1;
     bool stopping = false;

@@ -66,11 +66,13 @@ struct Server::Impl {
                                              share_address(options.listen, acceptor.local_endpoint().port(),
                                                            options.tls != nullptr, options.access)};
         engine_options.shared = options.shared;
+        registry.nats_connected = options.nats_connected;
         engine::EngineCallbacks callbacks = callbacks_of(room);
         if (options.relay) callbacks = options.relay(std::move(callbacks));
         const auto engine = std::make_shared<engine::Engine>(std::move(engine_options), renderer, metrics,
                                                              std::move(callbacks));
         room->engine = engine;
+        if (options.shared) registry.room_owner = [engine = engine.get()] { return !engine->follows(); };
         room->admit = [engine = engine.get(), by_token = admit_by(options.access)](
                           const engine::Admission& asked, const auto& done) {
             if (!engine->follows()) return by_token(asked, done);
@@ -85,6 +87,7 @@ struct Server::Impl {
 
     Impl(ServerOptions server_options, RemoteRooms remote_rooms) : Impl(std::move(server_options)) {
         registry.why_unready = remote_rooms.why_unready;
+        registry.nats_connected = options.nats_connected;
         registry.open_room = [this, remote = std::move(remote_rooms)](const std::string& name) {
             return open_room(name, remote);
         };

@@ -35,6 +35,7 @@ struct ServerOptions {
     std::filesystem::path record_folder{};  ///< empty: nothing is recorded
     /// Stores what clients change of a scene. Empty: their changes are lost with the scene.
     engine::ChangeKeeper::Store keep_changes = {};
+    std::function<bool()> nats_connected = {};  ///< empty: it has nothing to do with NATS
     /// Of a room that servers share, and what its engine says to clients on the way to them. Both or none.
     std::optional<engine::EngineOptions::Shared> shared = {};
     std::function<engine::EngineCallbacks(engine::EngineCallbacks to_clients)> relay = {};

@@ -79,6 +79,13 @@ void add_state(Exposition& to, const Metrics::Readings& readings) {
     to.gauge("ready", "1 where /readyz answers 200, else 0.", readings.ready);
     to.gauge("events_waiting", "What has come and the render thread has not handled.",
              readings.events_waiting);
+    if (readings.nats_connected)
+        to.gauge("nats_connected", "1 while the NATS server can be reached, else 0.",
+                 *readings.nats_connected);
+    if (readings.room_owner)
+        to.gauge("room_owner", "1 while this server draws its shared room, 0 while it stands by.",
+                 *readings.room_owner);
+    if (readings.rooms) to.gauge("rooms_open", "Rooms of other servers that are open here.", *readings.rooms);
 }
 
 void add_clients(Exposition& to, const Metrics& metrics) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -90,9 +91,12 @@ struct Metrics {
 
     /// What is not counted, but asked for.
     struct Readings {
-        bool healthy = true, ready = true;  ///< as /healthz and /readyz say
-        std::string renderer;               ///< what draws
-        std::size_t events_waiting = 0;     ///< for the render thread
+        bool healthy = true, ready = true;   ///< as /healthz and /readyz say
+        std::string renderer;                ///< what draws
+        std::size_t events_waiting = 0;      ///< for the render thread
+        std::optional<bool> nats_connected;  ///< none: it has nothing to do with NATS
+        std::optional<bool> room_owner;      ///< draws its room; none: that is shared with no other server
+        std::optional<std::size_t> rooms;    ///< of others, that are open; none: it serves its own
     };
     /// Prometheus' text format, version 0.0.4.
     std::string text(const Readings& readings) const;

@@ -44,7 +44,7 @@ void Room::join(const std::string& client, Role role, SessionTime at, const std:
     write_recording(client, protocol::LogLine::Connected{role, clients_[client].name});
     write_journal(client, protocol::LogLine::Connected{role, clients_[client].name, resume_key});
     if (role != Role::control) return;
-    if (options_.replaying) return steering_.arrive(client, resume_key);
+    if (options_.replaying) return;
     steering_.join(client, resume_key);
     show_holder();
     record_holder();
@@ -120,6 +120,7 @@ void Room::leave(const std::string& client, SessionTime at) {
 
 void Room::pass_control(const std::string& client, SessionTime at) {
     advance(at);
+    if (options_.follows) return;  // it has, likewise
     if (client.empty())
         steering_.clear_holder();
     else if (clients_.contains(client))
@@ -315,10 +316,10 @@ void Room::apply(const Received& received, const protocol::Resize& resize) {
 void Room::apply(const Received& received, const protocol::Control& control) {
     using Action = protocol::Control::Action;
     const std::string& client = received.client;
-    const bool holds = steering_.holds(client) || options_.replaying;
+    const bool holds = steering_.holds(client) || !options_.judges();
     if ((control.action == Action::give || control.action == Action::decline) && !holds)
         return reject_not_in_control(received);
-    if (control.action == Action::give && !options_.replaying && !steering_.is_here(*control.client))
+    if (control.action == Action::give && options_.judges() && !steering_.is_here(*control.client))
         return reject(received, code::out_of_range,
                       "'client': there is no control client '" + control.client->substr(0, 40) + "' here");
     switch (control.action) {
@@ -355,7 +356,7 @@ void Room::apply(const Received& received, const protocol::Control& control) {
 }
 
 void Room::apply(const Received& received, const protocol::Shown& shown) {
-    if (!options_.replaying && shown.revision > document()->revision())
+    if (options_.judges() && shown.revision > document()->revision())
         return reject(received, code::out_of_range,
                       "'revision': the newest is " + std::to_string(document()->revision()));
     answer(received);
@@ -400,7 +401,7 @@ bool Room::may_steer(const Received& received) {
     const bool may = clients_[received.client].role == Role::host
                          ? steering_.is_quiet(time_) && !gestures_.any_pressed()
                          : steering_.holds(received.client);
-    if (may || options_.replaying) return true;
+    if (may || !options_.judges()) return true;
     if (!received.is_input()) reject_not_in_control(received);
     return false;
 }

@@ -60,6 +60,11 @@ struct RoomOptions {
     /// What is said was accepted before: it is not judged again by revisions or by who holds control, nor
     /// recorded. Control passes on as the log says.
     bool replaying = false;
+    /// The same messages come as to a room that another server draws: they are not judged again, but control
+    /// passes on as it does there.
+    bool follows = false;
+
+    bool judges() const { return !replaying && !follows; }
 };
 
 /// The scene, the state and the camera that all clients share, who steers them, and what each message does to
@@ -110,9 +115,9 @@ public:
     std::optional<Checkpoint> checkpoint();
     /// A line for the journal, where the state has a revision that it does not name yet.
     void write_revision();
-    /// In a replay: the state has this revision now.
+    /// Where it follows: the state has this revision now.
     void follow(const protocol::LogLine::Revised& revised, SessionTime at);
-    /// Ends a replay: from here on what is said is judged.
+    /// It follows no longer: from here on what is said is judged.
     void go_on(RoomOptions options);
     SessionTime time() const { return time_; }
     std::vector<std::pair<std::string, protocol::Role>> clients() const;

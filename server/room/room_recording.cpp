@@ -1,4 +1,6 @@
 // What is recorded, and how it begins and ends.
+#include <algorithm>
+
 #include "room/room.hpp"
 
 namespace vrut::server::room {
@@ -12,7 +14,7 @@ Recording* Room::active_recording() {
 }
 
 void Room::apply(const Received& received, const protocol::Record& record) {
-    if (options_.replaying) {
+    if (!options_.judges()) {
         steer(received);
         end_swings();
         tap_.reset();
@@ -129,14 +131,14 @@ void Room::record(const std::string& client, decltype(protocol::LogLine::what) w
 }
 
 void Room::write_journal(const std::string& client, decltype(protocol::LogLine::what) what) {
-    if (options_.journal) options_.journal({time_, 0, client, std::move(what)});
+    if (options_.journal) options_.journal({time_, client, std::move(what)});
 }
 
 void Room::write_recording(const std::string& client, decltype(protocol::LogLine::what) what) {
     if (const Recording* active = active_recording())
         options_.recordings->write(
             recordings_.rbegin()->first,
-            protocol::encode(protocol::LogLine{time_ - active->since, 0, client, std::move(what)}));
+            protocol::encode(protocol::LogLine{time_ - active->since, client, std::move(what)}));
 }
 
 protocol::LogHeader Room::header_of_now() const {
@@ -144,8 +146,16 @@ protocol::LogHeader Room::header_of_now() const {
     header.scene = loaded_.name;
     header.scene_sha256 = loaded_.sha256;
     header.up_axis = loaded_.up_axis;
-    for (const auto& [name, client] : clients_)
+    const auto add = [&](const std::string& name) {
+        const Client& client = clients_.at(name);
         header.clients.push_back({name, client.role, client.wanted, client.name});
+    };
+    // Those to whom control would pass on come last, in that order.
+    const std::vector<std::string> next = steering_.candidates();
+    for (const auto& [name, client] : clients_)
+        if (std::ranges::find(next, name) == next.end()) add(name);
+    for (const std::string& name : next)
+        if (clients_.contains(name)) add(name);
     header.view = view_size_;
     header.at_home = at_home_;
     header.home = starting_.views->at("home");
@@ -205,7 +215,7 @@ void Room::follow(const protocol::LogLine::Revised& revised, SessionTime at) {
 
 void Room::go_on(RoomOptions options) {
     options_ = std::move(options);
-    options_.replaying = false;
+    options_.replaying = options_.follows = false;
     state_.recording.reset();  // its file was another server's
 }
 

@@ -59,6 +59,13 @@ void Steering::ask(const std::string& client) {
 
 void Steering::decline(const std::string& client) { std::erase(asking_, client); }
 
+std::vector<std::string> Steering::candidates() const {
+    std::vector<std::string> clients;
+    clients.reserve(candidates_.size());
+    for (const Candidate& candidate : candidates_) clients.push_back(candidate.client);
+    return clients;
+}
+
 bool Steering::is_here(const std::string& client) const {
     return (holds(client) && !is_absent()) ||
            std::ranges::find(candidates_, client, &Candidate::client) != candidates_.end();

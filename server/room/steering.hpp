@@ -57,6 +57,8 @@ public:
     }
     /// The control clients that ask for control, the first one first.
     const std::vector<std::string>& asking() const { return asking_; }
+    /// The other control clients, in the order in which control would pass on to them.
+    std::vector<std::string> candidates() const;
     /// True if a control client of this name is here.
     bool is_here(const std::string& client) const;
 

@@ -131,6 +131,7 @@ struct Play {
     void operator()(const LogLine::Opened& opened) const {
         room.show(*find_scene(opened.scene, opened.sha256), line.at);
     }
+    void operator()(const LogLine::Revised& revised) const { room.follow(revised, line.at); }
     void operator()(const LogLine::Drawn& drawn) const {
         room.advance(line.at);
         room.remember(drawn.frame);
