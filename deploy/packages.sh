@@ -19,6 +19,9 @@ RUN_PACKAGES=(
     libegl1 libopengl0 libegl-mesa0 libgl1-mesa-dri
     libassimp5 libmeshoptimizer2d libdraco7 libspdlog1.10 libfmt9 libturbojpeg0 libpng16-16 libwebp7 libtiff6 zlib1g libssl3 libqrencode4 libnats3.4
 )
+# To start several servers and edges on one machine (several.sh).
+# shellcheck disable=SC2034
+SEVERAL_PACKAGES=(nats-server:nats-server haproxy:haproxy curl:curl)
 # To make the Debian packages (cpack), and of them a container's root (container.sh).
 # shellcheck disable=SC2034
 PACKAGING_PACKAGES=(dpkg-dev:dpkg-shlibdeps file:file mmdebstrap:mmdebstrap)

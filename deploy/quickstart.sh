@@ -9,21 +9,29 @@ source "$ROOT/deploy/packages.sh"
 usage() {
     cat <<TEXT
 Usage: deploy/quickstart.sh [--lan] [-- SERVE-ARGUMENTS...]
+       deploy/quickstart.sh --several [-- SCENE]
 
 Installs the Debian packages that are missing, builds the program, and starts its server.
 When everything is there, it starts at once.
 
   --lan     serve tablets and other computers on the network (0.0.0.0:8080, by HTTPS, with access tokens),
             not this computer alone (127.0.0.1:8080)
+  --several
+            start what several machines would run, on this computer alone: a NATS server, two servers of one room,
+            two edges, and HAProxy before them (http://127.0.0.1:8080/rooms/car/)
   --help    this text
-  --        what follows goes to 'vrut-preview serve': a scene, --listen ADDRESS:PORT, ...
+  --        what follows goes to 'vrut-preview serve': a scene, --listen ADDRESS:PORT, ...; with --several, only a scene
 TEXT
 }
 
-serve=(serve)
+serve=(serve) lan=false several=false
 while [ $# -gt 0 ]; do
     case $1 in
-    --lan) serve+=(--lan) ;;
+    --lan)
+        lan=true
+        serve+=(--lan)
+        ;;
+    --several) several=true ;;
     -h | --help)
         usage
         exit 0
@@ -39,6 +47,10 @@ while [ $# -gt 0 ]; do
     esac
     shift
 done
+if $several && { $lan || [ $# -gt 1 ] || [[ ${1:-} == -* ]]; }; then
+    say "quickstart.sh: --several serves this computer alone, and takes nothing but a scene: leave out the other options."
+    exit 2
+fi
 
 # Configures where that has not been done, and builds; the build tool says how far it is.
 build() {
@@ -66,5 +78,6 @@ fi
 (build) 2>&1 | tee "$ROOT/$folder/quickstart.log" >&2 ||
     die "the build failed (its last lines are above, all of them in $folder/quickstart.log): if the source is unchanged, remove $folder and start again."
 
+if $several; then exec "$ROOT/deploy/several.sh" "$program" "$@"; fi
 say "Starting: vrut-preview ${serve[*]} $*"
 exec "$program" "${serve[@]}" "$@"

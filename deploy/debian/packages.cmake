@@ -19,11 +19,11 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_NAME ${PROJECT_NAME})
 set(CPACK_DEBIAN_SERVER_PACKAGE_SECTION graphics)
 # A driver, which no program is linked with: one that draws in software is among Mesa's.
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libgl1-mesa-dri")
-set(CPACK_DEBIAN_SERVER_PACKAGE_SUGGESTS "haproxy")
+set(CPACK_DEBIAN_SERVER_PACKAGE_SUGGESTS "haproxy, nats-server")
 set(CPACK_DEBIAN_SERVER_DESCRIPTION "remote preview renderer for automotive VR
 A server that draws a scene, as a car, without a window, and sends images
 to tablets, hosts and scripts. It has a page for a presenter's tablet, a
-car, teaching scenes, and a systemd unit.")
+car, teaching scenes, and systemd units.")
 set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
     "${CMAKE_CURRENT_LIST_DIR}/postinst;${CMAKE_CURRENT_LIST_DIR}/prerm;${CMAKE_CURRENT_LIST_DIR}/postrm")
 

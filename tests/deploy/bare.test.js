@@ -51,7 +51,8 @@ test('a purge leaves nothing', { skip }, () => {
     fs.mkdirSync(at(`root/${name}`), { recursive: true });
   fs.writeFileSync(at('root/etc/vrut-preview/tokens.json'), '{}');
   fs.symlinkSync('private/vrut-preview', at('root/var/cache/vrut-preview'));
-  fs.symlinkSync('/lib/systemd/system/vrut-preview.service', at('root/etc/systemd/system/multi-user.target.wants/vrut-preview.service'));
+  for (const unit of ['vrut-preview.service', 'vrut-preview-edge.service'])
+    fs.symlinkSync(`/lib/systemd/system/${unit}`, at(`root/etc/systemd/system/multi-user.target.wants/${unit}`));
   assert.match(traces(), /vrut/);
   const { status, stdout, stderr } = spawnSync(...inRoot('0', [], 'dpkg', '--purge', 'vrut-preview'), { encoding: 'utf8' });
   assert.equal(status, 0, `${stdout}${stderr}`);

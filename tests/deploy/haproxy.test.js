@@ -1,5 +1,5 @@
-// deploy/haproxy.cfg in front of the server: as it stands there but for ports, files and the user, and with its
-// timeouts at a tenth, for a test cannot wait for an hour.
+// deploy/haproxy.cfg in front of the server, and deploy/haproxy-edges.cfg in front of two that stand in for edges: as they
+// stand there but for ports, files and the user, and with their timeouts at a tenth, for a test cannot wait for an hour.
 'use strict';
 const assert = require('node:assert/strict');
 const fs = require('node:fs');
@@ -10,58 +10,47 @@ const path = require('node:path');
 const tls = require('node:tls');
 const { once } = require('node:events');
 const { after, before, describe, test } = require('node:test');
-const { Client, DEPLOY, Running, TOKENS, eventually, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
+const { WebSocketServer } = require('../web/node_modules/ws');
+const { Client, DEPLOY, Running, TOKENS, eventually, freePort, makeCertificate, missing, output, temporaryFolder, tokenFile } = require('./helpers.js');
 
 const { VRUT_PREVIEW, VRUT_CAR, VRUT_EXAMPLE_HOST } = process.env;
 const folder = temporaryFolder();
 const file = (name) => path.join(folder, name);
 
-async function freePort() {
-  const server = net.createServer().listen(0, '127.0.0.1');
-  await once(server, 'listening');
-  const { port } = server.address();
-  server.close();
-  await once(server, 'close');
-  return port;
-}
-
-/** The configuration with each of these replaced, which must be there. */
-function configuration(replacements) {
-  let text = fs.readFileSync(path.join(DEPLOY, 'haproxy.cfg'), 'utf8');
+/** A configuration with each of these replaced, which must be there. */
+function configuration(name, replacements) {
+  let text = fs.readFileSync(path.join(DEPLOY, name), 'utf8');
   for (const [from, to] of replacements) {
     const replaced = text.replaceAll(from, to);
-    assert.notEqual(replaced, text, `${from} is in haproxy.cfg`);
+    assert.notEqual(replaced, text, `${from} is in ${name}`);
     text = replaced;
   }
   return text;
 }
 
-function makeCertificate() {
-  output('openssl', [
-    'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2', '-subj', '/CN=localhost',
-    '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1', '-keyout', file('key.pem'), '-out', file('certificate.pem'),
-  ]);
-  fs.writeFileSync(file('both.pem'), fs.readFileSync(file('certificate.pem')) + fs.readFileSync(file('key.pem'), 'utf8'));
-}
-
-/** In front of a server on loopback. */
-async function startProxy(serverPort) {
+/** With a configuration of deploy/, and what else is replaced in it. */
+async function startHaproxy(source, replacements) {
   const [port, plainPort] = [await freePort(), await freePort()];
   const name = file(`haproxy-${port}.cfg`);
-  fs.writeFileSync(name, configuration([
+  fs.writeFileSync(name, configuration(source, [
     ['bind :80\n', `bind 127.0.0.1:${plainPort}\n`],
     ['bind :443 ', `bind 127.0.0.1:${port} `],
     ['/etc/haproxy/vrut-preview.pem', file('both.pem')],
-    ['server local 127.0.0.1:8080 ', `server local 127.0.0.1:${serverPort} `],
     ['log /dev/log local0 info', 'log stdout format raw local0 info'],
     ['    user haproxy\n    group haproxy\n    chroot /var/lib/haproxy\n', ''],
-    ['check inter 2s', 'check inter 200ms'],
     [/^( +timeout [a-z-]+) (\d+)s$/gm, (_, timeout, seconds) => `${timeout} ${100 * seconds}ms`],
+    ...replacements,
   ]));
-  const haproxy = new Running('/usr/sbin/haproxy', ['-f', name]);
+  const haproxy = new Running('/usr/sbin/haproxy', ['-f', name], { env: { ...process.env, EDGE_TOKEN: TOKENS.view } });
   await eventually('the proxy', () => get(`https://localhost:${port}/healthz`).then(({ status }) => status === 200, () => false));
   return { haproxy, port, plainPort, name };
 }
+
+/** In front of a server on loopback. */
+const startProxy = (serverPort) => startHaproxy('haproxy.cfg', [
+  ['server local 127.0.0.1:8080 ', `server local 127.0.0.1:${serverPort} `],
+  ['check inter 2s', 'check inter 200ms'],
+]);
 
 /** @returns {Promise<{status: number, headers: object, text: string}>} */
 function get(url, { method = 'GET', headers = {} } = {}) {
@@ -103,7 +92,7 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
   const bearer = { authorization: `Bearer ${TOKENS.view}` };
 
   before(async () => {
-    makeCertificate();
+    makeCertificate(folder);
     server = new Running(VRUT_PREVIEW, ['serve', VRUT_CAR, '--listen', '127.0.0.1:0', '--token-file', tokenFile(folder)]);
     const [, own] = await server.printed(/listening on http:\/\/127\.0\.0\.1:(\d+)\//);
     ({ haproxy, port, plainPort, name } = await startProxy(own));
@@ -287,5 +276,70 @@ describe('HAProxy in front', { skip: missing('openssl', '/usr/sbin/haproxy') }, 
     const most = 2000 * (1 + (Date.now() - began) / 10_000);
     assert.ok(answered > 1500 && answered <= most, `${answered} of at most ${most}`);
     assert.ok(statuses.slice(answered).every((status) => status === '429'));
+  });
+});
+
+/** What stands in for an edge: it says its name, and is ready for who has the token while `isReady`. */
+async function standIn(name) {
+  const edge = { name, isReady: true, sockets: new Set() };
+  const answer = (request, response) => {
+    if (request.url === '/readyz') response.statusCode = request.headers.authorization !== `Bearer ${TOKENS.view}` ? 401 : edge.isReady ? 200 : 503;
+    response.end(name);
+  };
+  edge.server = https.createServer({ cert: fs.readFileSync(file('certificate.pem')), key: fs.readFileSync(file('key.pem')) }, answer).listen(0, '127.0.0.1');
+  edge.server.on('secureConnection', (socket) => edge.sockets.add(socket));
+  new WebSocketServer({ server: edge.server });
+  edge.stop = () => {
+    edge.server.close();
+    for (const socket of edge.sockets) socket.destroy();
+  };
+  await once(edge.server, 'listening');
+  edge.port = edge.server.address().port;
+  return edge;
+}
+
+describe('HAProxy in front of edges', { skip: missing('openssl', '/usr/sbin/haproxy') }, () => {
+  let edges, proxy;
+  const whose = async () => (await get(`https://localhost:${proxy.port}/rooms/car/`)).text;
+
+  before(async () => {
+    makeCertificate(folder);
+    edges = [await standIn('a'), await standIn('b')];
+    proxy = await startHaproxy('haproxy-edges.cfg', [
+      ['server a 192.0.2.11:8090 verifyhost a.cave.example', `server a 127.0.0.1:${edges[0].port} verifyhost localhost`],
+      ['server b 192.0.2.12:8090 verifyhost b.cave.example', `server b 127.0.0.1:${edges[1].port} verifyhost localhost`],
+      ['@system-ca', file('certificate.pem')],
+      ['check inter 1s', 'check inter 100ms'],
+    ]);
+  });
+  after(() => {
+    proxy?.haproxy.child.kill('SIGKILL');
+    for (const edge of edges ?? []) edge.stop();
+  });
+
+  test('HAProxy has nothing to say against the configuration, as it stands there', () => {
+    assert.doesNotMatch(output('/usr/sbin/haproxy', ['-c', '-f', proxy.name]), /warning|alert/i);
+    assert.match(fs.readFileSync(path.join(DEPLOY, 'haproxy-edges.cfg'), 'utf8'), / ssl verify required ca-file @system-ca$/m);
+  });
+
+  test('all but the backend and the number of connections is as in front of one server', () => {
+    const front = (name) => fs.readFileSync(path.join(DEPLOY, name), 'utf8').replace(/^(# .*\n)+/, '').split(/^backend /m)[0]
+      .replace(/maxconn \d+/g, 'maxconn').replace(/default_backend \S+/, 'default_backend');
+    assert.equal(front('haproxy-edges.cfg'), front('haproxy.cfg'));
+  });
+
+  test('clients stay at an edge; when it is not ready, they go to the other one, and stay there', async () => {
+    const first = await whose();
+    for (let i = 0; i < 6; ++i) assert.equal(await whose(), first);
+    const [own, other] = first === 'a' ? edges : edges.toReversed();
+    const client = await Client.connect(`wss://localhost:${proxy.port}/rooms/car/ws`);
+    own.isReady = false;
+    await eventually('the end of the WebSocket', () => client.socket.readyState === client.socket.CLOSED);
+    assert.equal(await whose(), other.name);
+    own.isReady = true;
+    await proxy.haproxy.printed(new RegExp(`Server edges/${own.name} is UP`));
+    assert.equal(await whose(), other.name);
+    other.stop();
+    assert.equal(await whose(), own.name, 'a request that does not reach its edge is sent to the other one');
   });
 });

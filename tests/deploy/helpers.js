@@ -4,6 +4,7 @@ const assert = require('node:assert/strict');
 const { spawn, spawnSync } = require('node:child_process');
 const { once } = require('node:events');
 const fs = require('node:fs');
+const net = require('node:net');
 const os = require('node:os');
 const path = require('node:path');
 const { after } = require('node:test');
@@ -33,11 +34,31 @@ function tokenFile(folder) {
   return file;
 }
 
+/** A port of this machine that is free now. */
+async function freePort() {
+  const server = net.createServer().listen(0, '127.0.0.1');
+  await once(server, 'listening');
+  const { port } = server.address();
+  server.close();
+  await once(server, 'close');
+  return port;
+}
+
 /** What a command prints; fails with what it complains of. */
 function output(command, args, options = {}) {
   const { status, stdout, stderr, error } = spawnSync(command, args, { encoding: 'utf8', ...options });
   if (error || status !== 0) throw new Error(`${command} ${args.join(' ')}: ${error ?? status}\n${stdout}${stderr}`);
   return stdout + stderr;
+}
+
+/** Writes certificate.pem of localhost, key.pem, and both.pem, which has the two, into a folder. */
+function makeCertificate(folder) {
+  const file = (name) => path.join(folder, name);
+  output('openssl', [
+    'req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:P-256', '-nodes', '-days', '2', '-subj', '/CN=localhost',
+    '-addext', 'subjectAltName=DNS:localhost,IP:127.0.0.1', '-keyout', file('key.pem'), '-out', file('certificate.pem'),
+  ]);
+  fs.writeFileSync(file('both.pem'), fs.readFileSync(file('certificate.pem')) + fs.readFileSync(file('key.pem'), 'utf8'));
 }
 
 /** Files below a folder, by their paths in it. */
@@ -182,4 +203,4 @@ class Client {
   }
 }
 
-module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, containerfile, debs, eventually, files, linkedLibraries, missing, output, packagesOf, temporaryFolder, tokenFile };
+module.exports = { Client, DEPLOY, Running, TOKENS, cannotSandbox, containerfile, debs, eventually, files, freePort, linkedLibraries, makeCertificate, missing, output, packagesOf, temporaryFolder, tokenFile };

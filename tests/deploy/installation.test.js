@@ -21,10 +21,10 @@ test('what a server needs is installed, and nothing else', () => {
   assert.deepEqual(files(path.join(folder, 'staging')), []);
   const scenes = path.join(SOURCE, 'scenes');
   const expected = [
-    'bin/vrut-preview', 'lib/systemd/system/vrut-preview.service',
+    'bin/vrut-preview', ...['vrut-preview', 'vrut-preview-edge'].map((name) => `lib/systemd/system/${name}.service`),
     'share/bash-completion/completions/vrut-preview',
-    ...['', '-serve', '-render', '-worker', '-replay', '-info', '-convert', '-compare', '-chart'].map((command) => `share/man/man1/vrut-preview${command}.1`),
-    ...['CHANGELOG.md', 'README.md', 'copyright', 'haproxy.cfg'].map((name) => `share/doc/vrut-preview/${name}`),
+    ...['', '-serve', '-edge', '-render', '-worker', '-replay', '-info', '-convert', '-compare', '-chart'].map((command) => `share/man/man1/vrut-preview${command}.1`),
+    ...['CHANGELOG.md', 'README.md', 'copyright', 'haproxy-edges.cfg', 'haproxy.cfg', 'nats.conf'].map((name) => `share/doc/vrut-preview/${name}`),
     ...['README.md', 'car/car.vrut'].map((name) => `share/vrut-preview/scenes/${name}`),
     ...files(path.join(scenes, 'car/textures')).map((name) => `share/vrut-preview/scenes/car/textures/${name}`),
     ...files(path.join(scenes, 'teaching')).filter((name) => !name.endsWith('.py')).map((name) => `share/vrut-preview/scenes/teaching/${name}`),
@@ -41,14 +41,17 @@ test('nothing refers to where it was built', { skip: released ? false : 'what he
   }
 });
 
-test('the unit starts the program where it is installed to', () => {
-  const unit = path.join(prefix, 'lib/systemd/system/vrut-preview.service');
-  assert.match(fs.readFileSync(unit, 'utf8'), /^ExecStart=\/usr\/bin\/vrut-preview serve .* --scenes \/usr\/share\/vrut-preview\/scenes /m);
+test('the units start the program where it is installed to', () => {
   const elsewhere = path.join(folder, 'opt');
   output(VRUT_CMAKE, ['--install', VRUT_BUILD, '--prefix', elsewhere]);
-  const text = fs.readFileSync(path.join(elsewhere, 'lib/systemd/system/vrut-preview.service'), 'utf8');
-  assert.ok(text.includes(`ExecStart=${elsewhere}/bin/vrut-preview serve `), text);
-  assert.doesNotMatch(text, /@CMAKE/);
+  const unit = (top, name) => fs.readFileSync(path.join(top, `lib/systemd/system/${name}.service`), 'utf8');
+  assert.match(unit(prefix, 'vrut-preview'), /^ExecStart=\/usr\/bin\/vrut-preview serve .* --scenes \/usr\/share\/vrut-preview\/scenes /m);
+  for (const [name, command] of [['vrut-preview', 'serve'], ['vrut-preview-edge', 'edge']]) {
+    assert.ok(unit(prefix, name).includes(`ExecStart=/usr/bin/vrut-preview ${command} `), name);
+    const text = unit(elsewhere, name);
+    assert.ok(text.includes(`ExecStart=${elsewhere}/bin/vrut-preview ${command} `), text);
+    assert.doesNotMatch(text, /@CMAKE/);
+  }
 });
 
 test('the packages to run bring every library that it is linked with', { skip: missing('dpkg-query') }, () => {

@@ -45,8 +45,13 @@ test('the server\'s package has all that is installed, and the client\'s none of
   assert.deepEqual(packaged, [...compressed, ...ofDebian].sort());
   assert.deepEqual(files(at(`${CLIENT}/usr`)).filter((name) => installed.includes(name)), []);
   assert.deepEqual(fs.readdirSync(at(SERVER)).sort(), ['DEBIAN', 'usr']);
-  const unit = fs.readFileSync(at(`${SERVER}/usr/lib/systemd/system/vrut-preview.service`), 'utf8');
-  assert.match(unit, /^ExecStart=\/usr\/bin\/vrut-preview serve /m);
+  for (const [name, command] of [['vrut-preview', 'serve'], ['vrut-preview-edge', 'edge']]) {
+    const unit = fs.readFileSync(at(`${SERVER}/usr/lib/systemd/system/${name}.service`), 'utf8');
+    assert.ok(unit.includes(`ExecStart=/usr/bin/vrut-preview ${command} `), unit);
+    // What Debian's scripts do with one unit, they do with the other.
+    for (const script of ['postinst', 'prerm', 'postrm'])
+      assert.ok(fs.readFileSync(at(`${SERVER}/DEBIAN/${script}`), 'utf8').includes(`${name}.service`), script);
+  }
 });
 
 test('it depends on what it is linked with, and on a driver', { skip }, () => {
