@@ -92,7 +92,8 @@ RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_liv
         config.Replicas = replicas;
         status = js_CreateKeyValue(&store, connection_.jetstream(), &config);
         kvStore_Destroy(store);
-        if (status == NATS_OK && js_KeyValue(&store, impatient_.get(), name) == NATS_OK) return KeyValue(store);
+        if (status == NATS_OK && js_KeyValue(&store, impatient_.get(), name) == NATS_OK)
+            return KeyValue(store);
     }
     connection_.require(status, "the bucket " + std::string(name) + " cannot be made");
     return {};
@@ -164,8 +165,8 @@ std::optional<RoomStore::State> RoomStore::state() const {
     auto text = sequence && line < value.size() ? inflated(value.substr(line + 1)) : std::nullopt;
     if (!text)
         throw std::runtime_error("the state of the room '" + room_ +
-                                 "' cannot be read: forget it with 'nats kv del " + kStates + " " + room_ +
-                                 "'");
+                                 "' cannot be read: serve it by another name, or wait for ten minutes, when "
+                                 "NATS has forgotten it");
     return State{*sequence, *std::move(text)};
 }
 
@@ -223,8 +224,7 @@ std::vector<RoomStore::Entry> RoomStore::next(std::chrono::milliseconds patience
 
 std::optional<std::uint64_t> RoomStore::last_sequence() const {
     jsStreamInfo* info = nullptr;
-    const natsStatus status =
-        js_GetStreamInfo(&info, impatient_.get(), log_.c_str(), nullptr, nullptr);
+    const natsStatus status = js_GetStreamInfo(&info, impatient_.get(), log_.c_str(), nullptr, nullptr);
     if (status != NATS_OK) return std::nullopt;
     const std::uint64_t last = info->State.LastSeq;
     jsStreamInfo_Destroy(info);

@@ -51,8 +51,9 @@ for (const command of [[], ...commands().map((name) => [name])]) {
     }
   });
 
-  // Those of chart are run in chart.test.js, with gnuplot, and those of worker in render-queue.test.js, with a NATS server.
-  for (const example of ['chart', 'worker'].includes(command[0]) ? [] : examples(...command)) {
+  // Those of chart are run in chart.test.js, with gnuplot; those of worker in render-queue.test.js, and those of edge in
+  // several/edges.test.js of tests/web, with a NATS server.
+  for (const example of ['chart', 'worker', 'edge'].includes(command[0]) ? [] : examples(...command)) {
     test(`example: ${example}`, async () => {
       const here = fs.mkdtempSync(path.join(folder, 'example-'));
       fs.cpSync(work, here, { recursive: true });
@@ -76,7 +77,7 @@ async function serves(example, cwd) {
 test('what cannot be done is told with status 1, by every command', () => {
   const none = path.join(folder, 'none.vrut');
   const calls = {
-    serve: [none], render: [none, '-o', 'x.png'], worker: ['--nats', 'nats://127.0.0.1', '--scenes', none], replay: [none], info: [none], convert: [none, 'x.glb'],
+    serve: [none], edge: ['--nats', 'nats://127.0.0.1', '--token-file', none], render: [none, '-o', 'x.png'], worker: ['--nats', 'nats://127.0.0.1', '--scenes', none], replay: [none], info: [none], convert: [none, 'x.glb'],
     compare: [none, none], chart: [none, '--calibrate'],
   };
   assert.deepEqual(Object.keys(calls), commands());

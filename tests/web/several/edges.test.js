@@ -6,7 +6,8 @@ import path from 'node:path';
 import { describe, test } from 'node:test';
 import { setTimeout as delay } from 'node:timers/promises';
 import { ContractClient } from '../contract/contract-client.js';
-import { temporaryFolder } from '../contract/server.js';
+import { PROGRAM, temporaryFolder } from '../contract/server.js';
+import examplesOfHelp from '../../commands/examples.js';
 import { Cluster, eventually, missing } from './cluster.js';
 
 const WITHIN_MS = 15_000;
@@ -107,6 +108,19 @@ describe('an edge', { skip: missing }, () => {
     await eventually('a sentence of the edge', () => edge.logged('invalid_relay')[0]?.includes('reason="'));
     assert.ok(server.logged('invalid_relay').length <= 2, 'once in a while');
   });
+
+  for (const example of examplesOfHelp.examples('edge')) {
+    test(`example: ${example}`, async (t) => {
+      const cluster = new Cluster(t);
+      await cluster.startNats();
+      const words = example.replace('nats://127.0.0.1', cluster.url).replace(/(--listen \S+):\d+/, '$1:0').split(' ');
+      assert.equal(words.shift(), 'vrut-preview');
+      if (!words.includes('--listen')) words.push('--listen', words.includes('--lan') ? '0.0.0.0:0' : '127.0.0.1:0');
+      const edge = cluster.start(PROGRAM, ...words);
+      await eventually('an address', () => /listening on https?:\S+rooms\/NAME\//.test(edge.log));
+      assert.equal(await edge.stop('SIGTERM'), 0);
+    });
+  }
 
   test('says that no server draws a room, and goes to a page of a room by its name alone', async (t) => {
     const cluster = new Cluster(t);
