@@ -63,6 +63,7 @@ void ignore_further_signals() {
 }  // namespace
 
 net::ServerOptions server_options(const NetworkArguments& arguments) {
+    std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
     net::ServerOptions options;
     options.listen = net::parse_listen_address(arguments.listen);
     options.max_clients = arguments.max_clients;
@@ -73,8 +74,7 @@ net::ServerOptions server_options(const NetworkArguments& arguments) {
 }
 
 void announce(net::Server& server, const net::ServerOptions& options, const std::string& path) {
-    std::signal(SIGPIPE, SIG_IGN);  // who reads its output may go, and the server stays
-    server.stop_on_signals();       // before the address is told: from then on somebody may stop it
+    server.stop_on_signals();  // before the address is told: from then on somebody may stop it
     print_addresses(options, server.port(), path);
     observe::log_info("listening", {{"host", options.listen.host}, {"port", std::uint64_t{server.port()}}});
 }

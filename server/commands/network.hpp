@@ -7,7 +7,8 @@
 
 namespace vrut::server::commands {
 
-/// How clients reach a server, by its arguments. Throws std::runtime_error.
+/// How clients reach a server, by its arguments. To be called first: what the program writes to may end from
+/// then on. Throws std::runtime_error.
 net::ServerOptions server_options(const NetworkArguments& arguments);
 
 /// Prints the server's addresses, followed by `path`. Signals end it from here on.

@@ -17,6 +17,7 @@ namespace vrut::server::engine {
 
 /// What the render thread sends to the net thread after it has handled a batch of events.
 struct EngineOutput {
+    bool begins_anew = false;  ///< what clients have of the room leads nowhere: they have to come again
     std::shared_ptr<const protocol::StateDocument> document;  ///< the newest; null if unchanged
     std::string by;  ///< who made it and the revisions before it, down to by_since; empty: the server
     std::int64_t by_since = 0;

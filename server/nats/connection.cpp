@@ -43,8 +43,6 @@ std::string public_part(const std::string& urls) {
 void on_lost(natsConnection* connection, void*) {
     if (!natsConnection_IsClosed(connection)) observe::log_warning("nats_disconnected", {});
 }
-/// Closed for good, as after repeated refusals of the password.
-void on_closed(natsConnection*, void*) { observe::log_info("nats_closed", {}); }
 void on_back(natsConnection*, void*) { observe::log_info("nats_reconnected", {}); }
 
 std::string reason_of(natsStatus status, jsErrCode error) {
@@ -109,7 +107,6 @@ Connection::Connection(const std::string& urls) : name_(public_part(urls)) {
     natsOptions_SetName(options.get(), "vrut-preview");
     natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
     natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);
-    natsOptions_SetClosedCB(options.get(), on_closed, nullptr);
     natsConnection* connected = nullptr;
     require(natsConnection_Connect(&connected, options.get()), "it cannot be reached");
     connection_.reset(connected);

@@ -70,8 +70,8 @@ void Outbox::send(const Packet& packet) {
     for (std::size_t part = 0; part < parts; ++part) {
         const std::string_view bytes = std::string_view(body).substr(part * kPartBytes, kPartBytes);
         natsMsg* created = nullptr;
-        if (natsMsg_Create(&created, subject_.c_str(), nullptr, bytes.data(), static_cast<int>(bytes.size())) !=
-            NATS_OK)
+        if (natsMsg_Create(&created, subject_.c_str(), nullptr, bytes.data(),
+                           static_cast<int>(bytes.size())) != NATS_OK)
             return;
         const Message message(created);
         natsMsgHeader_Set(created, "Packet", name.c_str());
@@ -88,9 +88,11 @@ Inbox::Inbox(const Connection& connection, const std::string& subject) : connect
     subscription_.reset(subscription);
 }
 
-/// What a message completes. Parts of one packet come in their order; where one is missing the packet is lost.
+/// What a message completes. Parts of one packet come in their order; where one is missing the packet is
+/// lost.
 std::optional<std::string> Inbox::complete(natsMsg* message) {
-    std::string_view bytes(natsMsg_GetData(message), static_cast<std::size_t>(natsMsg_GetDataLength(message)));
+    std::string_view bytes(natsMsg_GetData(message),
+                           static_cast<std::size_t>(natsMsg_GetDataLength(message)));
     const std::string name = header_of(message, "Packet");
     if (name.empty()) return std::string(bytes);
     const auto part = number_of(header_of(message, "Part")), parts = number_of(header_of(message, "Parts"));
@@ -122,7 +124,8 @@ std::optional<Packet> Inbox::next(std::chrono::milliseconds patience) {
     if (!body) return {};
     const std::size_t line = std::min(body->find('\n'), body->size());
     Packet packet{body->substr(0, line)};
-    if (line < body->size()) packet.bytes.assign(body->begin() + static_cast<std::ptrdiff_t>(line) + 1, body->end());
+    if (line < body->size())
+        packet.bytes.assign(body->begin() + static_cast<std::ptrdiff_t>(line) + 1, body->end());
     return packet;
 }
 

@@ -26,11 +26,12 @@ struct Packet {
     std::vector<std::uint8_t> bytes = {};
 };
 
-/// Sends packets from a thread of its own, so that nobody waits for NATS. While the connection is lost what is
-/// posted is made and dropped. A large packet goes in parts.
+/// Sends packets from a thread of its own, so that nobody waits for NATS. While the connection is lost what
+/// is posted is made and dropped. A large packet goes in parts.
 class Outbox {
 public:
-    using Make = std::function<std::optional<Packet>()>;  ///< on that thread, in the order of posts; none: nothing
+    using Make =
+        std::function<std::optional<Packet>()>;  ///< on that thread, in the order of posts; none: nothing
 
     Outbox(const Connection& connection, std::string subject);
     ~Outbox();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "codec.hpp"
 #include "engine/encoder.hpp"
 #include "observe/log.hpp"
 
@@ -13,8 +14,9 @@ using namespace std::chrono_literals;
 
 constexpr auto kPoll = 50ms;
 constexpr auto kAlive = 1s;
-constexpr auto kSilence = 2s;       // then the room has no server
-constexpr auto kPatience = 3s;      // of a client that asks to come in
+constexpr auto kSilence = 2s;   // then the room has no server
+constexpr auto kPatience = 3s;  // of a client that asks to come in
+constexpr auto kPicturePatience = 30s;
 constexpr auto kSyncAgain = 300ms;  // at the earliest
 constexpr std::size_t kAnswersKnown = 256;
 
@@ -144,7 +146,9 @@ void RemoteRoom::say_wanted(const engine::FramesWanted& wanted) {
 void RemoteRoom::handle(const engine::SnapshotSent& sent) { say(protocol::EdgeSnapshotSent{sent.client}); }
 
 void RemoteRoom::handle(const engine::PictureAsked& asked) {
-    say(protocol::EdgePicture{asked.name, asked.width, asked.height});
+    const protocol::EdgePicture picture{asked.name, asked.width, asked.height};
+    pictures_[asked.name] = {picture, base::Clock::now() + kPicturePatience};
+    say(picture);
 }
 
 engine::PictureLimits RemoteRoom::limits() const {
@@ -188,6 +192,7 @@ void RemoteRoom::receive(const std::stop_token& stop) {
 /// Says that it is there, asks for what it missed, and gives up what is not answered.
 void RemoteRoom::poll(base::Clock::time_point now) {
     std::vector<Admitted> unanswered;
+    engine::EngineOutput output;
     {
         const std::lock_guard lock(mutex_);
         if (now - said_alive_at_ >= kAlive) {
@@ -203,7 +208,25 @@ void RemoteRoom::poll(base::Clock::time_point now) {
             unanswered.push_back(std::move(asked->second.done));
             asked = asked_.erase(asked);
         }
+        const bool was_lost = std::exchange(was_lost_, is_lost(now));
+        if (was_lost_ && !was_lost && document_) {
+            observe::log_warning("room_lost", {{"room", room_}});
+            const std::string text = protocol::encode(protocol::Error{
+                {},
+                protocol::error_code::failed,
+                "no server draws the room '" + room_ + "' now: what you do is done when one does again"});
+            for (const auto& [name, client] : clients_) output.answers.push_back({name, text, 0});
+        }
+        for (auto picture = pictures_.begin(); picture != pictures_.end();) {
+            if (picture->second.until > now) {
+                ++picture;
+                continue;
+            }
+            output.failed_pictures.push_back(picture->first);
+            picture = pictures_.erase(picture);
+        }
     }
+    if (!output.empty()) callbacks_.on_output(std::move(output));
     for (const Admitted& done : unanswered)
         done(
             tl::unexpected(protocol::Error{{},
@@ -224,6 +247,7 @@ void RemoteRoom::sync(base::Clock::time_point now) {
         }
         if (!is_viewer(client.who) && !client.wanted.client.empty()) say_wanted(client.wanted);
     }
+    for (const auto& [name, picture] : pictures_) say(picture.what);
     viewers_want_ = {};
     want_for_viewers();
 }
@@ -298,6 +322,7 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
         output.answers.push_back({answer.client, answer.text, answer.revision});
     }
     output.failed_pictures = said.failed_pictures;
+    for (const std::string& picture : output.failed_pictures) pictures_.erase(picture);
     for (const protocol::RoomHandled& handled : said.handled) {
         const auto found = clients_.find(handled.client);
         if (found == clients_.end()) continue;
@@ -330,8 +355,10 @@ void RemoteRoom::take_state(const protocol::RoomOutput& said, engine::EngineOutp
         in_step_ = false;
         return observe::log_warning("invalid_relay", {{"room", room_}, {"reason", document.error()}});
     }
-    // A server that takes the room over goes on with the revisions of the one before.
-    if (document_ && (*document)->revision() <= document_->revision()) return;
+    // A server that takes the room over goes on with the revisions of the one before. Where it does not,
+    // nobody has drawn the room for so long that it was forgotten.
+    if (document_ && !is_patch && (*document)->revision() < document_->revision()) output.begins_anew = true;
+    if (document_ && (*document)->revision() == document_->revision()) return;
     document_ = *std::move(document);
     output.document = document_;
     output.by = said.by;
@@ -363,7 +390,10 @@ std::shared_ptr<const engine::EncodedPicture> RemoteRoom::picture_of(const proto
     if (said.newest_input_ms) picture->newest_input = time(*said.newest_input_ms);
     if (!said.client.empty()) {
         const auto asked = clients_.find(said.client);
-        if (asked == clients_.end()) return picture;  // an image for who is no client
+        if (asked == clients_.end()) {  // an image for who is no client
+            pictures_.erase(said.client);
+            return picture;
+        }
         std::deque<std::int64_t>& known = asked->second.snapshots;
         if (std::ranges::find(known, said.snapshot.value_or(0)) != known.end()) return nullptr;
         known.push_back(said.snapshot.value_or(0));

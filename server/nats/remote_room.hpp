@@ -56,6 +56,10 @@ private:
         std::deque<std::int64_t> snapshots;  ///< ids of the last
         engine::FramesWanted wanted;
     };
+    struct AskedPicture {
+        protocol::EdgePicture what;
+        base::Clock::time_point until;
+    };
     struct Asked {
         Admitted done;
         base::Clock::time_point until;
@@ -96,8 +100,9 @@ private:
     std::map<std::string, Client> clients_;
     std::map<std::int64_t, Asked> asked_;
     std::int64_t next_asked_ = 1;
-    std::string viewer_;                 ///< in whose name frames for all viewers are asked for
-    engine::FramesWanted viewers_want_;  ///< as the room's server knows it
+    std::map<std::string, AskedPicture> pictures_;  ///< under way, for those who are no clients
+    std::string viewer_;                            ///< in whose name frames for all viewers are asked for
+    engine::FramesWanted viewers_want_;             ///< as the room's server knows it
     std::map<std::int64_t, std::size_t> viewers_wanting_;  ///< how many, by the newest frame that they have
 
     std::uint64_t lease_ = 0, number_ = 0;

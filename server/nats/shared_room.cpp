@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 #include <sstream>
+#include <stdexcept>
 
 #include "observe/log.hpp"
 
@@ -25,6 +26,10 @@ std::string text_of(const room::Room::Checkpoint& checkpoint) {
     return protocol::encode(checkpoint.header) + "\n" +
            protocol::encode(protocol::LogLine{protocol::LogTime{0}, {}, checkpoint.revised});
 }
+
+struct Superseded : std::runtime_error {
+    Superseded() : std::runtime_error("another server draws it") {}
+};
 
 }  // namespace
 
@@ -123,13 +128,20 @@ void SharedRoom::begin(engine::RoomEngine& engine) {
 void SharedRoom::run(const std::stop_token& stop) {
     try {
         if (follow(stop)) own(stop);
+    } catch (const Superseded& error) {
+        leave(error.what(), stop);
     } catch (const std::exception& error) {
-        observe::log_warning("room_left", {{"room", options_.room}, {"reason", error.what()}});
         std::unique_lock lock(mutex_);
+        observe::log_warning("room_stalls", {{"room", options_.room}, {"reason", error.what()}});
         written_.wait_for(lock, stop, kPause, [] { return false; });
         lock.unlock();
-        if (!stop.stop_requested()) options_.on_superseded(error.what());
+        leave(error.what(), stop);
     }
+}
+
+void SharedRoom::leave(const std::string& why, const std::stop_token& stop) {
+    observe::log_warning("room_left", {{"room", options_.room}, {"reason", why}});
+    if (!stop.stop_requested()) options_.on_superseded(why);
 }
 
 // --- while another server draws the room
@@ -243,9 +255,8 @@ void SharedRoom::own(const std::stop_token& stop) {
             std::unique_lock lock(mutex_);
             written_.wait_for(lock, stop, kPoll, [&] { return !lines_.empty(); });
         }
-        if (steady_clock::now() - renewed_at_ >= kRenew && !renew())
-            throw std::runtime_error("another server draws it");
-        if (!append_lines()) throw std::runtime_error("another server draws it");
+        if (steady_clock::now() - renewed_at_ >= kRenew && !renew()) throw Superseded();
+        if (!append_lines()) throw Superseded();
         store_checkpoint();
     }
     while (append_lines() && entry_.empty()) {

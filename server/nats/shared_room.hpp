@@ -65,6 +65,7 @@ private:
     using Gate = std::deque<Gated>;
 
     void run(const std::stop_token& stop);
+    void leave(const std::string& why, const std::stop_token& stop);
     // While another server draws the room.
     bool load_state();
     bool follow(const std::stop_token& stop);

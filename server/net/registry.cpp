@@ -44,6 +44,12 @@ void ServedRoom::take(engine::EngineOutput output) {
         const auto found = clients.find(client);
         return found == clients.end() ? nullptr : found->second;
     };
+    if (output.begins_anew) {
+        for (const auto& [name, connection] : std::map(clients))
+            connection->close(boost::beast::websocket::close_code::service_restart, "the room begins anew");
+        newest.reset();
+        present_frame = 0;
+    }
     if (output.document) {
         document.set(std::move(output.document), std::move(output.by), output.by_since);
         pictures.forget_before(document.newest()->revision());

@@ -443,6 +443,8 @@ export type EventLogConnected = {
   event: 'connected';
   /** As in its `hello`. */
   name?: string;
+  /** As in its `hello`; only in a shared room's log. */
+  resume?: string;
   /** The role given. */
   role: 'control' | 'view' | 'host';
 };
@@ -495,8 +497,12 @@ export type EventLogHeader = {
     name?: string;
     /** Pixels of the image to a CSS pixel. */
     pixelRatio?: number;
+    /** As in its `hello`; only in a shared room's log. */
+    resume?: string;
     /** The role given. */
     role: 'control' | 'view' | 'host';
+    /** Of its last message; only in a shared room's log. */
+    sequence?: number;
     /** CSS pixels; fractions are allowed. */
     width?: number;
   }>;
@@ -549,6 +555,8 @@ export type EventLogHeader = {
   };
   /** Tells that the file is an event log. */
   log: 'vrut-preview';
+  /** Of the state; only in a shared room's log. */
+  revision?: number;
   /** Name of the scene that is shown. */
   scene: string;
   /** SHA-256 of the scene's file. */
@@ -565,7 +573,7 @@ export type EventLogHeader = {
   view: View;
 };
 
-export type EventLogLine = EventLogMessage | EventLogConnected | EventLogDisconnected | EventLogControl | EventLogOpened | EventLogDrawn;
+export type EventLogLine = EventLogMessage | EventLogConnected | EventLogDisconnected | EventLogControl | EventLogOpened | EventLogDrawn | EventLogRevised;
 
 export type EventLogMessage = {
   /** Milliseconds since the log began, in whole microseconds. */
@@ -588,6 +596,18 @@ export type EventLogOpened = {
   sceneSha256: string;
   /** The up axis in use; only for formats that do not define it. */
   upAxis?: 'y' | 'z';
+};
+
+export type EventLogRevised = {
+  /** Milliseconds since the log began, in whole microseconds. */
+  at: number;
+  event: 'revised';
+  /** The server's; missing: unchanged. */
+  notices?: Array<Notice>;
+  /** The event log that is being recorded, empty: none; missing: unchanged. */
+  recording?: string;
+  /** Of the state. */
+  revision: number;
 };
 
 export type FrameHeader = {
@@ -622,6 +642,8 @@ export type FrameHeader = {
   handled: number;
   /** Pixels of this file. */
   height: number;
+  /** Of the server that drew it, where several share the room: it rises with each that takes over. */
+  lease?: number;
   /** Where the markers' signs stand in the world, by name. */
   markers?: Record<string, Array<number>>;
   /** With what accuracy. */

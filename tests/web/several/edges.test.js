@@ -48,6 +48,7 @@ describe('an edge', { skip: missing }, () => {
       await here.ask({ type: 'control', action: 'take' });
       for (let i = 0; i < 4; ++i, await delay(500)) await here.patch(marker(`here${i}`));
       await eventually('that the edge says so', async () => (await fetch(`${room.url}readyz`)).status === 503, WITHIN_MS);
+      await there.until('that its clients are told', () => there.texts.find((text) => text.type === 'error' && /what you do is done when one does again/.test(text.message)), WITHIN_MS);
       const id = there.send({ type: 'control', action: 'take' });
       await here.frame();
       await back(nats, cluster);
