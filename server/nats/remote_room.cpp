@@ -310,19 +310,35 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
     if (!in_step_) return {};  // it comes with the whole
     engine::EngineOutput output;
     if (!said.state.empty()) take_state(said, output);
+    take_answers(said, is_whole || said.again, output);
+    output.failed_pictures = said.failed_pictures;
+    for (const std::string& picture : output.failed_pictures) pictures_.erase(picture);
+    take_handled(said, output);
+    if (said.width && said.height) output.size = engine::PictureSize{*said.width, *said.height};
+    output.present_frame = said.present_frame;
+    if (!said.stats.empty()) output.stats = std::make_shared<const std::string>(said.stats);
+    if (!said.loading.empty()) output.loading = std::make_shared<const std::string>(said.loading);
+    output.loads = said.loads;
+    return output;
+}
+
+/// `may_be_known`: some of the answers may have come before.
+void RemoteRoom::take_answers(const protocol::RoomOutput& said, bool may_be_known,
+                              engine::EngineOutput& output) {
     for (const protocol::RoomAnswer& answer : said.answers) {
         const auto found = clients_.find(answer.client);
         if (found == clients_.end()) continue;
         std::deque<std::string>& known = found->second.answers;
         std::string key = protocol::answer_key(answer.text);
-        if (is_whole || said.again)
+        if (may_be_known)
             if (key.empty() || std::ranges::find(known, key) != known.end()) continue;
         known.push_back(std::move(key));
         if (known.size() > kAnswersKnown) known.pop_front();
         output.answers.push_back({answer.client, answer.text, answer.revision});
     }
-    output.failed_pictures = said.failed_pictures;
-    for (const std::string& picture : output.failed_pictures) pictures_.erase(picture);
+}
+
+void RemoteRoom::take_handled(const protocol::RoomOutput& said, engine::EngineOutput& output) {
     for (const protocol::RoomHandled& handled : said.handled) {
         const auto found = clients_.find(handled.client);
         if (found == clients_.end()) continue;
@@ -336,12 +352,6 @@ std::optional<engine::EngineOutput> RemoteRoom::output_of(const protocol::RoomOu
             client.unhandled.pop_front();
         }
     }
-    if (said.width && said.height) output.size = engine::PictureSize{*said.width, *said.height};
-    output.present_frame = said.present_frame;
-    if (!said.stats.empty()) output.stats = std::make_shared<const std::string>(said.stats);
-    if (!said.loading.empty()) output.loading = std::make_shared<const std::string>(said.loading);
-    output.loads = said.loads;
-    return output;
 }
 
 void RemoteRoom::take_state(const protocol::RoomOutput& said, engine::EngineOutput& output) {

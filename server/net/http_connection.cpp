@@ -303,13 +303,14 @@ private:
         room_ = find_room(name, registry_);
         if (!room_) return send(no_room());
         deadline_ = base::Clock::time_point::max();  // the room's server has one of its own
-        room_->admit(
-            {{}, protocol::Role::view, token_of(request)},
-            [self = shared_from_this(), request](const tl::expected<protocol::Role, protocol::Error>& role) {
-                if (role) return self->send_picture(request);
-                if (role.error().code == protocol::error_code::not_allowed) return self->send(needs_token());
-                self->send(rejection(http::status::service_unavailable, role.error().message));
-            });
+        room_->admit({{}, protocol::Role::view, token_of(request)},
+                     [self = shared_from_this(), kept = std::make_shared<const HttpRequest>(request)](
+                         const tl::expected<protocol::Role, protocol::Error>& role) {
+                         if (role) return self->send_picture(*kept);
+                         if (role.error().code == protocol::error_code::not_allowed)
+                             return self->send(needs_token());
+                         self->send(rejection(http::status::service_unavailable, role.error().message));
+                     });
     }
 
     /// The present view, in the size asked for or the view's own.
