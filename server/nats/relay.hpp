@@ -16,11 +16,11 @@
 
 namespace vrut::server::nats {
 
-/// What edges say to the server of a room, and what that says to them.
+/// The subject of what edges send to the server of a room, and that of what the server sends to them.
 std::string subject_to(const std::string& room);
 std::string subject_from(const std::string& room);
 
-/// A line of JSON, and what bytes follow it.
+/// A line of JSON, and the bytes that follow it.
 struct Packet {
     std::string json;
     std::vector<std::uint8_t> bytes = {};
@@ -38,7 +38,7 @@ public:
     Outbox(const Outbox&) = delete;
     Outbox& operator=(const Outbox&) = delete;
 
-    /// From any thread. While more wait than a connection that stands can have, the oldest is dropped unmade.
+    /// From any thread. If more than 4096 wait, the oldest is dropped unmade.
     void post(Make make);
 
 private:
@@ -58,7 +58,7 @@ private:
 class Inbox {
 public:
     Inbox(const Connection& connection, const std::string& subject);
-    /// The next one, or none within `patience`. What is no packet is logged once in a while, and dropped.
+    /// The next one, or none within `patience`. What is no whole packet is dropped.
     std::optional<Packet> next(std::chrono::milliseconds patience);
 
 private:

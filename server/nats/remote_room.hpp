@@ -20,8 +20,8 @@
 
 namespace vrut::server::nats {
 
-/// A room that another server draws, as an edge's connections see it. What clients say is kept until that
-/// server has handled it, and is said again to the next one.
+/// A room that another server draws, as an edge's connections see it. A client's message is kept until that
+/// server has handled it, and is sent again to the next one.
 class RemoteRoom final : public engine::RoomEngine {
 public:
     using Admitted = std::function<void(tl::expected<protocol::Role, protocol::Error>)>;

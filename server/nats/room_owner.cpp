@@ -30,7 +30,7 @@ RoomOwner::RoomOwner(const Connection& connection, const std::string& room, Role
     : connection_(connection),
       room_(room),
       role_for_(std::move(role_for)),
-      outbox_(connection, subject_from(room)) {}
+      outbox_(std::in_place, connection, subject_from(room)) {}
 
 RoomOwner::~RoomOwner() { end(); }
 
@@ -50,7 +50,7 @@ void RoomOwner::begin(engine::RoomEngine& engine, std::uint64_t lease,
 }
 
 void RoomOwner::use_lease(std::uint64_t lease) {
-    outbox_.post([this, lease]() -> std::optional<Packet> {
+    outbox_->post([this, lease]() -> std::optional<Packet> {
         lease_ = lease;
         number_ = 0;
         return {};
@@ -58,7 +58,7 @@ void RoomOwner::use_lease(std::uint64_t lease) {
 }
 
 void RoomOwner::skip() {
-    outbox_.post([this]() -> std::optional<Packet> {
+    outbox_->post([this]() -> std::optional<Packet> {
         ++number_;
         skips_ = true;
         return {};
@@ -66,29 +66,34 @@ void RoomOwner::skip() {
 }
 
 void RoomOwner::end() {
-    thread_.request_stop();
-    if (!thread_.joinable()) return;
-    thread_.join();
-    outbox_.post([this] { return packet_of(protocol::RoomLeft{}); });
+    if (!outbox_) return;
+    if (thread_.joinable()) {
+        thread_.request_stop();
+        thread_.join();
+        outbox_->post([this] { return packet_of(protocol::RoomLeft{}); });
+    }
+    outbox_.reset();
+    newest_.reset();
+    sent_.reset();
 }
 
 // --- what is said to edges
 
 void RoomOwner::send(engine::EngineOutput output) {
-    outbox_.post([this, moved = std::move(output)]() mutable { return output_packet(std::move(moved)); });
+    outbox_->post([this, moved = std::move(output)]() mutable { return output_packet(std::move(moved)); });
 }
 
 /// Of frames the newest counts.
 void RoomOwner::send(std::shared_ptr<const engine::EncodedPicture> picture) {
     if (!picture->client.empty()) {
-        if (is_of_edge(picture->client)) outbox_.post([this, picture] { return picture_packet(*picture); });
+        if (is_of_edge(picture->client)) outbox_->post([this, picture] { return picture_packet(*picture); });
         return;
     }
     {
         const std::lock_guard lock(newest_mutex_);
         if (std::exchange(newest_, std::move(picture))) return;  // that one's turn is this one's
     }
-    outbox_.post([this] {
+    outbox_->post([this] {
         {
             const std::lock_guard lock(newest_mutex_);
             sent_ = std::exchange(newest_, nullptr);
@@ -236,7 +241,7 @@ void RoomOwner::send_alive() {
     alive.max_pixels = engine_->limits().max_pixels;
     alive.max_side = engine_->limits().max_side;
     alive.unready = engine_->why_unready().value_or("");
-    outbox_.post([this, alive] { return packet_of(alive); });
+    outbox_->post([this, alive] { return packet_of(alive); });
 }
 
 void RoomOwner::forget_silent_edges(base::Clock::time_point now) {
@@ -270,7 +275,7 @@ void RoomOwner::join(const std::string& edge, const protocol::EdgeClient& client
 void RoomOwner::leave(const std::string& client) {
     clients_.erase(client);
     engine_->push(engine::ClientLeft{client});
-    outbox_.post([this, client]() -> std::optional<Packet> {
+    outbox_->post([this, client]() -> std::optional<Packet> {
         handled_.erase(client);
         applied_.erase(client);
         return {};
@@ -299,8 +304,8 @@ void RoomOwner::handle(const std::string& edge, const protocol::EdgeSync& sync) 
             known->sequence = std::max(known->sequence, client.handled);
     }
     send_alive();
-    outbox_.post([this, edge] { return whole_packet(edge); });
-    outbox_.post([this] { return sent_ ? picture_packet(*sent_) : std::nullopt; });
+    outbox_->post([this, edge] { return whole_packet(edge); });
+    outbox_->post([this] { return sent_ ? picture_packet(*sent_) : std::nullopt; });
 }
 
 void RoomOwner::handle(const std::string&, const protocol::EdgeAlive&) {}
@@ -309,7 +314,7 @@ void RoomOwner::handle(const std::string& edge, const protocol::EdgeAdmission& a
     protocol::RoomAdmitted admitted{edge, asked.number, role_for_(asked.role, asked.token), {}};
     if (!admitted.role)
         admitted.why = asked.token.empty() ? "this server asks for a token" : "the token is wrong";
-    outbox_.post([this, admitted] { return packet_of(admitted); });
+    outbox_->post([this, admitted] { return packet_of(admitted); });
 }
 
 void RoomOwner::handle(const std::string& edge, const protocol::EdgeJoined& joined) {

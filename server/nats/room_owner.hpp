@@ -53,7 +53,8 @@ public:
     void begin(engine::RoomEngine& engine, std::uint64_t lease, const std::map<std::string, Known>& clients);
     /// Under a newer lease from here on.
     void use_lease(std::uint64_t lease);
-    /// Tells edges that this server draws the room no longer.
+    /// Tells edges that this server draws the room no longer. Nothing may be sent from here on, and nothing
+    /// that was is kept.
     void end();
 
 private:
@@ -123,8 +124,8 @@ private:
     std::size_t answer_bytes_ = 0;
     std::shared_ptr<const engine::EncodedPicture> sent_;  ///< the newest frame
 
-    Outbox outbox_;
-    std::jthread thread_;  // last: it uses all of the above
+    std::optional<Outbox> outbox_;  ///< none: it has ended
+    std::jthread thread_;           // last: it uses all of the above
 };
 
 }  // namespace vrut::server::nats

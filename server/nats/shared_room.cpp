@@ -16,11 +16,11 @@ using std::chrono::steady_clock;
 
 constexpr auto kPoll = 50ms;
 constexpr auto kRenew = 500ms;
-constexpr auto kPause = 500ms;                               // before it begins anew
+constexpr auto kPause = 5s;                                  // after what would come again at once
 constexpr auto kStateAgain = 2min;                           // before it expires
 constexpr std::size_t kEntryBytes = std::size_t{256} << 10;  // of lines, at most
 constexpr std::size_t kMostLines = 100'000;                  // that wait for NATS
-constexpr std::size_t kMostGated = 2'000;                    // what edges would be told
+constexpr std::size_t kMostGated = 2'000;                    // outputs and frames that wait for edges
 
 std::string text_of(const room::Room::Checkpoint& checkpoint) {
     return protocol::encode(checkpoint.header) + "\n" +
@@ -44,7 +44,17 @@ SharedRoom::~SharedRoom() { stop(); }
 void SharedRoom::stop() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
-    owner_.end();  // the engine may end from here on
+    end();  // and the engine may, from here on
+}
+
+void SharedRoom::end() {
+    {
+        const std::lock_guard lock(mutex_);
+        is_stopped_ = true;
+        to_clients_.clear();
+        to_edges_.clear();
+    }
+    owner_.end();
 }
 
 engine::EngineOptions::Shared SharedRoom::hooks() {
@@ -96,6 +106,7 @@ engine::EngineCallbacks SharedRoom::relay(engine::EngineCallbacks to_clients) {
 
 void SharedRoom::when_stored(std::function<void()> to_clients, std::function<void()> to_edges) {
     const std::lock_guard lock(mutex_);
+    if (is_stopped_) return;
     const bool is_stored = stored_lines_ == written_lines_;
     if ((is_stored || is_away_) && to_clients_.empty())
         to_clients();
@@ -263,7 +274,7 @@ void SharedRoom::own(const std::stop_token& stop) {
         const std::lock_guard lock(mutex_);
         if (lines_.empty()) break;
     }
-    owner_.end();  // before another draws
+    end();  // before another draws
     store_.release_lease();
 }
 

@@ -45,7 +45,8 @@ public:
     engine::EngineCallbacks relay(engine::EngineCallbacks to_clients);
     /// Follows, and takes over when nobody else draws the room. `engine` must live longer.
     void begin(engine::RoomEngine& engine);
-    /// Draws the room no longer: another server may at once. What is said from here on is lost.
+    /// Draws the room no longer: another server may at once. What the engine says from here on is dropped,
+    /// and nothing that it said is kept.
     void stop();
 
 private:
@@ -65,6 +66,7 @@ private:
     using Gate = std::deque<Gated>;
 
     void run(const std::stop_token& stop);
+    void end();
     void leave(const std::string& why, const std::stop_token& stop);
     // While another server draws the room.
     bool load_state();
@@ -105,6 +107,7 @@ private:
     std::optional<Checkpoint> checkpoint_;
     std::uint64_t written_lines_ = 0, stored_lines_ = 0;
     bool is_away_ = false;  ///< NATS does not answer
+    bool is_stopped_ = false;
     std::optional<std::string> failure_;
     Gate to_clients_, to_edges_;
 
