@@ -10,7 +10,7 @@
 
 #include "messages.hpp"
 
-/// What the server that draws a room and its edges, which serve it to clients, say to each other. Each
+/// Messages between the server that draws a room and its edges, which serve it to clients. Each
 /// message is a line of JSON; an image's bytes follow it.
 namespace vrut::protocol {
 
@@ -72,7 +72,7 @@ struct EdgePicture {
     int width = 0, height = 0;  ///< pixels; 0: the view's
 };
 struct EdgeMessage {
-    std::string edge;  ///< who says it
+    std::string edge;  ///< the sender
     std::variant<EdgeSync, EdgeAlive, EdgeAdmission, EdgeJoined, EdgeLeft, EdgeSaid, EdgeWanted,
                  EdgeSnapshotSent, EdgePicture>
         what;
@@ -88,7 +88,7 @@ struct RoomHandled {
     std::string client;
     std::uint64_t sequence = 0;  ///< of its last message that was handled
 };
-/// What it says to the connections of clients.
+/// For the connections of clients.
 struct RoomOutput {
     std::string edge;           ///< all that this one has to know; empty: news for all
     std::string state;          ///< the text of a `state` or a `patch`; empty: unchanged

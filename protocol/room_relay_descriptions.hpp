@@ -3,7 +3,7 @@
 #include "descriptions.hpp"
 #include "room_relay.hpp"
 
-/// The members of what servers of rooms and edges say to each other. For protocol's own .cpp files.
+/// The members of the messages between servers of rooms and edges. For protocol's own .cpp files.
 namespace vrut::protocol {
 
 inline constexpr std::size_t kMostText = std::size_t{256} << 20;  // of documents

@@ -54,7 +54,7 @@ void RemoteRoom::say(decltype(protocol::EdgeMessage::what) what) {
     });
 }
 
-// --- what the edge's connections say
+// --- from the edge's connections
 
 void RemoteRoom::admit(const engine::Admission& asked, Admitted done) {
     const std::lock_guard lock(mutex_);
@@ -180,7 +180,7 @@ std::size_t RemoteRoom::events_waiting() const {
     return waiting;
 }
 
-// --- what the room's server says
+// --- from the room's server
 
 void RemoteRoom::receive(const std::stop_token& stop) {
     while (!stop.stop_requested()) {

@@ -37,7 +37,7 @@ RoomOwner::~RoomOwner() { end(); }
 void RoomOwner::begin(engine::RoomEngine& engine, std::uint64_t lease,
                       const std::map<std::string, Known>& clients) {
     engine_ = &engine;
-    inbox_.emplace(connection_, subject_to(room_));  // what was said before was for another server
+    inbox_.emplace(connection_, subject_to(room_));  // messages before were for another server
     const base::Clock::time_point now = base::Clock::now();
     for (const auto& [client, known] : clients) {
         if (!is_of_edge(client)) continue;
@@ -77,7 +77,7 @@ void RoomOwner::end() {
     sent_.reset();
 }
 
-// --- what is said to edges
+// --- to edges
 
 void RoomOwner::send(engine::EngineOutput output) {
     outbox_->post([this, moved = std::move(output)]() mutable { return output_packet(std::move(moved)); });
@@ -207,7 +207,7 @@ std::optional<Packet> RoomOwner::picture_packet(const engine::EncodedPicture& pi
     return packet;
 }
 
-// --- what edges say
+// --- from edges
 
 void RoomOwner::receive(const std::stop_token& stop) {
     while (!stop.stop_requested()) {

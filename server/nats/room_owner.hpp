@@ -24,8 +24,8 @@ namespace vrut::server::nats {
 /// Clients of edges have a suffix behind a point: the edge's id.
 bool is_of_edge(const std::string& client);
 
-/// Serves a room that this process draws to edges. What the room's engine says is sent once, for all of them.
-/// An edge that is silent for 5 s is gone, and its clients with it.
+/// Serves a room that this process draws to edges. The output of the room's engine is sent once, for all of
+/// them. An edge that is silent for 5 s is gone, and its clients with it.
 class RoomOwner {
 public:
     /// The role that a client gets who asks for `wanted` with this token; none where it may not come in.
@@ -43,12 +43,12 @@ public:
     RoomOwner(const RoomOwner&) = delete;
     RoomOwner& operator=(const RoomOwner&) = delete;
 
-    /// What the engine says, from the first on; from any thread.
+    /// The engine's output, from the first on; from any thread.
     void send(engine::EngineOutput output);
     void send(std::shared_ptr<const engine::EncodedPicture> picture);
     /// Edges do not get what is sent next: they find that something is missing, and ask for all.
     void skip();
-    /// What edges say goes to `engine` from here on, which must live longer. `lease` rises with each server
+    /// Messages of edges go to `engine` from here on, which must live longer. `lease` rises with each server
     /// that takes the room over; what is sent before is sent to nobody.
     void begin(engine::RoomEngine& engine, std::uint64_t lease, const std::map<std::string, Known>& clients);
     /// Under a newer lease from here on.
@@ -69,7 +69,7 @@ private:
         bool in_step = true;  ///< no message of it was missed
     };
 
-    // --- what edges say, on a thread of its own
+    // --- from edges, on a thread of its own
     void receive(const std::stop_token& stop);
     void handle(const std::string& edge, const protocol::EdgeSync& sync);
     void handle(const std::string& edge, const protocol::EdgeAlive& alive);
@@ -87,7 +87,7 @@ private:
     /// Null where it is not there.
     Client* find(const std::string& edge, const std::string& client);
 
-    // --- what is said to them, on the outbox's thread
+    // --- to edges, on the outbox's thread
     std::optional<Packet> output_packet(engine::EngineOutput output);
     std::optional<Packet> picture_packet(const engine::EncodedPicture& picture);
     std::optional<Packet> packet_of(decltype(protocol::RoomMessage::what) what);

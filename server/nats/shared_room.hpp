@@ -40,13 +40,13 @@ public:
 
     /// For the engine of the room.
     engine::EngineOptions::Shared hooks();
-    /// What the engine says goes through these to `to_clients`, those of this server's own door, and to
+    /// The engine's output goes through these to `to_clients`, those of this server's own door, and to
     /// edges.
     engine::EngineCallbacks relay(engine::EngineCallbacks to_clients);
     /// Follows, and takes over when nobody else draws the room. `engine` must live longer.
     void begin(engine::RoomEngine& engine);
-    /// Draws the room no longer: another server may at once. What the engine says from here on is dropped,
-    /// and nothing that it said is kept.
+    /// Draws the room no longer: another server may at once. The engine's output from here on is dropped,
+    /// and nothing of it is kept.
     void stop();
 
 private:

@@ -117,7 +117,7 @@ public:
     void write_revision();
     /// Where it follows: the state has this revision now.
     void follow(const protocol::LogLine::Revised& revised, SessionTime at);
-    /// It follows no longer: from here on what is said is judged.
+    /// It follows no longer: from here on messages are judged.
     void go_on(RoomOptions options);
     SessionTime time() const { return time_; }
     std::vector<std::pair<std::string, protocol::Role>> clients() const;
