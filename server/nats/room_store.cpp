@@ -137,7 +137,8 @@ RoomStore::Renewed RoomStore::renew_lease() {
         lease_revision_ = revision;
         return Renewed::yes;
     }
-    if (status != NATS_ERR) return Renewed::unknown;
+    if (!connection_.is_connected()) return Renewed::unknown;
+    // With another answer or none, the key itself shows who has it.
     kvEntry* found = nullptr;
     const natsStatus read = kvStore_Get(&found, leases_.get(), room_.c_str());
     const Handle<kvEntry, kvEntry_Destroy> entry(found);
