@@ -36,7 +36,8 @@ EncodedFrameHeader::EncodedFrameHeader(const FrameHeader& header)
 EncodedFrameHeader::EncodedFrameHeader(const std::string& text) {
     // Quotes within a name are escaped, so that neither of the two stands elsewhere.
     const std::string handled = "\"handled\":", since_input = ",\"sinceInputMs\":0.0";
-    const std::size_t at = text.find(handled + "0,"), second = text.find(since_input, std::min(at, text.size()));
+    const std::size_t at = text.find(handled + "0,"),
+                      second = text.find(since_input, std::min(at, text.size()));
     if (at == std::string::npos || second == std::string::npos)
         throw std::runtime_error("a frame's header has no 'handled' or no 'sinceInputMs'");
     const std::size_t first = at + handled.size();

@@ -251,7 +251,8 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
         "/trust shows other devices how to trust the server's authority, which they need once."};
     add_file(*command, "SCENE", arguments.scene, "Serve this scene file.")->default_str("the car");
     add_network(*command, arguments.network);
-    auto* const nats = add_nats(*command, arguments.nats, "Share the room over this NATS server (see 'edge').");
+    auto* const nats =
+        add_nats(*command, arguments.nats, "Share the room over this NATS server (see 'edge').");
     add_room(*command, arguments.room)->needs(nats);
     nats->needs(command->get_option("--room"));
     add_folder(*command, "--scenes", arguments.scenes,
@@ -281,8 +282,10 @@ std::shared_ptr<Command> describe_serve(ServeArguments& arguments) {
 std::shared_ptr<Command> describe_edge(EdgeArguments& arguments) {
     auto command = std::make_shared<Command>("Serve the rooms of other servers to clients.", "edge");
     command->description = {
-        "An edge brings clients to the rooms that servers share with 'serve --nats --room': the page of a room "
-        "is at /rooms/NAME/. It draws nothing itself, and sends on each image that a server has encoded once. "
+        "An edge brings clients to the rooms that servers share with 'serve --nats --room': the page of a "
+        "room "
+        "is at /rooms/NAME/. It draws nothing itself, and sends on each image that a server has encoded "
+        "once. "
         "The more edges there are, the more clients can watch. "
         "SIGINT, SIGTERM and SIGHUP end it.",
         "Clients need the tokens of the room. The edge's own tokens are for those who monitor it. Without "

@@ -17,8 +17,8 @@
 
 namespace vrut::server::engine {
 
-/// A picture that is counted as long as anybody holds it. It may not outlive `metrics`, and what its file takes
-/// is to be added to Metrics::bytes_held.
+/// A picture that is counted as long as anybody holds it. It may not outlive `metrics`, and what its file
+/// takes is to be added to Metrics::bytes_held.
 std::shared_ptr<EncodedPicture> counted_picture(observe::Metrics& metrics);
 
 /// The encode thread: one picture waits at most.

@@ -217,8 +217,7 @@ void Connection::on_text(std::string_view text) {
     if (const auto* granted = message ? std::get_if<protocol::FrameGrant>(&message->payload) : nullptr)
         grant = *granted;
     const std::optional<std::int64_t> id = message ? message->id : std::nullopt;
-    if (!grant || id)
-        forward(std::move(message), text);  // a grant's id rises with those of the others
+    if (!grant || id) forward(std::move(message), text);  // a grant's id rises with those of the others
     if (grant) on_grant(*grant, id);
 }
 

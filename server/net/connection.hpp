@@ -102,7 +102,7 @@ private:
     boost::beast::flat_buffer incoming_;
     boost::asio::steady_timer hello_deadline_, deadline_timer_, rate_timer_, flow_timer_;
     ConnectionLimit::Place place_;
-    std::string client_;        // empty until it has joined
+    std::string client_;       // empty until it has joined
     bool is_joining_ = false;  // its hello is not answered yet
     protocol::Role role_ = protocol::Role::view;
     std::string peer_;

@@ -92,8 +92,7 @@ bool Connection::frame_is_due(base::Clock::time_point now) const {
 
 /// The newest frame waits for the view to have rested, and the view has moved on.
 bool Connection::holds_in_vain(base::Clock::time_point now) const {
-    return has_newer_frame() && room_->newest->header.frame != room_->present_frame &&
-           newest_from(now) > now;
+    return has_newer_frame() && room_->newest->header.frame != room_->present_frame && newest_from(now) > now;
 }
 
 /// What was not sent because of what is under way is looked at again when that may have changed.

@@ -42,8 +42,7 @@ public:
     const ViewPicture* find(const ViewPictureKey& key) const;
     /// Asks the engine for an image of this revision or a newer one, and calls `done` with it. False if
     /// kMostWaiting are being drawn. `suffix`: of its name there.
-    bool ask(const ViewPictureKey& key, Done done, engine::RoomEngine& engine,
-             const std::string& suffix);
+    bool ask(const ViewPictureKey& key, Done done, engine::RoomEngine& engine, const std::string& suffix);
     /// False where `picture` is none that was asked for here.
     bool take(const engine::EncodedPicture& picture);
     /// The picture that was asked for by this name cannot be drawn.

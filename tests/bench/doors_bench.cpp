@@ -32,5 +32,6 @@ TEST_CASE("watchers get each change") {
     const double seconds = std::chrono::duration<double>(kLasts).count();
     std::printf("{\"changes\":%.1f,\"delivered\":%.1f,\"p50\":%.1f,\"p99\":%.1f}\n",
                 static_cast<double>(audience.changes() - before) / seconds,
-                static_cast<double>(audience.seen()) / seconds, audience.percentile(0.5), audience.percentile(0.99));
+                static_cast<double>(audience.seen()) / seconds, audience.percentile(0.5),
+                audience.percentile(0.99));
 }
