@@ -246,6 +246,7 @@ bool SharedRoom::take_over(std::uint64_t lease) {
         taken_over.get_future().wait();
         {
             const std::lock_guard lock(mutex_);
+            if (failure_) throw std::runtime_error(*failure_);  // of the last lines
             of_edges = clients_;
         }
         // The door of who drew it before is another's.
