@@ -51,7 +51,7 @@ struct EngineOptions {
         /// On the render thread; the lines before it led here.
         std::function<void(const room::Room::Checkpoint& checkpoint)> on_checkpoint;
         std::function<void(const std::string& why)>
-            on_failure;  ///< following has failed: it has to begin anew
+            on_failure;  ///< the room cannot be followed: the server has to start again
     };
     std::optional<Shared> shared = {};
 };

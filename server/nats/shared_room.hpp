@@ -29,7 +29,7 @@ public:
         std::string room;
         RoomOwner::RoleFor role_for;
         room::SceneFinder find_scene;
-        /// On a thread of its own: another server draws the room; this one has to begin anew.
+        /// On a thread of its own: another server draws the room, and this one has to start again.
         std::function<void(const std::string& why)> on_superseded;
     };
 

@@ -331,7 +331,7 @@ describe('HAProxy in front of edges', { skip: missing('openssl', '/usr/sbin/hapr
   test('clients stay at an edge; when it is not ready, they go to the other one, and stay there', async () => {
     const first = await whose();
     for (let i = 0; i < 6; ++i) assert.equal(await whose(), first);
-    const [own, other] = first === 'a' ? edges : edges.toReversed();
+    const [own, other] = first === 'a' ? edges : [...edges].reverse();
     const client = await Client.connect(`wss://localhost:${proxy.port}/rooms/car/ws`);
     own.isReady = false;
     await eventually('the end of the WebSocket', () => client.socket.readyState === client.socket.CLOSED);

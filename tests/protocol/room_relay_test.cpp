@@ -85,7 +85,7 @@ TEST_CASE("what the server of a room says reads back the same") {
     room_round_trip(RoomLeft{});
 }
 
-TEST_CASE("what is none of these is told in a sentence") {
+TEST_CASE("any other text gets a sentence") {
     const auto wrong = [](const char* text) { return parse_edge_message(text).error(); };
     CHECK(wrong("no JSON").starts_with("the message is not JSON"));
     CHECK(wrong("[]") == "the message must be a JSON object");
