@@ -1,12 +1,12 @@
 #include "nats/render_queue.hpp"
 
 #include <algorithm>
-#include <array>
 #include <condition_variable>
 #include <mutex>
 #include <stdexcept>
 #include <string_view>
 
+#include "nats/stream.hpp"
 #include "observe/log.hpp"
 
 namespace vrut::server::nats {
@@ -20,26 +20,13 @@ constexpr std::size_t kPartBytes = std::size_t{512} << 10;  // a NATS server tak
 constexpr std::size_t kMostParts = 4096;
 constexpr std::chrono::milliseconds kPoll{500};
 constexpr int kPollsOfCheck = 4;  // after so many without a message it is asked whether the queue is there
-constexpr std::int64_t kKept = std::chrono::nanoseconds(24h).count();
+constexpr auto kKept = 24h;
 
 std::string jobs_subject(const std::string& run) { return "vrut.jobs." + run; }
 std::string images_subject(const std::string& run) { return "vrut.images." + run; }
 std::string images_stream(const std::string& run) { return "VRUT_IMAGES_" + run; }
 
-void add_stream(const Connection& connection, const std::string& name, const std::string& subject,
-                jsRetentionPolicy retention) {
-    std::array<const char*, 1> subjects{subject.c_str()};
-    jsStreamConfig config;
-    jsStreamConfig_Init(&config);
-    config.Name = name.c_str();
-    config.Subjects = subjects.data();
-    config.SubjectsLen = 1;
-    config.Retention = retention;
-    config.MaxAge = kKept;
-    jsErrCode error{};
-    const natsStatus status = js_AddStream(nullptr, connection.jetstream(), &config, nullptr, &error);
-    connection.require(status, "the queue " + name + " cannot be made", error);
-}
+Stream stream_of_jobs() { return {kJobs, jobs_subject("*"), js_WorkQueuePolicy, kKept}; }
 
 /// False where the server says so, not where it says nothing.
 bool has_stream(const Connection& connection, const std::string& name) {
@@ -142,7 +129,7 @@ void TakenJob::hand_on(const std::string& sentence) {
 JobQueue::JobQueue(const Connection& connection) : connection_(connection) { subscribe(); }
 
 void JobQueue::subscribe() {
-    add_stream(connection_, kJobs, jobs_subject("*"), js_WorkQueuePolicy);
+    add_stream(connection_, stream_of_jobs());
     jsSubOptions options;
     jsSubOptions_Init(&options);
     options.Stream = kJobs;
@@ -207,8 +194,8 @@ std::unique_ptr<TakenJob> JobQueue::take_message(Message message) {
 
 FilmQueue::FilmQueue(const Connection& connection, std::string run)
     : connection_(connection), run_(std::move(run)), stream_(images_stream(run_)) {
-    add_stream(connection, kJobs, jobs_subject("*"), js_WorkQueuePolicy);
-    add_stream(connection, stream_, images_subject(run_), js_LimitsPolicy);
+    add_stream(connection, stream_of_jobs());
+    add_stream(connection, {stream_, images_subject(run_), js_LimitsPolicy, kKept});
     jsSubOptions options;
     jsSubOptions_Init(&options);
     options.Stream = stream_.c_str();

@@ -3,10 +3,10 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
 #include <string_view>
 
+#include "nats/stream.hpp"
 #include "observe/log.hpp"
 
 namespace vrut::server::nats {
@@ -19,7 +19,6 @@ constexpr const char *kLeases = "VRUT_LEASES", *kStates = "VRUT_ROOMS";
 /// A room that nobody has drawn for so long is forgotten.
 constexpr std::int64_t kKept = std::chrono::nanoseconds(10min).count();
 constexpr std::chrono::milliseconds kPatience{400};
-constexpr std::array kReplicas{3, 1};  // as many as the servers of NATS allow
 constexpr std::size_t kMostEntries = 256;
 
 std::string upper(std::string text) {
@@ -76,7 +75,7 @@ RoomStore::RoomStore(const Connection& connection, std::string room)
       impatient_(impatient(connection.get())),
       leases_(bucket(kLeases, std::chrono::nanoseconds(kLease).count())),
       states_(bucket(kStates, kKept)) {
-    add_log();
+    add_stream(connection, {log_, subject_});
 }
 
 RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_live) const {
@@ -94,28 +93,10 @@ RoomStore::KeyValue RoomStore::bucket(const char* name, std::int64_t time_to_liv
         kvStore_Destroy(store);
         if (status == NATS_OK && js_KeyValue(&store, impatient_.get(), name) == NATS_OK)
             return KeyValue(store);
+        if (!has_refused(status)) break;
     }
     connection_.require(status, "the bucket " + std::string(name) + " cannot be made");
     return {};
-}
-
-void RoomStore::add_log() const {
-    jsErrCode error{};
-    natsStatus status = NATS_OK;
-    for (const int replicas : kReplicas) {
-        std::array<const char*, 1> subjects{subject_.c_str()};
-        jsStreamConfig config;
-        jsStreamConfig_Init(&config);
-        config.Name = log_.c_str();
-        config.Subjects = subjects.data();
-        config.SubjectsLen = 1;
-        config.Retention = js_LimitsPolicy;
-        config.Replicas = replicas;
-        status = js_AddStream(nullptr, connection_.jetstream(), &config, nullptr, &error);
-        // It is there, with another number of replicas.
-        if (status == NATS_OK || error == JSStreamNameExistErr) return;
-    }
-    connection_.require(status, "the log " + log_ + " cannot be made", error);
 }
 
 // --- who draws the room
@@ -154,6 +135,12 @@ void RoomStore::release_lease() { kvStore_Delete(leases_.get(), room_.c_str()); 
 // --- its state
 
 std::optional<RoomStore::State> RoomStore::state() const {
+    auto kept = kept_state();
+    if (!kept) return std::nullopt;
+    return std::move(kept->state);
+}
+
+std::optional<RoomStore::Kept> RoomStore::kept_state() const {
     kvEntry* found = nullptr;
     const natsStatus status = kvStore_Get(&found, states_.get(), room_.c_str());
     const Handle<kvEntry, kvEntry_Destroy> entry(found);
@@ -168,14 +155,30 @@ std::optional<RoomStore::State> RoomStore::state() const {
         throw std::runtime_error("the state of the room '" + room_ +
                                  "' cannot be read: serve it by another name, or wait for ten minutes, when "
                                  "NATS has forgotten it");
-    return State{*sequence, *std::move(text)};
+    return Kept{{*sequence, *std::move(text)}, kvEntry_Revision(found)};
 }
 
+/// In place of the state that this server knows, and of no other: what a former owner of the room, or a NATS
+/// server that hung, still has to say does not undo it.
 bool RoomStore::store_state(const State& state) {
     const std::string value = std::to_string(state.sequence) + "\n" + deflated(state.text);
-    const natsStatus status =
-        kvStore_Put(nullptr, states_.get(), room_.c_str(), value.data(), static_cast<int>(value.size()));
-    if (status != NATS_OK) return false;
+    const auto put = [&] {
+        const int size = static_cast<int>(value.size());
+        return state_revision_ == 0
+                   ? kvStore_Create(&state_revision_, states_.get(), room_.c_str(), value.data(), size)
+                   : kvStore_Update(&state_revision_, states_.get(), room_.c_str(), value.data(), size,
+                                    state_revision_);
+    };
+    if (put() != NATS_OK) {
+        try {
+            const auto kept = kept_state();
+            if (kept && kept->state.sequence > state.sequence) return false;
+            state_revision_ = kept ? kept->revision : 0;
+        } catch (const std::runtime_error&) {
+            return false;
+        }
+        if (put() != NATS_OK) return false;
+    }
     jsOptions options;
     jsOptions_Init(&options);
     options.Stream.Purge.Sequence = state.sequence + 1;
@@ -223,20 +226,22 @@ std::vector<RoomStore::Entry> RoomStore::next(std::chrono::milliseconds patience
     return entries;
 }
 
-std::optional<std::uint64_t> RoomStore::last_sequence() const {
+std::optional<RoomStore::Range> RoomStore::range() const {
     jsStreamInfo* info = nullptr;
     const natsStatus status = js_GetStreamInfo(&info, impatient_.get(), log_.c_str(), nullptr, nullptr);
     if (status != NATS_OK) return std::nullopt;
-    const std::uint64_t last = info->State.LastSeq;
+    const Range range{info->State.FirstSeq, info->State.LastSeq};
     jsStreamInfo_Destroy(info);
-    return last;
+    return range;
 }
 
-RoomStore::Appended RoomStore::append(const std::string& text, std::uint64_t last, const std::string& id) {
+tl::expected<std::uint64_t, RoomStore::NotAppended> RoomStore::append(const std::string& text,
+                                                                      std::uint64_t last,
+                                                                      const std::string& id) {
     natsMsg* created = nullptr;
     if (natsMsg_Create(&created, subject_.c_str(), nullptr, text.data(), static_cast<int>(text.size())) !=
         NATS_OK)
-        return Appended::unknown;
+        return tl::unexpected(NotAppended::unknown);
     const Message message(created);
     natsMsgHeader_Set(created, "Nats-Expected-Last-Sequence", std::to_string(last).c_str());
     natsMsgHeader_Set(created, "Nats-Msg-Id", id.c_str());
@@ -244,9 +249,12 @@ RoomStore::Appended RoomStore::append(const std::string& text, std::uint64_t las
     jsPubOptions_Init(&options);
     options.MaxWait = kPatience.count();
     jsErrCode error{};
-    const natsStatus status = js_PublishMsg(nullptr, impatient_.get(), created, &options, &error);
-    if (status == NATS_OK) return Appended::yes;
-    return error == JSStreamWrongLastSequenceErr ? Appended::superseded : Appended::unknown;
+    jsPubAck* acknowledged = nullptr;
+    const natsStatus status = js_PublishMsg(&acknowledged, impatient_.get(), created, &options, &error);
+    const Handle<jsPubAck, jsPubAck_Destroy> acknowledgement(acknowledged);
+    if (status == NATS_OK) return acknowledged->Sequence;
+    return tl::unexpected(error == JSStreamWrongLastSequenceErr ? NotAppended::superseded
+                                                                : NotAppended::unknown);
 }
 
 }  // namespace vrut::server::nats

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <tl/expected.hpp>
 #include <vector>
 
 #include "nats/connection.hpp"
@@ -31,7 +32,7 @@ public:
     };
     /// None where none is kept. Throws std::runtime_error where NATS does not answer.
     std::optional<State> state() const;
-    /// And forgets the log up to there. Returns false if it could not be stored.
+    /// And forgets the log up to there. Returns false where it could not be stored, or a later one is there.
     bool store_state(const State& state);
 
     // --- the log
@@ -43,18 +44,27 @@ public:
     void follow(std::uint64_t sequence);
     /// The next ones, none within `patience`. Throws std::runtime_error where some are lost.
     std::vector<Entry> next(std::chrono::milliseconds patience);
-    /// The sequence of the last entry; none where NATS does not answer.
-    std::optional<std::uint64_t> last_sequence() const;
-    enum class Appended { yes, superseded, unknown };
-    /// Adds an entry behind the one of `last`, and only there. `id`: it is added once, however often it is
-    /// tried.
-    Appended append(const std::string& text, std::uint64_t last, const std::string& id);
+    /// Sequences of the first entry and of the last. An empty log's last is the one before its first.
+    struct Range {
+        std::uint64_t first = 0, last = 0;
+    };
+    /// What the log has; none where NATS does not answer.
+    std::optional<Range> range() const;
+    enum class NotAppended { superseded, unknown };  ///< superseded: another entry is there
+    /// Adds an entry behind the one of `last`, and only there. Within two minutes NATS adds an entry of this
+    /// `id` once, however often it is tried. Returns its sequence.
+    tl::expected<std::uint64_t, NotAppended> append(const std::string& text, std::uint64_t last,
+                                                    const std::string& id);
 
 private:
     using KeyValue = Handle<kvStore, kvStore_Destroy>;
     using JetStream = Handle<jsCtx, jsCtx_Destroy>;
     KeyValue bucket(const char* name, std::int64_t time_to_live) const;
-    void add_log() const;
+    struct Kept {
+        State state;
+        std::uint64_t revision = 0;  ///< of the key
+    };
+    std::optional<Kept> kept_state() const;
 
     const Connection& connection_;
     const std::string room_, log_, subject_;
@@ -62,6 +72,7 @@ private:
     KeyValue leases_, states_;
     std::string holder_;
     std::uint64_t lease_revision_ = 0;  ///< of the key, as this server renewed it last
+    std::uint64_t state_revision_ = 0;  ///< of the key, as this server knows it; 0: it has none
     std::uint64_t followed_ = 0;        ///< sequence of the last entry that came
     Subscription subscription_;
 };

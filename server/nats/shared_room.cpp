@@ -175,6 +175,7 @@ bool SharedRoom::load_state() {
     if (!scene)
         throw std::runtime_error("the room '" + options_.room + "' shows another scene: " + scene.error());
     auto checkpoint = std::make_shared<room::Room::Checkpoint>();
+    clients_.clear();
     for (const protocol::LogHeader::Client& client : header->clients)
         clients_[client.client] = {client.role == protocol::Role::control, client.sequence};
     checkpoint->header = *std::move(header);
@@ -217,7 +218,7 @@ bool SharedRoom::follow(const std::stop_token& stop) {
             if (failure_) throw std::runtime_error(*failure_);
             if (!has_state_) written_.wait_for(lock, stop, kPoll, [] { return false; });
         }
-        const auto lease = connection_.is_connected() ? store_.take_lease(connection_.id()) : std::nullopt;
+        const auto lease = connection_.is_connected() ? store_.take_lease(id_) : std::nullopt;
         if (lease && take_over(*lease)) return true;
     }
     return false;
@@ -225,19 +226,24 @@ bool SharedRoom::follow(const std::stop_token& stop) {
 
 /// Behind the last line of who drew the room before: it can add no further one then.
 bool SharedRoom::take_over(std::uint64_t lease) {
-    const std::string id = random_id();
     // A state may have been stored since it was asked for; else this server is the first.
     if (!has_state_ && !(has_state_ = load_state())) {
-        followed_ = store_.last_sequence().value_or(0);
-        store_.follow(followed_);
+        const auto log = store_.range();
+        store_.follow(followed_ = log ? log->last : 0);
     }
     for (const auto end = steady_clock::now() + RoomStore::kLease; steady_clock::now() < end;) {
-        const auto last = store_.last_sequence();
-        while (last && followed_ < *last && steady_clock::now() < end)
+        const auto log = store_.range();
+        if (!log) continue;
+        // What came between was forgotten when a later state was stored.
+        if (followed_ + 1 < log->first && !load_state())
+            throw std::runtime_error("entries of the room's log are lost, from " +
+                                     std::to_string(followed_ + 1));
+        while (followed_ < log->last && steady_clock::now() < end)
             for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
-        if (!last || followed_ < *last) continue;
-        if (store_.append("", followed_, id) != RoomStore::Appended::yes) continue;
-        ++followed_;
+        if (followed_ < log->last) continue;
+        const auto appended = store_.append("", followed_, id_ + ".first");
+        if (!appended) continue;
+        followed_ = *appended;
         renewed_at_ = steady_clock::now();
         observe::log_info("room_taken_over", {{"room", options_.room}, {"lease", lease}});
         std::map<std::string, RoomOwner::Known> of_edges;
@@ -290,7 +296,7 @@ bool SharedRoom::renew() {
             renewed_at_ = steady_clock::now();
             return true;
         case RoomStore::Renewed::expired: {
-            const auto lease = store_.take_lease(connection_.id());
+            const auto lease = store_.take_lease(id_);
             if (!lease) break;
             owner_.use_lease(*lease);
             engine_->push(engine::TakeOver{*lease, [] {}});
@@ -316,14 +322,14 @@ bool SharedRoom::append_lines() {
             lines_.pop_front();
         }
         if (entry_.empty()) return true;
-        entry_id_ = connection_.id() + "." + std::to_string(++entries_);
+        entry_id_ = id_ + "." + std::to_string(++entries_);
     }
-    const RoomStore::Appended appended = connection_.is_connected()
-                                             ? store_.append(entry_, followed_, entry_id_)
-                                             : RoomStore::Appended::unknown;
-    if (appended == RoomStore::Appended::superseded) return false;
+    using NotAppended = RoomStore::NotAppended;
+    const auto appended = connection_.is_connected() ? store_.append(entry_, followed_, entry_id_)
+                                                     : tl::unexpected(NotAppended::unknown);
+    if (!appended && appended.error() == NotAppended::superseded) return false;
     const std::lock_guard lock(mutex_);
-    if (is_away_ != (appended == RoomStore::Appended::unknown)) {
+    if (is_away_ == appended.has_value()) {
         is_away_ = !is_away_;
         if (is_away_)
             observe::log_warning("room_not_stored", {{"room", options_.room}});
@@ -335,7 +341,7 @@ bool SharedRoom::append_lines() {
         return true;
     }
     entry_.clear();
-    ++followed_;
+    followed_ = *appended;
     stored_lines_ = entry_number_;
     release(to_clients_, stored_lines_);
     release(to_edges_, stored_lines_);

@@ -84,6 +84,7 @@ private:
 
     const Connection& connection_;
     const Options options_;
+    const std::string id_ = random_id();  ///< of its leases and entries; no other has it, not of this server
     RoomStore store_;
     RoomOwner owner_;
     engine::RoomEngine* engine_ = nullptr;

@@ -12,12 +12,16 @@ export const missing = existsSync(NATS_SERVER) ? false : `${NATS_SERVER} is miss
 process.setMaxListeners(0);
 const READY_WITHIN_MS = 60_000;
 
+/** A machine: its address, and what runs a command there. */
+const HERE = { address: '127.0.0.1', enter: [] };
+
 export async function eventually(what, check, within = READY_WITHIN_MS) {
+  let failure;
   for (const end = Date.now() + within; Date.now() < end; await delay(20)) {
-    const result = await Promise.resolve().then(check).catch(() => false);
+    const result = await Promise.resolve().then(check).catch((error) => void (failure = error));
     if (result) return result;
   }
-  throw new Error(`Not within ${within} ms: ${what}`);
+  throw new Error(`Not within ${within} ms: ${what}`, { cause: failure });
 }
 
 export async function freePort() {
@@ -55,6 +59,8 @@ export class Process {
 
 export class Cluster {
   processes = [];
+  /** What servers and edges want to see, if any. */
+  headers = {};
   folder = temporaryFolder();
 
   constructor(t) {
@@ -67,6 +73,11 @@ export class Cluster {
     return started;
   }
 
+  /** Starts it on a machine, by default this one. */
+  startOn({ enter } = HERE, command, ...options) {
+    return this.start(...enter, command, ...options);
+  }
+
   async startNats(...options) {
     this.port ??= await freePort();
     this.monitoring ??= await freePort();
@@ -77,14 +88,18 @@ export class Cluster {
   }
 
   /** A server of the room `name`, which follows or draws. */
-  async serve(name, { scene = sceneFile('stage.vrut'), options = [] } = {}) {
-    const server = this.start(PROGRAM, 'serve', scene, '--listen', '127.0.0.1:0', '--nats', this.url, '--room', name, ...options);
+  async serve(name, { scene = sceneFile('stage.vrut'), options = [], machine = HERE } = {}) {
+    const server = this.startOn(machine, PROGRAM, 'serve', scene, '--listen', `${machine.address}:0`, '--nats', this.url, '--room', name, ...options);
     await this.#address(server);
     return server;
   }
 
   async edge(...options) {
-    const edge = this.start(PROGRAM, 'edge', '--listen', '127.0.0.1:0', '--nats', this.url, ...options);
+    return this.edgeOn(HERE, `${HERE.address}:0`, ...options);
+  }
+
+  async edgeOn(machine, listen, ...options) {
+    const edge = this.startOn(machine, PROGRAM, 'edge', '--listen', listen, '--nats', this.url, ...options);
     await this.#address(edge);
     return edge;
   }
@@ -92,7 +107,7 @@ export class Cluster {
   async #address(server) {
     const [, address] = await eventually('an address', () => {
       if (server.child.exitCode !== null) throw new Error(server.log);
-      return /listening on (http:\S+?)(rooms\/NAME\/)?\n/.exec(server.log);
+      return /listening on (http:[^\s#]+?)(rooms\/NAME\/)?(#\S*)?\n/.exec(server.log);
     });
     server.url = address;
   }
@@ -100,8 +115,8 @@ export class Cluster {
   /** The room as ContractClient takes a server. */
   async room(edge, name) {
     const url = `${edge.url}rooms/${name}/`;
-    await eventually(`the room ${name}`, async () => (await fetch(`${url}readyz`)).ok);
-    const room = { url, ws: `${url}ws`.replace('http', 'ws'), headers: {}, get: (route) => fetch(url + route) };
+    await eventually(`the room ${name}`, async () => (await fetch(`${url}readyz`, { headers: this.headers })).ok);
+    const room = { url, ws: `${url}ws`.replace('http', 'ws'), headers: this.headers, get: (route) => fetch(url + route, { headers: this.headers }) };
     room.schema = await Schema.fetch(room);
     return room;
   }
@@ -110,7 +125,7 @@ export class Cluster {
   owner(servers) {
     const tale = () => servers.map((server) => server.log).join('\n');
     return eventually('an owner', async () => {
-      for (const server of servers) if (server.child.exitCode === null && (await fetch(`${server.url}readyz`, { signal: AbortSignal.timeout(500) }).catch(() => ({}))).ok) return server;
+      for (const server of servers) if (server.child.exitCode === null && (await fetch(`${server.url}readyz`, { headers: this.headers, signal: AbortSignal.timeout(500) }).catch(() => ({}))).ok) return server;
       return undefined;
     }, 15_000).catch((error) => Promise.reject(new Error(`${error.message}\n${tale()}`)));
   }

@@ -81,4 +81,27 @@ describe('a room of two servers', { skip: missing }, () => {
       await drag(client, 400);
     }
   });
+
+  test('keeps what happened while a server draws it for the second time', async (t) => {
+    const { cluster, servers, client } = await stage(t);
+    const mark = async (name) => {
+      const { revision } = await client.answer(client.send({ type: 'patch', patch: { markers: { [name]: { point: [1, 2, 3] } } } }));
+      await client.until(name, () => client.revision >= revision, WITHIN_MS);
+    };
+    for (const name of ['a', 'b', 'c', 'd']) await mark(name);
+    const first = await cluster.owner(servers);
+    const second = servers.find((server) => server !== first);
+    first.signal('SIGSTOP');
+    await cluster.owner([second]);
+    first.signal('SIGCONT');
+    await eventually('that the former server follows', () => first.logged('room_followed').length === 2);
+    await second.stop();
+    await cluster.owner([first]);
+    const third = await cluster.serve('stage');
+    await mark('e');
+    await first.stop();
+    await cluster.owner([third]);
+    await mark('f');
+    assert.deepEqual(Object.keys(client.state.markers), ['a', 'b', 'c', 'd', 'e', 'f']);
+  });
 });
