@@ -193,41 +193,61 @@ CLI::Option* add_room(Command& command, std::string& room) {
         ->group(kNetwork);
 }
 
+CLI::Option* add_listen(Command& command, NetworkArguments& arguments, const std::string& sentence) {
+    return command.add_option("--listen", arguments.listen, sentence)
+        ->type_name("ADDR:PORT")
+        ->group(kNetwork);
+}
+
+CLI::Option* add_certificate(Command& command, NetworkArguments& arguments) {
+    auto* const certificate =
+        add_file(command, "--tls-cert", arguments.tls_cert,
+                 "Speak HTTPS with this certificate, in PEM, followed by those of its authorities.")
+            ->group(kNetwork);
+    auto* const key = add_file(command, "--tls-key", arguments.tls_key, "The certificate's key, in PEM.")
+                          ->group(kNetwork)
+                          ->needs(certificate);
+    return certificate->needs(key);
+}
+
+CLI::Option* add_token_file(Command& command, NetworkArguments& arguments) {
+    return add_file(
+               command, "--token-file", arguments.token_file,
+               R"(Read the tokens from this JSON file, {"control": TOKEN, "view": TOKEN}, which nobody but its )"
+               R"(owner may read.)")
+        ->group(kAccess);
+}
+
 /// Where it listens, and what it speaks TLS with.
 void add_network(Command& command, NetworkArguments& arguments) {
-    command.add_option("--listen", arguments.listen, "Listen at this address; port 0 is any free port.")
-        ->type_name("ADDR:PORT")
-        ->capture_default_str()
-        ->group(kNetwork);
+    add_listen(command, arguments, "Listen at this address; port 0 is any free port.")->capture_default_str();
     auto* const lan =
         command
             .add_flag("--lan", arguments.lan,
                       "Serve the network: listen at 0.0.0.0:8080 if --listen is not given, and speak HTTPS "
                       "with other devices, with certificates of an authority that is made once and kept.")
             ->group(kNetwork);
-    auto* const certificate =
-        add_file(command, "--tls-cert", arguments.tls_cert,
-                 "Speak HTTPS with this certificate, in PEM, followed by those of its authorities.")
-            ->group(kNetwork)
-            ->excludes(lan);
-    auto* const key = add_file(command, "--tls-key", arguments.tls_key, "The certificate's key, in PEM.")
-                          ->group(kNetwork)
-                          ->needs(certificate);
-    certificate->needs(key);
+    add_certificate(command, arguments)->excludes(lan);
     add_number(command, "--max-clients", arguments.max_clients, 1, 10000, "Accept N clients at a time")
         ->capture_default_str()
         ->group(kNetwork);
-    add_file(
-        command, "--token-file", arguments.token_file,
-        R"(Read the tokens from this JSON file, {"control": TOKEN, "view": TOKEN}, which nobody but its )"
-        R"(owner may read.)")
-        ->group(kAccess);
+    add_token_file(command, arguments);
     command
         .add_option("--allow-origin", arguments.allowed_origins,
                     "Accept pages of this origin, besides the server's own.")
         ->allow_extra_args(false)  // what follows the one is the scene
         ->type_name("ORIGIN")
         ->group(kAccess);
+}
+
+/// Where those find it who monitor it: by default nowhere.
+void add_monitoring(Command& command, NetworkArguments& arguments) {
+    arguments.listen.clear();
+    auto* const listen = add_listen(command, arguments,
+                                    "Answer /healthz, /readyz and /metrics at this address; port 0 is any "
+                                    "free port.");
+    add_certificate(command, arguments)->needs(listen);
+    add_token_file(command, arguments)->needs(listen);
 }
 
 /// Calls what runs the command, listening to the network with --lan.
@@ -383,8 +403,7 @@ void add_film(Command& command, RenderArguments& arguments) {
             ->needs(keyframes)
             ->group(kCamera);
     keyframes->needs(frames);
-    add_nats(command, arguments.nats, "Let the workers of this NATS server draw the film (see 'worker').")
-        ->needs(keyframes)
+    add_nats(command, arguments.nats, "Let the workers of this NATS server draw (see 'worker').")
         ->excludes(command.get_option("--textures"));
 }
 
@@ -411,6 +430,7 @@ void add_drawing(Command& command, RenderArguments& arguments) {
     add_file(command, "--ids", arguments.ids,
              "Write the node ids at the centres of the pixels too, as a PNG image: 24 bits, white for none.")
         ->excludes(command.get_option("--keyframes"))
+        ->excludes(command.get_option("--nats"))
         ->group(kOutput);
     command.add_flag("--stats", arguments.stats, "Print what drawing took, as JSON.")
         ->excludes(reference)
@@ -455,7 +475,7 @@ std::shared_ptr<Command> describe_render(RenderArguments& arguments) {
 }
 
 std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
-    auto command = std::make_shared<Command>("Draw images of films for others.", "worker");
+    auto command = std::make_shared<Command>("Draw images for others.", "worker");
     command->description = {
         "A worker takes images from a queue, draws them and sends them to where 'render --nats' waits for "
         "them. Any number of workers share a queue. When one dies, another draws its image after 5 s. "
@@ -463,20 +483,28 @@ std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
         "SIGTERM and SIGHUP end a worker once its image is sent.",
         "A worker finds the scene of an image by the name of its file, and draws it only if the scene and "
         "its "
-        "textures are the same as where the film was asked for."};
+        "textures are the same as where the image was asked for.",
+        "With --listen, the worker answers those who monitor it. Beyond the own machine, they need a token: "
+        "give it with --token-file."};
     add_nats(*command, arguments.nats, "Take images from the queue of this NATS server, which has JetStream.")
         ->required();
     add_folder(*command, "--scenes", arguments.scenes, "Look for scenes in this folder and below.")
         ->required()
         ->group(kScene);
     add_device(*command, arguments.device);
+    add_monitoring(*command, arguments.network);
     add_log_level(*command);
+    command->environment = {
+        {"VRUT_PREVIEW_CONTROL_TOKEN, VRUT_PREVIEW_VIEW_TOKEN",
+         "Tokens of those who monitor the worker, of 16 to 1000 bytes. Those of --token-file have priority."},
+        {"CREDENTIALS_DIRECTORY", "The group may read a token file in this folder, which systemd makes."}};
     command->exit_statuses = statuses("A signal has ended the worker.");
-    command->examples = {{"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
-                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
-                          "Draw on the first graphics card."},
-                         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --log-level error",
-                          "Log errors alone."}};
+    command->examples = {
+        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
+        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
+         "Draw on the first graphics card."},
+        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --listen 127.0.0.1:8100",
+         "Count the images at http://127.0.0.1:8100/metrics."}};
     command->callback([&arguments] { worker_command(arguments); });
     return command;
 }

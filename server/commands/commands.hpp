@@ -70,6 +70,7 @@ struct WorkerArguments {
     std::string nats;              ///< the address of NATS
     std::filesystem::path scenes;  ///< where the scenes of the jobs are
     std::optional<int> device;
+    NetworkArguments network;  ///< for those who monitor it; listens nowhere if that is empty
 };
 void worker_command(const WorkerArguments& arguments);
 

@@ -1,10 +1,12 @@
 #include <chrono>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 
 #include "codec.hpp"
 #include "commands/commands.hpp"
 #include "commands/film.hpp"
+#include "commands/network.hpp"
 #include "commands/stop_signals.hpp"
 #include "nats/render_queue.hpp"
 #include "observe/log.hpp"
@@ -36,6 +38,8 @@ public:
         renderer_.render(view_, image_, stats);
         return encoded(image_, job.format, job.jpeg_quality);
     }
+
+    const std::string& description() const { return renderer_.description(); }
 
 private:
     /// What the images of one film have in common.
@@ -91,6 +95,36 @@ void pause(const StopSignals& stop) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
+/// Answers those who monitor the worker, until it is destroyed.
+class Monitoring {
+public:
+    Monitoring(const WorkerArguments& arguments, const nats::Connection& connection,
+               const std::string& renderer) {
+        net::ServerOptions options = server_options(arguments.network);
+        if (!net::is_loopback(options.listen.host) && !options.access.needs_token())
+            throw std::runtime_error("--listen: " + options.listen.host +
+                                     " is open to other machines: give a token with --token-file");
+        const auto is_connected = [&connection] { return connection.is_connected(); };
+        options.nats_connected = is_connected;
+        server_.emplace(options, net::Monitored{renderer, [is_connected]() -> std::optional<std::string> {
+                                                    if (is_connected()) return std::nullopt;
+                                                    return "the NATS server cannot be reached";
+                                                }});
+        observe::log_info("listening",
+                          {{"host", options.listen.host}, {"port", std::uint64_t{server_->port()}}});
+        thread_ = std::jthread([this] { server_->run(); });
+    }
+    ~Monitoring() { server_->stop(); }
+    Monitoring(const Monitoring&) = delete;
+    Monitoring& operator=(const Monitoring&) = delete;
+
+    observe::Metrics& metrics() { return server_->metrics(); }
+
+private:
+    std::optional<net::Server> server_;
+    std::jthread thread_;  // last: it uses the server
+};
+
 }  // namespace
 
 void worker_command(const WorkerArguments& arguments) {
@@ -100,22 +134,30 @@ void worker_command(const WorkerArguments& arguments) {
     const nats::Connection connection(arguments.nats);
     nats::JobQueue queue(connection);
     Worker worker(arguments);
+    std::optional<Monitoring> monitoring;
+    if (!arguments.network.listen.empty()) monitoring.emplace(arguments, connection, worker.description());
+    const auto count = [&](std::string_view result) {
+        if (monitoring) ++monitoring->metrics().jobs[result];
+    };
     observe::log_info("waiting_for_jobs", {{"nats", connection.name()}});
     while (!stop.came()) {
         const std::unique_ptr<nats::TakenJob> taken = queue.take();
         if (!taken) continue;
         try {
             taken->finish(worker.draw(taken->job()));
+            count("drawn");
             observe::log_info("image_drawn",
                               {{"run", taken->job().run}, {"image", std::int64_t{taken->job().image}}});
         } catch (const MissingScene& error) {
             observe::log_warning("scene_missing", {{"run", taken->job().run}, {"reason", error.what()}});
             taken->hand_on(error.what());
+            count("handed-on");
             pause(stop);
         } catch (const std::exception& error) {
             observe::log_warning("image_returned",
                                  {{"image", std::int64_t{taken->job().image}}, {"reason", error.what()}});
             taken->give_back(error.what());
+            count("returned");
         }
     }
 }

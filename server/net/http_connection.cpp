@@ -45,6 +45,7 @@ struct Address {
 
 Address address_of(const HttpRequest& request, const ConnectionRegistry& registry) {
     std::string_view path = path_of(request);
+    if (!registry.has_rooms()) return {{}, path};
     if (!registry.open_room) return {"", path};
     if (!path.starts_with(kRooms)) return {{}, path};
     const std::string_view rest = path.substr(kRooms.size());
@@ -159,7 +160,7 @@ HttpResponse readiness(const std::optional<std::string>& name, ConnectionRegistr
 
 HttpResponse respond(const HttpRequest& request, ConnectionRegistry& registry) {
     const auto [room, path] = address_of(request, registry);
-    if (room || (path != "/" && path != "/index.html"))
+    if (room || (registry.has_rooms() && path != "/" && path != "/index.html"))
         if (auto file = page_response(request, path)) return *std::move(file);
     if (auto page = trust_response(request, path, registry)) return *std::move(page);
     if (room && path == "/ws")
@@ -176,6 +177,9 @@ HttpResponse respond(const HttpRequest& request, ConnectionRegistry& registry) {
         return {http::status::ok, "text/plain; version=0.0.4; charset=utf-8",
                 std::make_shared<const std::string>(metrics_text(registry))};
     }
+    if (!registry.has_rooms())
+        return rejection(http::status::not_found,
+                         "there is nothing at this address: how this worker is, is at /metrics");
     if (!room && path.starts_with(kRooms) && protocol::is_room_name(path.substr(kRooms.size()))) {
         HttpResponse response = rejection(http::status::permanent_redirect, "a room's address ends with /");
         response.fields = "Location: " + std::string(path) + "/\r\n";

@@ -26,13 +26,14 @@ std::optional<std::string> why_unready(const ServedRoom& room) {
 }
 
 std::string metrics_text(const ConnectionRegistry& registry) {
-    std::string renderer;
+    std::string renderer = registry.renderer;
     std::size_t events_waiting = 0;
     for (const auto& [name, room] : registry.rooms) {
         if (renderer.empty()) renderer = room->engine->description();
         events_waiting += room->engine->events_waiting();
     }
     observe::Metrics::Readings readings;
+    readings.has_rooms = registry.has_rooms();
     readings.healthy = !why_unhealthy(registry);
     readings.ready = !why_unready(registry);
     readings.renderer = std::move(renderer);

@@ -57,7 +57,8 @@ struct ConnectionRegistry {
     std::optional<ConnectionLimit> limit;  ///< of connections of any kind
     observe::Metrics* metrics = nullptr;
     std::map<std::string, std::shared_ptr<ServedRoom>> rooms;  ///< by name; the one of this process has none
-    /// Of a server for rooms that others draw: opens one. Empty: there is only this process's.
+    std::string renderer;                                      ///< of a process without rooms: what draws
+    /// Of a server for rooms that others draw: opens one. Empty: there is this process's alone, or none.
     std::function<std::shared_ptr<ServedRoom>(const std::string& name)> open_room;
     /// Why no room can be served, a sentence; none if one can.
     std::function<std::optional<std::string>()> why_unready;
@@ -67,6 +68,7 @@ struct ConnectionRegistry {
     std::int64_t next_client = 1;
     bool stopping = false;
 
+    bool has_rooms() const { return open_room || !rooms.empty(); }
     /// Those that said hello, of all rooms.
     std::size_t clients() const;
 };

@@ -94,6 +94,12 @@ struct Server::Impl {
         forget_unused_rooms();
     }
 
+    Impl(ServerOptions server_options, Monitored monitored) : Impl(std::move(server_options)) {
+        registry.renderer = std::move(monitored.renderer);
+        registry.why_unready = std::move(monitored.why_unready);
+        registry.nats_connected = options.nats_connected;
+    }
+
     ~Impl() {
         for (const auto& [name, room] : registry.rooms) {
             room->engine.reset();
@@ -239,6 +245,8 @@ Server::Server(ServerOptions options, scenes::LoadedScene scene, const engine::F
     : impl_(std::make_unique<Impl>(std::move(options), std::move(scene), renderer)) {}
 Server::Server(ServerOptions options, RemoteRooms rooms)
     : impl_(std::make_unique<Impl>(std::move(options), std::move(rooms))) {}
+Server::Server(ServerOptions options, Monitored monitored)
+    : impl_(std::make_unique<Impl>(std::move(options), std::move(monitored))) {}
 Server::~Server() = default;
 
 std::uint16_t Server::port() const { return impl_->acceptor.local_endpoint().port(); }
@@ -246,7 +254,7 @@ std::string Server::description() const {
     const auto room = impl_->registry.rooms.find("");
     return room == impl_->registry.rooms.end() ? "" : room->second->engine->description();
 }
-const observe::Metrics& Server::metrics() const { return impl_->metrics; }
+observe::Metrics& Server::metrics() { return impl_->metrics; }
 
 engine::RoomEngine& Server::engine() { return *impl_->registry.rooms.at("")->engine; }
 

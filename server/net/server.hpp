@@ -58,6 +58,13 @@ struct RemoteRooms {
     std::string suffix;  ///< of clients' names; no other server of these rooms has it
 };
 
+/// A process without rooms, which those who monitor it ask how it is.
+struct Monitored {
+    std::string renderer;  ///< what draws
+    /// Why it can do nothing now, a sentence; none if it can.
+    std::function<std::optional<std::string>()> why_unready;
+};
+
 /// The preview server: clients reach rooms over HTTP and WebSocket.
 class Server {
 public:
@@ -66,6 +73,8 @@ public:
     Server(ServerOptions options, scenes::LoadedScene scene, const engine::FrameRendererFactory& renderer);
     /// Any room of those, at /rooms/NAME/.
     Server(ServerOptions options, RemoteRooms rooms);
+    /// None: only how the process is.
+    Server(ServerOptions options, Monitored monitored);
     ~Server();
     Server(const Server&) = delete;
     Server& operator=(const Server&) = delete;
@@ -75,7 +84,7 @@ public:
     std::string description() const;
     /// Of the room that is drawn here.
     engine::RoomEngine& engine();
-    const observe::Metrics& metrics() const;
+    observe::Metrics& metrics();
 
     /// From here on SIGTERM, SIGINT and SIGHUP do what stop() does.
     void stop_on_signals();

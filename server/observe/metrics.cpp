@@ -127,6 +127,10 @@ void add_frames(Exposition& to, const Metrics& metrics) {
              metrics.pictures_held_most);
 }
 
+void add_jobs(Exposition& to, const Metrics& metrics) {
+    to.words("counter", "jobs_total", "result", "Images that the worker took from the queue.", metrics.jobs);
+}
+
 void add_times(Exposition& to, const Metrics& metrics) {
     to.histogram("render_seconds", "Drawing of a frame, while things moved and at rest.");
     to.buckets(metrics.render_moving, label("level", "moving"));
@@ -183,10 +187,14 @@ Histogram::Counts Histogram::counts() const {
 std::string Metrics::text(const Readings& readings) const {
     Exposition to;
     add_state(to, readings);
-    add_clients(to, *this);
-    add_frames(to, *this);
-    add_times(to, *this);
-    add_scene(to, *this);
+    if (readings.has_rooms) {
+        add_clients(to, *this);
+        add_frames(to, *this);
+        add_times(to, *this);
+        add_scene(to, *this);
+    } else {
+        add_jobs(to, *this);
+    }
     add_process(to);
     return to.take();
 }

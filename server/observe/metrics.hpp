@@ -62,6 +62,10 @@ inline constexpr std::array kCloseReasons{"normal",    "handshake", "hello",    
                                           "too-large", "binary",    "protocol", "stuck", "silent",
                                           "slow",      "backlog",   "shutdown", "gone"};
 
+/// What became of an image that a worker took: it was drawn; it could not be, and was given back; the worker
+/// has not its scene, and handed it on.
+inline constexpr std::array kJobResults{"drawn", "returned", "handed-on"};
+
 /// What the server did since it started, and what is so now. Written by the thread that does it, read by any.
 struct Metrics {
     Counters<kRoles> clients;  ///< connected now
@@ -80,6 +84,7 @@ struct Metrics {
     Counter bytes_held{0};  ///< of encoded pictures and of messages that wait; shared ones count once
     Counter snapshots_rendered{0}, snapshots_sent{0};
     Counter bytes_sent{0};
+    Counters<kJobResults> jobs;
     Counter scene_nodes{0}, scene_triangles{0};
     Counter gl_objects{0};  ///< after the last picture
     Histogram render_moving, render_still, readback, encode;
@@ -91,6 +96,7 @@ struct Metrics {
 
     /// What is not counted, but asked for.
     struct Readings {
+        bool has_rooms = true;               ///< else it is a worker
         bool healthy = true, ready = true;   ///< as /healthz and /readyz say
         std::string renderer;                ///< what draws
         std::size_t events_waiting = 0;      ///< for the render thread

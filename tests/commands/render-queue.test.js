@@ -79,8 +79,8 @@ async function consumer() {
 /// How many workers wait for jobs.
 const waiting = async () => (await consumer()).num_waiting ?? 0;
 
-function worker(scenes = path.dirname(CAR)) {
-  return start(PROGRAM, 'worker', '--nats', url(), '--scenes', scenes);
+function worker(scenes = path.dirname(CAR), ...options) {
+  return start(PROGRAM, 'worker', '--nats', url(), '--scenes', scenes, ...options);
 }
 
 const film = (name, ...options) => ['render', CAR, '-o', file(name), '--keyframes', file('flight.json'), '--frames', String(FRAMES),
@@ -134,6 +134,43 @@ describe('a queue of images', { skip: missing }, () => {
       assert.equal(await stop(child, 'SIGTERM'), 0);
     }
     assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
+  });
+
+  test('a worker draws a single image', async () => {
+    worker();
+    const options = ['render', CAR, '--eye', '3,2,5', '--size', SIZE];
+    const collector = start(PROGRAM, ...options, '-o', file('one.png'), '--nats', url());
+    assert.equal(await collector.ended, 0, collector.text);
+    assert.equal(spawnSync(PROGRAM, [...options, '-o', file('one-alone.png')]).status, 0);
+    assert.ok(fs.readFileSync(file('one.png')).equals(fs.readFileSync(file('one-alone.png'))));
+    assert.deepEqual(await streams(), { VRUT_JOBS: 0 });
+  });
+
+  test('a worker counts its images for those who monitor it', async () => {
+    const child = worker(path.dirname(CAR), '--listen', '127.0.0.1:0');
+    const [, at] = await eventually('the address', () => /event=listening host=127.0.0.1 port=(\d+)/.exec(child.text));
+    const get = (route) => fetch(`http://127.0.0.1:${at}${route}`);
+    assert.equal(await (await get('/healthz')).text(), 'ok\n');
+    await eventually('readiness', async () => (await get('/readyz')).ok);
+    for (const route of ['/', '/ws', '/frame.jpg', '/rooms/car/', '/index.html', '/protocol.schema.jsonx']) assert.equal((await get(route)).status, 404, route);
+
+    await isWhole(queued('counted.png'), 'counted.png', alone('counted-alone.png'));
+    const text = await (await get('/metrics')).text();
+    assert.match(text, /^vrut_preview_jobs_total\{result="drawn"\} 8$/m);
+    assert.match(text, /^vrut_preview_nats_connected 1$/m);
+    assert.match(text, /^vrut_preview_build_info\{version="[^"]+",renderer="[^"]+"\} 1$/m);
+    assert.doesNotMatch(text, /vrut_preview_clients|vrut_preview_frames/);
+
+    const open = worker(path.dirname(CAR), '--listen', '0.0.0.0:0');
+    assert.equal(await open.ended, 1);
+    assert.match(open.text, /--listen: 0.0.0.0 is open to other machines: give a token with --token-file/);
+    fs.writeFileSync(file('tokens.json'), JSON.stringify({ view: 'for-the-one-who-monitors' }), { mode: 0o600 });
+    const guarded = worker(path.dirname(CAR), '--listen', '0.0.0.0:0', '--token-file', file('tokens.json'));
+    const [, port] = await eventually('the address', () => /event=listening host=0.0.0.0 port=(\d+)/.exec(guarded.text));
+    const metrics = `http://127.0.0.1:${port}/metrics`;
+    assert.equal((await fetch(metrics)).status, 401);
+    assert.equal((await fetch(metrics, { headers: { Authorization: 'Bearer for-the-one-who-monitors' } })).status, 200);
+    assert.equal(await stop(child, 'SIGTERM'), 0);
   });
 
   test('a large image comes whole', async () => {
