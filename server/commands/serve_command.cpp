@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <chrono>
 #include <latch>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -80,21 +82,32 @@ void serve_shared(const ServeArguments& arguments, net::ServerOptions options,
             is_superseded = true;
             running->stop();
         };
-        nats::SharedRoom shared(connection, std::move(shared_options));
-        options.shared = shared.hooks();
-        options.relay = [&](engine::EngineCallbacks to_clients) {
-            return shared.relay(std::move(to_clients));
-        };
-        net::Server server(options, scene, engine::gl_renderer(arguments.device));
-        running = &server;
-        shared.begin(server.engine());
+        std::optional<nats::SharedRoom> shared;
+        std::optional<net::Server> server;
+        try {
+            shared.emplace(connection, std::move(shared_options));
+            options.shared = shared->hooks();
+            options.relay = [&](engine::EngineCallbacks to_clients) {
+                return shared->relay(std::move(to_clients));
+            };
+            server.emplace(options, scene, engine::gl_renderer(arguments.device));
+            running = &*server;
+            shared->begin(server->engine());
+        } catch (const std::runtime_error& error) {
+            if (!is_announced) throw;
+            // NATS may answer later.
+            observe::log_warning("room_stalls", {{"room", arguments.room}, {"reason", error.what()}});
+            std::this_thread::sleep_for(std::chrono::seconds(1));
+            is_superseded = true;
+            continue;
+        }
         if (std::exchange(is_announced, true))
-            server.stop_on_signals();
+            server->stop_on_signals();
         else
-            announce(server, options);
-        options.listen.port = server.port();
-        server.run();
-        shared.stop();
+            announce(*server, options);
+        options.listen.port = server->port();
+        server->run();
+        shared->stop();
     }
     end_serving();
 }

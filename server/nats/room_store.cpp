@@ -217,8 +217,8 @@ std::vector<RoomStore::Entry> RoomStore::next(std::chrono::milliseconds patience
         jsMsgMetaData_Destroy(meta);
         if (sequence <= followed_) continue;
         if (sequence != followed_ + 1)
-            throw std::runtime_error("entries of the room's log are lost, from " +
-                                     std::to_string(followed_ + 1));
+            throw EntriesForgotten("entries of the room's log are lost, from " +
+                                   std::to_string(followed_ + 1));
         followed_ = sequence;
         entries.push_back({sequence, std::string(natsMsg_GetData(received),
                                                  static_cast<std::size_t>(natsMsg_GetDataLength(received)))});

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -42,7 +43,11 @@ public:
     };
     /// Follows the log from behind `sequence` on.
     void follow(std::uint64_t sequence);
-    /// The next ones, none within `patience`. Throws std::runtime_error where some are lost.
+    /// Entries that were not read yet are there no longer: a later state made them needless.
+    struct EntriesForgotten : std::runtime_error {
+        using std::runtime_error::runtime_error;
+    };
+    /// The next ones, none within `patience`. Throws EntriesForgotten.
     std::vector<Entry> next(std::chrono::milliseconds patience);
     /// Sequences of the first entry and of the last. An empty log's last is the one before its first.
     struct Range {

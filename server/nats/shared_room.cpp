@@ -187,6 +187,13 @@ bool SharedRoom::load_state() {
     return true;
 }
 
+/// What came since. Where some of it is forgotten, the state that made it needless is there.
+void SharedRoom::follow_log() try {
+    for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+} catch (const RoomStore::EntriesForgotten&) {
+    if (!load_state()) throw;
+}
+
 void SharedRoom::follow_entry(const RoomStore::Entry& entry) {
     followed_ = entry.sequence;
     std::istringstream lines(entry.text);
@@ -210,7 +217,7 @@ bool SharedRoom::follow(const std::stop_token& stop) {
     observe::log_info("room_followed", {{"room", options_.room}});
     while (!stop.stop_requested()) {
         if (has_state_)
-            for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+            follow_log();
         else
             has_state_ = load_state();
         {
@@ -238,8 +245,7 @@ bool SharedRoom::take_over(std::uint64_t lease) {
         if (followed_ + 1 < log->first && !load_state())
             throw std::runtime_error("entries of the room's log are lost, from " +
                                      std::to_string(followed_ + 1));
-        while (followed_ < log->last && steady_clock::now() < end)
-            for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
+        while (followed_ < log->last && steady_clock::now() < end) follow_log();
         if (followed_ < log->last) continue;
         const auto appended = store_.append("", followed_, id_ + ".first");
         if (!appended) continue;

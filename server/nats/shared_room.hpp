@@ -71,6 +71,7 @@ private:
     // While another server draws the room.
     bool load_state();
     bool follow(const std::stop_token& stop);
+    void follow_log();
     void follow_entry(const RoomStore::Entry& entry);
     bool take_over(std::uint64_t lease);
     // While this server does.
