@@ -503,7 +503,7 @@ std::shared_ptr<Command> describe_worker(WorkerArguments& arguments) {
         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes", "Draw what comes."},
         {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --device 0",
          "Draw on the first graphics card."},
-        {"vrut-preview worker --nats nats://127.0.0.1 --scenes scenes --listen 127.0.0.1:8100",
+        {"vrut-preview worker --nats nats://127.0.0.1 --scenes . --listen 127.0.0.1:8100",
          "Count the images at http://127.0.0.1:8100/metrics."}};
     command->callback([&arguments] { worker_command(arguments); });
     return command;
