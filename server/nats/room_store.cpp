@@ -18,6 +18,7 @@ using namespace std::chrono_literals;
 constexpr const char *kLeases = "VRUT_LEASES", *kStates = "VRUT_ROOMS";
 /// A room that nobody has drawn for so long is forgotten.
 constexpr std::int64_t kKept = std::chrono::nanoseconds(10min).count();
+constexpr const char* kId = "Nats-Msg-Id";
 constexpr std::chrono::milliseconds kPatience{400};
 constexpr std::size_t kMostEntries = 256;
 
@@ -244,7 +245,7 @@ tl::expected<std::uint64_t, RoomStore::NotAppended> RoomStore::append(const std:
         return tl::unexpected(NotAppended::unknown);
     const Message message(created);
     natsMsgHeader_Set(created, "Nats-Expected-Last-Sequence", std::to_string(last).c_str());
-    natsMsgHeader_Set(created, "Nats-Msg-Id", id.c_str());
+    natsMsgHeader_Set(created, kId, id.c_str());
     jsPubOptions options;
     jsPubOptions_Init(&options);
     options.MaxWait = kPatience.count();
@@ -253,8 +254,18 @@ tl::expected<std::uint64_t, RoomStore::NotAppended> RoomStore::append(const std:
     const natsStatus status = js_PublishMsg(&acknowledged, impatient_.get(), created, &options, &error);
     const Handle<jsPubAck, jsPubAck_Destroy> acknowledgement(acknowledged);
     if (status == NATS_OK) return acknowledged->Sequence;
-    return tl::unexpected(error == JSStreamWrongLastSequenceErr ? NotAppended::superseded
-                                                                : NotAppended::unknown);
+    if (error != JSStreamWrongLastSequenceErr) return tl::unexpected(NotAppended::unknown);
+    // Its acknowledgement may have been lost, longer ago than NATS remembers ids.
+    if (id_of(last + 1) == id) return last + 1;
+    return tl::unexpected(NotAppended::superseded);
+}
+
+/// Empty where there is no such entry.
+std::string RoomStore::id_of(std::uint64_t sequence) const {
+    natsMsg* found = nullptr;
+    js_GetMsg(&found, impatient_.get(), log_.c_str(), sequence, nullptr, nullptr);
+    const Message message(found);
+    return found ? header_of(found, kId) : "";
 }
 
 }  // namespace vrut::server::nats

@@ -56,8 +56,8 @@ public:
     /// What the log has; none where NATS does not answer.
     std::optional<Range> range() const;
     enum class NotAppended { superseded, unknown };  ///< superseded: another entry is there
-    /// Adds an entry behind the one of `last`, and only there. Within two minutes NATS adds an entry of this
-    /// `id` once, however often it is tried. Returns its sequence.
+    /// Adds an entry behind the one of `last`, and only there. An entry of this `id` is added once, however
+    /// often it is tried. Returns its sequence.
     tl::expected<std::uint64_t, NotAppended> append(const std::string& text, std::uint64_t last,
                                                     const std::string& id);
 
@@ -70,6 +70,7 @@ private:
         std::uint64_t revision = 0;  ///< of the key
     };
     std::optional<Kept> kept_state() const;
+    std::string id_of(std::uint64_t sequence) const;
 
     const Connection& connection_;
     const std::string room_, log_, subject_;

@@ -4,6 +4,7 @@
 #include <future>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 
 #include "observe/log.hpp"
 
@@ -19,8 +20,11 @@ constexpr auto kRenew = 500ms;
 constexpr auto kPause = 5s;                                  // after what would come again at once
 constexpr auto kStateAgain = 2min;                           // before it expires
 constexpr std::size_t kEntryBytes = std::size_t{256} << 10;  // of lines, at most
-constexpr std::size_t kMostLines = 100'000;                  // that wait for NATS
+constexpr std::size_t kMostLines = 100'000;                  // since a checkpoint, that wait for NATS
 constexpr std::size_t kMostGated = 2'000;                    // outputs and frames that wait for edges
+
+/// An entry that says: what follows goes on from the state that is stored next.
+constexpr std::string_view kRestart = "restart\n";
 
 std::string text_of(const room::Room::Checkpoint& checkpoint) {
     return protocol::encode(checkpoint.header) + "\n" +
@@ -184,11 +188,16 @@ bool SharedRoom::load_state() {
     engine_->push(
         engine::FollowFrom{checkpoint, std::make_shared<const scenes::LoadedScene>(*std::move(scene))});
     store_.follow(followed_ = state->sequence);
+    awaited_state_.reset();
     return true;
 }
 
 /// What came since. Where some of it is forgotten, the state that made it needless is there.
 void SharedRoom::follow_log() try {
+    if (awaited_state_) {
+        const auto state = store_.state();
+        if (state && state->sequence >= *awaited_state_) load_state();
+    }
     for (const RoomStore::Entry& entry : store_.next(kPoll)) follow_entry(entry);
 } catch (const RoomStore::EntriesForgotten&) {
     if (!load_state()) throw;
@@ -196,6 +205,11 @@ void SharedRoom::follow_log() try {
 
 void SharedRoom::follow_entry(const RoomStore::Entry& entry) {
     followed_ = entry.sequence;
+    if (entry.text == kRestart) {
+        awaited_state_ = entry.sequence;
+        return;
+    }
+    if (awaited_state_) return;  // they come again behind the state
     std::istringstream lines(entry.text);
     for (std::string text; std::getline(lines, text);) {
         auto line = protocol::decode_log_line(text);
@@ -313,13 +327,25 @@ bool SharedRoom::renew() {
     return true;
 }
 
-/// Appends the lines that wait, as one entry. Returns false if another server draws the room.
-bool SharedRoom::append_lines() {
-    if (entry_.empty()) {
-        const std::lock_guard lock(mutex_);
-        if (lines_.empty()) return true;
-        if (lines_.size() > kMostLines)
-            throw std::runtime_error("NATS has not answered for too long: its log of the room is incomplete");
+/// With mutex_ held. Clients of this server's own door go on. What lies before a checkpoint need not be kept
+/// for the log, which goes on from that once NATS answers.
+void SharedRoom::go_on_alone() {
+    release(to_clients_, written_lines_);
+    if (checkpoint_ && !lines_.empty() && lines_.front().number <= checkpoint_->number) {
+        while (!lines_.empty() && lines_.front().number <= checkpoint_->number) lines_.pop_front();
+        if (!restart_) observe::log_info("room_log_restarts", {{"room", options_.room}});
+        restart_ = std::exchange(checkpoint_, std::nullopt);
+    }
+    if (lines_.size() > kMostLines)
+        throw std::runtime_error("NATS has not answered for too long: its log of the room is incomplete");
+}
+
+/// Makes an entry of the lines that wait. Returns false if there are none.
+bool SharedRoom::next_entry() {
+    const std::lock_guard lock(mutex_);
+    if (restart_) {
+        entry_ = kRestart;
+    } else {
         // Those behind a checkpoint come when that is stored.
         const auto is_next = [&] { return !checkpoint_ || lines_.front().number <= checkpoint_->number; };
         while (!lines_.empty() && is_next() && entry_.size() < kEntryBytes) {
@@ -327,9 +353,38 @@ bool SharedRoom::append_lines() {
             entry_number_ = lines_.front().number;
             lines_.pop_front();
         }
-        if (entry_.empty()) return true;
-        entry_id_ = id_ + "." + std::to_string(++entries_);
     }
+    entry_id_ = id_ + "." + std::to_string(++entries_);
+    return !entry_.empty();
+}
+
+/// The state from which the log goes on, once that is announced.
+void SharedRoom::store_restart() {
+    Checkpoint restart;
+    {
+        const std::lock_guard lock(mutex_);
+        restart = *restart_;
+    }
+    const bool is_stored = connection_.is_connected() && store_.store_state({followed_, restart.text});
+    const std::lock_guard lock(mutex_);
+    is_away_ = !is_stored;
+    if (is_away_) return go_on_alone();
+    restart_is_announced_ = false;
+    restart_.reset();
+    stored_lines_ = restart.number;
+    state_stored_at_ = steady_clock::now();
+    kept_ = std::move(restart);
+    release(to_clients_, stored_lines_);
+    release(to_edges_, stored_lines_);
+}
+
+/// Appends the lines that wait, as one entry. Returns false if another server draws the room.
+bool SharedRoom::append_lines() {
+    if (restart_is_announced_) {
+        store_restart();
+        return true;
+    }
+    if (entry_.empty() && !next_entry()) return true;
     using NotAppended = RoomStore::NotAppended;
     const auto appended = connection_.is_connected() ? store_.append(entry_, followed_, entry_id_)
                                                      : tl::unexpected(NotAppended::unknown);
@@ -343,11 +398,13 @@ bool SharedRoom::append_lines() {
             observe::log_info("room_stored", {{"room", options_.room}});
     }
     if (is_away_) {
-        release(to_clients_, written_lines_);
+        go_on_alone();
         return true;
     }
-    entry_.clear();
     followed_ = *appended;
+    restart_is_announced_ = entry_ == kRestart;
+    entry_.clear();
+    if (restart_is_announced_) return true;
     stored_lines_ = entry_number_;
     release(to_clients_, stored_lines_);
     release(to_edges_, stored_lines_);

@@ -77,6 +77,9 @@ private:
     // While this server does.
     void own(const std::stop_token& stop);
     bool append_lines();
+    bool next_entry();
+    void go_on_alone();
+    void store_restart();
     void store_checkpoint();
     bool renew();
     void note(const protocol::LogLine& line);
@@ -93,7 +96,10 @@ private:
     // On the room's own thread.
     bool has_state_ = false;      ///< of the room, or it is the first to draw it
     std::uint64_t followed_ = 0;  ///< sequence of the last entry in the log, as far as is known
-    std::string entry_id_;        ///< of the entry that is being appended
+    /// While it follows: the sequence of an entry from which the log goes on with a state, which has not come
+    /// yet.
+    std::optional<std::uint64_t> awaited_state_;
+    std::string entry_id_;  ///< of the entry that is being appended
     std::string entry_;
     std::uint64_t entry_number_ = 0;  ///< of its last line
     std::uint64_t entries_ = 0;
@@ -107,6 +113,9 @@ private:
     std::condition_variable_any written_;
     std::deque<Line> lines_;
     std::optional<Checkpoint> checkpoint_;
+    /// The log goes on from here once NATS answers: the lines before it are not kept for so long.
+    std::optional<Checkpoint> restart_;
+    bool restart_is_announced_ = false;
     std::uint64_t written_lines_ = 0, stored_lines_ = 0;
     bool is_away_ = false;  ///< NATS does not answer
     bool is_stopped_ = false;

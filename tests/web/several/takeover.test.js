@@ -104,4 +104,26 @@ describe('a room of two servers', { skip: missing }, () => {
     await mark('f');
     assert.deepEqual(Object.keys(client.state.markers), ['a', 'b', 'c', 'd', 'e', 'f']);
   });
+
+  test('has what was done at the own door of a server while NATS was away for long', async (t) => {
+    const { cluster, servers, nats, room } = await stage(t);
+    const owner = await cluster.owner(servers);
+    const presenter = await ContractClient.join(t, { ...room, url: owner.url, ws: `${owner.url}ws`.replace('http', 'ws') }, { name: 'At the door' });
+    await presenter.ask({ type: 'control', action: 'take' });
+    const mark = (name) => presenter.ask({ type: 'patch', patch: { markers: { [name]: { point: [1, 2, 3] } } } });
+    await mark('before');
+    await nats.stop();
+    await mark('away');
+    await eventually('a state, in whose place no lines wait for NATS', () => owner.logged('room_log_restarts').length > 0);
+    await mark('later');
+    await cluster.startNats();
+    await eventually('that it is stored', () => owner.logged('room_stored').length > 0);
+    await mark('after');
+    const camera = JSON.stringify(presenter.state.camera);
+    await delay(500);
+    await owner.stop();
+    const watcher = await eventually('a watcher', async () => ContractClient.join(t, await cluster.room(await cluster.edge(), 'stage'), { role: 'view' }));
+    assert.deepEqual(Object.keys(watcher.state.markers).sort(), ['after', 'away', 'before', 'later']);
+    assert.equal(JSON.stringify(watcher.state.camera), camera);
+  });
 });
