@@ -43,8 +43,6 @@ std::string public_part(const std::string& urls) {
 void on_lost(natsConnection* connection, void*) {
     if (!natsConnection_IsClosed(connection)) observe::log_warning("nats_disconnected", {});
 }
-void on_back(natsConnection*, void*) { observe::log_info("nats_reconnected", {}); }
-
 std::string reason_of(natsStatus status, jsErrCode error) {
     if (error == JSNotEnabledErr || status == NATS_NO_RESPONDERS)
         return "JetStream is off; start nats-server with -js";
@@ -57,6 +55,18 @@ std::string reason_of(natsStatus status, jsErrCode error) {
 }
 
 }  // namespace
+
+void Connection::on_back(natsConnection*, void* self) {
+    static_cast<Connection*>(self)->reconnected_at_ =
+        std::chrono::steady_clock::now().time_since_epoch().count();
+    observe::log_info("nats_reconnected", {});
+}
+
+std::optional<std::chrono::steady_clock::time_point> Connection::reconnected_at() const {
+    const auto at = reconnected_at_.load();
+    if (at == 0) return std::nullopt;
+    return std::chrono::steady_clock::time_point(std::chrono::steady_clock::duration(at));
+}
 
 std::string header_of(natsMsg* message, const char* name) {
     const char* value = nullptr;
@@ -106,7 +116,7 @@ Connection::Connection(const std::string& urls) : name_(public_part(urls)) {
     natsOptions_SetIgnoreDiscoveredServers(options.get(), true);
     natsOptions_SetName(options.get(), "vrut-preview");
     natsOptions_SetDisconnectedCB(options.get(), on_lost, nullptr);
-    natsOptions_SetReconnectedCB(options.get(), on_back, nullptr);
+    natsOptions_SetReconnectedCB(options.get(), on_back, this);
     natsConnection* connected = nullptr;
     require(natsConnection_Connect(&connected, options.get()), "it cannot be reached");
     connection_.reset(connected);

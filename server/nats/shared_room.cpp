@@ -17,8 +17,9 @@ using std::chrono::steady_clock;
 
 constexpr auto kPoll = 50ms;
 constexpr auto kRenew = 500ms;
-constexpr auto kPause = 5s;                                  // after what would come again at once
-constexpr auto kStateAgain = 2min;                           // before it expires
+constexpr auto kYield = 3s;         // to who drew the room, after NATS was away for both
+constexpr auto kPause = 5s;         // after what would come again at once
+constexpr auto kStateAgain = 2min;  // before it expires
 constexpr std::size_t kEntryBytes = std::size_t{256} << 10;  // of lines, at most
 constexpr std::size_t kMostLines = 100'000;                  // since a checkpoint, that wait for NATS
 constexpr std::size_t kMostGated = 2'000;                    // outputs and frames that wait for edges
@@ -239,7 +240,9 @@ bool SharedRoom::follow(const std::stop_token& stop) {
             if (failure_) throw std::runtime_error(*failure_);
             if (!has_state_) written_.wait_for(lock, stop, kPoll, [] { return false; });
         }
-        const auto lease = connection_.is_connected() ? store_.take_lease(id_) : std::nullopt;
+        const auto back = connection_.reconnected_at();
+        const bool may_take = connection_.is_connected() && (!back || steady_clock::now() - *back >= kYield);
+        const auto lease = may_take ? store_.take_lease(id_) : std::nullopt;
         if (lease && take_over(*lease)) return true;
     }
     return false;
