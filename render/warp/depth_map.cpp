@@ -1,0 +1,218 @@
+#include "warp/depth_map.hpp"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+namespace vrut::warp {
+
+namespace {
+
+constexpr int kParts = DepthMap::kBits * DepthMap::kBits;
+/// Steps between what belongs to two surfaces: an edge goes through the block.
+constexpr int kEdge = 3;
+
+using Parts = std::array<std::uint8_t, kParts>;
+
+struct Block {
+    std::uint8_t near = 0, far = 0;
+    std::uint16_t mask = 0xffff;
+};
+
+std::uint8_t mean(const Parts& parts, std::uint16_t mask) {
+    int sum = 0, count = 0;
+    for (unsigned i = 0; i < parts.size(); ++i) {
+        if ((mask >> i & 1U) == 0) continue;
+        sum += parts[i];
+        ++count;
+    }
+    return static_cast<std::uint8_t>((sum + count / 2) / std::max(count, 1));
+}
+
+/// The parts of a mask, and those beside them: pixels at an edge have something of the colours of both sides,
+/// and go with what is nearer.
+std::uint16_t widened(std::uint16_t mask) {
+    constexpr unsigned kLeft = 0x1111, kRight = 0x8888;
+    const unsigned parts = mask, wide = parts | (parts & ~kRight) << 1U | (parts & ~kLeft) >> 1U;
+    return static_cast<std::uint16_t>(wide | wide << 4U | wide >> 4U);
+}
+
+/// Divides it where the steps between its parts are largest.
+Block block_of(const Parts& parts) {
+    const auto [low, high] = std::ranges::minmax(parts);
+    const std::uint8_t all = mean(parts, 0xffff);
+    if (high - low < kEdge) return {all, all};
+    Parts sorted = parts;
+    std::ranges::sort(sorted);
+    int widest = 0;
+    std::uint8_t above = 0;
+    for (std::size_t i = 1; i < sorted.size(); ++i)
+        if (sorted[i] - sorted[i - 1] > widest) {
+            widest = sorted[i] - sorted[i - 1];
+            above = sorted[i];
+        }
+    if (widest < kEdge) return {all, all};  // a slope
+    std::uint16_t mask = 0;
+    for (unsigned i = 0; i < parts.size(); ++i)
+        if (parts[i] >= above) mask = static_cast<std::uint16_t>(mask | 1U << i);
+    return {mean(parts, mask), mean(parts, static_cast<std::uint16_t>(~mask)), widened(mask)};
+}
+
+/// Median of left, upper, and the plane through left, upper and upper left (Weinberger et al., "LOCO-I",
+/// 1996).
+int predicted(std::span<const std::uint8_t> values, int columns, int column, int row) {
+    const auto at = [&](int x, int y) {
+        return static_cast<int>(values[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns) +
+                                       static_cast<std::size_t>(x)]);
+    };
+    if (row == 0) return column == 0 ? 0 : at(column - 1, row);
+    if (column == 0) return at(column, row - 1);
+    const int left = at(column - 1, row), upper = at(column, row - 1);
+    const int plane = left + upper - at(column - 1, row - 1);
+    return std::clamp(plane, std::min(left, upper), std::max(left, upper));
+}
+
+/// The difference of two values modulo 256, small ones of either sign as small ones without.
+char difference(int value, int predicted) {
+    const int wrapped = static_cast<std::int8_t>(value - predicted);
+    return static_cast<char>(wrapped < 0 ? -2 * wrapped - 1 : 2 * wrapped);
+}
+std::uint8_t summed(int predicted, char difference) {
+    const int folded = static_cast<unsigned char>(difference);
+    return static_cast<std::uint8_t>(predicted + (folded % 2 == 1 ? -(folded / 2) - 1 : folded / 2));
+}
+
+/// Of a block through which an edge goes: what is near left of it or above it.
+int predicted_near(std::span<const std::uint8_t> near, int columns, std::size_t block) {
+    const std::size_t above = static_cast<std::size_t>(columns);
+    return std::max(block % above > 0 ? near[block - 1] : 0, block >= above ? near[block - above] : 0);
+}
+
+std::size_t size_of(int columns, int rows) {
+    return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+}
+
+}  // namespace
+
+DepthMapSize depth_map_size(int width, int height, double pixels) {
+    const double side = std::max(pixels, static_cast<double>(std::max(width, height)) / kMostBlocks);
+    const auto count = [&](int length) {
+        return std::clamp(static_cast<int>(std::ceil(length / side)), 1, kMostBlocks);
+    };
+    return {count(width), count(height)};
+}
+
+void BlockChoice::took(std::size_t map_bytes, std::size_t frame_bytes) {
+    // The bytes of a map grow with its blocks, and so with the square of their size.
+    const double most = std::max(kMostOfFrame * static_cast<double>(frame_bytes), kEnough);
+    const double wanted = pixels_ * std::sqrt(static_cast<double>(map_bytes) / most);
+    if (wanted > pixels_ || wanted < 0.85 * pixels_)
+        pixels_ = std::clamp(wanted * 1.05, kFinest, kCoarsest);
+}
+
+DepthMap depth_map_of(std::span<const float> depth, int width, int height, double near_distance,
+                      const DepthMapSize& size) {
+    DepthMap map{size.columns, size.rows, 0, {}, {}, {}};
+    float nearest = 0;
+    for (const float value : depth) nearest = std::max(nearest, value);
+    map.scale = static_cast<double>(nearest) / near_distance;
+    const float steps = nearest > 0 ? static_cast<float>(DepthMap::kSteps) / nearest : 0;
+
+    // The pixel at the middle of each part.
+    const auto pixels = [](int parts, int side) {
+        std::vector<std::size_t> at(static_cast<std::size_t>(parts));
+        for (std::size_t i = 0; i < at.size(); ++i)
+            at[i] = static_cast<std::size_t>((static_cast<double>(i) + 0.5) * side / parts);
+        return at;
+    };
+    const std::vector<std::size_t> columns = pixels(DepthMap::kBits * size.columns, width);
+    const std::vector<std::size_t> rows = pixels(DepthMap::kBits * size.rows, height);
+    const std::size_t blocks = size_of(size.columns, size.rows);
+    map.near.reserve(blocks);
+    map.far.reserve(blocks);
+    map.mask.reserve(blocks);
+    for (std::size_t row = 0; row < rows.size(); row += DepthMap::kBits)
+        for (std::size_t column = 0; column < columns.size(); column += DepthMap::kBits) {
+            Parts parts;
+            for (std::size_t i = 0; i < parts.size(); ++i) {
+                const std::size_t y = rows[row + i / DepthMap::kBits];
+                const std::size_t x = columns[column + i % DepthMap::kBits];
+                const float value =
+                    depth[(static_cast<std::size_t>(height) - 1 - y) * static_cast<std::size_t>(width) + x];
+                parts[i] = static_cast<std::uint8_t>(value * steps + 0.5F);
+            }
+            const Block block = block_of(parts);
+            map.near.push_back(block.near);
+            map.far.push_back(block.far);
+            map.mask.push_back(block.mask);
+        }
+    return map;
+}
+
+std::string encode(const DepthMap& map) {
+    const std::size_t blocks = size_of(map.columns, map.rows);
+    std::string plain, edges((blocks + 7) / 8, 0), nearer, masks;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        const int column = static_cast<int>(i) % map.columns, row = static_cast<int>(i) / map.columns;
+        plain += difference(map.far[i], predicted(map.far, map.columns, column, row));
+        if (map.near[i] == map.far[i]) continue;
+        edges[i / 8] = static_cast<char>(edges[i / 8] | 1 << i % 8);
+        nearer += difference(map.near[i], predicted_near(map.near, map.columns, i));
+        masks += static_cast<char>(map.mask[i] & 0xff);
+        masks += static_cast<char>(map.mask[i] >> 8);
+    }
+    plain += edges + nearer + masks;
+    uLongf size = compressBound(plain.size());
+    std::string bytes(size, 0);
+    if (compress2(reinterpret_cast<Bytef*>(bytes.data()), &size, reinterpret_cast<const Bytef*>(plain.data()),
+                  plain.size(), Z_DEFAULT_COMPRESSION) != Z_OK)
+        return {};
+    bytes.resize(size);
+    return bytes;
+}
+
+std::optional<DepthMap> decode(std::string_view bytes, int columns, int rows, double scale) {
+    if (columns < 1 || rows < 1 || columns > kMostBlocks || rows > kMostBlocks) return {};
+    const std::size_t blocks = size_of(columns, rows), edges_at = blocks,
+                      nearer_at = edges_at + (blocks + 7) / 8;
+    std::string plain(nearer_at + 3 * blocks, 0);
+    uLongf size = plain.size();
+    if (uncompress(reinterpret_cast<Bytef*>(plain.data()), &size,
+                   reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()) != Z_OK)
+        return {};
+    plain.resize(size);
+    if (plain.size() < nearer_at || (plain.size() - nearer_at) % 3 != 0) return {};
+    const std::size_t edges = (plain.size() - nearer_at) / 3, masks_at = nearer_at + edges;
+
+    DepthMap map{columns, rows, scale, {}, {}, {}};
+    map.near.reserve(blocks);
+    map.far.reserve(blocks);
+    map.mask.reserve(blocks);
+    std::size_t edge = 0;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
+        map.far.push_back(summed(predicted(map.far, columns, column, row), plain[i]));
+        if ((plain[edges_at + i / 8] >> i % 8 & 1) == 0) {
+            map.near.push_back(map.far.back());
+            map.mask.push_back(0xffff);
+            continue;
+        }
+        if (edge == edges) return {};
+        const auto byte = [&](std::size_t at) {
+            return static_cast<unsigned>(static_cast<unsigned char>(plain[at]));
+        };
+        map.near.push_back(summed(predicted_near(map.near, columns, i), plain[nearer_at + edge]));
+        map.mask.push_back(
+            static_cast<std::uint16_t>(byte(masks_at + 2 * edge) | byte(masks_at + 2 * edge + 1) << 8U));
+        if (map.near.back() <= map.far.back()) return {};
+        ++edge;
+    }
+    if (edge != edges) return {};
+    return map;
+}
+
+}  // namespace vrut::warp

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "scene/camera.hpp"
+#include "scene/image.hpp"
+#include "warp/depth_map.hpp"
+
+namespace vrut::warp {
+
+/// From an image's normalized device coordinates x, y and reciprocal distance d along the view, as
+/// (x, y, 1, d), to the same of another camera: of the product m, (m.x, m.y, m.w) / m.z.
+glm::dmat4 warp_matrix(const scene::Camera& from, const scene::Camera& to, double aspect);
+
+/// What `to` sees of an image that `from` has taken, in the image's size: a grid of the blocks' centres, of
+/// which no triangle spans a step of depth (Mark, McMillan and Bishop, "Post-Rendering 3D Warping", 1997).
+/// What a surface hid and now does not is taken to look like what is seen beside it, and what is beside the
+/// image like its side. What is infinitely far turns with the camera, or stays where it is in the image: a
+/// colour or a texture behind the scene. The page draws the same.
+enum class Background { turns, stays };
+scene::Image warped(const scene::Image& image, const DepthMap& depth, const scene::Camera& from,
+                    const scene::Camera& to, Background background);
+
+/// The blocks as the two layers of the grid have them: where an edge goes through a block or beside it, the
+/// one has what is nearer, and the other what is farther. There a part of a block belongs to the first layer
+/// if its bit in `mask` is set; elsewhere both layers are the same, and blocks belong to both.
+struct Layers {
+    std::vector<std::uint8_t> near, far;
+    std::vector<std::uint16_t> mask;
+    /// The block beside it, or itself, that shows what is farthest.
+    std::vector<std::uint32_t> farthest;
+};
+Layers layers_of(const DepthMap& map);
+
+/// A triangle of the grid that spans more steps is no surface, and neither is one that reaches infinity.
+inline constexpr int kGap = 16;
+
+}  // namespace vrut::warp
