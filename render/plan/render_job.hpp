@@ -6,6 +6,7 @@
 
 #include "plan/view.hpp"
 #include "scene/image.hpp"
+#include "warp/depth_map.hpp"
 
 namespace vrut::plan {
 
@@ -37,6 +38,10 @@ struct RenderJob {
     /// the place of a level it shows a finer one that is there; in a wireframe, parts without edges are faces
     /// (FrameStats::substitutes). Other images wait for all that they show.
     bool interactive = false;
+    /// Set before the first step: with the first sample `depth` is filled; glass counts as what is in front
+    /// of what is seen through it. No columns: it is not.
+    warp::DepthMapSize depth_size;
+    warp::DepthMap depth;
     bool memory_released = false;  ///< by the renderer for the sample that is next: it has no more to release
     int samples = 0;               ///< drawn, of view.samples
     /// Of a renderer that resolves samples on the CPU: the bytes of the first, while it is the only one and

@@ -8,6 +8,7 @@
 #include "gl/context.hpp"
 #include "gl/framebuffer.hpp"
 #include "gl/gpu_scene.hpp"
+#include "gl/passes/depth_pass.hpp"
 #include "gl/passes/drawing.hpp"
 #include "gl/passes/id_pass.hpp"
 #include "gl/resolver.hpp"
@@ -116,6 +117,7 @@ struct Renderer::Impl {
 
     bool step(plan::RenderJob& job);
     bool draw(plan::RenderJob& job);
+    void read_depth(plan::RenderJob& job, const gl::Framebuffer& target);
     double time_resolver();
     double try_resolver(ResolveOn where);
     void use_resolver(ResolveOn where);
@@ -130,8 +132,23 @@ struct Renderer::Impl {
     std::list<gl::SampleDrawing> in_flight;      // of renderings that wait
     std::unique_ptr<gl::SampleTargets> targets;  // of a sample before, for the next
     gl::IdPass ids{programs};
+    gl::DepthPass depths{programs};
     std::unique_ptr<gl::Resolver> resolver = gl::make_cpu_resolver();
+    std::vector<float> depth;  // of the image drawn last
 };
+
+void Renderer::Impl::read_depth(plan::RenderJob& job, const gl::Framebuffer& target) {
+    const Clock::time_point start = Clock::now();
+    if (scene)
+        depths.draw(
+            job.planner->plan().scene, target, *scene,
+            math::reversed_clip_from_view(plan::projection_of(job.view), plan::near_distance(job.view)));
+    depth.resize(static_cast<std::size_t>(target.width()) * static_cast<std::size_t>(target.height()));
+    target.read_depth(depth);
+    job.depth = warp::depth_map_of(depth, target.width(), target.height(), plan::near_distance(job.view),
+                                   job.depth_size);
+    job.stats.readback_ms += milliseconds_since(start);
+}
 
 /// True if a sample is drawn: then the resolver has read it.
 bool Renderer::Impl::draw(plan::RenderJob& job) {
@@ -161,6 +178,7 @@ bool Renderer::Impl::draw(plan::RenderJob& job) {
     if (!drawn) return false;
 
     resolver->read(job, sample.image_target());
+    if (job.depth_size.columns > 0 && job.samples == 0) read_depth(job, sample.image_target());
     targets = sample.release();
     ++stats.samples;
     return true;
